@@ -1,0 +1,40 @@
+//! Shapes and maps: plain values with the arithmetic that the bit contract asks for.
+
+mod affine;
+mod quaternion;
+mod ray;
+mod similarity;
+mod sphere;
+pub(crate) mod triangle;
+
+pub use affine::Affine;
+pub use quaternion::{rotation_from_axis_angle, rotation_vector, slerp};
+pub use ray::Ray;
+pub use similarity::Similarity;
+pub use sphere::Sphere;
+
+use glam::{DVec3, Vec3};
+
+/// Largest length that a rest position or a skinned one may have, 2^100: products of two such
+/// numbers stay finite in f32's range of exponents after one more sum, so no query meets infinity.
+pub(crate) const MAX_COORDINATE: f64 = (1u128 << 100) as f64;
+
+/// Rounds each coordinate to the nearest f32.
+pub(crate) fn round_to_f32(v: DVec3) -> Vec3 {
+    Vec3::new(v.x as f32, v.y as f32, v.z as f32)
+}
+
+/// Widens each coordinate; exact.
+pub(crate) fn widen(v: Vec3) -> DVec3 {
+    DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+}
+
+/// The smallest f32 that is not below `x`; infinity where no finite f32 is.
+pub(crate) fn round_up_to_f32(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) < x {
+        nearest.next_up()
+    } else {
+        nearest
+    }
+}

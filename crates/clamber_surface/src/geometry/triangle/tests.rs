@@ -1,0 +1,172 @@
+use super::*;
+
+fn random_point(rng: &mut fastrand::Rng) -> Vec3 {
+    Vec3::new(
+        rng.f32() * 2.0 - 1.0,
+        rng.f32() * 2.0 - 1.0,
+        rng.f32() * 2.0 - 1.0,
+    )
+}
+
+/// Nearest distance by another road: Dykstra-free coordinate search on the barycentric simplex,
+/// a coarse grid refined around its best cell until the cell is below rounding.
+fn distance_by_search(corners: [Vec3; 3], p: Vec3) -> f64 {
+    let p = widen(p);
+    let [a, b, c] = corners.map(|corner| widen(corner) - p);
+    let at = |u: f64, v: f64| (a * (1.0 - u - v) + b * u + c * v).length();
+    let (mut best, mut centre, mut half) = (f64::INFINITY, (1.0 / 3.0, 1.0 / 3.0), 1.0);
+    for _ in 0..60 {
+        let middle = centre;
+        for i in -6..=6 {
+            for j in -6..=6 {
+                let u = (middle.0 + half * f64::from(i) / 6.0).clamp(0.0, 1.0);
+                let v = (middle.1 + half * f64::from(j) / 6.0).clamp(0.0, 1.0 - u);
+                let d = at(u, v);
+                if d < best {
+                    best = d;
+                    centre = (u, v);
+                }
+            }
+        }
+        half *= 0.6;
+    }
+    best
+}
+
+#[test]
+fn closest_point_agrees_with_search() {
+    let mut rng = fastrand::Rng::with_seed(1);
+    for case in 0..300 {
+        let corners = [(); 3].map(|()| random_point(&mut rng));
+        let p = random_point(&mut rng) * 2.0;
+        let found = closest_point(corners, p);
+        let searched = distance_by_search(corners, p);
+        assert!(
+            (found.distance - searched).abs() < 1e-6,
+            "case {case} {corners:?} {p}: {found:?} against {searched}"
+        );
+        let back = (point_at(corners, found.barycentric) - widen(p)).length();
+        assert!((back - found.distance).abs() < 1e-12, "case {case}");
+    }
+}
+
+#[test]
+fn closest_point_meets_the_optimality_condition_on_slivers_far_out() {
+    // Convexity: q is nearest if and only if no corner lies nearer along q - p than q itself.
+    let mut rng = fastrand::Rng::with_seed(2);
+    for case in 0..20_000 {
+        let thin = [1.0, 1e-3, 1e-6, 0.0][case % 4];
+        let offset = [0.0, 1000.0][(case / 4) % 2];
+        let a = random_point(&mut rng) + Vec3::splat(offset);
+        let b = random_point(&mut rng) + Vec3::splat(offset);
+        let c = a + (b - a) * rng.f32() + random_point(&mut rng) * thin;
+        let p = random_point(&mut rng) * 2.0 + Vec3::splat(offset);
+        let found = closest_point([a, b, c], p);
+        let q = point_at([a, b, c], found.barycentric) - widen(p);
+        for corner in [a, b, c] {
+            let slack = q.dot(widen(corner) - widen(p) - q);
+            assert!(
+                slack >= -1e-7 * (1.0 + q.length()),
+                "case {case} {a} {b} {c} {p}: {slack}"
+            );
+        }
+    }
+}
+
+#[test]
+fn closest_point_of_the_troublesome_sliver() {
+    // Catto's triangle, whose normal keeps two digits in f32.
+    let corners = [
+        Vec3::new(0.331_916_57, 0.382_771_94, -0.465_963_87),
+        Vec3::new(0.378_853_9, -0.246_981_59, -0.440_359_06),
+        Vec3::new(0.331_879_08, 0.382_861_08, -0.465_974),
+    ];
+    let p = Vec3::new(0.5, 0.1, -0.2);
+    let found = closest_point(corners, p);
+    assert!((found.distance - distance_by_search(corners, p)).abs() < 1e-9);
+}
+
+#[test]
+fn collapsed_triangle_answers_as_segment_and_as_point() {
+    let a = Vec3::new(1.0, 0.0, 0.0);
+    let b = Vec3::new(3.0, 0.0, 0.0);
+    let found = closest_point([a, b, a], Vec3::new(2.0, 2.0, 0.0));
+    assert!((found.distance - 2.0).abs() < 1e-12);
+    let found = closest_point([a, a, a], Vec3::new(1.0, 5.0, 0.0));
+    assert!((found.distance - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn ray_meets_both_sides_and_borders_but_not_edge_on() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let meets = |origin, direction| {
+        let ray = Ray::new(origin, direction).unwrap();
+        ShearedRay::new(&ray).intersect(corners, f64::INFINITY)
+    };
+    for side in [1.0, -1.0] {
+        let from = |x, y| meets(Vec3::new(x, y, 2.0 * side), Vec3::new(0.0, 0.0, -side));
+        let hit = from(0.25, 0.25).unwrap();
+        assert_eq!(hit.distance, 2.0);
+        assert_eq!(hit.barycentric, DVec3::new(0.5, 0.25, 0.25));
+        assert!(from(0.0, 0.0).is_some(), "corner");
+        assert!(from(0.5, 0.5).is_some(), "edge");
+        assert!(from(0.6, 0.6).is_none(), "outside");
+        assert!(meets(Vec3::new(0.1, 0.1, side), Vec3::new(0.0, 0.0, side)).is_none());
+    }
+    assert!(
+        meets(Vec3::new(-1.0, 0.2, 0.0), Vec3::X).is_none(),
+        "edge-on"
+    );
+}
+
+#[test]
+fn rays_at_edges_and_corners_of_a_closed_mesh_do_not_leak() {
+    // An octahedron split three times: 512 triangles around the origin, near and far out.
+    for offset in [Vec3::ZERO, Vec3::splat(1000.0)] {
+        let mut positions = vec![Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
+        let mut triangles = vec![
+            [0, 1, 2],
+            [1, 3, 2],
+            [3, 4, 2],
+            [4, 0, 2],
+            [1, 0, 5],
+            [3, 1, 5],
+            [4, 3, 5],
+            [0, 4, 5],
+        ];
+        for _ in 0..3 {
+            let mut middles = std::collections::BTreeMap::new();
+            let mut middle = |a: usize, b: usize, positions: &mut Vec<Vec3>| {
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    positions.push((positions[a] + positions[b]).normalize());
+                    positions.len() - 1
+                })
+            };
+            triangles = triangles
+                .iter()
+                .flat_map(|&[a, b, c]| {
+                    let ab = middle(a, b, &mut positions);
+                    let bc = middle(b, c, &mut positions);
+                    let ca = middle(c, a, &mut positions);
+                    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+                })
+                .collect();
+        }
+        let positions: Vec<Vec3> = positions.iter().map(|p| *p + offset).collect();
+        let mut rng = fastrand::Rng::with_seed(3);
+        for _ in 0..5_000 {
+            let triangle = triangles[rng.usize(0..triangles.len())];
+            let along = [0.0, rng.f32()][rng.usize(0..2)];
+            let target = positions[triangle[0]].lerp(positions[triangle[1]], along);
+            let origin = offset + random_point(&mut rng) * 0.3;
+            let ray = Ray::new(origin, target - origin).unwrap();
+            let sheared = ShearedRay::new(&ray);
+            let met = triangles.iter().any(|t| {
+                sheared
+                    .intersect(t.map(|v| positions[v]), f64::INFINITY)
+                    .is_some()
+            });
+            assert!(met, "leak: {ray:?} at {target}");
+        }
+    }
+}

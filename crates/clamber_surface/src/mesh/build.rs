@@ -1,0 +1,348 @@
+//! From slices to a [`ColliderMesh`]: normalise weights, weld, drop what is no triangle, assign
+//! parts. The steps are those of the thesis's import (5.4, "Import and setup").
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use glam::Vec3;
+
+use super::collider::has_area;
+use super::weights::normalize;
+use super::{
+    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId, WEIGHT_ONE,
+};
+use crate::geometry::{MAX_COORDINATE, widen};
+use crate::rig::JointId;
+
+/// What a mesh is built from, as importers and engines have it.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshSource<'a> {
+    /// Rest positions, in mesh space.
+    pub positions: &'a [Vec3],
+    /// Corners, counter-clockwise seen from outside.
+    pub triangles: &'a [[u32; 3]],
+    /// Influences of the first vertex, then of the second, and so on: the same number for each,
+    /// any number, filled up with zero weights.
+    pub influences: &'a [Influence],
+    /// A tag per triangle, or empty for [`SurfaceTag::default`] everywhere.
+    pub tags: &'a [SurfaceTag],
+    /// How many joints the skeleton has.
+    pub joint_count: usize,
+}
+
+/// What to do with vertices that coincide at rest but follow their joints differently.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cracks {
+    /// Keep them apart and count them: the surface can gape there when posed.
+    #[default]
+    Report,
+    /// Give them the mean of their weights and weld them.
+    Unify,
+}
+
+/// Which side of the triangles is outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Winding {
+    /// As given.
+    #[default]
+    Keep,
+    /// The other one.
+    Flip,
+}
+
+/// Choices of a build; the default is right for a well-made file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BuildOptions {
+    /// Coincident vertices with different influences.
+    pub cracks: Cracks,
+    /// Orientation of the triangles.
+    pub winding: Winding,
+}
+
+/// What a build found and changed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BuildReport {
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Vertices given that were merged into another one of equal position and influences.
+    pub welded: usize,
+    /// Vertices that stand where another one stands but follow their joints differently, and were
+    /// left so: the surface can crack there. 0 under [`Cracks::Unify`].
+    pub cracks: usize,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// Triangles dropped because they have no area at rest.
+    pub degenerate_triangles: usize,
+    /// Triangles dropped because another one has the same corners in the same orientation.
+    pub duplicate_triangles: usize,
+    /// The most influences of one vertex, after merging.
+    pub max_influences: usize,
+    /// The largest difference from 1 of a vertex's weights as given.
+    pub worst_weight_error: f64,
+}
+
+/// Position (bits, with one zero) and influences: what makes two vertices the same one.
+type VertexKey = ([u32; 3], Vec<(JointId, u32)>);
+
+impl ColliderMesh {
+    /// Builds a mesh: normalises weights to exact sums, welds vertices that are equal in position
+    /// and influences, drops triangles without area and duplicates, and assigns every triangle to
+    /// the part of the joint that moves it most.
+    ///
+    /// ```
+    /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+    /// use clamber_surface::rig::JointId;
+    /// use glam::Vec3;
+    ///
+    /// let influences = [Influence { joint: JointId(0), weight: 1.0 }; 3];
+    /// let source = MeshSource {
+    ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+    ///     triangles: &[[0, 1, 2], [2, 0, 1]],
+    ///     influences: &influences,
+    ///     tags: &[],
+    ///     joint_count: 1,
+    /// };
+    /// let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    /// assert_eq!(mesh.triangles().len(), 1);
+    /// assert_eq!(report.duplicate_triangles, 1);
+    /// # Ok::<(), clamber_surface::mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MeshError`], naming what is wrong and where, for input that is not finite, out of range
+    /// or inconsistent, and for a mesh that has no triangle left.
+    pub fn build(
+        source: &MeshSource<'_>,
+        options: &BuildOptions,
+    ) -> Result<(Self, BuildReport), MeshError> {
+        validate(source)?;
+        let mut report = BuildReport::default();
+        let mut keys = vertex_keys(source, &mut report)?;
+        let split = coincident_groups(&keys);
+        match options.cracks {
+            Cracks::Report => report.cracks = split.iter().map(|g| g.kinds - 1).sum(),
+            Cracks::Unify => unify(&mut keys, &split),
+        }
+        let (mut mesh, vertex_of) = weld(source, &keys);
+        report.vertices = mesh.positions.len();
+        report.welded = source.positions.len() - report.vertices;
+        report.max_influences = mesh.max_influences();
+        mesh.keep_triangles(source, &vertex_of, options.winding, &mut report);
+        if mesh.triangles.is_empty() {
+            return Err(MeshError::NoTriangles {
+                triangles: source.triangles.len(),
+            });
+        }
+        mesh.assign_parts();
+        report.triangles = mesh.triangles.len();
+        Ok((mesh, report))
+    }
+
+    /// Appends the triangles that are some, once each.
+    fn keep_triangles(
+        &mut self,
+        source: &MeshSource<'_>,
+        vertex_of: &[u32],
+        winding: Winding,
+        report: &mut BuildReport,
+    ) {
+        let mut seen = HashSet::new();
+        for (index, triangle) in source.triangles.iter().enumerate() {
+            let mut corners = triangle.map(|v| VertexId(vertex_of[v as usize]));
+            if winding == Winding::Flip {
+                corners.swap(1, 2);
+            }
+            if !has_area(corners.map(|v| self.positions[v.index()])) {
+                report.degenerate_triangles += 1;
+                continue;
+            }
+            // Smallest corner first, order kept: one form for the three ways to write it.
+            let mut canonical = corners;
+            while canonical[0] > canonical[1] || canonical[0] > canonical[2] {
+                canonical.rotate_left(1);
+            }
+            if !seen.insert(canonical) {
+                report.duplicate_triangles += 1;
+                continue;
+            }
+            self.triangles.push(corners);
+            self.tags
+                .push(source.tags.get(index).copied().unwrap_or_default());
+        }
+    }
+
+    /// Makes the parts, by ascending joint.
+    fn assign_parts(&mut self) {
+        let mut by_joint: BTreeMap<JointId, Vec<TriangleId>> = BTreeMap::new();
+        for (index, corners) in self.triangles.iter().enumerate() {
+            let joint = self.dominant_joint(*corners);
+            by_joint
+                .entry(joint)
+                .or_default()
+                .push(TriangleId(index as u32));
+        }
+        self.part_of = vec![None; self.triangles.len()];
+        for (part, (joint, triangles)) in by_joint.into_iter().enumerate() {
+            for triangle in &triangles {
+                self.part_of[triangle.index()] = Some(PartId(part as u32));
+            }
+            self.parts.push(Part {
+                joint,
+                triangles,
+                vertices: Vec::new(),
+            });
+            self.collect_vertices(part);
+        }
+    }
+}
+
+/// Counts, ranges and finiteness.
+fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
+    let vertices = source.positions.len();
+    let counts = [
+        ("vertices", vertices),
+        ("influences", source.influences.len()),
+        ("triangles", source.triangles.len()),
+        ("joints", source.joint_count),
+    ];
+    for (what, found) in counts {
+        if found >= u32::MAX as usize {
+            return Err(MeshError::TooLarge { what, found });
+        }
+    }
+    let influences = source.influences.len();
+    if vertices == 0 || influences == 0 || !influences.is_multiple_of(vertices) {
+        return Err(MeshError::InfluenceCount {
+            influences,
+            vertices,
+        });
+    }
+    if !source.tags.is_empty() && source.tags.len() != source.triangles.len() {
+        return Err(MeshError::TagCount {
+            expected: source.triangles.len(),
+            found: source.tags.len(),
+        });
+    }
+    // Written so that NaN is refused.
+    let within = |p: &Vec3| widen(*p).length() <= MAX_COORDINATE;
+    if let Some(vertex) = source.positions.iter().position(|p| !within(p)) {
+        return Err(MeshError::Position { vertex });
+    }
+    for (triangle, corners) in source.triangles.iter().enumerate() {
+        if let Some(&vertex) = corners.iter().find(|v| **v as usize >= vertices) {
+            return Err(MeshError::VertexOutOfRange {
+                triangle,
+                vertex,
+                vertices,
+            });
+        }
+    }
+    let per_vertex = influences / vertices;
+    for (index, influence) in source.influences.iter().enumerate() {
+        if influence.joint.0 as usize >= source.joint_count {
+            return Err(MeshError::JointOutOfRange {
+                vertex: index / per_vertex,
+                joint: influence.joint,
+                joints: source.joint_count,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The key of every vertex given, with its weights normalised.
+fn vertex_keys(
+    source: &MeshSource<'_>,
+    report: &mut BuildReport,
+) -> Result<Vec<VertexKey>, MeshError> {
+    let per_vertex = source.influences.len() / source.positions.len();
+    let mut keys = Vec::with_capacity(source.positions.len());
+    let given = source.influences.chunks_exact(per_vertex);
+    for (vertex, (position, influences)) in source.positions.iter().zip(given).enumerate() {
+        let weights = normalize(influences).ok_or_else(|| MeshError::Weights {
+            vertex,
+            weights: influences.iter().map(|i| i.weight).collect(),
+        })?;
+        let sum: f64 = influences.iter().map(|i| f64::from(i.weight)).sum();
+        report.worst_weight_error = report.worst_weight_error.max((sum - 1.0).abs());
+        // Adding +0 turns -0 into +0 and leaves all else alone.
+        let bits = position.to_array().map(|x| (x + 0.0).to_bits());
+        keys.push((bits, weights));
+    }
+    Ok(keys)
+}
+
+/// Vertices at one place that have more than one set of influences.
+struct CoincidentGroup {
+    vertices: Vec<u32>,
+    kinds: usize,
+}
+
+fn coincident_groups(keys: &[VertexKey]) -> Vec<CoincidentGroup> {
+    let mut at: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
+    for (vertex, (bits, _)) in keys.iter().enumerate() {
+        at.entry(*bits).or_default().push(vertex as u32);
+    }
+    let groups = at.into_values().filter_map(|vertices| {
+        let mut kinds: Vec<_> = vertices.iter().map(|v| &keys[*v as usize].1).collect();
+        kinds.sort();
+        kinds.dedup();
+        let kinds = kinds.len();
+        (kinds > 1).then_some(CoincidentGroup { vertices, kinds })
+    });
+    groups.collect()
+}
+
+/// Gives every vertex of a group the mean of the group's weights.
+fn unify(keys: &mut [VertexKey], groups: &[CoincidentGroup]) {
+    for group in groups {
+        let all: Vec<Influence> = group
+            .vertices
+            .iter()
+            .flat_map(|v| &keys[*v as usize].1)
+            .map(|(joint, units)| Influence {
+                joint: *joint,
+                weight: *units as f32,
+            })
+            .collect();
+        if let Some(mean) = normalize(&all) {
+            for vertex in &group.vertices {
+                keys[*vertex as usize].1.clone_from(&mean);
+            }
+        }
+    }
+}
+
+/// A mesh of the distinct vertices, numbered by first appearance, and each given vertex's number.
+fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>) {
+    let mut mesh = ColliderMesh {
+        joint_count: source.joint_count,
+        positions: Vec::new(),
+        influence_start: vec![0],
+        joints: Vec::new(),
+        weights: Vec::new(),
+        triangles: Vec::new(),
+        tags: Vec::new(),
+        part_of: Vec::new(),
+        parts: Vec::new(),
+        radius: 0.0,
+    };
+    let mut number_of: HashMap<&VertexKey, u32> = HashMap::new();
+    let mut vertex_of = Vec::with_capacity(keys.len());
+    for (key, position) in keys.iter().zip(source.positions) {
+        let number = *number_of.entry(key).or_insert_with(|| {
+            mesh.positions.push(*position + Vec3::ZERO);
+            for (joint, units) in &key.1 {
+                mesh.joints.push(joint.0);
+                mesh.weights.push(*units as f32 / WEIGHT_ONE as f32);
+            }
+            mesh.influence_start.push(mesh.joints.len() as u32);
+            (mesh.positions.len() - 1) as u32
+        });
+        vertex_of.push(number);
+    }
+    mesh.radius = ColliderMesh::radius_of(&mesh.positions);
+    (mesh, vertex_of)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,193 @@
+use super::*;
+
+/// A strip of two triangles over a unit square, each with vertices of its own, on two joints.
+struct Square {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    influences: Vec<Influence>,
+    tags: Vec<SurfaceTag>,
+}
+
+fn influence(joint: u32, weight: f32) -> Influence {
+    Influence {
+        joint: JointId(joint),
+        weight,
+    }
+}
+
+fn square() -> Square {
+    let corner = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    let order = [0, 1, 2, 0, 2, 3];
+    Square {
+        positions: order.iter().map(|&c| corner[c]).collect(),
+        triangles: vec![[0, 1, 2], [3, 4, 5]],
+        influences: order
+            .iter()
+            .flat_map(|&c| {
+                let x = corner[c].x;
+                [influence(1, x), influence(0, 1.0 - x)]
+            })
+            .collect(),
+        tags: Vec::new(),
+    }
+}
+
+impl Square {
+    fn source(&self) -> MeshSource<'_> {
+        MeshSource {
+            positions: &self.positions,
+            triangles: &self.triangles,
+            influences: &self.influences,
+            tags: &self.tags,
+            joint_count: 2,
+        }
+    }
+
+    fn build(&self) -> Result<(ColliderMesh, BuildReport), MeshError> {
+        ColliderMesh::build(&self.source(), &BuildOptions::default())
+    }
+}
+
+#[test]
+fn separate_triangles_are_welded_into_shared_vertices() {
+    let (mesh, report) = square().build().unwrap();
+    assert_eq!((report.vertices, report.welded, report.cracks), (4, 2, 0));
+    assert_eq!(report.max_influences, 1);
+    assert_eq!(mesh.triangles()[1], [VertexId(0), VertexId(2), VertexId(3)]);
+    // The lower triangle has two corners on joint 1, the upper one two on joint 0.
+    let parts: Vec<_> = mesh
+        .parts()
+        .iter()
+        .map(|p| (p.joint.0, &p.triangles[..]))
+        .collect();
+    assert_eq!(
+        parts,
+        [(0, &[TriangleId(1)][..]), (1, &[TriangleId(0)][..])]
+    );
+    assert_eq!(mesh.part_of(TriangleId(0)), Some(PartId(1)));
+    assert_eq!(mesh.parts()[0].vertices.len(), 3);
+    let (radius, exact) = (f64::from(mesh.radius()), 2f64.sqrt());
+    assert!(radius >= exact && radius < exact * (1.0 + 3e-7), "{radius}");
+}
+
+#[test]
+fn negative_zero_is_zero() {
+    let mut given = square();
+    given.positions[3].y = -0.0;
+    assert_eq!(given.build().unwrap().1.vertices, 4);
+}
+
+#[test]
+fn coincident_vertices_with_other_influences_are_reported_or_unified() {
+    let mut given = square();
+    // The second triangle's copy of the origin follows both joints.
+    given.influences[6] = influence(1, 0.5);
+    given.influences[7] = influence(0, 0.5);
+    let (mesh, report) = given.build().unwrap();
+    assert_eq!((report.vertices, report.cracks), (5, 1));
+    assert_eq!(mesh.max_influences(), 2);
+    let options = BuildOptions {
+        cracks: Cracks::Unify,
+        ..BuildOptions::default()
+    };
+    let (mesh, report) = ColliderMesh::build(&given.source(), &options).unwrap();
+    assert_eq!((report.vertices, report.cracks), (4, 0));
+    let at_origin: Vec<_> = mesh.influences(VertexId(0)).collect();
+    assert_eq!(at_origin, [(JointId(0), 0.75), (JointId(1), 0.25)]);
+}
+
+#[test]
+fn degenerate_and_duplicate_triangles_are_dropped_and_tags_follow() {
+    let stone = SurfaceTag {
+        kind: crate::mesh::SurfaceKind::Stone,
+        ledge: true,
+    };
+    let mut given = square();
+    given.triangles = vec![[0, 0, 1], [2, 0, 1], [0, 1, 2], [3, 4, 5], [5, 4, 3]];
+    given.tags = vec![SurfaceTag::default(); 5];
+    given.tags[3] = stone;
+    let (mesh, report) = given.build().unwrap();
+    assert_eq!(report.degenerate_triangles, 1);
+    assert_eq!(report.duplicate_triangles, 1);
+    // The back side of a triangle is no duplicate of its front.
+    assert_eq!(report.triangles, 3);
+    assert_eq!(mesh.tags()[1], stone);
+}
+
+#[test]
+fn winding_can_be_flipped() {
+    let options = BuildOptions {
+        winding: Winding::Flip,
+        ..BuildOptions::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&square().source(), &options).unwrap();
+    assert_eq!(mesh.triangles()[0], [VertexId(0), VertexId(2), VertexId(1)]);
+}
+
+#[test]
+fn weight_errors_are_measured_and_mended() {
+    let mut given = square();
+    for influence in &mut given.influences {
+        influence.weight *= 0.9;
+    }
+    let (mesh, report) = given.build().unwrap();
+    assert!((report.worst_weight_error - 0.1).abs() < 1e-6);
+    for v in 0..mesh.positions().len() {
+        let sum: f32 = mesh.influences(VertexId(v as u32)).map(|(_, w)| w).sum();
+        assert_eq!(sum, 1.0);
+    }
+}
+
+#[test]
+fn each_kind_of_bad_input_has_its_error() {
+    let refused = |change: &dyn Fn(&mut Square)| {
+        let mut given = square();
+        change(&mut given);
+        given.build().unwrap_err()
+    };
+    use MeshError as E;
+    assert!(matches!(
+        refused(&|s| s.positions[2].x = f32::NAN),
+        E::Position { vertex: 2 }
+    ));
+    assert!(matches!(
+        refused(&|s| s.triangles[1][0] = 6),
+        E::VertexOutOfRange {
+            triangle: 1,
+            vertex: 6,
+            vertices: 6
+        }
+    ));
+    assert!(matches!(
+        refused(&|s| s.influences[4].joint = JointId(2)),
+        E::JointOutOfRange { vertex: 2, .. }
+    ));
+    assert!(matches!(
+        refused(&|s| s.influences[5].weight = -1.0),
+        E::Weights { vertex: 2, .. }
+    ));
+    assert!(matches!(
+        refused(&|s| {
+            s.influences.pop();
+        }),
+        E::InfluenceCount {
+            influences: 11,
+            vertices: 6
+        }
+    ));
+    assert!(matches!(
+        refused(&|s| s.influences.clear()),
+        E::InfluenceCount { .. }
+    ));
+    assert!(matches!(
+        refused(&|s| s.tags = vec![SurfaceTag::default()]),
+        E::TagCount {
+            expected: 2,
+            found: 1
+        }
+    ));
+    assert!(matches!(
+        refused(&|s| s.triangles = vec![[0, 0, 0]]),
+        E::NoTriangles { triangles: 1 }
+    ));
+}

@@ -1,0 +1,239 @@
+use std::fmt;
+
+use glam::Vec3;
+
+use super::{MeshError, SurfaceTag, WEIGHT_ONE};
+use crate::geometry::triangle::scaled_normal;
+use crate::geometry::{round_up_to_f32, widen};
+use crate::rig::JointId;
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// As an index into a slice.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{}", self.0)
+            }
+        }
+    };
+}
+
+id! {
+    /// Index of a vertex of a collider mesh.
+    VertexId
+}
+id! {
+    /// Index of a triangle of a collider mesh. Never reused: a removed triangle's id stays free.
+    TriangleId
+}
+id! {
+    /// Index of a part of a collider mesh.
+    PartId
+}
+
+/// The triangles that one joint moves most, bounded together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The joint with the largest weight over each triangle's three corners.
+    pub joint: JointId,
+    /// Ascending.
+    pub triangles: Vec<TriangleId>,
+    /// All corners of the triangles, ascending.
+    pub vertices: Vec<VertexId>,
+}
+
+/// The rest data of a surface: positions, influences, triangles, tags, parts. Immutable once
+/// built, shared by any number of surfaces through an `Arc`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColliderMesh {
+    pub(super) joint_count: usize,
+    pub(super) positions: Vec<Vec3>,
+    /// Influences of vertex v stand at `influence_start[v]..influence_start[v + 1]`.
+    pub(super) influence_start: Vec<u32>,
+    pub(super) joints: Vec<u32>,
+    /// Multiples of 2^-24; a vertex's add up to exactly 1.
+    pub(super) weights: Vec<f32>,
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) tags: Vec<SurfaceTag>,
+    /// `None` for a removed triangle.
+    pub(super) part_of: Vec<Option<PartId>>,
+    pub(super) parts: Vec<Part>,
+    pub(super) radius: f32,
+}
+
+impl ColliderMesh {
+    /// How many matrices a palette for this mesh has.
+    pub fn joint_count(&self) -> usize {
+        self.joint_count
+    }
+
+    /// Rest positions, in mesh space.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Corners of every triangle, removed ones included, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[VertexId; 3]] {
+        &self.triangles
+    }
+
+    /// The tag of every triangle, removed ones included.
+    pub fn tags(&self) -> &[SurfaceTag] {
+        &self.tags
+    }
+
+    /// The parts, at first by ascending joint; edits may append more.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The part that a triangle belongs to; `None` if it was removed or never was.
+    pub fn part_of(&self, triangle: TriangleId) -> Option<PartId> {
+        self.part_of.get(triangle.index()).copied().flatten()
+    }
+
+    /// Joints and weights of a vertex, by ascending joint. Weights are positive multiples of 2^-24
+    /// and add up to exactly 1. Empty for a vertex out of range.
+    pub fn influences(&self, vertex: VertexId) -> impl ExactSizeIterator<Item = (JointId, f32)> {
+        let (joints, weights) = if vertex.index() < self.positions.len() {
+            self.influence_slices(vertex.index())
+        } else {
+            (&[][..], &[][..])
+        };
+        let pairs = joints.iter().zip(weights);
+        pairs.map(|(joint, weight)| (JointId(*joint), *weight))
+    }
+
+    /// The largest distance of a rest position from the mesh's origin, rounded up.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// The most influences that one vertex has.
+    pub fn max_influences(&self) -> usize {
+        let counts = self.influence_start.windows(2).map(|w| w[1] - w[0]);
+        counts.max().unwrap_or(0) as usize
+    }
+
+    /// Joints and weights of vertex `v` as slices of equal length.
+    #[inline]
+    pub(crate) fn influence_slices(&self, v: usize) -> (&[u32], &[f32]) {
+        let range = self.influence_start[v] as usize..self.influence_start[v + 1] as usize;
+        (&self.joints[range.clone()], &self.weights[range])
+    }
+
+    pub(crate) fn rest_corners(&self, triangle: TriangleId) -> [Vec3; 3] {
+        self.triangles[triangle.index()].map(|v| self.positions[v.index()])
+    }
+
+    /// The joint with the largest weight over three corners; the smaller id where two are equal.
+    pub(super) fn dominant_joint(&self, corners: [VertexId; 3]) -> JointId {
+        let mut sums: Vec<(JointId, u64)> = Vec::new();
+        for corner in corners {
+            for (joint, weight) in self.influences(corner) {
+                // Exact: a weight is an integer times 2^-24.
+                let units = (weight * WEIGHT_ONE as f32) as u64;
+                match sums.iter_mut().find(|(known, _)| *known == joint) {
+                    Some((_, sum)) => *sum += units,
+                    None => sums.push((joint, units)),
+                }
+            }
+        }
+        sums.iter()
+            .max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)))
+            .map_or(JointId(0), |(joint, _)| *joint)
+    }
+
+    /// Appends a triangle of existing vertices and puts it into the part of its dominant joint.
+    pub(crate) fn add_triangle(
+        &mut self,
+        corners: [VertexId; 3],
+        tag: SurfaceTag,
+    ) -> Result<TriangleId, MeshError> {
+        let id = self.triangles.len();
+        if id >= u32::MAX as usize {
+            return Err(MeshError::TooLarge {
+                what: "triangles",
+                found: id + 1,
+            });
+        }
+        if let Some(bad) = corners.iter().find(|v| v.index() >= self.positions.len()) {
+            return Err(MeshError::VertexOutOfRange {
+                triangle: id,
+                vertex: bad.0,
+                vertices: self.positions.len(),
+            });
+        }
+        if !has_area(corners.map(|v| self.positions[v.index()])) {
+            return Err(MeshError::DegenerateTriangle {
+                vertices: corners.map(|v| v.0),
+            });
+        }
+        let id = TriangleId(id as u32);
+        let joint = self.dominant_joint(corners);
+        let part = match self.parts.iter().position(|part| part.joint == joint) {
+            Some(part) => part,
+            None => {
+                self.parts.push(Part {
+                    joint,
+                    triangles: Vec::new(),
+                    vertices: Vec::new(),
+                });
+                self.parts.len() - 1
+            }
+        };
+        self.triangles.push(corners);
+        self.tags.push(tag);
+        self.part_of.push(Some(PartId(part as u32)));
+        self.parts[part].triangles.push(id);
+        self.collect_vertices(part);
+        Ok(id)
+    }
+
+    /// Takes a triangle out of its part; false if it was not there.
+    pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) -> bool {
+        let Some(part) = self.part_of(triangle) else {
+            return false;
+        };
+        self.part_of[triangle.index()] = None;
+        let part = part.index();
+        self.parts[part].triangles.retain(|t| *t != triangle);
+        self.collect_vertices(part);
+        true
+    }
+
+    /// Fills a part's vertices from its triangles.
+    pub(super) fn collect_vertices(&mut self, part: usize) {
+        let triangles = &self.triangles;
+        let part = &mut self.parts[part];
+        part.vertices.clear();
+        let corners = part.triangles.iter().flat_map(|t| triangles[t.index()]);
+        part.vertices.extend(corners);
+        part.vertices.sort_unstable();
+        part.vertices.dedup();
+    }
+
+    /// The radius for a set of positions.
+    pub(super) fn radius_of(positions: &[Vec3]) -> f32 {
+        let farthest = positions
+            .iter()
+            .map(|p| widen(*p).length())
+            .fold(0.0, f64::max);
+        round_up_to_f32(farthest * (1.0 + 1e-15))
+    }
+}
+
+/// False for a triangle whose corners stand on one line, or on one point.
+pub(super) fn has_area(corners: [Vec3; 3]) -> bool {
+    scaled_normal(corners) != glam::DVec3::ZERO
+}

@@ -1,0 +1,17 @@
+//! The collider mesh: what is skinned and queried.
+//!
+//! [`ColliderMesh::build`] takes plain slices, as any importer or engine has them, and makes an
+//! immutable mesh that surfaces share by `Arc`.
+
+mod build;
+mod collider;
+mod error;
+mod tag;
+mod weights;
+
+pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
+pub use collider::{ColliderMesh, Part, PartId, TriangleId, VertexId};
+pub use error::MeshError;
+pub use tag::{SurfaceKind, SurfaceTag};
+pub use weights::Influence;
+pub(crate) use weights::WEIGHT_ONE;

@@ -1,0 +1,142 @@
+//! Influences as the skinning contract wants them: one per joint, ascending, integer weights.
+
+use crate::rig::JointId;
+
+/// How much one joint moves one vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Influence {
+    /// The joint.
+    pub joint: JointId,
+    /// Not negative; the weights of a vertex are normalised to a sum of one.
+    pub weight: f32,
+}
+
+/// The weight 1, in units of 2^-24. Integers up to it are exact in f32, and so is every partial
+/// sum of weights that add up to it.
+pub(crate) const WEIGHT_ONE: u32 = 1 << 24;
+
+/// Weights that add up to exactly [`WEIGHT_ONE`], by joint id, without zeros. `None` if a weight
+/// is negative or not finite, or all are zero.
+///
+/// Influences of one joint are merged. Each share is rounded down, and what is missing goes to
+/// the largest remainders, ties to the smaller joint: no weight is off by more than one unit.
+pub(crate) fn normalize(influences: &[Influence]) -> Option<Vec<(JointId, u32)>> {
+    let mut merged: Vec<(JointId, f64)> = Vec::with_capacity(influences.len());
+    for influence in influences {
+        let weight = f64::from(influence.weight);
+        if !weight.is_finite() || weight < 0.0 {
+            return None;
+        }
+        if weight > 0.0 {
+            match merged
+                .iter_mut()
+                .find(|(joint, _)| *joint == influence.joint)
+            {
+                Some((_, sum)) => *sum += weight,
+                None => merged.push((influence.joint, weight)),
+            }
+        }
+    }
+    merged.sort_by_key(|(joint, _)| *joint);
+    let sum: f64 = merged.iter().map(|(_, weight)| weight).sum();
+    if merged.is_empty() {
+        return None;
+    }
+    let mut shares: Vec<(JointId, u32, f64)> = merged
+        .iter()
+        .map(|(joint, weight)| {
+            let exact = weight / sum * f64::from(WEIGHT_ONE);
+            (*joint, exact as u32, exact - exact.floor())
+        })
+        .collect();
+    distribute_rest(&mut shares);
+    let kept = shares.into_iter().filter(|(_, units, _)| *units > 0);
+    Some(kept.map(|(joint, units, _)| (joint, units)).collect())
+}
+
+/// Hands out the units that rounding down left over, or takes back what rounding of the shares
+/// themselves gave too many.
+fn distribute_rest(shares: &mut [(JointId, u32, f64)]) {
+    let given: u64 = shares.iter().map(|(_, units, _)| u64::from(*units)).sum();
+    let rest = i64::from(WEIGHT_ONE) - given as i64;
+    let mut by_remainder: Vec<usize> = (0..shares.len()).collect();
+    by_remainder.sort_by(|&a, &b| shares[b].2.total_cmp(&shares[a].2).then(a.cmp(&b)));
+    for &index in by_remainder.iter().cycle().take(rest.max(0) as usize) {
+        shares[index].1 += 1;
+    }
+    // Shares are rounded down, so this happens only by the last bit of a division.
+    let mut excess = (-rest).max(0);
+    for share in shares.iter_mut().rev() {
+        let taken = excess.min(i64::from(share.1));
+        share.1 -= taken as u32;
+        excess -= taken;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn influences(weights: &[(u32, f32)]) -> Vec<Influence> {
+        weights
+            .iter()
+            .map(|&(joint, weight)| Influence {
+                joint: JointId(joint),
+                weight,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn sums_are_exact_and_weights_near_for_any_count() {
+        let mut rng = fastrand::Rng::with_seed(11);
+        for _ in 0..20_000 {
+            let count = rng.usize(1..40);
+            let scale = [1e-30, 1.0, 1e30][rng.usize(0..3)];
+            let given: Vec<(u32, f32)> = (0..count)
+                .map(|_| (rng.u32(0..50), rng.f32() * scale))
+                .collect();
+            let sum: f64 = given.iter().map(|(_, w)| f64::from(*w)).sum();
+            if sum == 0.0 {
+                continue;
+            }
+            let units = normalize(&influences(&given)).unwrap();
+            let total: u32 = units.iter().map(|(_, u)| u).sum();
+            assert_eq!(total, WEIGHT_ONE, "{given:?}");
+            assert!(units.windows(2).all(|w| w[0].0 < w[1].0), "{units:?}");
+            for (joint, unit) in units {
+                let wanted: f64 = given
+                    .iter()
+                    .filter(|(j, _)| *j == joint.0)
+                    .map(|(_, w)| f64::from(*w))
+                    .sum();
+                let error = f64::from(unit) - wanted / sum * f64::from(WEIGHT_ONE);
+                assert!(error.abs() <= 1.0 + 1e-6, "{given:?}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_joint_twice_is_one_influence() {
+        let units = normalize(&influences(&[(3, 0.25), (1, 0.5), (3, 0.25)])).unwrap();
+        let half = WEIGHT_ONE / 2;
+        assert_eq!(units, vec![(JointId(1), half), (JointId(3), half)]);
+    }
+
+    #[test]
+    fn thirds_go_to_the_smaller_joint_first() {
+        let units = normalize(&influences(&[(2, 1.0), (0, 1.0), (1, 1.0)])).unwrap();
+        let third = WEIGHT_ONE / 3;
+        assert_eq!(units[0], (JointId(0), third + 1));
+        assert_eq!(units[2], (JointId(2), third));
+    }
+
+    #[test]
+    fn what_cannot_be_normalised() {
+        for bad in [f32::NAN, f32::INFINITY, -0.1] {
+            assert_eq!(normalize(&influences(&[(0, 1.0), (1, bad)])), None, "{bad}");
+        }
+        assert_eq!(normalize(&influences(&[(0, 0.0)])), None);
+        assert_eq!(normalize(&[]), None);
+    }
+}

@@ -1,0 +1,313 @@
+//! Clips: key-framed channels with glTF 2.0's three interpolations (specification, appendix C).
+
+use glam::{DQuat, DVec3, Quat, Vec3};
+
+use super::transform::{lerp, rotation_f32, rotation_f64};
+use super::{JointId, Pose, RigError};
+use crate::geometry::{round_to_f32, slerp, widen};
+
+/// How a channel gets from one key frame to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Holds each value until the next key frame.
+    Step,
+    /// Straight line; rotations along the shorter arc.
+    Linear,
+    /// Cubic Hermite spline: three values a key frame (in-tangent, value, out-tangent; tangents
+    /// per second). Rotations are normalised afterwards.
+    CubicSpline,
+}
+
+/// What a channel writes into its joint's transform.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Keyframes {
+    /// Translations, in units of the parent.
+    Translation(Vec<Vec3>),
+    /// Rotations; values of any length but zero, tangents of any.
+    Rotation(Vec<Quat>),
+    /// Scales per axis.
+    Scale(Vec<Vec3>),
+}
+
+/// One property of one joint over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    joint: JointId,
+    interpolation: Interpolation,
+    times: Vec<f32>,
+    values: Keyframes,
+}
+
+impl Channel {
+    /// Checks and keeps key frames: `times` in seconds, not decreasing, at least one; as many
+    /// `values`, or three times as many for [`Interpolation::CubicSpline`].
+    ///
+    /// # Errors
+    /// [`RigError::KeyframeCount`], [`RigError::TimesNotSorted`], [`RigError::NotFinite`].
+    pub fn new(
+        joint: JointId,
+        interpolation: Interpolation,
+        times: Vec<f32>,
+        values: Keyframes,
+    ) -> Result<Self, RigError> {
+        let per_time = match interpolation {
+            Interpolation::CubicSpline => 3,
+            Interpolation::Step | Interpolation::Linear => 1,
+        };
+        let (found, finite) = match &values {
+            Keyframes::Translation(v) | Keyframes::Scale(v) => {
+                (v.len(), v.iter().all(|x| x.is_finite()))
+            }
+            Keyframes::Rotation(v) => {
+                let is_value = |k: usize| per_time == 1 || k % 3 == 1;
+                let usable = |(k, q): (usize, &Quat)| {
+                    let length = rotation_f64(*q).length_squared();
+                    length.is_finite() && (length > 0.0 || !is_value(k))
+                };
+                (v.len(), v.iter().enumerate().all(usable))
+            }
+        };
+        // Checked: three times a huge count must not wrap around to the count found.
+        let expected = times.len().saturating_mul(per_time);
+        if times.is_empty() || found != expected {
+            return Err(RigError::KeyframeCount {
+                times: times.len(),
+                expected,
+                found,
+            });
+        }
+        if !finite || times.iter().any(|t| !t.is_finite()) {
+            return Err(RigError::NotFinite {
+                what: format!("a key frame of joint {joint}"),
+            });
+        }
+        if let Some(index) = (1..times.len()).find(|&k| times[k] < times[k - 1]) {
+            return Err(RigError::TimesNotSorted { index });
+        }
+        Ok(Self {
+            joint,
+            interpolation,
+            times,
+            values,
+        })
+    }
+
+    /// The joint that the channel moves.
+    pub fn joint(&self) -> JointId {
+        self.joint
+    }
+
+    /// Seconds of the first and last key frame.
+    pub fn span(&self) -> (f32, f32) {
+        (self.times[0], self.times[self.times.len() - 1])
+    }
+
+    /// Writes the value at `time` (clamped to the channel's own key frames) into the pose.
+    fn sample_into(&self, time: f64, pose: &mut Pose) {
+        let transform = &mut pose.transforms[self.joint.0 as usize];
+        let at = self.locate(time);
+        match &self.values {
+            Keyframes::Translation(values) => {
+                transform.translation = round_to_f32(self.vector(values, at));
+            }
+            Keyframes::Scale(values) => {
+                transform.scale = round_to_f32(self.vector(values, at));
+            }
+            Keyframes::Rotation(values) => {
+                transform.rotation = rotation_f32(self.rotation(values, at));
+            }
+        }
+    }
+
+    /// The key frame at or before `time`, and where in the interval behind it.
+    fn locate(&self, time: f64) -> Moment {
+        let after = self.times.partition_point(|t| f64::from(*t) <= time);
+        let last = self.times.len() - 1;
+        if after == 0 || after > last {
+            return Moment {
+                key: after.min(last),
+                part: 0.0,
+                interval: 0.0,
+            };
+        }
+        let (start, end) = (
+            f64::from(self.times[after - 1]),
+            f64::from(self.times[after]),
+        );
+        // end > time >= start: the interval is never empty.
+        Moment {
+            key: after - 1,
+            part: (time - start) / (end - start),
+            interval: end - start,
+        }
+    }
+
+    fn vector(&self, values: &[Vec3], at: Moment) -> DVec3 {
+        let next = |key: usize| key + usize::from(at.interval > 0.0);
+        match self.interpolation {
+            Interpolation::Step => widen(values[at.key]),
+            Interpolation::Linear => lerp(values[at.key], values[next(at.key)], at.part),
+            Interpolation::CubicSpline => {
+                let [v0, b0, a1, v1] = hermite_indices(at.key, next(at.key));
+                let [w0, wb, wa, w1] = at.hermite_weights();
+                widen(values[v0]) * w0
+                    + widen(values[b0]) * wb
+                    + widen(values[v1]) * w1
+                    + widen(values[a1]) * wa
+            }
+        }
+    }
+
+    fn rotation(&self, values: &[Quat], at: Moment) -> DQuat {
+        let next = |key: usize| key + usize::from(at.interval > 0.0);
+        let value = |index: usize| rotation_f64(values[index]);
+        match self.interpolation {
+            Interpolation::Step => value(at.key).normalize(),
+            Interpolation::Linear => slerp(
+                value(at.key).normalize(),
+                value(next(at.key)).normalize(),
+                at.part,
+            ),
+            Interpolation::CubicSpline => {
+                let [v0, b0, a1, v1] = hermite_indices(at.key, next(at.key));
+                let [w0, wb, wa, w1] = at.hermite_weights();
+                let sum = value(v0) * w0 + value(b0) * wb + value(v1) * w1 + value(a1) * wa;
+                // Opposite values can cancel in the middle; the nearer one stands in.
+                if sum.length_squared() > 1e-24 {
+                    sum.normalize()
+                } else {
+                    value(if at.part < 0.5 { v0 } else { v1 }).normalize()
+                }
+            }
+        }
+    }
+}
+
+/// A time between two key frames.
+#[derive(Clone, Copy)]
+struct Moment {
+    key: usize,
+    /// 0 at the key frame, 1 at the next one.
+    part: f64,
+    /// Seconds between the two; 0 at the channel's ends.
+    interval: f64,
+}
+
+impl Moment {
+    /// Weights of value, out-tangent, next in-tangent and next value.
+    fn hermite_weights(self) -> [f64; 4] {
+        let t = self.part;
+        let (t2, t3) = (t * t, t * t * t);
+        [
+            2.0 * t3 - 3.0 * t2 + 1.0,
+            self.interval * (t3 - 2.0 * t2 + t),
+            self.interval * (t3 - t2),
+            -2.0 * t3 + 3.0 * t2,
+        ]
+    }
+}
+
+/// Where value, out-tangent, next in-tangent and next value stand.
+fn hermite_indices(key: usize, next: usize) -> [usize; 4] {
+    [3 * key + 1, 3 * key + 2, 3 * next, 3 * next + 1]
+}
+
+/// What happens outside a clip's length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Playback {
+    /// Starts again from the first key frame.
+    Loop,
+    /// Holds the first and the last key frame.
+    Clamp,
+}
+
+/// A named motion: channels that together move some joints of a skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// As the file or its maker calls it.
+    pub name: String,
+    channels: Vec<Channel>,
+    start: f64,
+    end: f64,
+}
+
+impl Clip {
+    /// A clip that lasts from the first to the last key frame of all its channels. Without
+    /// channels it has no length and moves nothing.
+    pub fn new(name: impl Into<String>, channels: Vec<Channel>) -> Self {
+        let (mut start, mut end) = (f64::INFINITY, f64::NEG_INFINITY);
+        for channel in &channels {
+            let (first, last) = channel.span();
+            start = start.min(f64::from(first));
+            end = end.max(f64::from(last));
+        }
+        if channels.is_empty() {
+            (start, end) = (0.0, 0.0);
+        }
+        Self {
+            name: name.into(),
+            channels,
+            start,
+            end,
+        }
+    }
+
+    /// The channels, in the order of the file.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// Seconds from the first to the last key frame; 0 for a clip of a single key frame.
+    pub fn duration(&self) -> f64 {
+        self.end - self.start
+    }
+
+    /// The pose at `time` seconds after the clip's first key frame. Joints and properties that no
+    /// channel moves stay as they are in `rest`.
+    ///
+    /// # Errors
+    /// As [`Clip::sample_into`].
+    pub fn sample(&self, rest: &Pose, time: f64, playback: Playback) -> Result<Pose, RigError> {
+        let mut pose = rest.clone();
+        self.sample_into(time, playback, &mut pose)?;
+        Ok(pose)
+    }
+
+    /// [`Clip::sample`] over a pose that exists. Allocates nothing.
+    ///
+    /// # Errors
+    /// [`RigError::NotFinite`] for such a time, [`RigError::JointOutOfRange`] if the pose has too
+    /// few joints; the pose is unchanged then.
+    pub fn sample_into(
+        &self,
+        time: f64,
+        playback: Playback,
+        pose: &mut Pose,
+    ) -> Result<(), RigError> {
+        if !time.is_finite() {
+            return Err(RigError::NotFinite {
+                what: format!("time {time} in clip {}", self.name),
+            });
+        }
+        let joints = pose.transforms.len();
+        if let Some(bad) = self.channels.iter().find(|c| c.joint.0 as usize >= joints) {
+            return Err(RigError::JointOutOfRange {
+                joint: bad.joint,
+                joints,
+            });
+        }
+        let duration = self.duration();
+        let within = match playback {
+            Playback::Loop if duration > 0.0 => time.rem_euclid(duration),
+            Playback::Loop => 0.0,
+            Playback::Clamp => time.clamp(0.0, duration),
+        };
+        for channel in &self.channels {
+            channel.sample_into(self.start + within, pose);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,112 @@
+use super::transform::{lerp, rotation_f32, rotation_f64};
+use super::{JointId, RigError, Transform};
+use crate::geometry::{round_to_f32, slerp};
+
+/// The local transform of every joint of a skeleton, in joint order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Relative to each joint's parent.
+    pub transforms: Vec<Transform>,
+}
+
+impl Pose {
+    /// Mixes `self` (at weight 0) with `other` (at weight 1): translations and scales linearly,
+    /// rotations along the shorter arc. Weights outside 0 to 1 are clamped.
+    ///
+    /// # Errors
+    /// [`RigError::JointCount`] if the poses differ in length, [`RigError::NotFinite`] if the
+    /// weight is NaN or a rotation has no length.
+    pub fn blend(&self, other: &Self, weight: f64) -> Result<Self, RigError> {
+        let mut blended = self.clone();
+        blended.blend_in(other, weight)?;
+        Ok(blended)
+    }
+
+    /// [`Pose::blend`] in place: `self` moves towards `other`. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`Pose::blend`]; `self` is unchanged then.
+    pub fn blend_in(&mut self, other: &Self, weight: f64) -> Result<(), RigError> {
+        if other.transforms.len() != self.transforms.len() {
+            return Err(RigError::JointCount {
+                expected: self.transforms.len(),
+                found: other.transforms.len(),
+            });
+        }
+        if weight.is_nan() {
+            return Err(RigError::NotFinite {
+                what: "blend weight".into(),
+            });
+        }
+        self.validate()?;
+        other.validate()?;
+        let t = weight.clamp(0.0, 1.0);
+        for (mine, theirs) in self.transforms.iter_mut().zip(&other.transforms) {
+            mine.translation = round_to_f32(lerp(mine.translation, theirs.translation, t));
+            mine.scale = round_to_f32(lerp(mine.scale, theirs.scale, t));
+            let from = rotation_f64(mine.rotation).normalize();
+            let to = rotation_f64(theirs.rotation).normalize();
+            mine.rotation = rotation_f32(slerp(from, to, t));
+        }
+        Ok(())
+    }
+
+    /// Refuses transforms that are not finite or have a rotation without length.
+    pub(crate) fn validate(&self) -> Result<(), RigError> {
+        match self.transforms.iter().position(|t| !t.is_valid()) {
+            None => Ok(()),
+            Some(joint) => Err(RigError::NotFinite {
+                what: format!("the transform of joint {}", JointId(joint as u32)),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{rotation_from_axis_angle, rotation_vector};
+    use glam::{DVec3, Quat, Vec3};
+
+    fn pose(angle: f64, x: f32) -> Pose {
+        Pose {
+            transforms: vec![Transform {
+                translation: Vec3::new(x, 0.0, 0.0),
+                rotation: rotation_f32(rotation_from_axis_angle(DVec3::Z, angle)),
+                scale: Vec3::ONE,
+            }],
+        }
+    }
+
+    #[test]
+    fn ends_and_middle() {
+        let (a, b) = (pose(0.2, 1.0), pose(1.0, 3.0));
+        assert_eq!(a.blend(&b, 0.0).unwrap().transforms[0].translation.x, 1.0);
+        assert_eq!(a.blend(&b, 7.0).unwrap(), a.blend(&b, 1.0).unwrap());
+        let middle = a.blend(&b, 0.5).unwrap().transforms[0];
+        assert_eq!(middle.translation.x, 2.0);
+        let turned = rotation_vector(rotation_f64(middle.rotation));
+        assert!((turned - DVec3::Z * 0.6).length() < 1e-6, "{turned}");
+    }
+
+    #[test]
+    fn bad_input_changes_nothing() {
+        let mut a = pose(0.2, 1.0);
+        let before = a.clone();
+        let longer = Pose {
+            transforms: vec![Transform::IDENTITY; 2],
+        };
+        assert!(matches!(
+            a.blend_in(&longer, 0.5),
+            Err(RigError::JointCount {
+                expected: 1,
+                found: 2
+            })
+        ));
+        assert!(a.blend_in(&before.clone(), f64::NAN).is_err());
+        let mut broken = pose(0.0, 0.0);
+        broken.transforms[0].rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        assert!(a.blend_in(&broken, 0.5).is_err());
+        assert_eq!(a, before);
+    }
+}

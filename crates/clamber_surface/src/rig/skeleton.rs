@@ -1,0 +1,226 @@
+use std::fmt;
+
+use glam::DAffine3;
+
+use super::{Palette, Pose, RigError, Transform};
+use crate::geometry::Affine;
+
+/// Index of a joint in its skeleton, and of its matrix in a palette.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct JointId(pub u32);
+
+impl fmt::Display for JointId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+/// One joint as it stands at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// For people and for [`Skeleton::find`]; need not be unique.
+    pub name: String,
+    /// The joint that this one hangs under; `None` at a root.
+    pub parent: Option<JointId>,
+    /// Relative to the parent, at rest.
+    pub rest: Transform,
+    /// Inverse bind matrix, `joint_from_mesh`: takes mesh space to the joint's space at rest.
+    /// The identity for joints that skin nothing.
+    pub inverse_bind: Affine,
+}
+
+/// A forest of joints. Parents may stand after their children in joint order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    joints: Vec<Joint>,
+    /// Every parent before its children.
+    order: Vec<u32>,
+}
+
+impl Skeleton {
+    /// Checks the joints and finds an order in which parents come first.
+    ///
+    /// # Errors
+    /// [`RigError::ParentOutOfRange`], [`RigError::Cycle`], [`RigError::NotFinite`].
+    pub fn new(joints: Vec<Joint>) -> Result<Self, RigError> {
+        for (index, joint) in joints.iter().enumerate() {
+            let id = JointId(index as u32);
+            if let Some(parent) = joint.parent
+                && parent.0 as usize >= joints.len()
+            {
+                return Err(RigError::ParentOutOfRange {
+                    joint: id,
+                    parent,
+                    joints: joints.len(),
+                });
+            }
+            if !joint.rest.is_valid() || !joint.inverse_bind.is_finite() {
+                return Err(RigError::NotFinite {
+                    what: format!("joint {id} ({})", joint.name),
+                });
+            }
+        }
+        let order = parents_first(&joints)?;
+        Ok(Self { joints, order })
+    }
+
+    /// The joints, in joint order.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The first joint of this name.
+    pub fn find(&self, name: &str) -> Option<JointId> {
+        let index = self.joints.iter().position(|joint| joint.name == name)?;
+        Some(JointId(index as u32))
+    }
+
+    /// Every joint at rest.
+    pub fn rest_pose(&self) -> Pose {
+        Pose {
+            transforms: self.joints.iter().map(|joint| joint.rest).collect(),
+        }
+    }
+
+    /// The palette of a pose.
+    ///
+    /// # Errors
+    /// As [`Skeleton::palette_into`].
+    pub fn palette(&self, pose: &Pose) -> Result<Palette, RigError> {
+        let mut palette = Palette::default();
+        self.palette_into(pose, &mut palette)?;
+        Ok(palette)
+    }
+
+    /// [`Skeleton::palette`] into an existing palette, which keeps its memory.
+    ///
+    /// Composes in f64 from root to leaf and rounds each element of the product with the inverse
+    /// bind matrix once: its error is half a unit in the last place of f32.
+    ///
+    /// # Errors
+    /// [`RigError::JointCount`] or [`RigError::NotFinite`]; the palette is unchanged then.
+    pub fn palette_into(&self, pose: &Pose, palette: &mut Palette) -> Result<(), RigError> {
+        if pose.transforms.len() != self.joints.len() {
+            return Err(RigError::JointCount {
+                expected: self.joints.len(),
+                found: pose.transforms.len(),
+            });
+        }
+        pose.validate()?;
+        let globals = &mut palette.model_from_joint;
+        globals.resize(self.joints.len(), DAffine3::IDENTITY);
+        for &index in &self.order {
+            let index = index as usize;
+            let local = pose.transforms[index].to_affine();
+            globals[index] = match self.joints[index].parent {
+                Some(parent) => globals[parent.0 as usize] * local,
+                None => local,
+            };
+        }
+        palette.matrices.clear();
+        let matrices = globals
+            .iter()
+            .zip(&self.joints)
+            .map(|(global, joint)| Affine::from_f64(&(*global * joint.inverse_bind.to_f64())));
+        palette.matrices.extend(matrices);
+        Ok(())
+    }
+}
+
+/// An order of joint indices with every parent before its children.
+fn parents_first(joints: &[Joint]) -> Result<Vec<u32>, RigError> {
+    let mut order = Vec::with_capacity(joints.len());
+    let mut placed = vec![false; joints.len()];
+    let mut chain = Vec::new();
+    for start in 0..joints.len() {
+        let mut next = Some(start);
+        while let Some(index) = next.filter(|&index| !placed[index]) {
+            // A chain of unplaced ancestors longer than all joints has met one twice.
+            if chain.len() == joints.len() {
+                return Err(RigError::Cycle(JointId(start as u32)));
+            }
+            chain.push(index as u32);
+            next = joints[index].parent.map(|parent| parent.0 as usize);
+        }
+        while let Some(index) = chain.pop() {
+            placed[index as usize] = true;
+            order.push(index);
+        }
+    }
+    Ok(order)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::rotation_from_axis_angle;
+    use crate::rig::transform::rotation_f32;
+    use glam::{DVec3, Vec3};
+
+    fn joint(parent: Option<u32>, x: f32) -> Joint {
+        Joint {
+            name: format!("at {x}"),
+            parent: parent.map(JointId),
+            rest: Transform::from_translation(Vec3::new(x, 0.0, 0.0)),
+            inverse_bind: Affine::IDENTITY,
+        }
+    }
+
+    #[test]
+    fn children_follow_parents_that_come_later() {
+        // Joint 0 hangs under 2, 2 under 1.
+        let skeleton = Skeleton::new(vec![
+            joint(Some(2), 1.0),
+            joint(None, 10.0),
+            joint(Some(1), 5.0),
+        ])
+        .unwrap();
+        let mut pose = skeleton.rest_pose();
+        let palette = skeleton.palette(&pose).unwrap();
+        assert_eq!(palette.matrices()[0].rows[0][3], 16.0);
+        // A quarter turn of the root about Z lays the chain along Y.
+        pose.transforms[1].rotation = rotation_f32(rotation_from_axis_angle(
+            DVec3::Z,
+            core::f64::consts::FRAC_PI_2,
+        ));
+        let palette = skeleton.palette(&pose).unwrap();
+        let tip = palette.matrices()[0].transform_point(Vec3::ZERO);
+        assert!((tip - Vec3::new(10.0, 6.0, 0.0)).length() < 1e-6, "{tip}");
+    }
+
+    #[test]
+    fn impossible_trees_are_refused() {
+        assert!(matches!(
+            Skeleton::new(vec![joint(Some(1), 0.0), joint(Some(0), 0.0)]),
+            Err(RigError::Cycle(_))
+        ));
+        assert!(matches!(
+            Skeleton::new(vec![joint(Some(0), 0.0)]),
+            Err(RigError::Cycle(JointId(0)))
+        ));
+        assert!(matches!(
+            Skeleton::new(vec![joint(Some(7), 0.0)]),
+            Err(RigError::ParentOutOfRange { .. })
+        ));
+        assert!(matches!(
+            Skeleton::new(vec![joint(None, f32::NAN)]),
+            Err(RigError::NotFinite { .. })
+        ));
+    }
+
+    #[test]
+    fn a_bad_pose_leaves_the_palette_alone() {
+        let skeleton = Skeleton::new(vec![joint(None, 1.0)]).unwrap();
+        let mut palette = skeleton.palette(&skeleton.rest_pose()).unwrap();
+        let before = palette.clone();
+        let mut pose = skeleton.rest_pose();
+        pose.transforms[0].translation.y = f32::INFINITY;
+        assert!(skeleton.palette_into(&pose, &mut palette).is_err());
+        assert!(
+            skeleton
+                .palette_into(&Pose::default(), &mut palette)
+                .is_err()
+        );
+        assert_eq!(palette, before);
+    }
+}

@@ -1,0 +1,76 @@
+use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
+
+use crate::geometry::widen;
+
+/// Translation, rotation and scale of a joint relative to its parent: glTF's node transform.
+/// A point is scaled first, then rotated, then translated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// In units of the parent.
+    pub translation: Vec3,
+    /// Any length but zero: it is normalised where it is used.
+    pub rotation: Quat,
+    /// Per axis; may be negative or zero.
+    pub scale: Vec3,
+}
+
+impl Transform {
+    /// Changes nothing.
+    pub const IDENTITY: Self = Self {
+        translation: Vec3::ZERO,
+        rotation: Quat::IDENTITY,
+        scale: Vec3::ONE,
+    };
+
+    /// A pure translation.
+    pub fn from_translation(translation: Vec3) -> Self {
+        Self {
+            translation,
+            ..Self::IDENTITY
+        }
+    }
+
+    /// True if every part is finite and the rotation has a length.
+    pub fn is_valid(&self) -> bool {
+        let rotation = rotation_f64(self.rotation).length_squared();
+        self.translation.is_finite()
+            && self.scale.is_finite()
+            && rotation.is_finite()
+            && rotation > 0.0
+    }
+
+    /// As a matrix in f64, with the rotation normalised.
+    pub(crate) fn to_affine(self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            widen(self.scale),
+            rotation_f64(self.rotation).normalize(),
+            widen(self.translation),
+        )
+    }
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+/// Widens a quaternion; exact.
+pub(crate) fn rotation_f64(q: Quat) -> DQuat {
+    DQuat::from_xyzw(
+        f64::from(q.x),
+        f64::from(q.y),
+        f64::from(q.z),
+        f64::from(q.w),
+    )
+}
+
+/// Rounds a quaternion's components once.
+pub(crate) fn rotation_f32(q: DQuat) -> Quat {
+    Quat::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32)
+}
+
+/// `a` at 0, `b` at 1, computed in f64.
+pub(crate) fn lerp(a: Vec3, b: Vec3, t: f64) -> DVec3 {
+    widen(a) * (1.0 - t) + widen(b) * t
+}

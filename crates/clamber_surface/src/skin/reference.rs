@@ -1,0 +1,152 @@
+use glam::DVec3;
+
+use crate::geometry::{Affine, widen};
+use crate::mesh::{ColliderMesh, VertexId};
+
+/// A vertex skinned in f64 on the same f32 palette: the yardstick for every f32 kernel.
+///
+/// Its own error is some 2^-29 of theirs. `None` if the vertex is out of range or the palette has
+/// another number of matrices than the mesh has joints.
+pub fn skin_vertex_reference(
+    mesh: &ColliderMesh,
+    palette: &[Affine],
+    vertex: VertexId,
+) -> Option<DVec3> {
+    let p = *mesh.positions().get(vertex.index())?;
+    if palette.len() != mesh.joint_count() {
+        return None;
+    }
+    let mut sum = DVec3::ZERO;
+    for (joint, weight) in mesh.influences(vertex) {
+        sum += palette[joint.0 as usize].transform_point_reference(p) * f64::from(weight);
+    }
+    Some(sum)
+}
+
+/// How far, per coordinate, an f32 kernel that keeps the contract may be from exact arithmetic:
+/// `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|) + (4 n + 4) 2^-149` for n influences.
+///
+/// A term passes three roundings in its row, one by its weight and at most n in the sum, each of
+/// relative size 2^-24 (Higham 2002, section 3.1); the unit to spare covers the products of
+/// roundings. The last term bounds underflow. `None` as for [`skin_vertex_reference`].
+pub fn error_bound(mesh: &ColliderMesh, palette: &[Affine], vertex: VertexId) -> Option<DVec3> {
+    let p = widen(*mesh.positions().get(vertex.index())?).abs();
+    if palette.len() != mesh.joint_count() {
+        return None;
+    }
+    let mut sum = DVec3::ZERO;
+    let mut influences = 0.0;
+    for (joint, weight) in mesh.influences(vertex) {
+        let map = palette[joint.0 as usize].to_f64();
+        let linear = map.matrix3;
+        let size = linear.x_axis.abs() * p.x
+            + linear.y_axis.abs() * p.y
+            + linear.z_axis.abs() * p.z
+            + map.translation.abs();
+        sum += size * f64::from(weight);
+        influences += 1.0;
+    }
+    let relative = (influences + 4.0) * f64::from(f32::EPSILON) * 0.5;
+    let underflow = (4.0 * influences + 4.0) * f64::from(f32::from_bits(1));
+    Some(sum * relative + DVec3::splat(underflow))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{BuildOptions, Influence, MeshSource};
+    use crate::rig::JointId;
+    use crate::skin::skin;
+    use glam::Vec3;
+
+    /// A soup of vertices on random joints, and a palette with shear, mirrors and translations.
+    fn random_case(rng: &mut fastrand::Rng, influences: usize) -> (ColliderMesh, Vec<Affine>) {
+        let joints = 24;
+        let size = [1e-3, 1.0, 1e3][rng.usize(0..3)];
+        let mut coordinate = || (rng.f32() * 2.0 - 1.0) * size;
+        let positions: Vec<Vec3> = (0..60)
+            .map(|_| Vec3::new(coordinate(), coordinate(), coordinate()))
+            .collect();
+        let palette = (0..joints)
+            .map(|_| Affine {
+                rows: std::array::from_fn(|_| {
+                    std::array::from_fn(|c| {
+                        let x = rng.f32() * 4.0 - 2.0;
+                        if c == 3 { x * size } else { x }
+                    })
+                }),
+            })
+            .collect();
+        let given: Vec<Influence> = (0..positions.len() * influences)
+            .map(|_| Influence {
+                joint: JointId(rng.u32(0..joints)),
+                weight: rng.f32() + 1e-3,
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..20).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &given,
+            tags: &[],
+            joint_count: joints as usize,
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        (mesh, palette)
+    }
+
+    #[test]
+    fn kernel_stays_within_the_bound_and_comes_near_it() {
+        let mut rng = fastrand::Rng::with_seed(5);
+        let mut worst = 0.0f64;
+        for case in 0..600 {
+            let (mesh, palette) = random_case(&mut rng, 1 + case % 16);
+            let skinned = skin(&mesh, &palette).unwrap();
+            for (v, position) in skinned.iter().enumerate() {
+                let vertex = VertexId(v as u32);
+                let exact = skin_vertex_reference(&mesh, &palette, vertex).unwrap();
+                let bound = error_bound(&mesh, &palette, vertex).unwrap();
+                let share = ((widen(*position) - exact).abs() / bound).max_element();
+                assert!(share <= 1.0, "case {case} vertex {v}: {share} of the bound");
+                worst = worst.max(share);
+            }
+        }
+        // A bound that nothing comes near would hide a broken kernel.
+        assert!(worst > 0.2, "worst share {worst}");
+    }
+
+    #[test]
+    fn padding_with_joints_of_weight_zero_changes_no_bit() {
+        // The sum by hand, over all joints of the palette instead of the vertex's own.
+        let mut rng = fastrand::Rng::with_seed(6);
+        for case in 0..100 {
+            let (mesh, palette) = random_case(&mut rng, 1 + case % 6);
+            let skinned = skin(&mesh, &palette).unwrap();
+            for (v, position) in skinned.iter().enumerate() {
+                let p = mesh.positions()[v];
+                let mut sum = Vec3::ZERO;
+                for (joint, matrix) in palette.iter().enumerate() {
+                    let weight = mesh
+                        .influences(VertexId(v as u32))
+                        .find(|(j, _)| j.0 as usize == joint)
+                        .map_or(0.0, |(_, w)| w);
+                    sum += matrix.transform_point(p) * weight;
+                }
+                assert_eq!(
+                    sum.to_array().map(f32::to_bits),
+                    position.to_array().map(f32::to_bits),
+                    "case {case} vertex {v}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_palette_of_the_wrong_length_is_refused() {
+        let mut rng = fastrand::Rng::with_seed(8);
+        let (mesh, palette) = random_case(&mut rng, 2);
+        assert!(skin(&mesh, &palette[1..]).is_err());
+        assert!(skin_vertex_reference(&mesh, &palette[1..], VertexId(0)).is_none());
+        assert!(error_bound(&mesh, &palette, VertexId(u32::MAX)).is_none());
+    }
+}

@@ -1,0 +1,171 @@
+use super::*;
+use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle};
+use crate::rig::Palette;
+use crate::testing::{bend, rigid, tube};
+
+const JOINTS: u32 = 5;
+
+fn surface() -> SkinnedSurface {
+    SkinnedSurface::new(tube(JOINTS, 12))
+}
+
+/// A point on top of the tube's middle.
+fn anchor(surface: &SkinnedSurface) -> Anchor {
+    let ray = Ray::new(Vec3::new(2.05, 5.0, 0.03), -Vec3::Y).unwrap();
+    surface.anchor_at(&surface.cast_ray(&ray, 10.0).unwrap().unwrap())
+}
+
+fn scaled(x: f32, y: f32, z: f32) -> Palette {
+    let mut matrix = Affine::IDENTITY;
+    matrix.rows[0][0] = x;
+    matrix.rows[1][1] = y;
+    matrix.rows[2][2] = z;
+    Palette::from_matrices((0..JOINTS).map(|_| matrix))
+}
+
+#[test]
+fn a_rigid_turn_is_finite_displacement_and_exact_rotation() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    let dt = 0.1;
+    // A third of a turn in one tick: omega x r would be far off.
+    let turn = rotation_from_axis_angle(DVec3::Z, 2.0);
+    surface
+        .advance(&rigid(JOINTS, turn, DVec3::X), Similarity::IDENTITY)
+        .unwrap();
+    let motion = surface.motion(&anchor, dt).unwrap();
+    let expected = turn * widen(motion.previous_position) + DVec3::X;
+    assert!((widen(motion.position) - expected).length() < 1e-6);
+    let velocity = (expected - widen(motion.previous_position)) / dt;
+    assert!((widen(motion.velocity) - velocity).length() < 1e-4);
+    assert!((widen(motion.angular_velocity) - DVec3::Z * 20.0).length() < 1e-3);
+    let heading = rotation_f64(motion.frame) * DVec3::X;
+    assert!((heading - turn * DVec3::X).length() < 1e-5, "{heading}");
+    assert!((motion.area_ratio - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn a_moving_root_moves_the_point_in_the_current_model_frame() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    let turned = Similarity {
+        rotation: rotation_from_axis_angle(DVec3::Y, 0.2),
+        scale: 1.0,
+        translation: DVec3::new(0.0, 0.5, 0.0),
+    };
+    let palette = bend(JOINTS, DVec3::Y, 0.0);
+    let before = surface.motion(&anchor, 1.0).unwrap().position;
+    surface.advance(&palette, turned).unwrap();
+    let motion = surface.motion(&anchor, 1.0).unwrap();
+    assert_eq!(motion.position, before);
+    let previous_in_world = turned.transform_point_f32(motion.previous_position);
+    assert!((previous_in_world - widen(before)).length() < 1e-6);
+    let spin = turned.transform_vector(widen(motion.angular_velocity));
+    assert!((spin - DVec3::Y * 0.2).length() < 1e-5, "{spin}");
+}
+
+#[test]
+fn stretches_and_area_of_pure_scale() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    surface
+        .advance(&scaled(2.0, 1.0, 1.5), Similarity::IDENTITY)
+        .unwrap();
+    let motion = surface.motion(&anchor, 1.0).unwrap();
+    // The top of the tube lies nearly in the XZ plane.
+    assert!((motion.stretches[0] - 2.0).abs() < 0.02, "{motion:?}");
+    assert!((motion.stretches[1] - 1.5).abs() < 0.05, "{motion:?}");
+    let product = motion.stretches[0] * motion.stretches[1];
+    assert!((product - motion.area_ratio).abs() < 1e-4);
+    // The facet's slope of 15 degrees in YZ becomes that of a third less: 4.87 degrees of turn.
+    let turned = rotation_vector(rotation_f64(motion.frame)).length();
+    assert!((turned - 0.085).abs() < 1e-3, "{turned}");
+}
+
+#[test]
+fn shear_turns_the_frame_by_half_its_angle_only() {
+    // A triangle in the XZ plane, sheared in its plane; the nearest rotation of [[1, s], [0, 1]]
+    // turns by atan(s / 2).
+    let corners = [Vec3::ZERO, Vec3::Z, Vec3::X];
+    for s in [0.01f32, 0.5, 3.0] {
+        let sheared = [Vec3::ZERO, Vec3::Z, Vec3::X + Vec3::Z * s];
+        let turned = rotation_vector(frame_of(corners, sheared).unwrap());
+        let expected = libm::atan(f64::from(s) / 2.0);
+        assert!((turned.length() - expected).abs() < 1e-9, "{s}: {turned}");
+        let (area, [large, small]) = stretch(corners, sheared);
+        assert!((area - 1.0).abs() < 1e-9 && (large * small - 1.0).abs() < 1e-9);
+        let exact = (1.0 + f64::from(s * s) / 4.0).sqrt() + f64::from(s) / 2.0;
+        assert!((large - exact).abs() < 1e-6, "{s}: {large} {exact}");
+    }
+}
+
+#[test]
+fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
+    let mut surface = surface();
+    let mut anchor = anchor(&surface);
+    let turn = rotation_from_axis_angle(DVec3::X, 0.4);
+    surface
+        .advance(&rigid(JOINTS, turn, DVec3::ZERO), Similarity::IDENTITY)
+        .unwrap();
+    let motion = surface.motion(&anchor, 0.1).unwrap();
+    anchor.frame = motion.frame;
+    surface
+        .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
+        .unwrap();
+    for _ in 0..2 {
+        let held = surface.motion(&anchor, 0.1).unwrap();
+        assert_eq!(held.frame, motion.frame);
+        assert!((held.normal - motion.normal).length() < 1e-3, "{held:?}");
+        assert!(held.velocity.is_finite() && held.angular_velocity.is_finite());
+        assert!(held.stretches.iter().all(|s| s.is_finite()) && held.area_ratio.is_finite());
+        surface
+            .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
+            .unwrap();
+    }
+}
+
+#[test]
+fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    for step in 0..100 {
+        let palette = bend(JOINTS, DVec3::Z, f64::from(step) * 0.01);
+        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        let motion = surface.motion(&anchor, 1.0 / 60.0).unwrap();
+        let corners = surface.corners(anchor.triangle).map(widen);
+        let by_hand: DVec3 = (0..3)
+            .map(|k| corners[k] * f64::from(anchor.barycentric[k]))
+            .sum();
+        assert!(
+            (by_hand - widen(motion.position)).length() < 1e-6,
+            "step {step}"
+        );
+        let on_skin = surface
+            .closest_point(motion.position, 1.0)
+            .unwrap()
+            .unwrap();
+        assert!(on_skin.distance < 1e-6, "step {step}: {}", on_skin.distance);
+    }
+}
+
+#[test]
+fn bad_anchors_and_ticks_are_refused() {
+    let surface = surface();
+    let good = anchor(&surface);
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(surface.motion(&good, dt).is_err(), "{dt}");
+    }
+    for barycentric in [[0.5, 0.6, 0.1], [f32::NAN, 0.5, 0.5], [-0.5, 1.0, 0.5]] {
+        assert!(surface.anchor(good.triangle, barycentric).is_err());
+        let bad = Anchor {
+            barycentric,
+            ..good
+        };
+        assert!(surface.motion(&bad, 1.0).is_err());
+    }
+    let nowhere = Anchor {
+        triangle: crate::mesh::TriangleId(1 << 30),
+        ..good
+    };
+    assert!(surface.motion(&nowhere, 1.0).is_err());
+}

@@ -1,0 +1,57 @@
+use super::closest::{check, within_reach};
+use super::hit::Nearest;
+use super::{SkinnedSurface, SurfaceError, SurfaceHit};
+use crate::geometry::Sphere;
+use crate::geometry::triangle::closest_point;
+use crate::mesh::TriangleId;
+
+impl SkinnedSurface {
+    /// Every triangle within the sphere, each with its own point closest to the sphere's centre,
+    /// by ascending triangle id. `hits` is cleared first and keeps its memory.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Point`] or [`SurfaceError::Query`] if the sphere is not finite or its radius
+    /// negative; `hits` is unchanged then.
+    pub fn overlap_sphere(
+        &self,
+        sphere: &Sphere,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        let radius = check(sphere.center, sphere.radius)?;
+        let center = sphere.center;
+        let near = self.triangles_near(move |part| within_reach(part, center, radius));
+        self.overlap_among(near, sphere, radius, hits);
+        hits.sort_unstable_by_key(|hit| hit.triangle);
+        Ok(())
+    }
+
+    /// [`SkinnedSurface::overlap_sphere`] over all triangles: slow and plain, for tests.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::overlap_sphere`].
+    pub fn overlap_sphere_reference(
+        &self,
+        sphere: &Sphere,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        let radius = check(sphere.center, sphere.radius)?;
+        self.overlap_among(self.all_triangles(), sphere, radius, hits);
+        Ok(())
+    }
+
+    fn overlap_among(
+        &self,
+        triangles: impl Iterator<Item = TriangleId>,
+        sphere: &Sphere,
+        radius: f64,
+        hits: &mut Vec<SurfaceHit>,
+    ) {
+        hits.clear();
+        let touching = triangles.filter_map(|triangle| {
+            let found = closest_point(self.corners(triangle), sphere.center);
+            let nearest = Nearest { triangle, found };
+            (found.distance <= radius).then(|| self.hit(nearest, sphere.center))?
+        });
+        hits.extend(touching);
+    }
+}

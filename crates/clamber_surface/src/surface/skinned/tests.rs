@@ -1,0 +1,314 @@
+use super::*;
+use crate::geometry::{Ray, rotation_from_axis_angle, widen};
+use crate::mesh::SurfaceTag;
+use crate::surface::SurfaceHit;
+use crate::testing::{bend, direction, point, rigid, tube};
+use glam::{DQuat, DVec3};
+
+const JOINTS: u32 = 6;
+
+fn surface() -> SkinnedSurface {
+    SkinnedSurface::new(tube(JOINTS, 12))
+}
+
+/// Every query at seeded random places against its brute-force twin.
+fn assert_queries_agree(surface: &SkinnedSurface, rng: &mut fastrand::Rng, rounds: usize) -> usize {
+    let mut found = 0;
+    let (mut hits, mut expected) = (Vec::new(), Vec::new());
+    for _ in 0..rounds {
+        let origin = Vec3::new(2.5, 0.0, 0.0) + point(rng, 5.0);
+        let ray = Ray::new(origin, direction(rng)).unwrap();
+        let reach = [0.5, 3.0, f32::INFINITY][rng.usize(0..3)];
+        let hit = surface.cast_ray(&ray, reach).unwrap();
+        assert_eq!(
+            hit,
+            surface.cast_ray_reference(&ray, reach).unwrap(),
+            "{ray:?} {reach}"
+        );
+        let closest = surface.closest_point(origin, reach).unwrap();
+        let reference = surface.closest_point_reference(origin, reach).unwrap();
+        assert_eq!(closest, reference, "{origin} {reach}");
+        let sphere = Sphere {
+            center: origin,
+            radius: rng.f32() * 2.0,
+        };
+        surface.overlap_sphere(&sphere, &mut hits).unwrap();
+        surface
+            .overlap_sphere_reference(&sphere, &mut expected)
+            .unwrap();
+        assert_eq!(hits, expected, "{sphere:?}");
+        found += usize::from(hit.is_some()) + usize::from(closest.is_some()) + hits.len();
+    }
+    found
+}
+
+#[test]
+fn queries_agree_with_brute_force_in_every_pose() {
+    let mut rng = fastrand::Rng::with_seed(21);
+    let mut surface = surface();
+    for angle in [0.0, 0.4, -1.2, 2.5] {
+        let palette = bend(JOINTS, DVec3::new(0.0, 0.6, 0.8), angle);
+        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        let found = assert_queries_agree(&surface, &mut rng, 300);
+        assert!(found > 300, "only {found} hits at angle {angle}");
+    }
+}
+
+#[test]
+fn queries_agree_with_brute_force_after_edits() {
+    let mut rng = fastrand::Rng::with_seed(22);
+    let mut surface = surface();
+    let palette = bend(JOINTS, DVec3::Z, 0.5);
+    let mut removed = Vec::new();
+    for round in 0..60 {
+        let count = surface.mesh().triangles().len() as u32;
+        let triangle = TriangleId(rng.u32(0..count));
+        match round % 6 {
+            0 => drop(surface.disable_triangle(triangle)),
+            1 => drop(surface.enable_triangle(triangle)),
+            2 => {
+                if surface.remove_triangle(triangle).is_ok() {
+                    removed.push(triangle);
+                }
+            }
+            3 => {
+                let corners = [0, 3, 17].map(|k| VertexId(k + rng.u32(0..200)));
+                drop(surface.add_triangle(corners, SurfaceTag::default()));
+            }
+            4 => surface.disable_part(PartId(rng.u32(0..JOINTS))).unwrap(),
+            _ => surface.enable_part(PartId(rng.u32(0..JOINTS))).unwrap(),
+        }
+        if round == 30 {
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        }
+        assert_queries_agree(&surface, &mut rng, 20);
+    }
+    assert!(!removed.is_empty());
+    assert!(surface.mesh().triangles().len() > tube(JOINTS, 12).triangles().len());
+    for triangle in removed {
+        assert_eq!(
+            surface.anchor(triangle, [1.0, 0.0, 0.0]),
+            Err(SurfaceError::Triangle(triangle))
+        );
+        assert!(surface.enable_triangle(triangle).is_err());
+        assert!(surface.remove_triangle(triangle).is_err());
+    }
+}
+
+#[test]
+fn edits_of_one_surface_do_not_show_in_another() {
+    let mut one = surface();
+    let other = one.clone();
+    one.remove_triangle(TriangleId(0)).unwrap();
+    assert_eq!(one.mesh().part_of(TriangleId(0)), None);
+    assert!(other.mesh().part_of(TriangleId(0)).is_some());
+}
+
+#[test]
+fn a_disabled_triangle_is_seen_through() {
+    let mut surface = surface();
+    let ray = Ray::new(Vec3::new(2.1, 5.0, 0.1), -Vec3::Y).unwrap();
+    let front = surface.cast_ray(&ray, 100.0).unwrap().unwrap();
+    assert!(
+        front.normal.y > 0.9 && (front.distance - 4.5).abs() < 0.05,
+        "{front:?}"
+    );
+    surface.disable_triangle(front.triangle).unwrap();
+    let back = surface.cast_ray(&ray, 100.0).unwrap().unwrap();
+    assert!(back.normal.y < -0.9 && back.distance > 5.0, "{back:?}");
+    surface.disable_part(back.part).unwrap();
+    assert_eq!(surface.cast_ray(&ray, 100.0).unwrap(), None);
+    surface.enable_part(back.part).unwrap();
+    surface.enable_triangle(front.triangle).unwrap();
+    assert_eq!(surface.cast_ray(&ray, 100.0).unwrap(), Some(front));
+}
+
+#[test]
+fn part_spheres_hold_their_vertices() {
+    let mut surface = surface();
+    surface
+        .advance(&bend(JOINTS, DVec3::Y, 1.0), Similarity::IDENTITY)
+        .unwrap();
+    for (index, part) in surface.mesh().parts().iter().enumerate() {
+        let sphere = surface.part_sphere(PartId(index as u32)).unwrap();
+        for v in &part.vertices {
+            let apart = widen(surface.positions()[v.index()]) - widen(sphere.center);
+            assert!(apart.length() <= f64::from(sphere.radius));
+        }
+    }
+    assert_eq!(surface.part_sphere(PartId(99)), None);
+}
+
+#[test]
+fn previous_positions_are_last_ticks_when_the_root_rests() {
+    let mut surface = surface();
+    let world = Similarity::from_translation(DVec3::new(1e5, 3.0, 0.0));
+    surface.place(&bend(JOINTS, DVec3::Z, 0.1), world).unwrap();
+    let before = surface.positions().to_vec();
+    surface
+        .advance(&bend(JOINTS, DVec3::Z, 0.2), world)
+        .unwrap();
+    for (v, position) in before.iter().enumerate() {
+        let previous = surface.previous_position(VertexId(v as u32)).unwrap();
+        assert_eq!(previous, *position, "vertex {v}");
+    }
+    assert_eq!(surface.previous_position(VertexId(u32::MAX)), None);
+}
+
+#[test]
+fn previous_positions_follow_a_moving_root_far_from_the_origin() {
+    let mut surface = surface();
+    let palette = bend(JOINTS, DVec3::Z, 0.1);
+    let world = |angle: f64, x: f64| Similarity {
+        rotation: rotation_from_axis_angle(DVec3::Y, angle),
+        scale: 4.0,
+        translation: DVec3::new(1e5 + x, 20.0, -7e4),
+    };
+    surface.place(&palette, world(0.3, 0.0)).unwrap();
+    let at = |surface: &SkinnedSurface, v: usize| {
+        surface
+            .world_from_model()
+            .transform_point_f32(surface.positions()[v])
+    };
+    let before: Vec<DVec3> = (0..40).map(|v| at(&surface, v)).collect();
+    surface.advance(&palette, world(0.35, 0.8)).unwrap();
+    for (v, before) in before.iter().enumerate() {
+        let previous = surface.previous_position(VertexId(v as u32)).unwrap();
+        let previous = surface.world_from_model().transform_point_f32(previous);
+        // Coordinates of up to 25 m in f32, and f64 at 1e5 m.
+        assert!(
+            (previous - *before).length() < 2e-5,
+            "vertex {v}: {previous} {before}"
+        );
+    }
+}
+
+#[test]
+fn place_leaves_no_motion_behind() {
+    let mut surface = surface();
+    surface
+        .advance(&bend(JOINTS, DVec3::Z, 0.3), Similarity::IDENTITY)
+        .unwrap();
+    let far = Similarity::from_translation(DVec3::splat(1e4));
+    surface.place(&bend(JOINTS, DVec3::Z, -0.3), far).unwrap();
+    for (v, position) in surface.positions().iter().enumerate() {
+        assert_eq!(
+            surface.previous_position(VertexId(v as u32)),
+            Some(*position)
+        );
+    }
+}
+
+#[test]
+fn a_creature_far_away_answers_like_one_at_the_origin() {
+    let palette = bend(JOINTS, DVec3::Z, 0.7);
+    let (mut near, mut far) = (surface(), surface());
+    near.place(&palette, Similarity::IDENTITY).unwrap();
+    far.place(&palette, Similarity::from_translation(DVec3::splat(1e5)))
+        .unwrap();
+    let ray = Ray::new(Vec3::new(1.0, 4.0, 0.2), -Vec3::Y).unwrap();
+    let hit: Option<SurfaceHit> = near.cast_ray(&ray, 10.0).unwrap();
+    assert!(hit.is_some());
+    assert_eq!(hit, far.cast_ray(&ray, 10.0).unwrap());
+}
+
+#[test]
+fn mirrored_joints_keep_their_normals_outside() {
+    let mut surface = surface();
+    let mut mirror = Affine::IDENTITY;
+    mirror.rows[2][2] = -1.0;
+    let palette = Palette::from_matrices((0..JOINTS).map(|_| mirror));
+    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    for origin in [Vec3::new(2.1, 5.0, 0.1), Vec3::new(2.1, 0.1, -5.0)] {
+        let inward = Vec3::new(2.1, 0.05, 0.05) - origin;
+        let hit = surface
+            .cast_ray(&Ray::new(origin, inward).unwrap(), 100.0)
+            .unwrap()
+            .unwrap();
+        assert!(hit.normal.dot(inward) < 0.0, "{hit:?}");
+    }
+}
+
+#[test]
+fn bad_palettes_and_placements_change_nothing() {
+    let mut surface = surface();
+    let good = bend(JOINTS, DVec3::Z, 0.2);
+    surface.advance(&good, Similarity::IDENTITY).unwrap();
+    let before = surface.positions().to_vec();
+    let refused = |surface: &mut SkinnedSurface, palette: &Palette, world: Similarity| {
+        let by_advance = surface.advance(palette, world).unwrap_err();
+        assert_eq!(surface.place(palette, world).unwrap_err(), by_advance);
+        by_advance
+    };
+    let short = bend(JOINTS - 1, DVec3::Z, 0.2);
+    assert!(matches!(
+        refused(&mut surface, &short, Similarity::IDENTITY),
+        SurfaceError::JointCount {
+            expected: 6,
+            found: 5
+        }
+    ));
+    for bad in [f32::NAN, f32::INFINITY, 2e30] {
+        let mut matrices = good.matrices().to_vec();
+        matrices[3].rows[1][3] = bad;
+        let palette = Palette::from_matrices(matrices);
+        assert_eq!(
+            refused(&mut surface, &palette, Similarity::IDENTITY),
+            SurfaceError::Palette(JointId(3)),
+            "{bad}"
+        );
+    }
+    let mut world = Similarity::IDENTITY;
+    world.scale = 0.0;
+    assert_eq!(
+        refused(&mut surface, &good, world),
+        SurfaceError::WorldFromModel
+    );
+    // Teleporting by `advance` would need a displacement that f32 cannot square.
+    let far = Similarity::from_translation(DVec3::splat(1e40));
+    assert!(matches!(
+        surface.advance(&good, far),
+        Err(SurfaceError::Palette(_))
+    ));
+    assert_eq!(surface.positions(), before);
+    assert_eq!(*surface.world_from_model(), Similarity::IDENTITY);
+}
+
+#[test]
+fn bad_queries_are_refused() {
+    let surface = surface();
+    let ray = Ray::new(Vec3::ZERO, Vec3::X).unwrap();
+    assert!(surface.cast_ray(&ray, f32::NAN).is_err());
+    assert!(surface.cast_ray(&ray, -1.0).is_err());
+    assert!(surface.closest_point(Vec3::splat(f32::NAN), 1.0).is_err());
+    assert!(surface.closest_point(Vec3::ZERO, -1.0).is_err());
+    let mut hits = vec![];
+    let sphere = Sphere {
+        center: Vec3::ZERO,
+        radius: -1.0,
+    };
+    assert!(surface.overlap_sphere(&sphere, &mut hits).is_err());
+}
+
+#[test]
+fn a_rigid_move_moves_hits_rigidly() {
+    let mut surface = surface();
+    let ray = Ray::new(Vec3::new(1.3, 5.0, 0.2), -Vec3::Y).unwrap();
+    let before = surface.cast_ray(&ray, 100.0).unwrap().unwrap();
+    let turn = rotation_from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 1.9);
+    let shift = DVec3::new(3.0, -1.0, 0.5);
+    surface
+        .advance(&rigid(JOINTS, turn, shift), Similarity::IDENTITY)
+        .unwrap();
+    let carry = |v: Vec3, t: DVec3| crate::geometry::round_to_f32(turn * widen(v) + t);
+    let moved = Ray::new(
+        carry(ray.origin(), shift),
+        carry(ray.direction(), DVec3::ZERO),
+    )
+    .unwrap();
+    let after = surface.cast_ray(&moved, 100.0).unwrap().unwrap();
+    assert_eq!(after.triangle, before.triangle);
+    assert!((after.distance - before.distance).abs() < 1e-5);
+    assert!((widen(after.normal) - turn * widen(before.normal)).length() < 1e-5);
+    assert_ne!(turn, DQuat::IDENTITY);
+}
