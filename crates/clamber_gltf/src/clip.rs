@@ -1,0 +1,94 @@
+//! Animations as clips.
+
+use std::collections::BTreeMap;
+
+use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
+use glam::{Quat, Vec3};
+use gltf::Document;
+use gltf::animation::{self, Property};
+
+use crate::GltfError;
+use crate::accessor::Reader;
+
+/// All animations, each with the channels that move the skeleton.
+pub(crate) fn load(
+    document: &Document,
+    of_node: &BTreeMap<usize, Vec<JointId>>,
+    reader: Reader<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Clip>, GltfError> {
+    let mut clips = Vec::new();
+    for animation in document.animations() {
+        let name = match animation.name() {
+            Some(name) => name.to_owned(),
+            None => format!("clip {}", animation.index()),
+        };
+        let mut channels = Vec::new();
+        let mut passed_over = 0;
+        for (index, channel) in animation.channels().enumerate() {
+            let target = channel.target();
+            let joints = of_node.get(&target.node().index());
+            match (joints, keyframes(&channel, reader)?) {
+                (Some(joints), Some(values)) => {
+                    let object = format!("animation {name:?}, channel {index}");
+                    push_channels(&mut channels, &channel, joints, values, reader)
+                        .map_err(|e| e.unwrap_or_else(|rig| GltfError::invalid(object, rig)))?;
+                }
+                _ => passed_over += 1,
+            }
+        }
+        if passed_over > 0 {
+            warnings.push(format!(
+                "animation {name:?}: {passed_over} channels move nothing of the skeleton; \
+                 passed over"
+            ));
+        }
+        clips.push(Clip::new(name, channels));
+    }
+    Ok(clips)
+}
+
+/// A channel for every joint that the node stands for.
+fn push_channels(
+    channels: &mut Vec<Channel>,
+    channel: &animation::Channel<'_>,
+    joints: &[JointId],
+    values: Keyframes,
+    reader: Reader<'_>,
+) -> Result<(), Result<GltfError, clamber_surface::rig::RigError>> {
+    let sampler = channel.sampler();
+    let times = reader.floats::<1>(&sampler.input()).map_err(Ok)?;
+    let interpolation = match sampler.interpolation() {
+        animation::Interpolation::Step => Interpolation::Step,
+        animation::Interpolation::Linear => Interpolation::Linear,
+        animation::Interpolation::CubicSpline => Interpolation::CubicSpline,
+    };
+    for joint in joints {
+        let times = times.as_flattened().to_vec();
+        channels.push(Channel::new(*joint, interpolation, times, values.clone()).map_err(Err)?);
+    }
+    Ok(())
+}
+
+/// The values of a channel; `None` for morph target weights.
+fn keyframes(
+    channel: &animation::Channel<'_>,
+    reader: Reader<'_>,
+) -> Result<Option<Keyframes>, GltfError> {
+    let output = channel.sampler().output();
+    let vectors = || -> Result<Vec<Vec3>, GltfError> {
+        let values = reader.floats::<3>(&output)?;
+        Ok(values.into_iter().map(Vec3::from_array).collect())
+    };
+    Ok(match channel.target().property() {
+        Property::Translation => Some(Keyframes::Translation(vectors()?)),
+        Property::Scale => Some(Keyframes::Scale(vectors()?)),
+        Property::Rotation => {
+            let values = reader.floats::<4>(&output)?;
+            Some(Keyframes::Rotation(
+                values.into_iter().map(Quat::from_array).collect(),
+            ))
+        }
+        Property::MorphTargetWeights => None,
+    })
+}
