@@ -1,1 +1,15 @@
+#![doc = include_str!("../README.md")]
 
+mod climber;
+mod config;
+mod discrete;
+mod error;
+mod state;
+mod step;
+
+pub use climber::{Climber, ClimberInput};
+pub use config::ClimberConfig;
+pub use discrete::{PushOut, average_push_out};
+pub use error::ClimberError;
+pub use state::{ClimberMode, ClimberState, Footing};
+pub use step::{ClimberEvent, StepReport};

@@ -63,8 +63,11 @@ impl SkinnedSurface {
 
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
-        let frame = frame_of(rest, now).unwrap_or_else(|| rotation_f64(anchor.frame).normalize());
-        let previous_frame = frame_of(rest, before).unwrap_or(frame);
+        let previous_frame = frame_of(rest, before);
+        let frame = frame_of(rest, now)
+            .or(previous_frame)
+            .unwrap_or_else(|| last_frame(anchor));
+        let previous_frame = previous_frame.unwrap_or(frame);
         let normal = match self.outward_normal(triangle, part) {
             Some(normal) if !is_collapsed(now) => normal,
             _ => {
@@ -89,6 +92,16 @@ impl SkinnedSurface {
             area_ratio: area_ratio as f32,
             stretches: stretches.map(|s| s as f32),
         })
+    }
+}
+
+/// The frame that an anchor remembers; no rotation if that is none.
+fn last_frame(anchor: &Anchor) -> DQuat {
+    let frame = rotation_f64(anchor.frame);
+    if frame.is_finite() && frame.length_squared() > 0.0 {
+        frame.normalize()
+    } else {
+        DQuat::IDENTITY
     }
 }
 

@@ -17,11 +17,27 @@ impl SkinnedSurface {
         sphere: &Sphere,
         hits: &mut Vec<SurfaceHit>,
     ) -> Result<(), SurfaceError> {
+        check(sphere.center, sphere.radius)?;
+        hits.clear();
+        self.visit_overlaps(sphere, |hit| hits.push(hit))?;
+        hits.sort_unstable_by_key(|hit| hit.triangle);
+        Ok(())
+    }
+
+    /// [`SkinnedSurface::overlap_sphere`] for callers with a place of their own for the hits, which
+    /// come in no promised order.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::overlap_sphere`]; nothing is visited then.
+    pub fn visit_overlaps(
+        &self,
+        sphere: &Sphere,
+        visit: impl FnMut(SurfaceHit),
+    ) -> Result<(), SurfaceError> {
         let radius = check(sphere.center, sphere.radius)?;
         let center = sphere.center;
         let near = self.triangles_near(move |part| within_reach(part, center, radius));
-        self.overlap_among(near, sphere, radius, hits);
-        hits.sort_unstable_by_key(|hit| hit.triangle);
+        self.touching(near, sphere, radius).for_each(visit);
         Ok(())
     }
 
@@ -35,23 +51,21 @@ impl SkinnedSurface {
         hits: &mut Vec<SurfaceHit>,
     ) -> Result<(), SurfaceError> {
         let radius = check(sphere.center, sphere.radius)?;
-        self.overlap_among(self.all_triangles(), sphere, radius, hits);
+        hits.clear();
+        hits.extend(self.touching(self.all_triangles(), sphere, radius));
         Ok(())
     }
 
-    fn overlap_among(
+    fn touching(
         &self,
         triangles: impl Iterator<Item = TriangleId>,
         sphere: &Sphere,
         radius: f64,
-        hits: &mut Vec<SurfaceHit>,
-    ) {
-        hits.clear();
-        let touching = triangles.filter_map(|triangle| {
+    ) -> impl Iterator<Item = SurfaceHit> {
+        triangles.filter_map(move |triangle| {
             let found = closest_point(self.corners(triangle), sphere.center);
             let nearest = Nearest { triangle, found };
             (found.distance <= radius).then(|| self.hit(nearest, sphere.center))?
-        });
-        hits.extend(touching);
+        })
     }
 }

@@ -1,0 +1,358 @@
+//! One tick: carry, want, move, resolve, probe.
+
+use clamber_world::{Contact, Obstacle, ObstacleId, PointMotion};
+use glam::DVec3;
+
+use crate::{Climber, ClimberError, ClimberInput, ClimberMode, Footing, PushOut, average_push_out};
+
+/// A standing climber keeps its footing up to this many radians beyond the slope on which it would
+/// find one: 2 degrees, more than the wobble of a breathing animal, so that it does not flicker.
+const SLOPE_HYSTERESIS: f64 = 0.035;
+
+/// Contacts that part faster than this many metres a second are being left, not landed on: far
+/// below a jump, above the rounding of velocities.
+const PARTING_SPEED: f64 = 0.1;
+
+/// Something that happened in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClimberEvent {
+    /// Came down on something that can be stood on.
+    Landed {
+        /// On what.
+        obstacle: ObstacleId,
+        /// Speed towards it, metres a second.
+        speed: f64,
+    },
+    /// Jumped off what it stood on.
+    Jumped,
+    /// What it stood on became too steep.
+    Slipped,
+    /// What it stood on ended, or was removed.
+    LostFooting,
+}
+
+/// What a step did, beside the new state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// In the order in which they happened; empty in most ticks, and then without memory.
+    pub events: Vec<ClimberEvent>,
+    /// How the contacts pushed.
+    pub push_out: PushOut,
+}
+
+/// A contact and the obstacle that it belongs to.
+#[derive(Clone, Copy)]
+struct Ground {
+    obstacle: ObstacleId,
+    contact: Contact,
+}
+
+/// One tick's view of the world.
+struct Tick<'a> {
+    obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
+    dt: f64,
+}
+
+impl Climber {
+    /// One tick of `dt` seconds. Obstacles must already stand where they stand at its end.
+    ///
+    /// Obstacles may come in any order; of two with the same id the first counts.
+    ///
+    /// # Errors
+    /// [`ClimberError`] if `dt` is not positive or the input is not finite; the climber is
+    /// unchanged then.
+    pub fn step(
+        &mut self,
+        input: &ClimberInput,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        dt: f64,
+    ) -> Result<StepReport, ClimberError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(ClimberError::OutOfRange {
+                name: "dt",
+                range: "positive",
+                found: dt,
+            });
+        }
+        if !input.walk.is_finite() {
+            return Err(ClimberError::NotFinite("walk"));
+        }
+        let before = self.state;
+        let tick = Tick { obstacles, dt };
+        let mut report = StepReport {
+            events: Vec::new(),
+            push_out: average_push_out(&[], DVec3::ZERO, 0.0),
+        };
+        match self.state.mode {
+            ClimberMode::Standing => self.stand(input, &tick, &mut report),
+            ClimberMode::Falling => self.fall(&tick, &mut report),
+        }
+        if !self.state.is_finite() {
+            // Obstacles of one's own may answer nonsense; the climber waits for better.
+            self.state = before;
+        }
+        Ok(report)
+    }
+
+    /// A tick that begins on its feet.
+    fn stand(&mut self, input: &ClimberInput, tick: &Tick<'_>, report: &mut StepReport) {
+        let carried = self
+            .state
+            .footing
+            .and_then(|footing| Some((footing, tick.motion(&footing)?)));
+        let Some((footing, motion)) = carried else {
+            self.leave(ClimberEvent::LostFooting, report);
+            return self.fall(tick, report);
+        };
+        let offset = motion.frame * footing.offset;
+        let support = offset.normalize_or(self.config.up());
+        self.state.velocity = motion.velocity;
+        self.state.position = motion.position + offset;
+        self.turn_heading(&motion);
+        if self.slope(support) > self.config.max_slope + SLOPE_HYSTERESIS {
+            self.leave(ClimberEvent::Slipped, report);
+            return;
+        }
+        let walk = self.walk_velocity(input.walk, support);
+        if input.jump {
+            self.state.velocity += walk + self.config.up() * self.config.jump_speed;
+            self.leave(ClimberEvent::Jumped, report);
+        } else if walk == DVec3::ZERO {
+            self.stay(footing, &motion, tick, report);
+        } else {
+            self.walk(walk, tick, report);
+        }
+    }
+
+    /// Stays on its material point. Pushes roll the sphere around that point, so the contact does
+    /// not move: to second order a roll is a push along the surface.
+    fn stay(
+        &mut self,
+        footing: Footing,
+        motion: &PointMotion,
+        tick: &Tick<'_>,
+        report: &mut StepReport,
+    ) {
+        report.push_out = self.push_out(tick);
+        if report.push_out.contacts == 0 {
+            return;
+        }
+        let pushed = self.state.position + report.push_out.displacement - motion.position;
+        let offset = pushed.normalize_or(self.config.up()) * self.config.radius;
+        self.state.position = motion.position + offset;
+        self.state.footing = Some(Footing {
+            offset: motion.frame.conjugate() * offset,
+            ..footing
+        });
+    }
+
+    /// Walks relative to what carried it, and finds new ground.
+    fn walk(&mut self, walk: DVec3, tick: &Tick<'_>, report: &mut StepReport) {
+        let start = self.state.position;
+        self.move_by(walk * tick.dt, tick);
+        report.push_out = self.push_out(tick);
+        self.state.position += report.push_out.displacement;
+        let up = self.config.up();
+        self.state.heading = (walk - up * walk.dot(up)).normalize_or(self.state.heading);
+        let reach = self.config.radius + self.config.snap_distance;
+        match self.ground(tick, reach, |_| true) {
+            Some(ground) => {
+                self.stand_on(&ground, tick);
+                self.state.velocity += (self.state.position - start) / tick.dt;
+            }
+            None => {
+                self.state.velocity += walk;
+                self.leave(ClimberEvent::LostFooting, report);
+            }
+        }
+    }
+
+    /// A tick in the air, which may end on the ground.
+    fn fall(&mut self, tick: &Tick<'_>, report: &mut StepReport) {
+        self.state.velocity += self.config.gravity * tick.dt;
+        self.move_by(self.state.velocity * tick.dt, tick);
+        report.push_out = self.push_out(tick);
+        self.state.position += report.push_out.displacement;
+
+        let velocity = self.state.velocity;
+        let center = self.state.position;
+        // Rounding of the push-out may leave the contact a hair out of reach.
+        let reach = self.config.radius * (1.0 + 1e-6) + 1e-6;
+        let closing = |ground: &Ground| {
+            let away = ground.contact.away(center);
+            (velocity - tick.velocity_of(ground)).dot(away) < PARTING_SPEED
+        };
+        if let Some(ground) = self.ground(tick, reach, closing) {
+            let away = ground.contact.away(center);
+            let speed = -(velocity - tick.velocity_of(&ground)).dot(away);
+            self.stand_on(&ground, tick);
+            self.state.velocity = tick.velocity_of(&ground);
+            self.state.mode = ClimberMode::Standing;
+            report.events.push(ClimberEvent::Landed {
+                obstacle: ground.obstacle,
+                speed: speed.max(0.0),
+            });
+        } else {
+            self.stop_at_contacts(tick, reach);
+        }
+    }
+
+    /// Takes away the velocity into everything that is touched, relative to its own.
+    fn stop_at_contacts(&mut self, tick: &Tick<'_>, reach: f64) {
+        for (id, obstacle) in tick.sorted() {
+            self.contacts.clear();
+            obstacle.overlap_sphere(self.state.position, reach, &mut self.contacts);
+            for contact in &self.contacts {
+                let ground = Ground {
+                    obstacle: id,
+                    contact: *contact,
+                };
+                let away = contact.away(self.state.position);
+                let into = (self.state.velocity - tick.velocity_of(&ground)).dot(away);
+                if into < 0.0 {
+                    self.state.velocity -= away * into;
+                }
+            }
+        }
+    }
+
+    /// Moves the centre, but not through a surface: a ray along the way stops it half a radius
+    /// short of what it meets, from where push-outs still lead to the right side.
+    fn move_by(&mut self, displacement: DVec3, tick: &Tick<'_>) {
+        let length = displacement.length();
+        if length == 0.0 {
+            return;
+        }
+        let mut allowed = length;
+        for (_, obstacle) in tick.obstacles {
+            if let Some(hit) = obstacle.cast_ray(self.state.position, displacement, length) {
+                allowed = allowed.min((hit.distance - 0.5 * self.config.radius).max(0.0));
+            }
+        }
+        self.state.position += displacement * (allowed / length);
+    }
+
+    /// The mean push-out of everything that the sphere overlaps.
+    fn push_out(&mut self, tick: &Tick<'_>) -> PushOut {
+        self.contacts.clear();
+        for (_, obstacle) in tick.sorted() {
+            obstacle.overlap_sphere(self.state.position, self.config.radius, &mut self.contacts);
+        }
+        average_push_out(&self.contacts, self.state.position, self.config.radius)
+    }
+
+    /// The nearest contact within `reach` that can be stood on.
+    fn ground(
+        &mut self,
+        tick: &Tick<'_>,
+        reach: f64,
+        accept: impl Fn(&Ground) -> bool,
+    ) -> Option<Ground> {
+        let center = self.state.position;
+        let mut best: Option<Ground> = None;
+        for (id, obstacle) in tick.sorted() {
+            self.contacts.clear();
+            obstacle.overlap_sphere(center, reach, &mut self.contacts);
+            for contact in &self.contacts {
+                let ground = Ground {
+                    obstacle: id,
+                    contact: *contact,
+                };
+                // In ascending order of obstacle and material: the first of equals stays.
+                let nearer = best.is_none_or(|best| contact.distance < best.contact.distance);
+                let stands = self.slope(contact.away(center)) <= self.config.max_slope;
+                if nearer && stands && accept(&ground) {
+                    best = Some(ground);
+                }
+            }
+        }
+        best
+    }
+
+    /// Puts the sphere so that it touches a contact, and its footing there.
+    fn stand_on(&mut self, ground: &Ground, tick: &Tick<'_>) {
+        let away = ground.contact.away(self.state.position);
+        let mut footing = Footing {
+            obstacle: ground.obstacle,
+            point: ground.contact.material,
+            offset: away * self.config.radius,
+        };
+        // The material point's own position: it may differ from the contact by rounding, and it is
+        // what the climber will be carried by.
+        let (position, frame) = tick
+            .motion(&footing)
+            .map_or((ground.contact.point, glam::DQuat::IDENTITY), |motion| {
+                (motion.position, motion.frame)
+            });
+        self.state.position = position + footing.offset;
+        footing.offset = frame.conjugate() * footing.offset;
+        self.state.footing = Some(footing);
+    }
+
+    /// Into the air, with the velocity that it has.
+    fn leave(&mut self, event: ClimberEvent, report: &mut StepReport) {
+        self.state.mode = ClimberMode::Falling;
+        self.state.footing = None;
+        report.events.push(event);
+    }
+
+    /// Angle between up and the direction from a contact to the climber, radians.
+    fn slope(&self, support: DVec3) -> f64 {
+        libm::acos(support.dot(self.config.up()).clamp(-1.0, 1.0))
+    }
+
+    /// What the input asks for, along the surface.
+    fn walk_velocity(&self, walk: DVec3, support: DVec3) -> DVec3 {
+        let up = self.config.up();
+        let level = walk - up * walk.dot(up);
+        let share = level.length().min(1.0);
+        let along = level - support * level.dot(support);
+        along.normalize_or_zero() * (share * self.config.walk_speed)
+    }
+
+    /// Turns with the material underfoot, about up.
+    fn turn_heading(&mut self, motion: &PointMotion) {
+        let up = self.config.up();
+        let turned = motion.turn * self.state.heading;
+        self.state.heading = (turned - up * turned.dot(up)).normalize_or(self.state.heading);
+    }
+}
+
+impl<'a> Tick<'a> {
+    /// Obstacles by ascending id, without memory: scenes hold few.
+    fn sorted(&self) -> impl Iterator<Item = (ObstacleId, &'a dyn Obstacle)> + use<'a> {
+        let obstacles = self.obstacles;
+        let mut last: Option<ObstacleId> = None;
+        std::iter::from_fn(move || {
+            let (id, obstacle) = obstacles
+                .iter()
+                .filter(|(id, _)| last.is_none_or(|last| *id > last))
+                .min_by_key(|(id, _)| *id)?;
+            last = Some(*id);
+            Some((*id, *obstacle))
+        })
+    }
+
+    fn motion(&self, footing: &Footing) -> Option<PointMotion> {
+        let (_, obstacle) = self
+            .obstacles
+            .iter()
+            .find(|(id, _)| *id == footing.obstacle)?;
+        obstacle
+            .motion(&footing.point, self.dt)
+            .filter(|motion| motion.position.is_finite() && motion.velocity.is_finite())
+    }
+
+    fn velocity_of(&self, ground: &Ground) -> DVec3 {
+        let footing = Footing {
+            obstacle: ground.obstacle,
+            point: ground.contact.material,
+            offset: DVec3::ZERO,
+        };
+        self.motion(&footing)
+            .map_or(DVec3::ZERO, |motion| motion.velocity)
+    }
+}
+
+#[cfg(test)]
+mod tests;

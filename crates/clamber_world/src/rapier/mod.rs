@@ -1,0 +1,8 @@
+//! A rapier world as an obstacle.
+
+mod narrow;
+mod poses;
+mod terrain;
+
+pub use poses::BodyPoses;
+pub use terrain::RapierTerrain;

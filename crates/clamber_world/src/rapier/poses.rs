@@ -1,0 +1,48 @@
+use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+use rapier3d::math::Pose;
+
+/// Where the bodies of a rapier world stood before a step.
+///
+/// Velocities of bodies are measured as displacements over the tick, so that a character on a
+/// turning platform goes where its spot goes and not along the tangent. Record before each step:
+///
+/// ```
+/// use clamber_world::{BodyPoses, RapierTerrain};
+/// use rapier3d::prelude::*;
+///
+/// let mut world = PhysicsWorld::default();
+/// let mut before = BodyPoses::default();
+/// // Every tick:
+/// before.record(&world.bodies);
+/// world.step();
+/// let terrain = RapierTerrain::of_world(&world, &before);
+/// # let _ = terrain;
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct BodyPoses {
+    /// In ascending order of handles.
+    poses: Vec<(RigidBodyHandle, Pose)>,
+}
+
+impl BodyPoses {
+    /// Takes note of every body that can move. Keeps its memory.
+    pub fn record(&mut self, bodies: &RigidBodySet) {
+        self.poses.clear();
+        let moving = bodies.iter().filter(|(_, body)| !body.is_fixed());
+        self.poses
+            .extend(moving.map(|(handle, body)| (handle, *body.position())));
+        self.poses
+            .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
+    }
+
+    /// The pose of a body when it was last recorded; `None` for a body that is fixed or new.
+    pub fn get(&self, handle: RigidBodyHandle) -> Option<&Pose> {
+        let index = self
+            .poses
+            .binary_search_by_key(&handle.into_raw_parts(), |(known, _)| {
+                known.into_raw_parts()
+            })
+            .ok()?;
+        Some(&self.poses[index].1)
+    }
+}
