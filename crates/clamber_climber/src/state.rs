@@ -17,6 +17,8 @@ pub struct Footing {
     pub obstacle: ObstacleId,
     /// The material point under the climber. Changes only when the climber lands or walks.
     pub point: MaterialPoint,
+    /// Where the climber's sphere touches it, in world space, after the last step.
+    pub contact: DVec3,
     /// From the point to the climber's centre, one radius long, in the frame of the material: it
     /// turns with what it stands on.
     pub offset: DVec3,
@@ -54,6 +56,7 @@ impl ClimberState {
             hash.word(u64::from(footing.obstacle.0));
             hash.word(footing.point.key);
             hash.vector(DVec3::from_array(footing.point.coordinates));
+            hash.vector(footing.contact);
             hash.vector(footing.offset);
         }
         hash.0

@@ -1,6 +1,6 @@
 //! One tick: carry, want, move, resolve, probe.
 
-use clamber_world::{Contact, Obstacle, ObstacleId, PointMotion};
+use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 use glam::DVec3;
 
 use crate::{Climber, ClimberError, ClimberInput, ClimberMode, Footing, PushOut, average_push_out};
@@ -99,8 +99,8 @@ impl Climber {
         let carried = self
             .state
             .footing
-            .and_then(|footing| Some((footing, tick.motion(&footing)?)));
-        let Some((footing, motion)) = carried else {
+            .and_then(|footing| Some((footing, tick.motion(footing.obstacle, &footing.point)?)));
+        let Some((mut footing, motion)) = carried else {
             self.leave(ClimberEvent::LostFooting, report);
             return self.fall(tick, report);
         };
@@ -108,6 +108,8 @@ impl Climber {
         let support = offset.normalize_or(self.config.up());
         self.state.velocity = motion.velocity;
         self.state.position = motion.position + offset;
+        footing.contact = motion.position;
+        self.state.footing = Some(footing);
         self.turn_heading(&motion);
         if self.slope(support) > self.config.max_slope + SLOPE_HYSTERESIS {
             self.leave(ClimberEvent::Slipped, report);
@@ -275,16 +277,18 @@ impl Climber {
         let mut footing = Footing {
             obstacle: ground.obstacle,
             point: ground.contact.material,
+            contact: ground.contact.point,
             offset: away * self.config.radius,
         };
         // The material point's own position: it may differ from the contact by rounding, and it is
         // what the climber will be carried by.
         let (position, frame) = tick
-            .motion(&footing)
+            .motion(footing.obstacle, &footing.point)
             .map_or((ground.contact.point, glam::DQuat::IDENTITY), |motion| {
                 (motion.position, motion.frame)
             });
         self.state.position = position + footing.offset;
+        footing.contact = position;
         footing.offset = frame.conjugate() * footing.offset;
         self.state.footing = Some(footing);
     }
@@ -333,23 +337,15 @@ impl<'a> Tick<'a> {
         })
     }
 
-    fn motion(&self, footing: &Footing) -> Option<PointMotion> {
-        let (_, obstacle) = self
-            .obstacles
-            .iter()
-            .find(|(id, _)| *id == footing.obstacle)?;
+    fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
+        let (_, obstacle) = self.obstacles.iter().find(|(id, _)| *id == obstacle)?;
         obstacle
-            .motion(&footing.point, self.dt)
+            .motion(point, self.dt)
             .filter(|motion| motion.position.is_finite() && motion.velocity.is_finite())
     }
 
     fn velocity_of(&self, ground: &Ground) -> DVec3 {
-        let footing = Footing {
-            obstacle: ground.obstacle,
-            point: ground.contact.material,
-            offset: DVec3::ZERO,
-        };
-        self.motion(&footing)
+        self.motion(ground.obstacle, &ground.contact.material)
             .map_or(DVec3::ZERO, |motion| motion.velocity)
     }
 }

@@ -21,7 +21,8 @@ const FIRST_REACH: f64 = 1.0;
 /// without sensors.
 ///
 /// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle,
-/// from both sides; convex shapes are solid.
+/// from both sides; convex shapes are solid. Rays are rapier's own: one that meets an edge between
+/// two of its triangles exactly may slip through.
 pub struct RapierTerrain<'a> {
     queries: QueryPipeline<'a>,
     before: &'a BodyPoses,

@@ -1,0 +1,87 @@
+//! What the scene holds against the climber, by means that owe nothing to it.
+
+use clamber_climber::Climber;
+use clamber_surface::rig::Palette;
+use clamber_surface::skin::skin_vertex_reference;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{MaterialPoint, Obstacle};
+use glam::DVec3;
+
+use super::CREATURE;
+use crate::{solid_angle, valley};
+
+/// Ticks between two looks at whether the climber is inside the creature: over all triangles.
+const INSIDE_EVERY: u64 = 10;
+
+/// Watches a climber from tick to tick.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    /// The material point under the climber when it landed or its input ended.
+    recorded: Option<MaterialPoint>,
+    /// Ticks at which it was inside the creature or under the ground.
+    pub(super) fell_through: u32,
+    /// Ticks with a number that is not finite.
+    pub(super) not_finite: u32,
+    /// Deepest that the sphere reached into the skin while it stood without input, metres.
+    pub(super) deepest: f64,
+}
+
+impl Watch {
+    /// Looks at one tick; gives the drift if the climber rode through all of it without input.
+    pub(super) fn tick(
+        &mut self,
+        surface: &SkinnedSurface,
+        palette: &Palette,
+        climber: &Climber,
+        idle: bool,
+        tick: u64,
+    ) -> Option<f64> {
+        let state = climber.state();
+        if !(state.position.is_finite() && state.velocity.is_finite()) {
+            self.not_finite += 1;
+        }
+        if tick.is_multiple_of(INSIDE_EVERY) && fell_through(surface, state.position) {
+            self.fell_through += 1;
+        }
+        let riding = state
+            .footing
+            .filter(|footing| footing.obstacle == CREATURE && idle);
+        let Some(footing) = riding else {
+            self.recorded = None;
+            return None;
+        };
+        let Some(recorded) = self.recorded else {
+            self.recorded = Some(footing.point);
+            return None;
+        };
+        let radius = climber.config().radius;
+        let nearest = Obstacle::closest_point(surface, state.position, radius)?;
+        self.deepest = self.deepest.max(radius - nearest.distance);
+        let expected = reference_position(surface, palette, &recorded)?;
+        // Off its point, or out of touch with it.
+        let gap = (state.position.distance(expected) - radius).abs();
+        Some(footing.contact.distance(expected).max(gap))
+    }
+}
+
+/// Where a material point of the creature is, in f64 from the palette on: none of the surface's own
+/// skinning, interpolation or carrying.
+fn reference_position(
+    surface: &SkinnedSurface,
+    palette: &Palette,
+    point: &MaterialPoint,
+) -> Option<DVec3> {
+    let corners = surface.mesh().triangles().get(point.key as usize)?;
+    let mut position = DVec3::ZERO;
+    for (vertex, weight) in corners.iter().zip(point.coordinates) {
+        position += skin_vertex_reference(surface.mesh(), palette.matrices(), *vertex)? * weight;
+    }
+    Some(surface.world_from_model().transform_point(position))
+}
+
+/// True if the climber's centre is inside the creature or under the ground.
+fn fell_through(surface: &SkinnedSurface, center: DVec3) -> bool {
+    let in_model = surface.world_from_model().inverse_transform_point(center);
+    let under_ground = center.y < valley::height(center.x, center.z);
+    under_ground || solid_angle::is_inside(surface.positions(), surface.mesh(), in_model)
+}

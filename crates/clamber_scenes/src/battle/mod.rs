@@ -1,0 +1,95 @@
+//! The main scene: a valley, a creature that walks and shakes, and a climber that is dropped on its
+//! back and rides it.
+//!
+//! One tick, in this order: the creature is posed, the physics steps, the climber steps, the scene
+//! checks what came of it.
+
+pub mod bot;
+mod checks;
+mod choreography;
+mod options;
+mod recording;
+mod scene;
+mod summary;
+mod timeline;
+
+use std::path::PathBuf;
+
+pub use choreography::Choreography;
+pub use options::BattleOptions;
+pub use recording::{Recording, Sample};
+pub use scene::{Battle, CREATURE, TERRAIN, TICK};
+pub use summary::{Check, Summary};
+
+use crate::CreatureError;
+use clamber_climber::ClimberError;
+use clamber_surface::rig::RigError;
+use clamber_surface::surface::SurfaceError;
+use thiserror::Error;
+
+/// Why a battle cannot be fought or written down.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BattleError {
+    /// The creature cannot be loaded or posed.
+    #[error("the creature cannot play: {0}")]
+    Creature(#[from] CreatureError),
+    /// The creature has no place where a climber could stand.
+    #[error("found no place on {creature} to drop a climber on: no skin under the sky")]
+    NoPerch {
+        /// Its name.
+        creature: String,
+    },
+    /// The creature is flat.
+    #[error("{creature} has no height in its first pose, so it cannot be scaled to {height} m")]
+    NoHeight {
+        /// Its name.
+        creature: String,
+        /// The height asked for.
+        height: f64,
+    },
+    /// The climber refused.
+    #[error(transparent)]
+    Climber(#[from] ClimberError),
+    /// The results cannot be written.
+    #[error("cannot write {path}: {reason}")]
+    Write {
+        /// Which file or folder.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl From<RigError> for BattleError {
+    fn from(error: RigError) -> Self {
+        Self::Creature(error.into())
+    }
+}
+
+impl From<SurfaceError> for BattleError {
+    fn from(error: SurfaceError) -> Self {
+        Self::Creature(error.into())
+    }
+}
+
+/// Fights a battle from beginning to end, writes `summary.json` and `timeline.svg`, and gives the
+/// summary.
+///
+/// # Errors
+/// [`BattleError`]. Failed checks are no error: they stand in the summary.
+pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
+    let creature = options.load_creature()?;
+    let mut battle = Battle::new(&creature, options.height, options.seed)?;
+    let ticks = options.ticks();
+    let progress = options::Progress::new(ticks);
+    for tick in 0..ticks {
+        battle.step(options.input_at(tick))?;
+        progress.tick(tick + 1, battle.recording());
+    }
+    progress.finish();
+    let summary = Summary::new(&battle, options);
+    summary.write(&options.out)?;
+    timeline::draw(battle.recording(), &summary, &options.out)?;
+    Ok(summary)
+}

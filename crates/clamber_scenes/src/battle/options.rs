@@ -1,0 +1,137 @@
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::bot::Intent;
+use super::{BattleError, Recording, TICK};
+use crate::{Creature, beast::beast};
+
+/// Vertices of the creature built in code.
+const BEAST_VERTICES: usize = 6_000;
+
+/// A climber rides a walking, shaking creature.
+///
+/// Drops a climber on the creature's back, where it stands, walks and jumps by script, and checks
+/// at every tick that it is carried exactly and never falls through. Ends with a table, and exits
+/// with 1 if a check failed.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "battle", version)]
+pub struct BattleOptions {
+    /// A skinned creature in a .glb or .gltf file [default: a quadruped built in code].
+    #[arg(long, value_name = "FILE")]
+    pub creature: Option<PathBuf>,
+
+    /// Height of the creature.
+    #[arg(long, value_name = "METRES", default_value_t = 20.0, value_parser = positive)]
+    pub height: f64,
+
+    /// Length of the battle.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = positive)]
+    pub seconds: f64,
+
+    /// Where exactly the climber comes down: any number; the same one gives the same battle.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+
+    /// Folder for summary.json and timeline.svg.
+    #[arg(long, value_name = "DIR", default_value = "target/battle")]
+    pub out: PathBuf,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
+        Ok(_) => Err("must be above 0 and at most 1000000".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+impl Default for BattleOptions {
+    fn default() -> Self {
+        Self::parse_from(["battle"])
+    }
+}
+
+impl BattleOptions {
+    /// From the command line; prints help or what is wrong with it, and exits.
+    pub fn from_command_line() -> Self {
+        Self::parse()
+    }
+
+    pub(super) fn load_creature(&self) -> Result<Creature, BattleError> {
+        Ok(match &self.creature {
+            Some(path) => Creature::load(path)?,
+            None => beast(BEAST_VERTICES),
+        })
+    }
+
+    pub(super) fn ticks(&self) -> u64 {
+        ((self.seconds / TICK).round() as u64).max(1)
+    }
+
+    /// The script: stands for four tenths of the battle, walks up and down the back for the next
+    /// third, jumps once in the middle of that, and stands again.
+    pub(super) fn input_at(&self, tick: u64) -> Intent {
+        let part = tick as f64 / self.ticks() as f64;
+        let jump = self.ticks() * 57 / 100;
+        if tick == jump {
+            Intent::Jump
+        } else if (0.4..0.73).contains(&part) {
+            Intent::Patrol
+        } else {
+            Intent::Stand
+        }
+    }
+}
+
+/// A bar on a terminal, a line every ten seconds of the battle elsewhere.
+pub(super) enum Progress {
+    Bar(ProgressBar),
+    Lines { ticks: u64 },
+}
+
+impl Progress {
+    pub(super) fn new(ticks: u64) -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines { ticks };
+        }
+        let bar = ProgressBar::new(ticks);
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  [{eta} left]");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self::Bar(bar)
+    }
+
+    pub(super) fn tick(&self, done: u64, recording: &Recording) {
+        let Some(sample) = recording.samples().last() else {
+            return;
+        };
+        let line = format!(
+            "{:5.1} s  {}  {:5.1} m up",
+            sample.seconds,
+            sample.activity(),
+            sample.height
+        );
+        match self {
+            Self::Bar(bar) => {
+                if done.is_multiple_of(16) {
+                    bar.set_message(line);
+                    bar.set_position(done);
+                }
+            }
+            Self::Lines { ticks } => {
+                let every = (10.0 / TICK).round() as u64;
+                if done.is_multiple_of(every) || done == *ticks {
+                    eprintln!("{line}");
+                }
+            }
+        }
+    }
+
+    pub(super) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,88 @@
+use clamber_climber::ClimberMode;
+
+/// One tick of a battle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Since the beginning, at the end of the tick.
+    pub seconds: f64,
+    /// Of the climber's centre over the origin, metres.
+    pub height: f64,
+    /// What the climber is doing.
+    pub mode: ClimberMode,
+    /// True if it stands on the creature.
+    pub riding: bool,
+    /// Distance from the climber's contact to the material point recorded when its input ended,
+    /// metres; `None` if there is input, or it does not ride.
+    pub drift: Option<f64>,
+    /// Length of the tick's push-out, metres.
+    pub push_out: f64,
+    /// What the tick cost: pose, physics, climber.
+    pub microseconds: f64,
+}
+
+impl Sample {
+    /// In a word.
+    pub fn activity(&self) -> &'static str {
+        match (self.mode, self.riding) {
+            (ClimberMode::Falling, _) => "falling ",
+            (ClimberMode::Standing, true) => "riding  ",
+            (ClimberMode::Standing, false) => "grounded",
+        }
+    }
+}
+
+/// All ticks of a battle.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    samples: Vec<Sample>,
+    /// Fingerprints of the climber's state, folded.
+    hash: u64,
+}
+
+impl Recording {
+    pub(super) fn push(&mut self, sample: Sample, fingerprint: u64) {
+        self.samples.push(sample);
+        self.hash = (self.hash.rotate_left(5) ^ fingerprint).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+
+    /// In order.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// A number over every bit of the climber's states: equal for equal battles.
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// The share of `part` (0 to 1) of the ticks cost no more than this, microseconds.
+    pub fn tick_us(&self, part: f64) -> f64 {
+        let mut costs: Vec<f64> = self.samples.iter().map(|s| s.microseconds).collect();
+        costs.sort_by(f64::total_cmp);
+        let index = (costs.len() as f64 * part) as usize;
+        costs
+            .get(index.min(costs.len().saturating_sub(1)))
+            .copied()
+            .unwrap_or(0.0)
+    }
+
+    /// The largest drift of all ticks, metres; 0 if there was none.
+    pub fn max_drift(&self) -> f64 {
+        self.samples
+            .iter()
+            .filter_map(|s| s.drift)
+            .fold(0.0, f64::max)
+    }
+
+    /// The longest push-out of the ticks with a drift: standing without input.
+    pub fn max_push_out(&self) -> f64 {
+        let standing = self.samples.iter().filter(|s| s.drift.is_some());
+        standing.map(|s| s.push_out).fold(0.0, f64::max)
+    }
+
+    /// The share of ticks spent standing on the creature.
+    pub fn riding_share(&self) -> f64 {
+        let riding = self.samples.iter().filter(|s| s.riding).count();
+        riding as f64 / self.samples.len().max(1) as f64
+    }
+}

@@ -1,0 +1,220 @@
+use std::sync::Arc;
+use std::time::Instant;
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::rapier3d::pipeline::PhysicsWorld;
+use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
+use glam::DVec3;
+
+use super::bot::{self, Intent};
+use super::checks::Watch;
+use super::{BattleError, Choreography, Recording, Sample};
+use crate::{Creature, valley};
+
+/// Seconds of a tick.
+pub const TICK: f64 = 1.0 / 60.0;
+
+/// The valley, as an obstacle.
+pub const TERRAIN: ObstacleId = ObstacleId(0);
+
+/// The creature, as an obstacle.
+pub const CREATURE: ObstacleId = ObstacleId(1);
+
+/// How far above the perch the climber is dropped, metres.
+const DROP: f64 = 2.0;
+
+/// Ticks on the ground after which the climber is lifted back onto the creature.
+const GROUNDED_TICKS: u32 = 60;
+
+/// The running scene.
+pub struct Battle<'a> {
+    choreography: Choreography<'a>,
+    surface: SkinnedSurface,
+    world: PhysicsWorld,
+    before: BodyPoses,
+    climber: Climber,
+    perch: MaterialPoint,
+    height: f64,
+    tick: u64,
+    grounded: u32,
+    drops: u32,
+    landings: u32,
+    recording: Recording,
+    watch: Watch,
+}
+
+impl<'a> Battle<'a> {
+    /// A creature of `height` metres in the valley, and a climber above its back; `seed` shifts
+    /// where.
+    ///
+    /// # Errors
+    /// [`BattleError`].
+    pub fn new(creature: &'a Creature, height: f64, seed: u64) -> Result<Self, BattleError> {
+        let mut choreography = Choreography::new(creature, height)?;
+        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
+        let (palette, world_from_model) = choreography.pose()?;
+        surface.place(palette, world_from_model)?;
+        let perch = find_perch(&surface, height, seed).ok_or_else(|| BattleError::NoPerch {
+            creature: creature.name.clone(),
+        })?;
+        let config = ClimberConfig::default();
+        let climber = Climber::new(config, perch.point + config.up() * (DROP + config.radius))?;
+        Ok(Self {
+            choreography,
+            surface,
+            world: valley::world(),
+            before: BodyPoses::default(),
+            climber,
+            perch: perch.material,
+            height,
+            tick: 0,
+            grounded: 0,
+            drops: 1,
+            landings: 0,
+            recording: Recording::default(),
+            watch: Watch::default(),
+        })
+    }
+
+    /// One tick.
+    ///
+    /// # Errors
+    /// [`BattleError`] if a clip does not fit the creature.
+    pub fn step(&mut self, intent: Intent) -> Result<(), BattleError> {
+        let start = Instant::now();
+        self.choreography.advance(TICK)?;
+        let (palette, world_from_model) = self.choreography.pose()?;
+        self.surface.advance(palette, world_from_model)?;
+        self.before.record(&self.world.bodies);
+        self.world.step();
+
+        let state = self.climber.state();
+        let seconds = self.tick as f64 * TICK;
+        let input = bot::input(
+            intent,
+            state,
+            &self.surface,
+            &self.perch,
+            seconds,
+            self.height,
+        );
+        let terrain = RapierTerrain::of_world(&self.world, &self.before);
+        let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+            [(TERRAIN, &terrain), (CREATURE, &self.surface)];
+        let report = self.climber.step(&input, &obstacles, TICK)?;
+        let microseconds = start.elapsed().as_secs_f64() * 1e6;
+
+        self.tick += 1;
+        self.record(&input, &report, microseconds);
+        self.lift_if_grounded()
+    }
+
+    fn record(&mut self, input: &ClimberInput, report: &StepReport, microseconds: f64) {
+        let state = *self.climber.state();
+        let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
+        self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
+        let idle = *input == ClimberInput::default();
+        let palette = self.choreography.palette();
+        let drift = self
+            .watch
+            .tick(&self.surface, palette, &self.climber, idle, self.tick);
+        let sample = Sample {
+            seconds: self.tick as f64 * TICK,
+            height: state.position.y,
+            mode: state.mode,
+            riding: state
+                .footing
+                .is_some_and(|footing| footing.obstacle == CREATURE),
+            drift,
+            push_out: report.push_out.displacement.length(),
+            microseconds,
+        };
+        self.recording.push(sample, state.fingerprint());
+    }
+
+    /// Once it has stood on the ground for a while, the climber is dropped on the back again.
+    fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
+        let state = *self.climber.state();
+        let on_ground = state
+            .footing
+            .is_some_and(|footing| footing.obstacle == TERRAIN);
+        self.grounded = if on_ground { self.grounded + 1 } else { 0 };
+        if self.grounded < GROUNDED_TICKS {
+            return Ok(());
+        }
+        let Some(perch) = Obstacle::motion(&self.surface, &self.perch, TICK) else {
+            return Ok(());
+        };
+        let up = self.climber.config().up();
+        let above = perch.position + up * (DROP + self.climber.config().radius);
+        self.climber.restore(ClimberState {
+            position: above,
+            velocity: perch.velocity,
+            mode: ClimberMode::Falling,
+            footing: None,
+            ..state
+        })?;
+        self.grounded = 0;
+        self.drops += 1;
+        Ok(())
+    }
+
+    /// The climber.
+    pub fn climber(&self) -> &Climber {
+        &self.climber
+    }
+
+    /// The creature's skin.
+    pub fn surface(&self) -> &SkinnedSurface {
+        &self.surface
+    }
+
+    /// Every tick so far.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// How often the climber was dropped on the creature.
+    pub fn drops(&self) -> u32 {
+        self.drops
+    }
+
+    /// How often the climber landed, on anything.
+    pub fn landings(&self) -> u32 {
+        self.landings
+    }
+
+    pub(super) fn watch(&self) -> &Watch {
+        &self.watch
+    }
+}
+
+/// The most level place near the middle of the creature's back: rays from above on a grid around
+/// the middle of its skin; the seed shifts the grid by up to half a cell.
+fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contact> {
+    let world = |p: &glam::Vec3| surface.world_from_model().transform_point_f32(*p);
+    let count = surface.positions().len() as f64;
+    let middle = surface.positions().iter().map(world).sum::<DVec3>() / count;
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let cell = height * 0.02;
+    let shift = DVec3::new(rng.f64() - 0.5, 0.0, rng.f64() - 0.5) * cell;
+    let mut best: Option<(f64, Contact)> = None;
+    for i in -8..=8 {
+        for j in -8..=8 {
+            let aside = DVec3::new(f64::from(i), 0.0, f64::from(j)) * cell + shift;
+            let from = middle + aside + DVec3::Y * (4.0 * height);
+            let Some(hit) = Obstacle::cast_ray(surface, from, -DVec3::Y, 8.0 * height) else {
+                continue;
+            };
+            // Level first; of much the same level the nearer to the middle.
+            let score = hit.normal.y - 0.5 * aside.length() / height;
+            if best.is_none_or(|(other, _)| score > other) {
+                best = Some((score, hit));
+            }
+        }
+    }
+    best.map(|(_, hit)| hit)
+}

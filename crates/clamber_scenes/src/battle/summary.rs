@@ -1,0 +1,176 @@
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Battle, BattleError, BattleOptions};
+
+/// Farthest that a standing climber's contact may be from its material point, metres.
+const MAX_DRIFT: f64 = 1e-4;
+
+/// Longest push-out of a climber that stands without input, metres.
+const MAX_PUSH_OUT: f64 = 0.01;
+
+/// Something that a battle must fulfil.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// What was looked at.
+    pub name: &'static str,
+    /// What was found.
+    pub found: f64,
+    /// What it may be at most.
+    pub at_most: f64,
+    /// True if it is.
+    pub holds: bool,
+}
+
+/// What came of a battle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Who was ridden.
+    pub creature: String,
+    /// Its joints.
+    pub joints: usize,
+    /// Its vertices, after welding.
+    pub vertices: usize,
+    /// Its triangles.
+    pub triangles: usize,
+    /// Its height, metres.
+    pub height_m: f64,
+    /// Ticks fought.
+    pub ticks: usize,
+    /// Their length, seconds.
+    pub seconds: f64,
+    /// A number over every bit of the climber's states: equal for equal battles, on any machine.
+    pub hash: String,
+    /// Times that the climber was dropped on the creature: 1 if it never fell to the ground.
+    pub drops: u32,
+    /// Times that it landed on anything.
+    pub landings: u32,
+    /// Share of the ticks spent standing on the creature.
+    pub riding_share: f64,
+    /// Largest distance from a standing climber's contact to the material point recorded when its
+    /// input ended.
+    pub max_anchor_drift_m: f64,
+    /// Longest push-out while standing without input.
+    pub max_push_out_m: f64,
+    /// Deepest that the sphere reached into the skin while standing without input.
+    pub max_penetration_m: f64,
+    /// Vertices skinned per tick, as a share of all: 1 for the eager surface.
+    pub vertices_skinned_share: f64,
+    /// What half of the ticks cost at most: pose, physics, climber.
+    pub tick_us_median: f64,
+    /// What 99 of 100 ticks cost at most.
+    pub tick_us_p99: f64,
+    /// What had to hold.
+    pub checks: Vec<Check>,
+}
+
+impl Summary {
+    pub(super) fn new(battle: &Battle<'_>, options: &BattleOptions) -> Self {
+        let recording = battle.recording();
+        let mesh = battle.surface().mesh();
+        let name = options.creature.as_ref().and_then(|path| path.file_stem());
+        let watch = battle.watch();
+        let check = |name, found: f64, at_most: f64| Check {
+            name,
+            found,
+            at_most,
+            holds: found <= at_most,
+        };
+        Self {
+            creature: name.map_or("beast".into(), |name| name.to_string_lossy().into_owned()),
+            joints: mesh.joint_count(),
+            vertices: mesh.positions().len(),
+            triangles: mesh.triangles().len(),
+            height_m: options.height,
+            ticks: recording.samples().len(),
+            seconds: recording.samples().last().map_or(0.0, |s| s.seconds),
+            hash: format!("{:016x}", recording.hash()),
+            drops: battle.drops(),
+            landings: battle.landings(),
+            riding_share: recording.riding_share(),
+            max_anchor_drift_m: recording.max_drift(),
+            max_push_out_m: recording.max_push_out(),
+            max_penetration_m: watch.deepest,
+            vertices_skinned_share: 1.0,
+            tick_us_median: recording.tick_us(0.5),
+            tick_us_p99: recording.tick_us(0.99),
+            checks: vec![
+                check("anchor drift, m", recording.max_drift(), MAX_DRIFT),
+                check(
+                    "push-out while standing, m",
+                    recording.max_push_out(),
+                    MAX_PUSH_OUT,
+                ),
+                check("ticks inside or below", f64::from(watch.fell_through), 0.0),
+                check("ticks not finite", f64::from(watch.not_finite), 0.0),
+            ],
+        }
+    }
+
+    /// True if every check holds.
+    pub fn holds(&self) -> bool {
+        self.checks.iter().all(|check| check.holds)
+    }
+
+    /// Writes `summary.json` into a folder, which is made if need be.
+    pub(super) fn write(&self, folder: &Path) -> Result<(), BattleError> {
+        let failed = |path: &Path, reason: String| BattleError::Write {
+            path: path.to_owned(),
+            reason,
+        };
+        std::fs::create_dir_all(folder).map_err(|e| failed(folder, e.to_string()))?;
+        let path = folder.join("summary.json");
+        let json = serde_json::to_string_pretty(self).map_err(|e| failed(&path, e.to_string()))?;
+        std::fs::write(&path, json + "\n").map_err(|e| failed(&path, e.to_string()))
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let row = |f: &mut fmt::Formatter<'_>, name: &str, value: String| {
+            writeln!(f, "  {name:<28}{value}")
+        };
+        writeln!(
+            f,
+            "{}: {:.0} m, {} joints, {} vertices, {} triangles",
+            self.creature, self.height_m, self.joints, self.vertices, self.triangles
+        )?;
+        row(
+            f,
+            "ticks",
+            format!("{} ({:.1} s)", self.ticks, self.seconds),
+        )?;
+        row(
+            f,
+            "riding",
+            format!("{:.1} % of them", self.riding_share * 100.0),
+        )?;
+        row(
+            f,
+            "drops, landings",
+            format!("{}, {}", self.drops, self.landings),
+        )?;
+        row(
+            f,
+            "vertices skinned per tick",
+            format!("{:.1} %", self.vertices_skinned_share * 100.0),
+        )?;
+        row(
+            f,
+            "tick, median and p99",
+            format!("{:.0} us, {:.0} us", self.tick_us_median, self.tick_us_p99),
+        )?;
+        row(f, "hash", self.hash.clone())?;
+        for check in &self.checks {
+            let verdict = if check.holds { "ok" } else { "FAILED" };
+            let values = format!(
+                "{:<12.3e} at most {:<8.0e} {verdict}",
+                check.found, check.at_most
+            );
+            row(f, check.name, values)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,26 @@
+//! Third-party models for tests and measurements. They are no part of this project: their folder
+//! is named by `CLAMBER_TEST_DATA`.
+
+use std::path::PathBuf;
+
+/// The environment variable that names the folder.
+pub const VARIABLE: &str = "CLAMBER_TEST_DATA";
+
+/// A file of the test data. Without [`VARIABLE`], says on standard error that `test` was skipped,
+/// and gives `None`.
+///
+/// # Panics
+/// If the variable is set and the file is missing: a test that was to run must not pass unseen.
+pub fn file(test: &str, name: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os(VARIABLE) else {
+        eprintln!("SKIPPED {test}: set {VARIABLE} to the folder that holds {name}");
+        return None;
+    };
+    let path = PathBuf::from(folder).join(name);
+    assert!(
+        path.is_file(),
+        "{VARIABLE} is set, but {} is missing",
+        path.display()
+    );
+    Some(path)
+}

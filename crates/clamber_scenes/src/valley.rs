@@ -1,0 +1,58 @@
+//! A valley: a height field of rolling ground with hills around it, in a rapier world.
+
+use clamber_world::rapier3d::parry::utils::Array2;
+use clamber_world::rapier3d::prelude::*;
+
+/// Metres along each side.
+pub const SIZE: f64 = 320.0;
+
+/// Cells along each side.
+const CELLS: usize = 160;
+
+/// Height of the ground, metres, at a place.
+pub fn height(x: f64, z: f64) -> f64 {
+    let rolling = 0.6 * libm::sin(x * 0.05) * libm::cos(z * 0.043)
+        + 0.25 * libm::sin(x * 0.13 + 1.0) * libm::sin(z * 0.11);
+    let beyond = ((x * x + z * z).sqrt() - 90.0).max(0.0);
+    rolling + beyond * beyond * 0.008
+}
+
+/// A rapier world with the valley as its only collider, ready for queries.
+pub fn world() -> PhysicsWorld {
+    let mut world = PhysicsWorld::default();
+    let samples = CELLS + 1;
+    let place = |index: usize| (index as f64 / CELLS as f64 - 0.5) * SIZE;
+    // Rows run along z, columns along x; column-major.
+    let heights: Vec<Real> = (0..samples * samples)
+        .map(|index| height(place(index / samples), place(index % samples)) as Real)
+        .collect();
+    let scale = Vector::new(SIZE as Real, 1.0, SIZE as Real);
+    let ground = ColliderBuilder::heightfield(Array2::new(samples, samples, heights), scale);
+    world.insert_collider(ground, None);
+    world.detect_collisions(&(), &());
+    world
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
+    use glam::DVec3;
+
+    #[test]
+    fn the_height_field_is_the_height_function() {
+        let world = world();
+        let before = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(&world, &before);
+        // Off the grid's lines: rays that meet an edge exactly can slip through rapier's triangles.
+        for (x, z) in [(0.3, 0.4), (37.1, -12.3), (-80.5, 60.25), (120.0, 100.0)] {
+            let from = DVec3::new(x, 500.0, z);
+            let hit = terrain.cast_ray(from, -DVec3::Y, 1000.0).unwrap();
+            // Cells of 2 m on a curved ground.
+            assert!(
+                (hit.point.y - height(x, z)).abs() < 0.05,
+                "at {x} {z}: {hit:?}"
+            );
+        }
+    }
+}
