@@ -1,7 +1,27 @@
 #![doc = include_str!("../../../README.md")]
 
+#[doc(inline)]
+pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
 #[doc(inline)]
 pub use clamber_gltf as gltf;
 #[doc(inline)]
 pub use clamber_surface::{geometry, mesh, rig, skin, surface};
+#[doc(inline)]
+pub use clamber_world as world;
+
+/// What most programs need: `use clamber::prelude::*;`.
+pub mod prelude {
+    pub use clamber_climber::{
+        Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+    };
+    pub use clamber_surface::geometry::{Affine, Ray, Similarity, Sphere};
+    pub use clamber_surface::mesh::{
+        BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
+    };
+    pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton, Transform};
+    pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit};
+    #[cfg(feature = "rapier")]
+    pub use clamber_world::{BodyPoses, RapierTerrain};
+    pub use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
+}

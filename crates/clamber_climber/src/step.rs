@@ -227,7 +227,8 @@ impl Climber {
         }
         let mut allowed = length;
         for (_, obstacle) in tick.obstacles {
-            if let Some(hit) = obstacle.cast_ray(self.state.position, displacement, length) {
+            let hit = obstacle.cast_ray(self.state.position, displacement, length);
+            if let Some(hit) = hit.filter(|hit| hit.distance.is_finite()) {
                 allowed = allowed.min((hit.distance - 0.5 * self.config.radius).max(0.0));
             }
         }
@@ -261,7 +262,7 @@ impl Climber {
                     contact: *contact,
                 };
                 // In ascending order of obstacle and material: the first of equals stays.
-                let nearer = best.is_none_or(|best| contact.distance < best.contact.distance);
+                let nearer = contact.distance < best.map_or(f64::INFINITY, |b| b.contact.distance);
                 let stands = self.slope(contact.away(center)) <= self.config.max_slope;
                 if nearer && stands && accept(&ground) {
                     best = Some(ground);

@@ -100,3 +100,6 @@ impl Obstacle for SkinnedSurface {
 fn widen_rotation(q: Quat) -> DQuat {
     DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into())
 }
+
+#[cfg(test)]
+mod tests;

@@ -25,6 +25,11 @@ pub struct BodyPoses {
 }
 
 impl BodyPoses {
+    /// None yet: nothing of the world moves.
+    pub const fn new() -> Self {
+        Self { poses: Vec::new() }
+    }
+
     /// Takes note of every body that can move. Keeps its memory.
     pub fn record(&mut self, bodies: &RigidBodySet) {
         self.poses.clear();

@@ -116,6 +116,9 @@ impl Obstacle for RapierTerrain<'_> {
     }
 
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        if max_distance.is_nan() {
+            return None;
+        }
         let limit = max_distance.min(self.reach_of_all(self.local(point)?) * 1.001);
         let mut contacts = Vec::new();
         let mut reach = FIRST_REACH.min(limit);
@@ -125,8 +128,8 @@ impl Obstacle for RapierTerrain<'_> {
                 let by_key = a.material.key.cmp(&b.material.key);
                 a.distance.total_cmp(&b.distance).then(by_key)
             });
-            if nearest.is_some() || reach >= limit || limit.is_nan() {
-                return nearest;
+            if nearest.is_some() || reach >= limit {
+                return nearest.filter(|contact| contact.distance <= max_distance);
             }
             reach = (reach * 2.0).min(limit);
         }

@@ -1,1 +1,191 @@
+use rapier3d::parry::utils::Array2;
+use rapier3d::prelude::*;
 
+use super::*;
+
+static NO_POSES: BodyPoses = BodyPoses::new();
+
+fn world_of(collider: ColliderBuilder) -> PhysicsWorld {
+    let mut world = PhysicsWorld::default();
+    world.insert_collider(collider, None);
+    world.detect_collisions(&(), &());
+    world
+}
+
+/// Level ground of 8 m at height 1, as each kind of shape that has triangles.
+fn grounds() -> Vec<(&'static str, ColliderBuilder)> {
+    let heights = Array2::new(5, 5, vec![1.0; 25]);
+    let corners = [(-4., -4.), (-4., 4.), (4., 4.), (4., -4.)];
+    let corners = corners.map(|(x, z)| Vector::new(x, 1.0, z)).to_vec();
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    vec![
+        (
+            "height field",
+            ColliderBuilder::heightfield(heights, Vector::new(8.0, 1.0, 8.0)),
+        ),
+        (
+            "triangle mesh",
+            ColliderBuilder::trimesh(corners, triangles).unwrap(),
+        ),
+    ]
+}
+
+#[test]
+fn height_fields_and_meshes_answer_per_triangle() {
+    for (name, collider) in grounds() {
+        let world = world_of(collider);
+        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+        let p = DVec3::new(0.3, 1.5, 0.4);
+        let closest = terrain.closest_point(p, 2.0).unwrap();
+        assert!((closest.distance - 0.5).abs() < 1e-6, "{name}: {closest:?}");
+        assert!(
+            (closest.normal - DVec3::Y).length() < 1e-6,
+            "{name}: {closest:?}"
+        );
+        assert!(
+            (closest.point - DVec3::new(0.3, 1.0, 0.4)).length() < 1e-6,
+            "{name}"
+        );
+        assert_eq!(terrain.closest_point(p, 0.4), None, "{name}");
+        assert!(
+            terrain.closest_point(p * 50.0, f64::INFINITY).is_some(),
+            "{name}"
+        );
+        let mut contacts = Vec::new();
+        terrain.overlap_sphere(p, 0.7, &mut contacts);
+        assert!(contacts.len() >= 2, "{name}: {contacts:?}");
+        let hit = terrain
+            .cast_ray(p, DVec3::new(0.0, -3.0, 0.0), 2.0)
+            .unwrap();
+        assert!((hit.distance - 0.5).abs() < 1e-6, "{name}: {hit:?}");
+        assert_eq!(terrain.cast_ray(p, DVec3::Y, f64::INFINITY), None, "{name}");
+    }
+}
+
+#[test]
+fn convex_shapes_are_solid() {
+    let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    let inside = DVec3::new(0.8, 0.3, 0.0);
+    let contact = terrain.closest_point(inside, 1.0).unwrap();
+    assert!((contact.distance + 0.2).abs() < 1e-6, "{contact:?}");
+    assert!(
+        (contact.away(inside) - DVec3::X).length() < 1e-6,
+        "{contact:?}"
+    );
+    let outside = DVec3::new(0.0, 3.0, 0.0);
+    let contact = terrain.closest_point(outside, 10.0).unwrap();
+    assert!((contact.distance - 2.0).abs() < 1e-6, "{contact:?}");
+    assert!(
+        (contact.away(outside) - DVec3::Y).length() < 1e-6,
+        "{contact:?}"
+    );
+}
+
+#[test]
+fn compounds_answer_per_part() {
+    let part = |x: f32| {
+        (
+            Pose::from_translation(Vector::X * x),
+            SharedShape::ball(0.5),
+        )
+    };
+    let world = world_of(ColliderBuilder::compound(vec![part(-1.0), part(1.0)]));
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    let mut contacts = Vec::new();
+    terrain.overlap_sphere(DVec3::Y * 0.2, 1.0, &mut contacts);
+    assert_eq!(contacts.len(), 2, "{contacts:?}");
+}
+
+#[test]
+fn an_origin_of_its_own_keeps_far_scenes_exact() {
+    let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
+    let origin = DVec3::new(3e6, -2e6, 1e6);
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES).with_origin(origin);
+    let p = origin + DVec3::new(0.1, 1.25, 0.0);
+    let contact = terrain.closest_point(p, 1.0).unwrap();
+    assert!((contact.distance - 0.25).abs() < 1e-6, "{contact:?}");
+    assert!((contact.point - (origin + DVec3::new(0.1, 1.0, 0.0))).length() < 1e-6);
+    let motion = terrain.motion(&contact.material, 0.1).unwrap();
+    assert!((motion.position - contact.point).length() < 1e-6);
+    assert_eq!(motion.velocity, DVec3::ZERO);
+}
+
+#[test]
+fn points_of_a_turning_body_move_on_arcs() {
+    let mut world = PhysicsWorld::default();
+    let body = RigidBodyBuilder::kinematic_velocity_based().angvel(Vector::Y * 6.0);
+    world.insert(
+        body.translation(Vector::new(1.0, 0.0, 0.0)),
+        ColliderBuilder::cuboid(3.0, 0.5, 3.0).translation(Vector::Y * 0.2),
+    );
+    world.step();
+    let dt = f64::from(world.integration_parameters.dt);
+    let at = DVec3::new(3.0, 1.0, 0.0);
+    let material = {
+        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+        terrain.closest_point(at, 1.0).unwrap().material
+    };
+    let mut before = BodyPoses::default();
+    before.record(&world.bodies);
+    world.step();
+    let terrain = RapierTerrain::of_world(&world, &before);
+    let motion = terrain.motion(&material, dt).unwrap();
+    let angle = 6.0 * dt;
+    let from_axis = DVec3::new(2.0, 0.0, 0.0);
+    let turned = DVec3::new(2.0 * libm_cos(angle), 0.0, -2.0 * libm_sin(angle));
+    let arc = DVec3::new(3.0, 0.7, 0.0) + turned - from_axis;
+    // Rapier integrates the body's rotation in f32.
+    assert!((motion.position - arc).length() < 5e-5, "{motion:?} {arc}");
+    let chord = (turned - from_axis) / dt;
+    assert!(
+        (motion.velocity - chord).length() < 5e-3,
+        "{motion:?} {chord}"
+    );
+    let turned = motion.turn * DVec3::X;
+    let expected = DVec3::new(libm_cos(angle), 0.0, -libm_sin(angle));
+    assert!((turned - expected).length() < 1e-5, "{turned}");
+}
+
+/// Series are enough for a tenth of a radian.
+fn libm_sin(x: f64) -> f64 {
+    x - x * x * x / 6.0 + x * x * x * x * x / 120.0
+}
+
+fn libm_cos(x: f64) -> f64 {
+    1.0 - x * x / 2.0 + x * x * x * x / 24.0 - x * x * x * x * x * x / 720.0
+}
+
+#[test]
+fn sensors_and_what_a_filter_excludes_are_not_there() {
+    let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0).sensor(true));
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
+    let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
+    let filter = QueryFilter::exclude_fixed();
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES).with_filter(filter);
+    assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
+}
+
+#[test]
+fn what_is_not_finite_or_gone_finds_nothing() {
+    let mut world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
+    let material = {
+        let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+        let mut contacts = Vec::new();
+        for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(1e300)] {
+            assert_eq!(terrain.closest_point(bad, 1.0), None);
+            assert_eq!(terrain.cast_ray(bad, DVec3::X, 1.0), None);
+            terrain.overlap_sphere(bad, 1.0, &mut contacts);
+        }
+        assert_eq!(terrain.cast_ray(DVec3::Y * 5.0, DVec3::NAN, 9.0), None);
+        assert_eq!(terrain.closest_point(DVec3::ZERO, f64::NAN), None);
+        terrain.overlap_sphere(DVec3::ZERO, f64::NAN, &mut contacts);
+        assert!(contacts.is_empty());
+        terrain.closest_point(DVec3::ZERO, 9.0).unwrap().material
+    };
+    let handle = world.colliders.iter().next().unwrap().0;
+    world.remove_collider(handle);
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    assert!(terrain.motion(&material, 0.1).is_none());
+}

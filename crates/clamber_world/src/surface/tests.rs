@@ -1,0 +1,118 @@
+use std::sync::Arc;
+
+use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::SkinnedSurface;
+use glam::{DVec3, Vec3};
+
+use crate::Obstacle;
+
+/// A level square of side 2 around the model's origin, on one joint.
+fn square() -> SkinnedSurface {
+    let positions = [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, z)| Vec3::new(x, 0., z));
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &[[0, 1, 2], [0, 2, 3]],
+        influences: &[influence; 4],
+        tags: &[],
+        joint_count: 1,
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    SkinnedSurface::new(Arc::new(mesh))
+}
+
+/// Far out, ten times as large, a quarter turn about X: the square stands upright and faces +Z.
+fn placed() -> (SkinnedSurface, Similarity) {
+    let world_from_model = Similarity {
+        rotation: rotation_from_axis_angle(DVec3::X, core::f64::consts::FRAC_PI_2),
+        scale: 10.0,
+        translation: DVec3::new(2e5, 30.0, -1e5),
+    };
+    let mut surface = square();
+    let palette = Palette::from_matrices([Affine::IDENTITY]);
+    surface.place(&palette, world_from_model).unwrap();
+    (surface, world_from_model)
+}
+
+#[test]
+fn queries_are_in_metres_of_the_world_wherever_the_creature_stands() {
+    let (surface, world_from_model) = placed();
+    let center = world_from_model.translation;
+    let p = center + DVec3::new(1.0, 2.0, 4.0);
+    let closest = Obstacle::closest_point(&surface, p, 5.0).unwrap();
+    assert!((closest.distance - 4.0).abs() < 1e-5, "{closest:?}");
+    assert!((closest.normal - DVec3::Z).length() < 1e-6, "{closest:?}");
+    assert!((closest.away(p) - DVec3::Z).length() < 1e-6);
+    assert_eq!(Obstacle::closest_point(&surface, p, 3.9), None);
+
+    let hit = Obstacle::cast_ray(&surface, p, DVec3::new(0.0, 0.0, -7.0), 100.0).unwrap();
+    assert!((hit.distance - 4.0).abs() < 1e-5);
+    assert!((hit.point - (p - DVec3::Z * 4.0)).length() < 1e-5);
+    assert_eq!(Obstacle::cast_ray(&surface, p, DVec3::Z, 100.0), None);
+
+    let mut contacts = vec![closest];
+    Obstacle::overlap_sphere(&surface, p, 5.0, &mut contacts);
+    assert_eq!(contacts.len(), 3, "appends, and finds both triangles");
+    assert!(contacts[1].material.key < contacts[2].material.key);
+}
+
+#[test]
+fn a_material_point_moves_with_root_and_skin_in_world_units() {
+    let (mut surface, before) = placed();
+    let p = before.translation + DVec3::new(1.0, 2.0, 0.1);
+    let material = Obstacle::closest_point(&surface, p, 5.0).unwrap().material;
+    let mut lifted = Affine::IDENTITY;
+    lifted.rows[1][3] = 0.02;
+    let turned = Similarity {
+        rotation: rotation_from_axis_angle(DVec3::Y, 0.1) * before.rotation,
+        translation: before.translation + DVec3::new(0.5, 0.0, 0.0),
+        ..before
+    };
+    let dt = 0.1;
+    let palette = Palette::from_matrices([lifted]);
+    surface.advance(&palette, turned).unwrap();
+    let motion = Obstacle::motion(&surface, &material, dt).unwrap();
+
+    let rest = before.inverse_transform_point(p - DVec3::Z * 0.1);
+    let expected = turned.transform_point(rest + DVec3::Y * 0.02);
+    assert!((motion.position - expected).length() < 1e-5, "{motion:?}");
+    assert!((motion.previous_position - (p - DVec3::Z * 0.1)).length() < 1e-5);
+    let velocity = (motion.position - motion.previous_position) / dt;
+    assert!((motion.velocity - velocity).length() < 1e-3);
+    let heading = motion.turn * DVec3::X;
+    let expected = rotation_from_axis_angle(DVec3::Y, 0.1) * DVec3::X;
+    assert!((heading - expected).length() < 1e-5, "{heading}");
+    assert!((motion.frame * DVec3::Y - turned.rotation * DVec3::Y).length() < 1e-5);
+}
+
+#[test]
+fn what_is_not_finite_or_gone_finds_nothing() {
+    let (mut surface, world_from_model) = placed();
+    let center = world_from_model.translation;
+    let mut contacts = Vec::new();
+    for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY)] {
+        assert_eq!(Obstacle::closest_point(&surface, bad, 1.0), None);
+        assert_eq!(Obstacle::cast_ray(&surface, bad, DVec3::X, 1.0), None);
+        assert_eq!(Obstacle::cast_ray(&surface, center, bad, 1.0), None);
+        Obstacle::overlap_sphere(&surface, bad, 1.0, &mut contacts);
+    }
+    assert_eq!(Obstacle::cast_ray(&surface, center, DVec3::ZERO, 1.0), None);
+    Obstacle::overlap_sphere(&surface, center, f64::NAN, &mut contacts);
+    Obstacle::overlap_sphere(&surface, center, -1.0, &mut contacts);
+    assert!(contacts.is_empty());
+
+    let material = Obstacle::closest_point(&surface, center, 1.0)
+        .unwrap()
+        .material;
+    assert!(Obstacle::motion(&surface, &material, 0.0).is_none());
+    let corners = surface.mesh().triangles()[0];
+    assert_eq!(corners[0], VertexId(0));
+    let triangle = clamber_surface::mesh::TriangleId(material.key as u32);
+    surface.remove_triangle(triangle).unwrap();
+    assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
+}

@@ -1,0 +1,39 @@
+//! An arrow sticks in a shaking creature and follows the skin: place, heading, velocity, stretch.
+
+use clamber::prelude::*;
+use glam::{DVec3, Vec3};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let dt = 1.0 / 60.0;
+    let creature = clamber_scenes::beast::beast(6_000);
+    let shake = creature.clip_like(&["shake"]).ok_or("no shake")?;
+    let far_away = Similarity::from_translation(DVec3::new(1e5, 0.0, -1e5));
+    let mut surface = SkinnedSurface::new(creature.collider.clone());
+
+    // Shot from the left into the shoulder, in the rest pose.
+    let shot = Ray::new(Vec3::new(30.0, 14.0, 5.0), Vec3::NEG_X).ok_or("no ray")?;
+    let hit = surface.cast_ray(&shot, 100.0)?.ok_or("missed")?;
+    let mut arrow = surface.anchor_at(&hit);
+
+    let mut fastest = 0.0f32;
+    for tick in 0..120 {
+        let time = f64::from(tick) * dt;
+        let pose = shake.sample(&creature.skeleton.rest_pose(), time, Playback::Loop)?;
+        let palette = creature.skeleton.palette(&pose)?;
+        if tick == 0 {
+            surface.place(&palette, far_away)?; // no motion from the rest pose to the first one
+        } else {
+            surface.advance(&palette, far_away)?;
+        }
+        let motion = surface.motion(&arrow, dt)?;
+        arrow.frame = motion.frame;
+        let skin = surface
+            .closest_point(motion.position, 1.0)?
+            .ok_or("no skin")?;
+        assert!(skin.distance < 1e-5, "the arrow left the skin");
+        fastest = fastest.max(motion.velocity.length());
+    }
+    println!("the arrow reached {fastest:.2} m/s and never left the skin");
+    assert!(fastest > 1.0 && fastest < 100.0);
+    Ok(())
+}
