@@ -1,1 +1,93 @@
-fn main() {}
+//! `cargo xtask ci` runs what CI runs after the tests, for a person as well: format, lints, each
+//! feature, documentation, examples, dependency arrows, packages.
+
+mod arrows;
+mod examples;
+mod features;
+mod packages;
+mod run;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use cargo_metadata::{Metadata, MetadataCommand};
+use clap::{Parser, Subcommand};
+use run::cargo;
+
+/// Tasks of this workspace.
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Everything that CI checks beside `cargo test --workspace`; goes on after a failure and lists
+    /// them all at the end. Takes some minutes on a cold target.
+    Ci {
+        /// Run only the steps whose name contains this.
+        #[arg(long, value_name = "NAME")]
+        only: Option<String>,
+    },
+}
+
+/// A step of `ci`: what it is called and what it does.
+type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
+
+const STEPS: [Step; 8] = [
+    ("format", |_| cargo(&["fmt", "--all", "--check"])),
+    ("lints", |_| {
+        let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
+        cargo(&[&all[..], &["--quiet", "--", "-D", "warnings"]].concat())
+    }),
+    ("features", features::check),
+    ("documentation", |_| {
+        let doc = [
+            "doc",
+            "--workspace",
+            "--no-deps",
+            "--all-features",
+            "--quiet",
+        ];
+        run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
+    }),
+    ("doctests", |_| {
+        cargo(&["test", "--workspace", "--doc", "--quiet"])
+    }),
+    ("examples", examples::run),
+    ("arrows", arrows::check),
+    ("packages", packages::check),
+];
+
+fn main() -> ExitCode {
+    let Task::Ci { only } = Arguments::parse().task;
+    let metadata = match MetadataCommand::new().exec() {
+        Ok(metadata) => metadata,
+        Err(error) => {
+            eprintln!("cargo metadata failed: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let mut failures = Vec::new();
+    for (name, step) in STEPS {
+        if only.as_deref().is_some_and(|only| !name.contains(only)) {
+            continue;
+        }
+        println!("== {name}");
+        let start = Instant::now();
+        if let Err(reason) = step(&metadata) {
+            eprintln!("{name} FAILED: {reason}");
+            failures.push(name);
+        }
+        println!("   {name}: {:.0} s", start.elapsed().as_secs_f64());
+    }
+    if failures.is_empty() {
+        println!("all steps passed");
+        ExitCode::SUCCESS
+    } else {
+        eprintln!("failed: {}", failures.join(", "));
+        ExitCode::FAILURE
+    }
+}

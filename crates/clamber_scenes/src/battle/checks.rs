@@ -55,7 +55,7 @@ impl Watch {
             return None;
         };
         let radius = climber.config().radius;
-        let nearest = Obstacle::closest_point(surface, state.position, radius)?;
+        let nearest = Obstacle::closest_point(surface, state.position, 2.0 * radius)?;
         self.deepest = self.deepest.max(radius - nearest.distance);
         let expected = reference_position(surface, palette, &recorded)?;
         // Off its point, or out of touch with it.

@@ -1,0 +1,72 @@
+//! Skinning against f64, as a share of the stated bound, over all clips of real models.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber::mesh::VertexId;
+use clamber::prelude::*;
+use clamber::skin::{error_bound, skin, skin_vertex_reference};
+use clamber_scenes::{Creature, beast::beast, test_data};
+
+/// Poses of each clip.
+const POSES: u32 = 12;
+
+/// The worst error of any coordinate of any vertex over the poses of all clips, as a share of its
+/// bound, and how many vertices were compared.
+fn worst_share(creature: &Creature) -> (f64, usize) {
+    let rest = creature.skeleton.rest_pose();
+    let (mut worst, mut compared) = (0.0f64, 0);
+    for clip in &creature.clips {
+        for k in 0..POSES {
+            let time = clip.duration() * f64::from(k) / f64::from(POSES);
+            let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
+            let palette = creature.skeleton.palette(&pose).unwrap();
+            let matrices = palette.matrices();
+            let skinned = skin(&creature.collider, matrices).unwrap();
+            for (v, position) in skinned.iter().enumerate() {
+                let vertex = VertexId(v as u32);
+                let exact = skin_vertex_reference(&creature.collider, matrices, vertex).unwrap();
+                let bound = error_bound(&creature.collider, matrices, vertex).unwrap();
+                let share = ((position.as_dvec3() - exact).abs() / bound).max_element();
+                assert!(
+                    share <= 1.0,
+                    "{}, {}, {time} s: {share}",
+                    creature.name,
+                    clip.name
+                );
+                worst = worst.max(share);
+            }
+            compared += skinned.len();
+        }
+    }
+    (worst, compared)
+}
+
+#[test]
+fn beast_stays_within_the_bound() {
+    let (worst, compared) = worst_share(&beast(3_000));
+    println!("beast: {worst:.3} of the bound, {compared} vertices");
+    assert!(compared > 50_000 && worst > 0.1);
+}
+
+#[test]
+fn five_models_stay_within_the_bound_over_all_clips() {
+    for name in [
+        "Trex.glb",
+        "Fox.glb",
+        "CesiumMan.glb",
+        "Stag.glb",
+        "George.glb",
+    ] {
+        let Some(path) = test_data::file("skinning accuracy", &format!("models/{name}")) else {
+            continue;
+        };
+        let creature = Creature::load(&path).unwrap();
+        assert!(!creature.clips.is_empty());
+        let (worst, compared) = worst_share(&creature);
+        println!("{name}: {worst:.3} of the bound, {compared} vertices");
+        assert!(worst > 0.05, "{name}: nothing was measured");
+    }
+}

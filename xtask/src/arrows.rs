@@ -1,0 +1,75 @@
+//! Which crate may depend on which, and which crate alone may know an engine.
+
+use cargo_metadata::{DependencyKind, Metadata};
+
+/// The workspace crates that each one may depend on. A crate that is not listed may not exist.
+const ALLOWED: [(&str, &[&str]); 7] = [
+    ("clamber_surface", &[]),
+    ("clamber_world", &["clamber_surface"]),
+    ("clamber_climber", &["clamber_surface", "clamber_world"]),
+    ("clamber_gltf", &["clamber_surface"]),
+    (
+        "clamber",
+        &[
+            "clamber_surface",
+            "clamber_world",
+            "clamber_climber",
+            "clamber_gltf",
+        ],
+    ),
+    (
+        "clamber_scenes",
+        &[
+            "clamber_surface",
+            "clamber_world",
+            "clamber_climber",
+            "clamber_gltf",
+        ],
+    ),
+    ("xtask", &[]),
+];
+
+/// What tests and examples of a crate may use beyond that.
+const ALLOWED_FOR_TESTS: [(&str, &str); 1] = [("clamber", "clamber_scenes")];
+
+/// Crates outside the workspace that only one crate of it may know.
+const KEPT_TO: [(&str, &str); 3] = [
+    ("rapier3d", "clamber_world"),
+    ("parry3d", "clamber_world"),
+    ("gltf", "clamber_gltf"),
+];
+
+/// All that the core may depend on outside the workspace.
+const CORE: (&str, &[&str]) = ("clamber_surface", &["glam", "libm", "thiserror"]);
+
+pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
+    let packages = metadata.workspace_packages();
+    let mut wrong = Vec::new();
+    for package in &packages {
+        let name = package.name.as_str();
+        let Some((_, allowed)) = ALLOWED.iter().find(|(known, _)| *known == name) else {
+            wrong.push(format!("{name} is not in xtask/src/arrows.rs"));
+            continue;
+        };
+        for dependency in &package.dependencies {
+            let to = dependency.name.as_str();
+            let inside = packages.iter().any(|other| other.name == to);
+            let for_tests = dependency.kind == DependencyKind::Development;
+            let fine = if inside {
+                allowed.contains(&to) || for_tests && ALLOWED_FOR_TESTS.contains(&(name, to))
+            } else {
+                let kept = KEPT_TO.iter().find(|(engine, _)| *engine == to);
+                let core = name == CORE.0 && !for_tests;
+                kept.is_none_or(|(_, owner)| *owner == name) && (!core || CORE.1.contains(&to))
+            };
+            if !fine {
+                wrong.push(format!("{name} must not depend on {to}"));
+            }
+        }
+    }
+    if wrong.is_empty() {
+        Ok(())
+    } else {
+        Err(wrong.join("; "))
+    }
+}

@@ -1,0 +1,94 @@
+//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not
+//! belong there, and it builds from its package alone.
+
+use cargo_metadata::{Metadata, Package};
+
+use crate::run::{cargo, cargo_output};
+
+const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
+
+/// What a package's files may be called, apart from its sources.
+const TOP_LEVEL: [&str; 8] = [
+    ".cargo_vcs_info.json",
+    "CHANGELOG.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "Cargo.toml.orig",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+];
+
+pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
+    let packages: Vec<&Package> = metadata
+        .workspace_packages()
+        .into_iter()
+        .filter(|package| package.publish.as_ref().is_none_or(|to| !to.is_empty()))
+        .collect();
+    for package in &packages {
+        check_metadata(package)?;
+        check_licences(metadata, package)?;
+        check_files(package)?;
+    }
+    let mut arguments = vec!["package", "--quiet", "--allow-dirty"];
+    for package in &packages {
+        arguments.extend(["-p", package.name.as_str()]);
+    }
+    cargo(&arguments)
+}
+
+fn check_metadata(package: &Package) -> Result<(), String> {
+    let missing = [
+        ("description", package.description.is_none()),
+        ("license", package.license.is_none()),
+        ("readme", package.readme.is_none()),
+        ("rust-version", package.rust_version.is_none()),
+        ("keywords", package.keywords.is_empty()),
+        ("categories", package.categories.is_empty()),
+    ];
+    match missing.iter().find(|(_, missing)| *missing) {
+        Some((field, _)) => Err(format!("{} has no {field}", package.name)),
+        None => Ok(()),
+    }
+}
+
+/// Each package carries the workspace's licence texts.
+fn check_licences(metadata: &Metadata, package: &Package) -> Result<(), String> {
+    let folder = package
+        .manifest_path
+        .parent()
+        .ok_or("a manifest without a folder")?;
+    for licence in LICENCES {
+        let read = |path: &cargo_metadata::camino::Utf8Path| {
+            std::fs::read(path).map_err(|error| format!("{path}: {error}"))
+        };
+        if read(&folder.join(licence))? != read(&metadata.workspace_root.join(licence))? {
+            return Err(format!("{folder}/{licence} differs from the workspace's"));
+        }
+    }
+    Ok(())
+}
+
+fn check_files(package: &Package) -> Result<(), String> {
+    let list = [
+        "package",
+        "--list",
+        "--quiet",
+        "--allow-dirty",
+        "-p",
+        &package.name,
+    ];
+    let files = cargo_output(&list)?;
+    let source = |file: &str| file.ends_with(".rs") && file.contains("src/");
+    for file in files.lines() {
+        if !TOP_LEVEL.contains(&file) && !source(file) {
+            return Err(format!("{} would ship {file}", package.name));
+        }
+    }
+    for needed in ["LICENSE-MIT", "LICENSE-APACHE", "README.md"] {
+        if !files.lines().any(|file| file == needed) {
+            return Err(format!("{} would ship without {needed}", package.name));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,50 @@
+//! Commands.
+
+use std::process::{Command, Stdio};
+
+/// Runs cargo; an error if it fails.
+pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
+    cargo_with(arguments, &[])
+}
+
+/// Runs cargo with environment variables.
+pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
+    println!("   cargo {}", arguments.join(" "));
+    let status = command(arguments)
+        .envs(variables.iter().copied())
+        .status()
+        .map_err(|error| format!("cannot start cargo: {error}"))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!(
+            "`cargo {}` ended with {status}",
+            arguments.join(" ")
+        ))
+    }
+}
+
+/// Runs cargo and gives what it prints on standard output.
+pub(crate) fn cargo_output(arguments: &[&str]) -> Result<String, String> {
+    println!("   cargo {}", arguments.join(" "));
+    let output = command(arguments)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| format!("cannot start cargo: {error}"))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(format!(
+            "`cargo {}` ended with {}",
+            arguments.join(" "),
+            output.status
+        ))
+    }
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(arguments);
+    command
+}
