@@ -310,19 +310,22 @@ fn ground_that_ends_or_is_removed_is_left() {
 
 #[test]
 fn order_of_obstacles_and_a_restored_state_change_no_bit() {
-    let (mut one, mut other) = (level(), trough(20.0));
+    // Two troughs across each other: in the pit where they meet the climber touches both.
+    let (mut one, mut other) = (trough(20.0), trough(25.0));
+    let across = rotation_from_axis_angle(DVec3::Y, core::f64::consts::FRAC_PI_2);
     let mut forward = climber_at(0.5, 3.0, 0.2);
     let mut backward = forward.clone();
-    for tick in 0..240 {
+    let mut stood_on = std::collections::BTreeSet::new();
+    for tick in 0..600 {
         let t = f64::from(tick) * DT;
-        let tilt = rotation_from_axis_angle(DVec3::X, 0.2 * libm::sin(t));
-        pose(&mut one, &DAffine3::from_quat(tilt));
+        let lift = DVec3::Y * (0.3 * libm::sin(3.0 * t));
+        pose(&mut one, &DAffine3::from_rotation_translation(across, lift));
         pose(
             &mut other,
-            &DAffine3::from_translation(DVec3::Y * (0.3 * libm::sin(3.0 * t))),
+            &DAffine3::from_translation(DVec3::Y * (0.3 * libm::cos(2.0 * t))),
         );
         let input = ClimberInput {
-            walk: DVec3::new(libm::sin(t), 0.0, 0.4),
+            walk: DVec3::new(libm::sin(t), 0.0, libm::cos(1.7 * t)),
             jump: tick % 70 == 69,
         };
         let ids = (ObstacleId(4), ObstacleId(9));
@@ -336,12 +339,11 @@ fn order_of_obstacles_and_a_restored_state_change_no_bit() {
         let a = forward.step(&input, &in_order, DT).unwrap();
         let b = backward.step(&input, &reversed, DT).unwrap();
         assert_eq!(a, b, "tick {tick}");
-        assert_eq!(
-            forward.state().fingerprint(),
-            backward.state().fingerprint(),
-            "tick {tick}"
-        );
+        let (a, b) = (forward.state(), backward.state());
+        assert_eq!(a.fingerprint(), b.fingerprint(), "tick {tick}: {a:?} {b:?}");
+        stood_on.extend(a.footing.map(|footing| footing.obstacle));
     }
+    assert_eq!(stood_on.len(), 2, "only ever stood on {stood_on:?}");
 }
 
 #[test]

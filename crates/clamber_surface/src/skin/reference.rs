@@ -115,6 +115,57 @@ mod tests {
         assert!(worst > 0.2, "worst share {worst}");
     }
 
+    /// One vertex at (1, 1, 1) on the given joints, skinned; the other two corners are its frame.
+    fn skin_one(palette: &[Affine], weights: &[f32]) -> Vec3 {
+        let count = palette.len() as u32;
+        let given: Vec<Influence> = (0..3)
+            .flat_map(|_| (0..count).zip(weights))
+            .map(|(joint, weight)| Influence {
+                joint: JointId(joint),
+                weight: *weight,
+            })
+            .collect();
+        let source = MeshSource {
+            positions: &[Vec3::ONE, Vec3::X, Vec3::Y],
+            triangles: &[[0, 1, 2]],
+            influences: &given,
+            tags: &[],
+            joint_count: palette.len(),
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        skin(&mesh, palette).unwrap()[0]
+    }
+
+    #[test]
+    fn rows_and_sums_run_in_the_order_of_the_contract() {
+        // Half a unit in the last place of 1: alone it is lost, two of them make a step.
+        let half = f32::EPSILON / 2.0;
+        let mut matrix = Affine::IDENTITY;
+        matrix.rows[0] = [1.0, 0.0, half, half];
+        matrix.rows[1] = [half, half, 1.0, 0.0];
+        matrix.rows[2] = [half, 0.0, half, 1.0];
+        let p = skin_one(&[matrix], &[1.0]);
+        assert_eq!(p.x, 1.0 + f32::EPSILON, "z and translation are added first");
+        assert_eq!(p.y, 1.0 + f32::EPSILON, "x and y are added first");
+        assert_eq!(p.z, 1.0, "x is added to z plus translation, not to z");
+        // By ascending joint: (1 + half) + half is 1, half + (half + 1) would be a step.
+        let moved = |x: f32| Affine {
+            rows: [[0.0, 0.0, 0.0, x], [0.0; 4], [0.0; 4]],
+        };
+        let palette = [
+            moved(4.0),
+            moved(2.0 * f32::EPSILON),
+            moved(2.0 * f32::EPSILON),
+        ];
+        let p = skin_one(&palette, &[0.25, 0.25, 0.5]);
+        assert_eq!(p.x, 1.0 + f32::EPSILON);
+        let palette = [moved(4.0), moved(2.0 * half), moved(2.0 * half)];
+        assert_eq!(skin_one(&palette, &[0.25, 0.5, 0.25]).x, 1.0);
+        // From +0: a sum of negative zeros is a positive one.
+        let p = skin_one(&[moved(-0.0)], &[1.0]);
+        assert_eq!(p.x.to_bits(), 0.0f32.to_bits());
+    }
+
     #[test]
     fn padding_with_joints_of_weight_zero_changes_no_bit() {
         // The sum by hand, over all joints of the palette instead of the vertex's own.

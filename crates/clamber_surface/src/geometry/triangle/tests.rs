@@ -8,7 +8,7 @@ fn random_point(rng: &mut fastrand::Rng) -> Vec3 {
     )
 }
 
-/// Nearest distance by another road: Dykstra-free coordinate search on the barycentric simplex,
+/// Nearest distance by another road: a search over the barycentric coordinates,
 /// a coarse grid refined around its best cell until the cell is below rounding.
 fn distance_by_search(corners: [Vec3; 3], p: Vec3) -> f64 {
     let p = widen(p);

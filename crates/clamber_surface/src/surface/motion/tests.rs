@@ -90,8 +90,9 @@ fn shear_turns_the_frame_by_half_its_angle_only() {
     for s in [0.01f32, 0.5, 3.0] {
         let sheared = [Vec3::ZERO, Vec3::Z, Vec3::X + Vec3::Z * s];
         let turned = rotation_vector(frame_of(corners, sheared).unwrap());
-        let expected = libm::atan(f64::from(s) / 2.0);
-        assert!((turned.length() - expected).abs() < 1e-9, "{s}: {turned}");
+        // About the normal, Y, from X towards Z.
+        let expected = DVec3::Y * -libm::atan(f64::from(s) / 2.0);
+        assert!((turned - expected).length() < 1e-9, "{s}: {turned}");
         let (area, [large, small]) = stretch(corners, sheared);
         assert!((area - 1.0).abs() < 1e-9 && (large * small - 1.0).abs() < 1e-9);
         let exact = (1.0 + f64::from(s * s) / 4.0).sqrt() + f64::from(s) / 2.0;
@@ -108,10 +109,12 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
         .advance(&rigid(JOINTS, turn, DVec3::ZERO), Similarity::IDENTITY)
         .unwrap();
     let motion = surface.motion(&anchor, 0.1).unwrap();
-    anchor.frame = motion.frame;
     surface
         .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
         .unwrap();
+    // Even an anchor that was not kept fresh has the frame of a tick ago.
+    assert_eq!(surface.motion(&anchor, 0.1).unwrap().frame, motion.frame);
+    anchor.frame = motion.frame;
     for _ in 0..2 {
         let held = surface.motion(&anchor, 0.1).unwrap();
         assert_eq!(held.frame, motion.frame);

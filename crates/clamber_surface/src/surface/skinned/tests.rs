@@ -55,6 +55,55 @@ fn queries_agree_with_brute_force_in_every_pose() {
 }
 
 #[test]
+fn no_bound_hides_its_outermost_vertices() {
+    // Rays that graze a part's sphere right where its farthest vertex is, and points beyond it.
+    let mut surface = surface();
+    let palette = bend(JOINTS, DVec3::new(0.6, 0.0, 0.8), 0.6);
+    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    let mut met = 0;
+    for part in 0..surface.mesh().parts().len() as u32 {
+        let sphere = surface.part_sphere(PartId(part)).unwrap();
+        for v in &surface.mesh().parts()[part as usize].vertices {
+            let vertex = surface.positions()[v.index()];
+            let outward = vertex - sphere.center;
+            let target = sphere.center + outward * 0.9999;
+            let along = outward.any_orthonormal_vector();
+            for ray in [
+                Ray::new(target - along * 3.0, along).unwrap(),
+                Ray::new(target + along * 3.0, -along).unwrap(),
+            ] {
+                let hit = surface.cast_ray(&ray, 6.0).unwrap();
+                assert_eq!(
+                    hit,
+                    surface.cast_ray_reference(&ray, 6.0).unwrap(),
+                    "{ray:?}"
+                );
+                met += usize::from(hit.is_some());
+            }
+            let beyond = vertex + outward.normalize();
+            for reach in [1.0, 0.9999, 1.0001] {
+                assert_eq!(
+                    surface.closest_point(beyond, reach).unwrap(),
+                    surface.closest_point_reference(beyond, reach).unwrap(),
+                );
+            }
+        }
+    }
+    assert!(met > 100, "only {met} rays met anything");
+}
+
+#[test]
+fn a_part_without_triangles_has_no_sphere() {
+    let mut surface = surface();
+    let triangles = surface.mesh().parts()[2].triangles.clone();
+    for triangle in triangles {
+        assert!(surface.part_sphere(PartId(2)).is_some());
+        surface.remove_triangle(triangle).unwrap();
+    }
+    assert_eq!(surface.part_sphere(PartId(2)), None);
+}
+
+#[test]
 fn queries_agree_with_brute_force_after_edits() {
     let mut rng = fastrand::Rng::with_seed(22);
     let mut surface = surface();
