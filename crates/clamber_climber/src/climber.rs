@@ -59,10 +59,14 @@ impl Climber {
     /// Puts it back into a state, of this or another run.
     ///
     /// # Errors
-    /// [`ClimberError::NotFinite`] if the state is not finite.
+    /// [`ClimberError::NotFinite`] if the state is not finite, [`ClimberError::Footing`] if it
+    /// stands on nothing or falls with a footing.
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
         if !state.is_finite() {
             return Err(ClimberError::NotFinite("state"));
+        }
+        if (state.mode == ClimberMode::Standing) != state.footing.is_some() {
+            return Err(ClimberError::Footing);
         }
         self.state = state;
         Ok(())

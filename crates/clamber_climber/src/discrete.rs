@@ -5,9 +5,9 @@
 use clamber_world::Contact;
 use glam::DVec3;
 
-/// Penetrations below this many metres are rounding: a contact that just touches must not dilute
-/// the mean of those that push.
-const TOUCH: f64 = 1e-5;
+/// Penetrations below this share of the radius are rounding of coordinates up to some hundred
+/// metres: a contact that just touches must not dilute the mean of those that push.
+const TOUCH: f64 = 1e-4;
 
 /// What the contacts of a tick do to a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,8 @@ pub struct PushOut {
     pub deepest: f64,
 }
 
-/// The mean of the push-outs of all contacts that penetrate a sphere by more than 0.01 mm.
+/// The mean of the push-outs of all contacts that penetrate a sphere by more than 1e-4 of its
+/// radius.
 ///
 /// Sums in the order given, so contacts must come in an order of their own, by obstacle and
 /// triangle. Contacts that are not finite push nothing.
@@ -47,7 +48,7 @@ pub fn average_push_out(contacts: &[Contact], center: DVec3, radius: f64) -> Pus
     for contact in contacts {
         let depth = radius - contact.distance;
         let push = contact.away(center) * depth;
-        if depth > TOUCH && push.is_finite() {
+        if depth > TOUCH * radius && push.is_finite() {
             sum += push;
             count += 1;
             deepest = deepest.max(depth);

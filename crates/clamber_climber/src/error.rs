@@ -7,6 +7,9 @@ pub enum ClimberError {
     /// A position, velocity or input is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
+    /// A state stands without a footing, or falls with one.
+    #[error("a state has a footing if and only if it is standing")]
+    Footing,
     /// A number is outside its range.
     #[error("{name} must be {range}, found {found}")]
     OutOfRange {

@@ -1,5 +1,5 @@
 use clamber_world::{MaterialPoint, ObstacleId};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// What a climber is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,6 +22,8 @@ pub struct Footing {
     /// From the point to the climber's centre, one radius long, in the frame of the material: it
     /// turns with what it stands on.
     pub offset: DVec3,
+    /// The frame of the material as last known: where the skin collapses, it stands.
+    pub frame: DQuat,
 }
 
 /// Everything a climber remembers between ticks: a small plain value. Restored, it continues with
@@ -58,12 +60,24 @@ impl ClimberState {
             hash.vector(DVec3::from_array(footing.point.coordinates));
             hash.vector(footing.contact);
             hash.vector(footing.offset);
+            for x in footing.frame.to_array() {
+                hash.word(x.to_bits());
+            }
         }
         hash.0
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        self.position.is_finite() && self.velocity.is_finite() && self.heading.is_finite()
+        let footing = self.footing.is_none_or(|footing| {
+            footing.contact.is_finite()
+                && footing.offset.is_finite()
+                && footing.frame.is_finite()
+                && footing.point.coordinates.iter().all(|x| x.is_finite())
+        });
+        self.position.is_finite()
+            && self.velocity.is_finite()
+            && self.heading.is_finite()
+            && footing
     }
 }
 

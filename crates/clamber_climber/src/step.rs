@@ -9,6 +9,14 @@ use crate::{Climber, ClimberError, ClimberInput, ClimberMode, Footing, PushOut, 
 /// find one: 2 degrees, more than the wobble of a breathing animal, so that it does not flicker.
 const SLOPE_HYSTERESIS: f64 = 0.035;
 
+/// What lies within this share of the radius beyond the sphere is touched: 0.4 mm by default. A
+/// push-out ends where rounding puts it, half a step of f32 beyond the sphere or short of it; that
+/// is less than this for surfaces up to a kilometre across. Larger lands visibly early.
+const REACH: f64 = 1e-3;
+
+/// How often the velocity into each contact is taken away, for corners where one undoes another.
+const STOPS: usize = 4;
+
 /// Contacts that part faster than this many metres a second are being left, not landed on: far
 /// below a jump, above the rounding of velocities.
 const PARTING_SPEED: f64 = 0.1;
@@ -90,6 +98,7 @@ impl Climber {
         if !self.state.is_finite() {
             // Obstacles of one's own may answer nonsense; the climber waits for better.
             self.state = before;
+            report.events.clear();
         }
         Ok(report)
     }
@@ -104,7 +113,8 @@ impl Climber {
             self.leave(ClimberEvent::LostFooting, report);
             return self.fall(tick, report);
         };
-        let offset = motion.frame * footing.offset;
+        footing.frame = motion.frame.unwrap_or(footing.frame);
+        let offset = footing.frame * footing.offset;
         let support = offset.normalize_or(self.config.up());
         self.state.velocity = motion.velocity;
         self.state.position = motion.position + offset;
@@ -120,7 +130,7 @@ impl Climber {
             self.state.velocity += walk + self.config.up() * self.config.jump_speed;
             self.leave(ClimberEvent::Jumped, report);
         } else if walk == DVec3::ZERO {
-            self.stay(footing, &motion, tick, report);
+            self.stay(footing, tick, report);
         } else {
             self.walk(walk, tick, report);
         }
@@ -128,22 +138,16 @@ impl Climber {
 
     /// Stays on its material point. Pushes roll the sphere around that point, so the contact does
     /// not move: to second order a roll is a push along the surface.
-    fn stay(
-        &mut self,
-        footing: Footing,
-        motion: &PointMotion,
-        tick: &Tick<'_>,
-        report: &mut StepReport,
-    ) {
+    fn stay(&mut self, footing: Footing, tick: &Tick<'_>, report: &mut StepReport) {
         report.push_out = self.push_out(tick);
         if report.push_out.contacts == 0 {
             return;
         }
-        let pushed = self.state.position + report.push_out.displacement - motion.position;
+        let pushed = self.state.position + report.push_out.displacement - footing.contact;
         let offset = pushed.normalize_or(self.config.up()) * self.config.radius;
-        self.state.position = motion.position + offset;
+        self.state.position = footing.contact + offset;
         self.state.footing = Some(Footing {
-            offset: motion.frame.conjugate() * offset,
+            offset: footing.frame.conjugate() * offset,
             ..footing
         });
     }
@@ -157,15 +161,21 @@ impl Climber {
         let up = self.config.up();
         self.state.heading = (walk - up * walk.dot(up)).normalize_or(self.state.heading);
         let reach = self.config.radius + self.config.snap_distance;
-        match self.ground(tick, reach, |_| true) {
-            Some(ground) => {
-                self.stand_on(&ground, tick);
-                self.state.velocity += (self.state.position - start) / tick.dt;
-            }
-            None => {
-                self.state.velocity += walk;
-                self.leave(ClimberEvent::LostFooting, report);
-            }
+        let limit = self.config.max_slope + SLOPE_HYSTERESIS;
+        if let Some(ground) = self.ground(tick, reach, limit, |_| true) {
+            self.stand_on(&ground, tick);
+            self.state.velocity += (self.state.position - start) / tick.dt;
+        } else {
+            // Over the edge of level ground, the ground ends; a slope that tips is slipped on.
+            let nearest = self.ground(tick, reach, core::f64::consts::PI, |_| true);
+            let tipped = nearest.is_some_and(|ground| self.slope(ground.contact.normal) > limit);
+            self.state.velocity += walk;
+            let event = if tipped {
+                ClimberEvent::Slipped
+            } else {
+                ClimberEvent::LostFooting
+            };
+            self.leave(event, report);
         }
     }
 
@@ -178,13 +188,12 @@ impl Climber {
 
         let velocity = self.state.velocity;
         let center = self.state.position;
-        // Rounding of the push-out may leave the contact a hair out of reach.
-        let reach = self.config.radius * (1.0 + 1e-6) + 1e-6;
+        let reach = self.config.radius * (1.0 + REACH);
         let closing = |ground: &Ground| {
             let away = ground.contact.away(center);
             (velocity - tick.velocity_of(ground)).dot(away) < PARTING_SPEED
         };
-        if let Some(ground) = self.ground(tick, reach, closing) {
+        if let Some(ground) = self.ground(tick, reach, self.config.max_slope, closing) {
             let away = ground.contact.away(center);
             let speed = -(velocity - tick.velocity_of(&ground)).dot(away);
             self.stand_on(&ground, tick);
@@ -199,9 +208,10 @@ impl Climber {
         }
     }
 
-    /// Takes away the velocity into everything that is touched, relative to its own.
+    /// Takes away the velocity into everything that is touched, relative to its own: contact by
+    /// contact, some rounds of it. In a corner some of it may remain.
     fn stop_at_contacts(&mut self, tick: &Tick<'_>, reach: f64) {
-        for (id, obstacle) in tick.sorted() {
+        for (id, obstacle) in (0..STOPS).flat_map(|_| tick.sorted()) {
             self.contacts.clear();
             obstacle.overlap_sphere(self.state.position, reach, &mut self.contacts);
             for contact in &self.contacts {
@@ -226,10 +236,11 @@ impl Climber {
             return;
         }
         let mut allowed = length;
-        for (_, obstacle) in tick.obstacles {
-            let hit = obstacle.cast_ray(self.state.position, displacement, length);
+        let margin = 0.5 * self.config.radius;
+        for (_, obstacle) in tick.sorted() {
+            let hit = obstacle.cast_ray(self.state.position, displacement, length + margin);
             if let Some(hit) = hit.filter(|hit| hit.distance.is_finite()) {
-                allowed = allowed.min((hit.distance - 0.5 * self.config.radius).max(0.0));
+                allowed = allowed.min((hit.distance - margin).max(0.0));
             }
         }
         self.state.position += displacement * (allowed / length);
@@ -244,11 +255,12 @@ impl Climber {
         average_push_out(&self.contacts, self.state.position, self.config.radius)
     }
 
-    /// The nearest contact within `reach` that can be stood on.
+    /// The nearest contact within `reach` that is no steeper than `max_slope`.
     fn ground(
         &mut self,
         tick: &Tick<'_>,
         reach: f64,
+        max_slope: f64,
         accept: impl Fn(&Ground) -> bool,
     ) -> Option<Ground> {
         let center = self.state.position;
@@ -263,7 +275,7 @@ impl Climber {
                 };
                 // In ascending order of obstacle and material: the first of equals stays.
                 let nearer = contact.distance < best.map_or(f64::INFINITY, |b| b.contact.distance);
-                let stands = self.slope(contact.away(center)) <= self.config.max_slope;
+                let stands = self.slope(contact.away(center)) <= max_slope;
                 if nearer && stands && accept(&ground) {
                     best = Some(ground);
                 }
@@ -280,17 +292,16 @@ impl Climber {
             point: ground.contact.material,
             contact: ground.contact.point,
             offset: away * self.config.radius,
+            frame: glam::DQuat::IDENTITY,
         };
         // The material point's own position: it may differ from the contact by rounding, and it is
         // what the climber will be carried by.
-        let (position, frame) = tick
-            .motion(footing.obstacle, &footing.point)
-            .map_or((ground.contact.point, glam::DQuat::IDENTITY), |motion| {
-                (motion.position, motion.frame)
-            });
-        self.state.position = position + footing.offset;
-        footing.contact = position;
-        footing.offset = frame.conjugate() * footing.offset;
+        if let Some(motion) = tick.motion(footing.obstacle, &footing.point) {
+            footing.contact = motion.position;
+            footing.frame = motion.frame.unwrap_or(footing.frame);
+        }
+        self.state.position = footing.contact + footing.offset;
+        footing.offset = footing.frame.conjugate() * footing.offset;
         self.state.footing = Some(footing);
     }
 
@@ -340,9 +351,12 @@ impl<'a> Tick<'a> {
 
     fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
         let (_, obstacle) = self.obstacles.iter().find(|(id, _)| *id == obstacle)?;
-        obstacle
-            .motion(point, self.dt)
-            .filter(|motion| motion.position.is_finite() && motion.velocity.is_finite())
+        obstacle.motion(point, self.dt).filter(|motion| {
+            motion.position.is_finite()
+                && motion.velocity.is_finite()
+                && motion.turn.is_finite()
+                && motion.frame.is_none_or(|frame| frame.is_finite())
+        })
     }
 
     fn velocity_of(&self, ground: &Ground) -> DVec3 {

@@ -56,8 +56,9 @@ pub struct PointMotion {
     pub previous_position: DVec3,
     /// Displacement over the tick, per second: never an instantaneous velocity.
     pub velocity: DVec3,
-    /// Rotation of the material around the point, from the obstacle's rest to now.
-    pub frame: DQuat,
+    /// Rotation of the material around the point, from the obstacle's rest to now. `None` where
+    /// the material has collapsed and has no direction of its own: the last one known stands.
+    pub frame: Option<DQuat>,
     /// Rotation of the frame over the tick.
     pub turn: DQuat,
     /// Area of the skin there now over a tick ago; 1 on rigid bodies.
@@ -68,8 +69,9 @@ pub struct PointMotion {
 
 /// Something that a character can stand on, hit, or be carried by.
 ///
-/// All queries are in world space, see the pose of this tick, and take `&self`. A query that is
-/// not finite finds nothing. Lengths may be infinite.
+/// All queries are in world space, see the pose of this tick, and take `&self`. A point or direction
+/// that is not finite finds nothing, and neither does a length that is NaN or negative; lengths may
+/// be infinite.
 pub trait Obstacle {
     /// The first point along a ray from `origin`, up to `max_distance`. `direction` may have any
     /// length but zero; distances are in metres along it.
@@ -83,6 +85,6 @@ pub trait Obstacle {
     fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>);
 
     /// The motion of a material point over the tick of `dt` seconds that ends now; `None` if the
-    /// material is no longer there.
+    /// material is no longer there, or queries no longer see it.
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
 }

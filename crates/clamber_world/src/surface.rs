@@ -72,6 +72,9 @@ impl Obstacle for SkinnedSurface {
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let triangle = TriangleId(u32::try_from(point.key).ok()?);
+        if !self.is_enabled(triangle) {
+            return None;
+        }
         let anchor = Anchor {
             triangle,
             barycentric: point.coordinates.map(|weight| weight as f32),
@@ -85,7 +88,8 @@ impl Obstacle for SkinnedSurface {
             position: world_from_model.transform_point_f32(motion.position),
             previous_position: world_from_model.transform_point_f32(motion.previous_position),
             velocity: world_from_model.transform_vector(widen(motion.velocity)),
-            frame: (world_from_model.rotation * widen_rotation(motion.frame)).normalize(),
+            frame: (!motion.collapsed)
+                .then(|| (world_from_model.rotation * widen_rotation(motion.frame)).normalize()),
             turn: if angle > 0.0 {
                 rotation_from_axis_angle(spin / angle, angle)
             } else {

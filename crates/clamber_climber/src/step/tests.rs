@@ -123,6 +123,81 @@ fn falls_by_semi_implicit_euler_and_lands_where_it_touches() {
 }
 
 #[test]
+fn lands_on_level_ground_at_any_height_and_on_any_scale() {
+    // Skin is posed in f32: what touches is off by its rounding, which grows with its coordinates.
+    for height in [0.3, 7.7, 40.3, 99.9, 300.1, 1000.7] {
+        for shift in 0..20 {
+            let mut ground = level();
+            let floor = height + f64::from(shift) * 0.137;
+            pose(&mut ground, &DAffine3::from_translation(DVec3::Y * floor));
+            let climber = landed(1.0, floor + 1.0, 2.0, &ground);
+            let off = climber.state().position.y - floor - 0.4;
+            assert!(off.abs() < 1e-4, "at {floor}: {off}");
+        }
+    }
+}
+
+#[test]
+fn walking_keeps_the_footing_that_standing_keeps() {
+    // One degree beyond the limit, within the hysteresis: stood on, walked on, not landed on.
+    let mut ground = trough(45.0);
+    let mut climber = landed(8.0, 8.6, 0.0, &ground);
+    let tilt = |degrees: f64| {
+        DAffine3::from_quat(rotation_from_axis_angle(DVec3::Z, degrees.to_radians()))
+    };
+    let walk = ClimberInput {
+        walk: DVec3::Z * 0.1,
+        jump: false,
+    };
+    for tick in 0..60 {
+        pose(&mut ground, &tilt(f64::from(tick) * 0.1));
+        let input = if tick % 2 == 0 { IDLE } else { walk };
+        assert!(
+            step_on(&mut climber, &ground, &input).events.is_empty(),
+            "tick {tick}"
+        );
+    }
+    pose(&mut ground, &tilt(12.0));
+    assert_eq!(
+        step_on(&mut climber, &ground, &walk).events,
+        [ClimberEvent::Slipped]
+    );
+}
+
+#[test]
+fn ground_that_queries_no_longer_see_is_left() {
+    let mut ground = level();
+    let mut climber = landed(1.0, 0.5, 2.0, &ground);
+    for triangle in 0..2 {
+        ground.disable_triangle(TriangleId(triangle)).unwrap();
+    }
+    let events = step_on(&mut climber, &ground, &IDLE).events;
+    assert_eq!(events, [ClimberEvent::LostFooting]);
+}
+
+#[test]
+fn skin_that_collapses_keeps_its_last_direction() {
+    let mut ground = level();
+    let mut climber = landed(1.0, 0.5, 2.0, &ground);
+    let turn = rotation_from_axis_angle(DVec3::new(0.0, 0.8, 0.6), 0.9);
+    pose(&mut ground, &DAffine3::from_quat(turn));
+    step_on(&mut climber, &ground, &IDLE);
+    let footing = climber.state().footing.unwrap();
+    let flat = DAffine3::from_scale(DVec3::ZERO);
+    for tick in 0..3 {
+        pose(&mut ground, &flat);
+        step_on(&mut climber, &ground, &IDLE);
+        let now = climber.state().footing.unwrap();
+        assert_eq!(now.frame, footing.frame, "tick {tick}");
+        let expected = footing.frame * footing.offset;
+        assert!(
+            (climber.state().position - expected).length() < 1e-9,
+            "tick {tick}"
+        );
+    }
+}
+
+#[test]
 fn a_jump_keeps_the_velocity_of_what_it_leaves_and_reaches_its_height() {
     let mut raft = level();
     let mut climber = landed(0.0, 0.5, 0.0, &raft);
@@ -366,6 +441,16 @@ fn bad_input_is_refused_and_changes_nothing() {
         ..before
     };
     assert!(climber.restore(broken).is_err());
+    let footing = before.footing.map(|footing| Footing {
+        offset: DVec3::NAN,
+        ..footing
+    });
+    assert!(climber.restore(ClimberState { footing, ..before }).is_err());
+    let mode = ClimberMode::Falling;
+    assert_eq!(
+        climber.restore(ClimberState { mode, ..before }),
+        Err(ClimberError::Footing)
+    );
     assert_eq!(*climber.state(), before);
     let config = ClimberConfig::default();
     assert!(Climber::new(config, DVec3::NAN).is_err());

@@ -15,8 +15,8 @@ pub use sphere::Sphere;
 
 use glam::{DVec3, Vec3};
 
-/// Largest length that a rest position or a skinned one may have, 2^100: products of two such
-/// numbers stay finite in f32's range of exponents after one more sum, so no query meets infinity.
+/// Largest length that a skinned position may have, 2^100: sums of some such numbers stay finite in
+/// f32, and products of six of them in f64, so no query meets infinity.
 pub(crate) const MAX_COORDINATE: f64 = (1u128 << 100) as f64;
 
 /// Rounds each coordinate to the nearest f32.

@@ -56,7 +56,12 @@ pub(crate) fn closest_point(corners: [Vec3; 3], p: Vec3) -> TrianglePoint {
 }
 
 /// The point of segment `a` to `b` nearest to the origin, with its corner weights.
+///
+/// Computed from the lexicographically smaller end, so that two triangles that share the edge find
+/// the same distance in every bit: a tie between them is then a tie.
 fn closest_on_edge(a: DVec3, b: DVec3, weights: impl Fn(f64) -> DVec3) -> TrianglePoint {
+    let swapped = b.to_array() < a.to_array();
+    let (a, b) = if swapped { (b, a) } else { (a, b) };
     let along = b - a;
     let length_sq = along.length_squared();
     let t = if length_sq > 0.0 {
@@ -65,7 +70,7 @@ fn closest_on_edge(a: DVec3, b: DVec3, weights: impl Fn(f64) -> DVec3) -> Triang
         0.0
     };
     TrianglePoint {
-        barycentric: weights(t),
+        barycentric: weights(if swapped { 1.0 - t } else { t }),
         // Relative to b in the second half, so that t = 1 gives b itself.
         distance: if t <= 0.5 {
             (a + along * t).length()

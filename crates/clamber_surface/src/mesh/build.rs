@@ -223,7 +223,8 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
         });
     }
     // Written so that NaN is refused.
-    let within = |p: &Vec3| widen(*p).length() <= MAX_COORDINATE;
+    // Half of what may be skinned: even the identity, by its Frobenius norm, stays within that.
+    let within = |p: &Vec3| widen(*p).length() <= MAX_COORDINATE * 0.5;
     if let Some(vertex) = source.positions.iter().position(|p| !within(p)) {
         return Err(MeshError::Position { vertex });
     }

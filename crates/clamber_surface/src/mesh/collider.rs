@@ -154,12 +154,8 @@ impl ColliderMesh {
             .map_or(JointId(0), |(joint, _)| *joint)
     }
 
-    /// Appends a triangle of existing vertices and puts it into the part of its dominant joint.
-    pub(crate) fn add_triangle(
-        &mut self,
-        corners: [VertexId; 3],
-        tag: SurfaceTag,
-    ) -> Result<TriangleId, MeshError> {
+    /// Whether [`ColliderMesh::add_triangle`] may be called with these corners.
+    pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), MeshError> {
         let id = self.triangles.len();
         if id >= u32::MAX as usize {
             return Err(MeshError::TooLarge {
@@ -179,7 +175,12 @@ impl ColliderMesh {
                 vertices: corners.map(|v| v.0),
             });
         }
-        let id = TriangleId(id as u32);
+        Ok(())
+    }
+
+    /// Appends a triangle that was checked and puts it into the part of its dominant joint.
+    pub(crate) fn add_triangle(&mut self, corners: [VertexId; 3], tag: SurfaceTag) -> TriangleId {
+        let id = TriangleId(self.triangles.len() as u32);
         let joint = self.dominant_joint(corners);
         let part = match self.parts.iter().position(|part| part.joint == joint) {
             Some(part) => part,
@@ -197,19 +198,15 @@ impl ColliderMesh {
         self.part_of.push(Some(PartId(part as u32)));
         self.parts[part].triangles.push(id);
         self.collect_vertices(part);
-        Ok(id)
+        id
     }
 
-    /// Takes a triangle out of its part; false if it was not there.
-    pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) -> bool {
-        let Some(part) = self.part_of(triangle) else {
-            return false;
-        };
+    /// Takes a triangle out of the part that it belongs to.
+    pub(crate) fn remove_triangle(&mut self, triangle: TriangleId, part: PartId) {
         self.part_of[triangle.index()] = None;
         let part = part.index();
         self.parts[part].triangles.retain(|t| *t != triangle);
         self.collect_vertices(part);
-        true
     }
 
     /// Fills a part's vertices from its triangles.

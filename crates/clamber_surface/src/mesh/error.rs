@@ -22,8 +22,8 @@ pub enum MeshError {
         /// Number of tags.
         found: usize,
     },
-    /// A position is infinite, NaN, or farther than 2^100 from the origin.
-    #[error("the position of vertex {vertex} is not finite, or larger than 2^100")]
+    /// A position is infinite, NaN, or farther than 2^99 from the origin.
+    #[error("the position of vertex {vertex} is not finite, or larger than 2^99")]
     Position {
         /// Index of the vertex in the input.
         vertex: usize,

@@ -95,7 +95,8 @@ impl Skeleton {
     /// [`Skeleton::palette`] into an existing palette, which keeps its memory.
     ///
     /// Composes in f64 from root to leaf and rounds each element of the product with the inverse
-    /// bind matrix once: its error is half a unit in the last place of f32.
+    /// bind matrix once: its error is half a unit in the last place of f32. What overflows f32 is
+    /// infinite, and refused by the surface that it is meant for.
     ///
     /// # Errors
     /// [`RigError::JointCount`] or [`RigError::NotFinite`]; the palette is unchanged then.

@@ -1,6 +1,6 @@
 use glam::{DQuat, Quat};
 
-use super::motion::frame_of;
+use super::motion::material_frame;
 use super::{SkinnedSurface, SurfaceError, SurfaceHit};
 use crate::mesh::TriangleId;
 use crate::rig::rotation_f32;
@@ -47,14 +47,15 @@ impl SkinnedSurface {
     }
 
     fn anchor_unchecked(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Anchor {
-        let frame = (triangle.index() < self.mesh.triangles().len())
-            .then(|| frame_of(self.mesh.rest_corners(triangle), self.corners(triangle)))
-            .flatten()
-            .unwrap_or(DQuat::IDENTITY);
+        let frame = self.mesh.part_of(triangle).and_then(|part| {
+            let joint = self.mesh.parts()[part.index()].joint.0 as usize;
+            let rest = self.mesh.rest_corners(triangle);
+            material_frame(rest, self.corners(triangle), &self.palette[joint])
+        });
         Anchor {
             triangle,
             barycentric,
-            frame: rotation_f32(frame),
+            frame: rotation_f32(frame.unwrap_or(DQuat::IDENTITY)),
         }
     }
 }

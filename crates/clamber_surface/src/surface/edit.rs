@@ -55,10 +55,13 @@ impl SkinnedSurface {
         corners: [VertexId; 3],
         tag: SurfaceTag,
     ) -> Result<TriangleId, SurfaceError> {
-        let triangle = Arc::make_mut(&mut self.mesh).add_triangle(corners, tag)?;
+        self.mesh.check_triangle(corners)?;
+        let triangle = Arc::make_mut(&mut self.mesh).add_triangle(corners, tag);
         self.triangle_enabled.push(true);
         self.part_enabled.resize(self.mesh.parts().len(), true);
-        self.refit();
+        if let Some(part) = self.mesh.part_of(triangle) {
+            self.refit_part(part);
+        }
         Ok(triangle)
     }
 
@@ -70,10 +73,18 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed before.
     pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        self.triangle_flag(triangle)?;
-        Arc::make_mut(&mut self.mesh).remove_triangle(triangle);
-        self.refit();
+        let part = self.mesh.part_of(triangle);
+        let part = part.ok_or(SurfaceError::Triangle(triangle))?;
+        Arc::make_mut(&mut self.mesh).remove_triangle(triangle, part);
+        self.refit_part(part);
         Ok(())
+    }
+
+    /// True if queries see the triangle: it exists, and neither it nor its part is disabled.
+    pub fn is_enabled(&self, triangle: TriangleId) -> bool {
+        self.mesh.part_of(triangle).is_some_and(|part| {
+            self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]
+        })
     }
 
     fn part_flag(&mut self, part: PartId) -> Result<&mut bool, SurfaceError> {

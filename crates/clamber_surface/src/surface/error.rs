@@ -25,8 +25,8 @@ pub enum SurfaceError {
          (to 1e-5)"
     )]
     WorldFromModel,
-    /// A number of a query is infinite, NaN, or negative where it must not be.
-    #[error("{what} must be finite and not negative, found {found}")]
+    /// A number of a query is NaN or negative, or a tick has no length.
+    #[error("{what} must be a number that is not negative, found {found}")]
     Query {
         /// Which number.
         what: &'static str,

@@ -5,12 +5,16 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec3};
 use super::anchor::check_barycentric;
 use super::{Anchor, SkinnedSurface, SurfaceError};
 use crate::geometry::triangle::{point_at, scaled_normal};
-use crate::geometry::{rotation_vector, round_to_f32, widen};
+use crate::geometry::{Affine, rotation_vector, round_to_f32, widen};
 use crate::rig::{rotation_f32, rotation_f64};
 
-/// A triangle lower than this share of its longest edge has collapsed: at 2^-22 its direction is
-/// rounding of its corners. Larger freezes frames of slivers that still have one.
+/// A triangle lower than this share of its longest edge has collapsed, 2^-22: its direction is
+/// rounding. Larger freezes frames of slivers that still have one.
 const COLLAPSED: f64 = 1.0 / (1u32 << 22) as f64;
+
+/// So has one lower than this share of its corners' distance from the origin, 2^-20: skinning
+/// rounds each corner by some 2^-24 of that, which would turn the triangle by a quarter radian.
+const COLLAPSED_FAR_OUT: f64 = 1.0 / (1u32 << 20) as f64;
 
 /// The motion of an anchor over one tick, in the *current* model frame: a moving root moves it
 /// too. Differences of positions over `dt`, never an instantaneous velocity.
@@ -31,6 +35,8 @@ pub struct Motion {
     pub angular_velocity: Vec3,
     /// Outward unit normal of the triangle now; of a collapsed triangle, as its frame keeps it.
     pub normal: Vec3,
+    /// True if the triangle has no area of its own now: frame and normal are remembered ones.
+    pub collapsed: bool,
     /// Area now over area a tick ago; 1 where it was collapsed.
     pub area_ratio: f32,
     /// How much longer the most and the least stretched direction of the triangle became since a
@@ -63,8 +69,10 @@ impl SkinnedSurface {
 
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
-        let previous_frame = frame_of(rest, before);
-        let frame = frame_of(rest, now)
+        let joint = self.mesh.parts()[part.index()].joint.0 as usize;
+        let previous_frame = material_frame(rest, before, &self.previous_palette[joint]);
+        let current_frame = material_frame(rest, now, &self.palette[joint]);
+        let frame = current_frame
             .or(previous_frame)
             .unwrap_or_else(|| last_frame(anchor));
         let previous_frame = previous_frame.unwrap_or(frame);
@@ -80,15 +88,22 @@ impl SkinnedSurface {
             }
         };
         let (area_ratio, stretches) = stretch(before, now);
+        let velocity = (position - previous) / dt;
+        let angular_velocity = rotation_vector(frame * previous_frame.conjugate()) / dt;
+        if velocity.length().max(angular_velocity.length()) > f64::from(f32::MAX) {
+            return Err(SurfaceError::Query {
+                what: "the length of a tick, too short for what moved,",
+                found: dt,
+            });
+        }
         Ok(Motion {
             position: round_to_f32(position),
             previous_position: round_to_f32(previous),
-            velocity: round_to_f32((position - previous) / dt),
+            velocity: round_to_f32(velocity),
             frame: rotation_f32(frame),
-            angular_velocity: round_to_f32(
-                rotation_vector(frame * previous_frame.conjugate()) / dt,
-            ),
+            angular_velocity: round_to_f32(angular_velocity),
             normal: round_to_f32(normal),
+            collapsed: current_frame.is_none(),
             area_ratio: area_ratio as f32,
             stretches: stretches.map(|s| s as f32),
         })
@@ -112,8 +127,23 @@ fn is_collapsed(corners: [Vec3; 3]) -> bool {
         .length_squared()
         .max((c - b).length_squared())
         .max((a - c).length_squared());
+    let longest = longest_sq.sqrt();
+    let farthest = a.length().max(b.length()).max(c.length());
+    let lowest = (COLLAPSED * longest).max(COLLAPSED_FAR_OUT * farthest);
     // Twice the area is the longest edge times the height over it.
-    scaled_normal(corners).length() <= COLLAPSED * longest_sq
+    scaled_normal(corners).length() <= longest * lowest
+}
+
+/// The rotation of the material from rest to now. A sliver that has no frame even at rest turns with
+/// the joint of its part.
+pub(super) fn material_frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) -> Option<DQuat> {
+    if !is_collapsed(rest) {
+        return frame_of(rest, now);
+    }
+    let linear = joint.to_f64().matrix3;
+    let x = linear.x_axis.try_normalize()?;
+    let z = x.cross(linear.y_axis).try_normalize()?;
+    Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
 }
 
 /// A triangle in the plane: its orthonormal axes (first edge, in-plane perpendicular, normal) and
@@ -154,7 +184,7 @@ impl Flattened {
 ///
 /// The in-plane gradient `[[a, b], [0, d]]` has as its nearest rotation the one with cosine and
 /// sine proportional to `a + d` and `-b` (polar decomposition in two dimensions).
-pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
+fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
     let (rest, now) = (Flattened::new(rest)?, Flattened::new(now)?);
     let (a, b, d) = rest.gradient(&now);
     let (cos, sin) = (a + d, -b);

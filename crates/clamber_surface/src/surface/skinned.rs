@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::refit::part_sphere;
 use super::{SurfaceError, refit_part_spheres};
 use crate::geometry::{Affine, MAX_COORDINATE, Similarity, Sphere};
 use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
@@ -170,8 +171,18 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Brings spheres and mirror flags up to the current pose.
-    pub(super) fn refit(&mut self) {
+    /// Brings the sphere and mirror flag of one part, which may be a new last one, up to date.
+    pub(super) fn refit_part(&mut self, part: PartId) {
+        let index = part.index();
+        let part = &self.mesh.parts()[index];
+        self.spheres.resize(self.mesh.parts().len(), None);
+        self.mirrored.resize(self.mesh.parts().len(), false);
+        self.spheres[index] = part_sphere(part, &self.positions);
+        self.mirrored[index] = self.palette[part.joint.0 as usize].is_mirrored();
+    }
+
+    /// Brings all spheres and mirror flags up to the current pose.
+    fn refit(&mut self) {
         refit_part_spheres(&self.mesh, &self.positions, &mut self.spheres);
         self.mirrored.clear();
         let parts = self.mesh.parts().iter();

@@ -1,3 +1,5 @@
+use std::cmp::Ordering;
+
 use clamber_surface::mesh::SurfaceTag;
 use glam::{DQuat, DVec3};
 use rapier3d::dynamics::RigidBodySet;
@@ -62,7 +64,7 @@ impl<'a> RapierTerrain<'a> {
     /// Restricts what is seen, to groups or by a predicate of one's own.
     #[must_use]
     pub fn with_filter(mut self, filter: QueryFilter<'a>) -> Self {
-        self.queries = self.queries.with_filter(filter);
+        self.queries = self.queries.with_filter(filter.exclude_sensors());
         self
     }
 
@@ -105,6 +107,9 @@ impl Obstacle for RapierTerrain<'_> {
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
         let start = self.local(origin)?;
         let along = direction.try_normalize()?;
+        if max_distance.is_nan() || max_distance < 0.0 {
+            return None;
+        }
         let ray = Ray::new(start, along.as_vec3());
         let limit = (max_distance as f32).min(f32::MAX);
         let (handle, hit) = self.queries.cast_ray_and_get_normal(&ray, limit, true)?;
@@ -156,13 +161,23 @@ impl Obstacle for RapierTerrain<'_> {
                 contacts.push(self.contact(handle, collider, point, normal, distance));
             });
         }
-        // Stable: the triangles of one mesh keep the order of its tree, which does not change.
-        contacts[start..].sort_by_key(|contact| contact.material.key);
+        // By place within one collider, so that the order of its tree does not matter; in place, so
+        // that a steady tick allocates nothing.
+        contacts[start..].sort_unstable_by(|a, b| {
+            let by_place = a.material.coordinates.iter().zip(&b.material.coordinates);
+            let by_place = by_place.map(|(a, b)| a.total_cmp(b));
+            let by_key = a.material.key.cmp(&b.material.key);
+            by_key.then(by_place.fold(Ordering::Equal, Ordering::then))
+        });
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let handle = ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32);
         let collider = self.queries.colliders.get(handle)?;
+        let (filter, bodies) = (&self.queries.filter, self.queries.bodies);
+        if !collider.is_enabled() || !filter.test(bodies, handle, collider) {
+            return None;
+        }
         let now = PoseF64::new(collider.position());
         let before = collider.parent().and_then(|body| {
             let on_body = collider.position_wrt_parent()?;
@@ -178,7 +193,7 @@ impl Obstacle for RapierTerrain<'_> {
             position,
             previous_position,
             velocity: (position - previous_position) / dt,
-            frame: now.rotation,
+            frame: Some(now.rotation),
             turn: (now.rotation * before.rotation.conjugate()).normalize(),
             area_ratio: 1.0,
             stretches: [1.0, 1.0],

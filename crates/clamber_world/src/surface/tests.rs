@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
-use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
@@ -87,7 +87,25 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
     let heading = motion.turn * DVec3::X;
     let expected = rotation_from_axis_angle(DVec3::Y, 0.1) * DVec3::X;
     assert!((heading - expected).length() < 1e-5, "{heading}");
-    assert!((motion.frame * DVec3::Y - turned.rotation * DVec3::Y).length() < 1e-5);
+    let frame = motion.frame.unwrap();
+    assert!((frame * DVec3::Y - turned.rotation * DVec3::Y).length() < 1e-5);
+}
+
+#[test]
+fn material_that_has_collapsed_has_no_frame() {
+    let (mut surface, world_from_model) = placed();
+    let material = Obstacle::closest_point(&surface, world_from_model.translation, 1.0);
+    let material = material.unwrap().material;
+    let mut flat = Affine::IDENTITY;
+    flat.rows[0][0] = 0.0;
+    for _ in 0..2 {
+        surface
+            .advance(&Palette::from_matrices([flat]), world_from_model)
+            .unwrap();
+        let motion = Obstacle::motion(&surface, &material, 0.1).unwrap();
+        assert_eq!(motion.frame, None);
+        assert!(motion.velocity.is_finite());
+    }
 }
 
 #[test]
@@ -110,9 +128,11 @@ fn what_is_not_finite_or_gone_finds_nothing() {
         .unwrap()
         .material;
     assert!(Obstacle::motion(&surface, &material, 0.0).is_none());
-    let corners = surface.mesh().triangles()[0];
-    assert_eq!(corners[0], VertexId(0));
-    let triangle = clamber_surface::mesh::TriangleId(material.key as u32);
+    let triangle = TriangleId(material.key as u32);
+    surface.disable_triangle(triangle).unwrap();
+    assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
+    surface.enable_triangle(triangle).unwrap();
+    assert!(Obstacle::motion(&surface, &material, 0.1).is_some());
     surface.remove_triangle(triangle).unwrap();
     assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
 }

@@ -87,6 +87,29 @@ fn closest_point_of_the_troublesome_sliver() {
 }
 
 #[test]
+fn two_triangles_find_the_same_distance_to_the_edge_they_share() {
+    let mut rng = fastrand::Rng::with_seed(4);
+    let mut shared = 0;
+    for case in 0..5_000 {
+        let [a, b] = [(); 2].map(|()| random_point(&mut rng));
+        // Both third corners point away from p, so that the edge is nearest for both.
+        let p = (a + b) * 0.5 + random_point(&mut rng) * 0.3;
+        let away = (a + b) * 0.5 - p;
+        let [c, d] = [(); 2].map(|()| a + away * 3.0 + random_point(&mut rng) * 0.1);
+        let (one, other) = (closest_point([a, b, c], p), closest_point([d, b, a], p));
+        if one.barycentric.z == 0.0 && other.barycentric.x == 0.0 {
+            assert_eq!(
+                one.distance.to_bits(),
+                other.distance.to_bits(),
+                "case {case}"
+            );
+            shared += 1;
+        }
+    }
+    assert!(shared > 1_000, "{shared}");
+}
+
+#[test]
 fn collapsed_triangle_answers_as_segment_and_as_point() {
     let a = Vec3::new(1.0, 0.0, 0.0);
     let b = Vec3::new(3.0, 0.0, 0.0);

@@ -128,6 +128,37 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
 }
 
 #[test]
+fn a_triangle_flattened_to_a_line_far_out_is_seen_to_be_collapsed() {
+    // Flattened along one axis, then turned and moved: the corners' rounding gives it an area.
+    let mut rng = fastrand::Rng::with_seed(9);
+    let random = |rng: &mut fastrand::Rng| DVec3::new(rng.f64(), rng.f64(), rng.f64()) - 0.5;
+    for case in 0..2_000 {
+        let size = [0.01, 0.1, 3.0][case % 3];
+        let turn = rotation_from_axis_angle(random(&mut rng).normalize(), rng.f64() * 6.0);
+        let shift = random(&mut rng) * 20.0;
+        let line = random(&mut rng).normalize();
+        let flat = [0.0, rng.f64() * 0.6 + 0.2, 1.0].map(|t| {
+            let p = turn * (line * (t * size)) + shift;
+            Vec3::new(p.x as f32, p.y as f32, p.z as f32)
+        });
+        assert!(is_collapsed(flat), "case {case}: {flat:?}");
+        let side = turn * line.any_orthonormal_vector() * size * 0.2;
+        let tall = [flat[0], flat[1], flat[2] + round_to_f32(side)];
+        assert!(!is_collapsed(tall), "case {case}: {tall:?}");
+    }
+}
+
+#[test]
+fn a_sliver_without_a_frame_at_rest_turns_with_its_joint() {
+    let thin = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-9, 0.0)];
+    let turn = rotation_from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 1.0);
+    let joint = Affine::from_f64(&glam::DAffine3::from_quat(turn));
+    let turned = thin.map(|p| joint.transform_point(p));
+    let frame = material_frame(thin, turned, &joint).unwrap();
+    assert!(rotation_vector(frame * turn.conjugate()).length() < 1e-6);
+}
+
+#[test]
 fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
     let mut surface = surface();
     let anchor = anchor(&surface);
@@ -158,6 +189,11 @@ fn bad_anchors_and_ticks_are_refused() {
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(surface.motion(&good, dt).is_err(), "{dt}");
     }
+    let mut moved = surface.clone();
+    moved
+        .advance(&bend(JOINTS, DVec3::Z, 0.1), Similarity::IDENTITY)
+        .unwrap();
+    assert!(moved.motion(&good, 1e-300).is_err());
     for barycentric in [[0.5, 0.6, 0.1], [f32::NAN, 0.5, 0.5], [-0.5, 1.0, 0.5]] {
         assert!(surface.anchor(good.triangle, barycentric).is_err());
         let bad = Anchor {

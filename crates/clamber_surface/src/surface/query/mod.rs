@@ -9,7 +9,7 @@ pub use hit::SurfaceHit;
 
 use super::{SkinnedSurface, SurfaceError};
 use crate::geometry::Sphere;
-use crate::mesh::{PartId, TriangleId};
+use crate::mesh::TriangleId;
 
 /// How far the f32 arithmetic of a query may reach beyond the exact one, as a share of the
 /// coordinates involved: 16 units of 2^-23. Bounds are widened by it, so that no bound hides what
@@ -36,13 +36,7 @@ impl SkinnedSurface {
         let count = self.mesh.triangles().len() as u32;
         (0..count)
             .map(TriangleId)
-            .filter(|triangle| self.enabled_part_of(*triangle).is_some())
-    }
-
-    /// The part of a triangle that is neither removed nor disabled.
-    pub(super) fn enabled_part_of(&self, triangle: TriangleId) -> Option<PartId> {
-        let part = self.mesh.part_of(triangle)?;
-        (self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]).then_some(part)
+            .filter(|triangle| self.is_enabled(*triangle))
     }
 }
 

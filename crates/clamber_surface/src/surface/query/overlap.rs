@@ -10,8 +10,8 @@ impl SkinnedSurface {
     /// by ascending triangle id. `hits` is cleared first and keeps its memory.
     ///
     /// # Errors
-    /// [`SurfaceError::Point`] or [`SurfaceError::Query`] if the sphere is not finite or its radius
-    /// negative; `hits` is unchanged then.
+    /// [`SurfaceError::Point`] if the sphere's centre is not finite, [`SurfaceError::Query`] if its
+    /// radius (may be infinite) is negative or NaN; `hits` is unchanged then.
     pub fn overlap_sphere(
         &self,
         sphere: &Sphere,

@@ -161,6 +161,9 @@ fn sensors_and_what_a_filter_excludes_are_not_there() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0).sensor(true));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
+    // A filter of the caller's does not bring sensors back.
+    let terrain = terrain.with_filter(QueryFilter::new());
+    assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     let filter = QueryFilter::exclude_fixed();
     let terrain = RapierTerrain::of_world(&world, &NO_POSES).with_filter(filter);
@@ -180,11 +183,23 @@ fn what_is_not_finite_or_gone_finds_nothing() {
         }
         assert_eq!(terrain.cast_ray(DVec3::Y * 5.0, DVec3::NAN, 9.0), None);
         assert_eq!(terrain.closest_point(DVec3::ZERO, f64::NAN), None);
+        assert_eq!(terrain.cast_ray(DVec3::Y * 5.0, -DVec3::Y, f64::NAN), None);
+        assert_eq!(terrain.cast_ray(DVec3::Y * 5.0, -DVec3::Y, -1.0), None);
         terrain.overlap_sphere(DVec3::ZERO, f64::NAN, &mut contacts);
         assert!(contacts.is_empty());
         terrain.closest_point(DVec3::ZERO, 9.0).unwrap().material
     };
     let handle = world.colliders.iter().next().unwrap().0;
+    let moves = |world: &PhysicsWorld| {
+        let terrain = RapierTerrain::of_world(world, &NO_POSES);
+        terrain.motion(&material, 0.1).is_some()
+    };
+    assert!(moves(&world));
+    world.colliders[handle].set_enabled(false);
+    assert!(!moves(&world));
+    world.colliders[handle].set_enabled(true);
+    world.colliders[handle].set_sensor(true);
+    assert!(!moves(&world));
     world.remove_collider(handle);
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     assert!(terrain.motion(&material, 0.1).is_none());
