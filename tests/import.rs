@@ -118,7 +118,10 @@ fn bad_files_say_what_is_wrong() {
         assert!(load_slice(&bytes[..cut], &options).is_err(), "cut at {cut}");
     }
     assert!(load_slice(&bytes, &options).is_ok());
-    let second = LoadOptions { skin: 1, ..options };
+    let second = LoadOptions {
+        skin: Some(1),
+        ..options
+    };
     let error = load_slice(&bytes, &second).unwrap_err();
     assert!(
         matches!(

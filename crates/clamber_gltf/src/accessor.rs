@@ -1,5 +1,7 @@
 //! Typed data out of buffers (glTF 2.0, section 3.6), every offset checked.
 
+use std::cell::Cell;
+
 use gltf::Accessor;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
@@ -7,13 +9,42 @@ use gltf::buffer::View;
 
 use crate::GltfError;
 
+/// How many bytes may be decoded for each byte that a file holds: exporters let primitives share
+/// accessors, but a file that is read again and again wants to fill the memory.
+const MAX_GROWTH: usize = 24;
+
+/// What any file may decode, bytes: small files may well grow more.
+const FREE_GROWTH: usize = 1 << 20;
+
 /// Reads accessors of one file.
-#[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
-    pub(crate) buffers: &'a [Vec<u8>],
+    buffers: &'a [Vec<u8>],
+    /// Bytes that may still be decoded.
+    budget: Cell<usize>,
 }
 
 impl<'a> Reader<'a> {
+    /// For the buffers of a file that is itself so many bytes long.
+    pub(crate) fn new(buffers: &'a [Vec<u8>], file: usize) -> Self {
+        let held = buffers
+            .iter()
+            .fold(file, |sum, bytes| sum.saturating_add(bytes.len()));
+        Self {
+            buffers,
+            budget: Cell::new(held.saturating_mul(MAX_GROWTH).saturating_add(FREE_GROWTH)),
+        }
+    }
+
+    /// Takes note of bytes that are about to be allocated for what a file claims.
+    pub(crate) fn charge(&self, object: &str, bytes: usize) -> Result<(), GltfError> {
+        let left = self.budget.get().checked_sub(bytes).ok_or_else(|| {
+            let reason = "would take far more memory than the file holds";
+            GltfError::invalid(object, reason)
+        })?;
+        self.budget.set(left);
+        Ok(())
+    }
+
     /// Elements of `N` numbers as floats. Integers are divided by their range if the accessor is
     /// normalised, and converted as they are if it is not.
     pub(crate) fn floats<const N: usize>(
@@ -55,6 +86,8 @@ impl<'a> Reader<'a> {
             return Err(invalid(accessor, "matrices must be of floats".into()));
         }
         let size = component * N;
+        let decoded = accessor.count().saturating_mul(N * size_of::<T>());
+        self.charge(&format!("accessor {}", accessor.index()), decoded)?;
         let element = |bytes: &[u8]| {
             let mut element = [T::default(); N];
             for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(component)) {
@@ -70,27 +103,10 @@ impl<'a> Reader<'a> {
                     .map_err(|reason| invalid(accessor, reason))?;
                 strided.map(element).collect()
             }
-            None => self.zeros(accessor)?,
+            None => vec![[T::default(); N]; accessor.count()],
         };
         self.apply_sparse(accessor, size, element, &mut elements)?;
         Ok(elements)
-    }
-
-    /// All zero, as an accessor without a view is. It claims a length that no bytes back, so the
-    /// file's own size is the limit.
-    fn zeros<T: Copy + Default, const N: usize>(
-        &self,
-        accessor: &Accessor<'_>,
-    ) -> Result<Vec<[T; N]>, GltfError> {
-        let held: usize = self.buffers.iter().map(Vec::len).sum();
-        if accessor.count() > held {
-            let reason = format!(
-                "claims {} elements without data, more than the file's {held} bytes",
-                accessor.count()
-            );
-            return Err(invalid(accessor, reason));
-        }
-        Ok(vec![[T::default(); N]; accessor.count()])
     }
 
     /// Overwrites the elements that a sparse accessor names.

@@ -1,18 +1,24 @@
 //! The bytes behind a file's buffers: the GLB's own chunk, data URIs, files beside it.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use base64::Engine;
+use gltf::Document;
 use gltf::buffer::Source;
 
 use crate::GltfError;
 
 /// All buffers, each at least as long as it claims. `base` is the folder that relative URIs start
 /// from; without one they are refused.
-pub(crate) fn load(file: &mut gltf::Gltf, base: Option<&Path>) -> Result<Vec<Vec<u8>>, GltfError> {
-    let mut blob = file.blob.take();
+pub(crate) fn load(
+    document: &Document,
+    mut blob: Option<Vec<u8>>,
+    base: Option<&Path>,
+) -> Result<Vec<Vec<u8>>, GltfError> {
     let mut buffers = Vec::new();
-    for buffer in file.buffers() {
+    for buffer in document.buffers() {
         let object = format!("buffer {}", buffer.index());
         let bytes = match buffer.source() {
             Source::Bin => blob
@@ -20,7 +26,7 @@ pub(crate) fn load(file: &mut gltf::Gltf, base: Option<&Path>) -> Result<Vec<Vec
                 .ok_or_else(|| GltfError::invalid(&object, "has no URI, and the file no chunk"))?,
             Source::Uri(uri) => match uri.strip_prefix("data:") {
                 Some(data) => decode_data_uri(data).map_err(|e| GltfError::invalid(&object, e))?,
-                None => read_beside(base, uri, &object)?,
+                None => read_beside(base, uri, buffer.length(), &object)?,
             },
         };
         if bytes.len() < buffer.length() {
@@ -50,7 +56,14 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-fn read_beside(base: Option<&Path>, uri: &str, object: &str) -> Result<Vec<u8>, GltfError> {
+/// No more of a file beside the document than the buffer claims. Only plain files by relative paths:
+/// a document from elsewhere must not name devices or files of the system.
+fn read_beside(
+    base: Option<&Path>,
+    uri: &str,
+    length: usize,
+    object: &str,
+) -> Result<Vec<u8>, GltfError> {
     let base = base.ok_or_else(|| {
         let reason = format!("its data is in the file {uri:?}: load from a path, not from bytes");
         GltfError::invalid(object, reason)
@@ -58,6 +71,24 @@ fn read_beside(base: Option<&Path>, uri: &str, object: &str) -> Result<Vec<u8>, 
     let name = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
         .map_err(|e| GltfError::invalid(object, format!("its URI {uri:?} is no UTF-8: {e}")))?;
-    let path = base.join(name.as_ref());
-    std::fs::read(&path).map_err(|source| GltfError::Read { path, source })
+    let relative = Path::new(name.as_ref());
+    if relative.has_root() || relative.is_absolute() || name.contains(':') {
+        let reason = format!("its URI {uri:?} is not relative to the document");
+        return Err(GltfError::invalid(object, reason));
+    }
+    let path = base.join(relative);
+    read_plain_file(&path, length as u64).map_err(|source| GltfError::Read { path, source })
+}
+
+fn read_plain_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {
+    // Before opening: to open a pipe would wait for its other end.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "not a plain file",
+        ));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }

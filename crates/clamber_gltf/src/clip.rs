@@ -14,7 +14,7 @@ use crate::accessor::Reader;
 pub(crate) fn load(
     document: &Document,
     of_node: &BTreeMap<usize, Vec<JointId>>,
-    reader: Reader<'_>,
+    reader: &Reader<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Clip>, GltfError> {
     let mut clips = Vec::new();
@@ -27,12 +27,13 @@ pub(crate) fn load(
         let mut passed_over = 0;
         for (index, channel) in animation.channels().enumerate() {
             let target = channel.target();
+            let object = format!("animation {name:?}, channel {index}");
+            // Only what moves the skeleton is read at all.
             let joints = of_node.get(&target.node().index());
-            match (joints, keyframes(&channel, reader)?) {
+            let values = joints.map(|_| keyframes(&channel, reader)).transpose()?;
+            match (joints, values.flatten()) {
                 (Some(joints), Some(values)) => {
-                    let object = format!("animation {name:?}, channel {index}");
-                    push_channels(&mut channels, &channel, joints, values, reader)
-                        .map_err(|e| e.unwrap_or_else(|rig| GltfError::invalid(object, rig)))?;
+                    push_channels(&mut channels, &channel, joints, values, reader, &object)?;
                 }
                 _ => passed_over += 1,
             }
@@ -54,18 +55,21 @@ fn push_channels(
     channel: &animation::Channel<'_>,
     joints: &[JointId],
     values: Keyframes,
-    reader: Reader<'_>,
-) -> Result<(), Result<GltfError, clamber_surface::rig::RigError>> {
+    reader: &Reader<'_>,
+    object: &str,
+) -> Result<(), GltfError> {
     let sampler = channel.sampler();
-    let times = reader.floats::<1>(&sampler.input()).map_err(Ok)?;
+    let times = reader.floats::<1>(&sampler.input())?.into_flattened();
     let interpolation = match sampler.interpolation() {
         animation::Interpolation::Step => Interpolation::Step,
         animation::Interpolation::Linear => Interpolation::Linear,
         animation::Interpolation::CubicSpline => Interpolation::CubicSpline,
     };
     for joint in joints {
-        let times = times.as_flattened().to_vec();
-        channels.push(Channel::new(*joint, interpolation, times, values.clone()).map_err(Err)?);
+        // A value takes at most as much as a rotation and its time, thrice in a spline.
+        reader.charge(object, times.len() * 13 * size_of::<f32>())?;
+        let channel = Channel::new(*joint, interpolation, times.clone(), values.clone());
+        channels.push(channel.map_err(|rig| GltfError::invalid(object, rig))?);
     }
     Ok(())
 }
@@ -73,7 +77,7 @@ fn push_channels(
 /// The values of a channel; `None` for morph target weights.
 fn keyframes(
     channel: &animation::Channel<'_>,
-    reader: Reader<'_>,
+    reader: &Reader<'_>,
 ) -> Result<Option<Keyframes>, GltfError> {
     let output = channel.sampler().output();
     let vectors = || -> Result<Vec<Vec3>, GltfError> {

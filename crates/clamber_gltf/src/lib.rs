@@ -3,6 +3,7 @@
 mod accessor;
 mod buffers;
 mod clip;
+mod document;
 mod error;
 mod load;
 mod mesh;

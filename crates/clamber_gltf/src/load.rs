@@ -5,7 +5,7 @@ use clamber_surface::mesh::{BuildOptions, BuildReport, ColliderMesh, SurfaceTag}
 use clamber_surface::rig::{Clip, Skeleton};
 
 use crate::accessor::Reader;
-use crate::{GltfError, buffers, clip, mesh, skeleton};
+use crate::{GltfError, buffers, clip, document, mesh, skeleton};
 
 /// A creature as a file describes it.
 #[derive(Clone, Debug)]
@@ -42,8 +42,8 @@ pub type TagOfMaterial<'a> = dyn Fn(&str) -> Option<SurfaceTag> + 'a;
 /// Choices of an import.
 #[derive(Clone, Copy, Default)]
 pub struct LoadOptions<'a> {
-    /// Index of the skin to load.
-    pub skin: usize,
+    /// Index of the skin to load; `None` for the one that deforms the most triangles.
+    pub skin: Option<usize>,
     /// Passed on to [`ColliderMesh::build`].
     pub build: BuildOptions,
     /// The tag of a material by its name, for files whose extras do not say. Where it gives one it
@@ -61,7 +61,7 @@ impl std::fmt::Debug for LoadOptions<'_> {
     }
 }
 
-/// Loads the first skin of a `.glb` or `.gltf` file.
+/// Loads the skin that deforms the most triangles of a `.glb` or `.gltf` file.
 ///
 /// # Errors
 /// [`GltfError`], naming the object of the file and what is wrong with it.
@@ -95,21 +95,22 @@ fn from_bytes(
     base: Option<&Path>,
     options: &LoadOptions<'_>,
 ) -> Result<Rig, GltfError> {
-    let mut file = gltf::Gltf::from_slice(bytes)?;
-    let buffers = buffers::load(&mut file, base)?;
-    let reader = Reader { buffers: &buffers };
-    let skin = file
-        .skins()
-        .nth(options.skin)
-        .ok_or_else(|| GltfError::NoSuchSkin {
-            wanted: options.skin,
-            found: file.skins().len(),
-        })?;
     let mut warnings = Vec::new();
-    let joints = skeleton::load(&file, &skin, reader, &mut warnings)?;
+    let (document, blob) = document::parse(bytes, &mut warnings)?;
+    let buffers = buffers::load(&document, blob, base)?;
+    let reader = Reader::new(&buffers, bytes.len());
+    let skin = mesh::choose_skin(&document, options.skin, &mut warnings)?;
+    let joints = skeleton::load(&document, &skin, &reader, &mut warnings)?;
     let joint_count = joints.skeleton.joints().len();
-    let (collider, build) = mesh::load(&file, &skin, joint_count, reader, options, &mut warnings)?;
-    let clips = clip::load(&file, &joints.of_node, reader, &mut warnings)?;
+    let (collider, build) = mesh::load(
+        &document,
+        &skin,
+        joint_count,
+        &reader,
+        options,
+        &mut warnings,
+    )?;
+    let clips = clip::load(&document, &joints.of_node, &reader, &mut warnings)?;
     Ok(Rig {
         skeleton: joints.skeleton,
         clips,

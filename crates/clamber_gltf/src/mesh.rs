@@ -1,43 +1,107 @@
 //! The primitives of all meshes that a skin deforms, as one collider mesh.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh, Influence, MeshSource, SurfaceTag};
+use clamber_surface::mesh::{
+    BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+};
 use clamber_surface::rig::JointId;
 use glam::Vec3;
 use gltf::mesh::{Mode, Primitive, Semantic};
-use gltf::{Document, Skin};
+use gltf::{Document, Mesh, Skin};
 
 use crate::accessor::Reader;
 use crate::tag::tag_of;
 use crate::{GltfError, LoadOptions};
 
+/// The skin asked for, or the one that deforms the most triangles; says which others and which
+/// meshes without a skin are passed over.
+pub(crate) fn choose_skin<'a>(
+    document: &'a Document,
+    wanted: Option<usize>,
+    warnings: &mut Vec<String>,
+) -> Result<Skin<'a>, GltfError> {
+    let mut corners = vec![0u64; document.skins().len()];
+    let mut unskinned = 0;
+    for node in document.nodes() {
+        match (node.mesh(), node.skin()) {
+            (Some(mesh), Some(skin)) => corners[skin.index()] += corner_count(&mesh),
+            (Some(_), None) => unskinned += 1,
+            (None, _) => {}
+        }
+    }
+    if unskinned > 0 {
+        warnings.push(format!("{unskinned} meshes without a skin; passed over"));
+    }
+    // Of equal ones the first.
+    let largest = (0..corners.len()).rev().max_by_key(|skin| corners[*skin]);
+    let chosen = wanted.or(largest).unwrap_or(0);
+    let others = corners.len().saturating_sub(1);
+    if others > 0 {
+        warnings.push(format!(
+            "took skin {chosen}; {others} other skins were passed over"
+        ));
+    }
+    document.skins().nth(chosen).ok_or(GltfError::NoSuchSkin {
+        wanted: chosen,
+        found: corners.len(),
+    })
+}
+
+/// How many triangle corners a mesh has, more or less.
+fn corner_count(mesh: &Mesh<'_>) -> u64 {
+    let count = |primitive: Primitive<'_>| {
+        let positions = || primitive.get(&Semantic::Positions);
+        let accessor = primitive.indices().or_else(positions);
+        accessor.map_or(0, |accessor| accessor.count() as u64)
+    };
+    mesh.primitives().map(count).fold(0, u64::saturating_add)
+}
+
 /// What all primitives add up to.
 #[derive(Default)]
 struct Gathered {
     positions: Vec<Vec3>,
-    /// A list per vertex, of any length.
-    influences: Vec<Vec<Influence>>,
+    influences: Vec<Influence>,
+    /// Where each vertex's influences end.
+    influence_ends: Vec<u32>,
     triangles: Vec<[u32; 3]>,
     tags: Vec<SurfaceTag>,
     unweighted: usize,
+    /// First vertex of each set of attributes, by its accessors: primitives often share them.
+    bases: BTreeMap<Vec<usize>, u32>,
 }
 
 pub(crate) fn load(
     document: &Document,
     skin: &Skin<'_>,
     joint_count: usize,
-    reader: Reader<'_>,
+    reader: &Reader<'_>,
     options: &LoadOptions<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<(Arc<ColliderMesh>, BuildReport), GltfError> {
     let mut gathered = Gathered::default();
-    let deforms = |node: &gltf::Node<'_>| node.skin().is_some_and(|s| s.index() == skin.index());
-    for node in document.nodes().filter(deforms) {
-        let Some(mesh) = node.mesh() else { continue };
+    // A mesh that several nodes show with one skin is one mesh: the skin says where it stands.
+    let deformed: BTreeSet<usize> = document
+        .nodes()
+        .filter(|node| node.skin().is_some_and(|s| s.index() == skin.index()))
+        .filter_map(|node| Some(node.mesh()?.index()))
+        .collect();
+    let skin_joints = skin.joints().count();
+    for mesh in document
+        .meshes()
+        .filter(|mesh| deformed.contains(&mesh.index()))
+    {
         for primitive in mesh.primitives() {
             let object = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
-            gathered.add(&primitive, &object, reader, options, warnings)?;
+            match passed_over(&primitive) {
+                Some(reason) => warnings.push(format!("{object}: {reason}; passed over")),
+                None => gathered.add(&primitive, &object, skin_joints, reader, options)?,
+            }
+            if primitive.morph_targets().next().is_some() {
+                warnings.push(format!("{object}: its morph targets were passed over"));
+            }
         }
     }
     if gathered.triangles.is_empty() {
@@ -57,82 +121,114 @@ pub(crate) fn load(
         })
 }
 
+/// Why a primitive is no part of a collider; `None` if it is.
+fn passed_over(primitive: &Primitive<'_>) -> Option<String> {
+    let mode = primitive.mode();
+    if !matches!(
+        mode,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+    ) {
+        return Some(format!("{mode:?} have no surface"));
+    }
+    if primitive.get(&Semantic::Positions).is_none() {
+        return Some("has no positions".into());
+    }
+    let sets = [Semantic::Joints(0), Semantic::Weights(0)];
+    let unskinned = sets.iter().all(|set| primitive.get(set).is_none());
+    unskinned.then(|| "has no joints and weights".into())
+}
+
 impl Gathered {
     fn add(
         &mut self,
         primitive: &Primitive<'_>,
         object: &str,
-        reader: Reader<'_>,
+        skin_joints: usize,
+        reader: &Reader<'_>,
         options: &LoadOptions<'_>,
-        warnings: &mut Vec<String>,
     ) -> Result<(), GltfError> {
-        let mode = primitive.mode();
-        if !matches!(
-            mode,
-            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-        ) {
-            warnings.push(format!("{object}: {mode:?} have no surface; passed over"));
-            return Ok(());
-        }
-        let Some(positions) = primitive.get(&Semantic::Positions) else {
-            warnings.push(format!("{object}: has no positions; passed over"));
-            return Ok(());
-        };
-        let positions = reader.floats::<3>(&positions)?;
-        let Some(influences) = influences(primitive, positions.len(), object, reader)? else {
-            warnings.push(format!("{object}: has no joints and weights; passed over"));
-            return Ok(());
-        };
-        if primitive.morph_targets().next().is_some() {
-            warnings.push(format!("{object}: its morph targets were passed over"));
-        }
+        let (base, vertices) = self.vertices_of(primitive, object, skin_joints, reader)?;
         let indices = match primitive.indices() {
             Some(accessor) => reader.integers::<1>(&accessor)?.into_flattened(),
-            None => (0..positions.len() as u32).collect(),
+            None => {
+                reader.charge(object, vertices * size_of::<u32>())?;
+                (0..vertices as u32).collect()
+            }
         };
-        if let Some(index) = indices.iter().find(|i| **i as usize >= positions.len()) {
-            let reason = format!("names vertex {index} of {}", positions.len());
+        if let Some(index) = indices.iter().find(|i| **i as usize >= vertices) {
+            let reason = format!("names vertex {index} of {vertices}");
             return Err(GltfError::invalid(object, reason));
         }
-        let base = self.positions.len() as u32;
         let tag = tag_of(&primitive.material(), options)?;
         let before = self.triangles.len();
+        // A strip makes three corners of every index.
+        reader.charge(object, indices.len() * size_of::<[u32; 4]>())?;
         self.triangles
-            .extend(triangles(&indices, mode).map(|corners| corners.map(|vertex| vertex + base)));
+            .extend(triangles(&indices, primitive.mode()).map(|t| t.map(|v| v + base)));
         self.tags
             .resize(self.tags.len() + self.triangles.len() - before, tag);
+        Ok(())
+    }
+
+    /// Number of the first of a primitive's vertices and how many there are, read unless another
+    /// primitive has the same ones.
+    fn vertices_of(
+        &mut self,
+        primitive: &Primitive<'_>,
+        object: &str,
+        skin_joints: usize,
+        reader: &Reader<'_>,
+    ) -> Result<(u32, usize), GltfError> {
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
+            return Ok((0, 0));
+        };
+        let mut key = vec![positions.index()];
+        for (semantic, accessor) in primitive.attributes() {
+            if let Semantic::Joints(set) = semantic {
+                key.extend([2 * set as usize, accessor.index()]);
+            } else if let Semantic::Weights(set) = semantic {
+                key.extend([2 * set as usize + 1, accessor.index()]);
+            }
+        }
+        if let Some(base) = self.bases.get(&key) {
+            return Ok((*base, positions.count()));
+        }
+        let base = u32::try_from(self.positions.len())
+            .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 vertices"))?;
+        let positions = reader.floats::<3>(&positions)?;
+        for list in influences(primitive, positions.len(), object, skin_joints, reader)? {
+            let start = self.influences.len();
+            self.influences
+                .extend(list.iter().filter(|influence| influence.weight != 0.0));
+            if self.influences.len() == start {
+                self.unweighted += 1;
+                let first = list.first().map_or(JointId(0), |influence| influence.joint);
+                self.influences.push(Influence {
+                    joint: first,
+                    weight: 1.0,
+                });
+            }
+            let end = u32::try_from(self.influences.len())
+                .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 weights"))?;
+            self.influence_ends.push(end);
+        }
+        let count = positions.len();
         self.positions
             .extend(positions.into_iter().map(Vec3::from_array));
-        for mut list in influences {
-            if list.iter().all(|influence| influence.weight == 0.0) {
-                self.unweighted += 1;
-                list.truncate(1);
-                list.iter_mut().for_each(|influence| influence.weight = 1.0);
-            }
-            self.influences.push(list);
-        }
-        Ok(())
+        self.bases.insert(key, base);
+        Ok((base, count))
     }
 
     fn build(
         &self,
         joint_count: usize,
         options: &LoadOptions<'_>,
-    ) -> Result<(Arc<ColliderMesh>, BuildReport), clamber_surface::mesh::MeshError> {
-        let widest = self.influences.iter().map(Vec::len).max().unwrap_or(0);
-        let none = Influence {
-            joint: JointId(0),
-            weight: 0.0,
-        };
-        let mut flat = Vec::with_capacity(self.influences.len() * widest);
-        for list in &self.influences {
-            flat.extend_from_slice(list);
-            flat.resize(flat.len() + widest - list.len(), none);
-        }
+    ) -> Result<(Arc<ColliderMesh>, BuildReport), MeshError> {
         let source = MeshSource {
             positions: &self.positions,
             triangles: &self.triangles,
-            influences: &flat,
+            influences: &self.influences,
+            influence_ends: &self.influence_ends,
             tags: &self.tags,
             joint_count,
         };
@@ -141,14 +237,16 @@ impl Gathered {
     }
 }
 
-/// The influences of every vertex, from all sets; `None` if there is no set.
+/// The influences of every vertex, from all sets. At least the first set is there.
 fn influences(
     primitive: &Primitive<'_>,
     vertices: usize,
     object: &str,
-    reader: Reader<'_>,
-) -> Result<Option<Vec<Vec<Influence>>>, GltfError> {
-    let mut lists: Option<Vec<Vec<Influence>>> = None;
+    skin_joints: usize,
+    reader: &Reader<'_>,
+) -> Result<Vec<Vec<Influence>>, GltfError> {
+    reader.charge(object, vertices.saturating_mul(size_of::<Vec<Influence>>()))?;
+    let mut lists: Vec<Vec<Influence>> = vec![Vec::new(); vertices];
     for set in 0.. {
         let (joints, weights) = match (
             primitive.get(&Semantic::Joints(set)),
@@ -171,13 +269,17 @@ fn influences(
             );
             return Err(GltfError::invalid(object, reason));
         }
-        let lists = lists.get_or_insert_with(|| vec![Vec::with_capacity(4); vertices]);
         for ((list, joints), weights) in lists.iter_mut().zip(joints).zip(weights) {
-            let pairs = joints.into_iter().zip(weights);
-            list.extend(pairs.map(|(joint, weight)| Influence {
-                joint: JointId(joint),
-                weight,
-            }));
+            for (joint, weight) in joints.into_iter().zip(weights) {
+                if joint as usize >= skin_joints {
+                    let reason = format!("follows joint {joint} of a skin of {skin_joints}");
+                    return Err(GltfError::invalid(object, reason));
+                }
+                list.push(Influence {
+                    joint: JointId(joint),
+                    weight,
+                });
+            }
         }
     }
     Ok(lists)

@@ -22,7 +22,7 @@ pub(crate) struct Joints {
 pub(crate) fn load(
     document: &Document,
     skin: &Skin<'_>,
-    reader: Reader<'_>,
+    reader: &Reader<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Joints, GltfError> {
     let nodes: Vec<Node<'_>> = document.nodes().collect();
@@ -89,13 +89,13 @@ fn parents(nodes: &[Node<'_>]) -> Result<Vec<Option<usize>>, GltfError> {
 fn inverse_binds(
     skin: &Skin<'_>,
     joints: usize,
-    reader: Reader<'_>,
+    reader: &Reader<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Affine>, GltfError> {
     let Some(accessor) = skin.inverse_bind_matrices() else {
         return Ok(Vec::new());
     };
-    let matrices = reader.floats::<16>(&accessor)?;
+    let mut matrices = reader.floats::<16>(&accessor)?;
     if matrices.len() < joints {
         return Err(GltfError::invalid(
             format!("skin {}", skin.index()),
@@ -105,6 +105,8 @@ fn inverse_binds(
             ),
         ));
     }
+    // More are legal, and belong to nothing.
+    matrices.truncate(joints);
     let last_row = |m: &[f32; 16]| [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0];
     let projective = matrices.iter().filter(|m| !last_row(m)).count();
     if projective > 0 {

@@ -53,6 +53,7 @@ pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {
         positions: &positions,
         triangles: &triangles,
         influences: &influences,
+        influence_ends: &[],
         tags: &[],
         joint_count: joints as usize,
     };

@@ -29,6 +29,7 @@ fn patch(corners: &[(f32, f32, f32)], triangles: &[[u32; 3]]) -> SkinnedSurface 
         positions: &positions,
         triangles,
         influences: &vec![influence; positions.len()],
+        influence_ends: &[],
         tags: &[],
         joint_count: 1,
     };

@@ -72,6 +72,7 @@ fn build(vertices: usize) -> Result<Creature, BeastError> {
         positions: &positions,
         triangles: &surface.triangles,
         influences: &influences,
+        influence_ends: &[],
         tags: &tags,
         joint_count: bones.len(),
     };

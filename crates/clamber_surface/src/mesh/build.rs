@@ -20,9 +20,11 @@ pub struct MeshSource<'a> {
     pub positions: &'a [Vec3],
     /// Corners, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// Influences of the first vertex, then of the second, and so on: the same number for each,
-    /// any number, filled up with zero weights.
+    /// Influences of the first vertex, then of the second, and so on; any number for each.
     pub influences: &'a [Influence],
+    /// Where in `influences` those of each vertex end. Empty if every vertex has as many, filled up
+    /// with zero weights.
+    pub influence_ends: &'a [u32],
     /// A tag per triangle, or empty for [`SurfaceTag::default`] everywhere.
     pub tags: &'a [SurfaceTag],
     /// How many joints the skeleton has.
@@ -98,6 +100,7 @@ impl ColliderMesh {
     ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
     ///     triangles: &[[0, 1, 2], [2, 0, 1]],
     ///     influences: &influences,
+    ///     influence_ends: &[],
     ///     tags: &[],
     ///     joint_count: 1,
     /// };
@@ -210,7 +213,14 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
         }
     }
     let influences = source.influences.len();
-    if vertices == 0 || influences == 0 || !influences.is_multiple_of(vertices) {
+    let ends = source.influence_ends;
+    let divided = if ends.is_empty() {
+        vertices > 0 && influences > 0 && influences.is_multiple_of(vertices)
+    } else {
+        let last = ends.last().is_some_and(|end| *end as usize == influences);
+        ends.len() == vertices && ends.is_sorted() && last
+    };
+    if !divided {
         return Err(MeshError::InfluenceCount {
             influences,
             vertices,
@@ -237,11 +247,11 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
             });
         }
     }
-    let per_vertex = influences / vertices;
-    for (index, influence) in source.influences.iter().enumerate() {
-        if influence.joint.0 as usize >= source.joint_count {
+    for (vertex, influences) in source.influences_by_vertex().enumerate() {
+        let beyond = |i: &&Influence| i.joint.0 as usize >= source.joint_count;
+        if let Some(influence) = influences.iter().find(beyond) {
             return Err(MeshError::JointOutOfRange {
-                vertex: index / per_vertex,
+                vertex,
                 joint: influence.joint,
                 joints: source.joint_count,
             });
@@ -250,14 +260,27 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     Ok(())
 }
 
+impl<'a> MeshSource<'a> {
+    /// The influences of each vertex, once their counts have been validated.
+    fn influences_by_vertex(&self) -> impl Iterator<Item = &'a [Influence]> + use<'a> {
+        let (influences, ends) = (self.influences, self.influence_ends);
+        let vertices = self.positions.len();
+        let each = influences.len() / vertices.max(1);
+        let end = move |v: usize| ends.get(v).map_or((v + 1) * each, |end| *end as usize);
+        (0..vertices).map(move |v| {
+            let start = if v == 0 { 0 } else { end(v - 1) };
+            &influences[start..end(v)]
+        })
+    }
+}
+
 /// The key of every vertex given, with its weights normalised.
 fn vertex_keys(
     source: &MeshSource<'_>,
     report: &mut BuildReport,
 ) -> Result<Vec<VertexKey>, MeshError> {
-    let per_vertex = source.influences.len() / source.positions.len();
     let mut keys = Vec::with_capacity(source.positions.len());
-    let given = source.influences.chunks_exact(per_vertex);
+    let given = source.influences_by_vertex();
     for (vertex, (position, influences)) in source.positions.iter().zip(given).enumerate() {
         let weights = normalize(influences).ok_or_else(|| MeshError::Weights {
             vertex,

@@ -21,23 +21,24 @@ pub(crate) const WEIGHT_ONE: u32 = 1 << 24;
 /// Influences of one joint are merged. Each share is rounded down, and what is missing goes to
 /// the largest remainders, ties to the smaller joint: no weight is off by more than one unit.
 pub(crate) fn normalize(influences: &[Influence]) -> Option<Vec<(JointId, u32)>> {
-    let mut merged: Vec<(JointId, f64)> = Vec::with_capacity(influences.len());
-    for influence in influences {
-        let weight = f64::from(influence.weight);
-        if !weight.is_finite() || weight < 0.0 {
-            return None;
-        }
-        if weight > 0.0 {
-            match merged
-                .iter_mut()
-                .find(|(joint, _)| *joint == influence.joint)
-            {
-                Some((_, sum)) => *sum += weight,
-                None => merged.push((influence.joint, weight)),
-            }
-        }
+    if influences
+        .iter()
+        .any(|i| !i.weight.is_finite() || i.weight < 0.0)
+    {
+        return None;
     }
+    let positive = influences.iter().filter(|i| i.weight > 0.0);
+    let mut merged: Vec<(JointId, f64)> =
+        positive.map(|i| (i.joint, f64::from(i.weight))).collect();
+    // Stable: the weights of one joint are added in the order given.
     merged.sort_by_key(|(joint, _)| *joint);
+    merged.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
     let sum: f64 = merged.iter().map(|(_, weight)| weight).sum();
     if merged.is_empty() {
         return None;

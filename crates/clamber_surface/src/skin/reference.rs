@@ -88,6 +88,7 @@ mod tests {
             positions: &positions,
             triangles: &triangles,
             influences: &given,
+            influence_ends: &[],
             tags: &[],
             joint_count: joints as usize,
         };
@@ -129,6 +130,7 @@ mod tests {
             positions: &[Vec3::ONE, Vec3::X, Vec3::Y],
             triangles: &[[0, 1, 2]],
             influences: &given,
+            influence_ends: &[],
             tags: &[],
             joint_count: palette.len(),
         };

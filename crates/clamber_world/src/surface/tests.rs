@@ -19,6 +19,7 @@ fn square() -> SkinnedSurface {
         positions: &positions,
         triangles: &[[0, 1, 2], [0, 2, 3]],
         influences: &[influence; 4],
+        influence_ends: &[],
         tags: &[],
         joint_count: 1,
     };

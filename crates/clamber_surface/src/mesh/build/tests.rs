@@ -38,6 +38,7 @@ impl Square {
             positions: &self.positions,
             triangles: &self.triangles,
             influences: &self.influences,
+            influence_ends: &[],
             tags: &self.tags,
             joint_count: 2,
         }

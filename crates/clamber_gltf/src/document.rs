@@ -1,0 +1,130 @@
+//! From bytes to a validated document.
+//!
+//! The parser's own validation trusts some indices, and refuses whole files for things that do not
+//! concern a collider; both are seen to before it runs.
+
+use gltf::Document;
+use gltf::json::validation::Checked;
+use gltf::json::{Root, Value};
+
+use crate::GltfError;
+
+/// Length of a GLB's header and of its first chunk's.
+const GLB_HEADERS: u32 = 20;
+
+/// Extensions that a file may require although nothing here reads them: they change how it looks,
+/// or allow integers where this importer takes them anyway.
+const HARMLESS: [&str; 6] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",
+    "KHR_lights_punctual",
+    "KHR_animation_pointer",
+    "EXT_texture_webp",
+];
+
+/// The document, and the bytes of a GLB's binary chunk.
+pub(crate) fn parse(
+    bytes: &[u8],
+    warnings: &mut Vec<String>,
+) -> Result<(Document, Option<Vec<u8>>), GltfError> {
+    let (mut root, blob) = if bytes.starts_with(b"glTF") {
+        check_glb_length(bytes)?;
+        let glb = gltf::Glb::from_slice(bytes)?;
+        (
+            parse_json(&glb.json, warnings)?,
+            glb.bin.map(|bin| bin.into_owned()),
+        )
+    } else {
+        (parse_json(bytes, warnings)?, None)
+    };
+    root.extensions_required
+        .retain(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
+    check_attributes(&root)?;
+    check_channels(&mut root, warnings)?;
+    Ok((Document::from_json(root)?, blob))
+}
+
+/// The parser subtracts the headers' length from what the file claims.
+fn check_glb_length(bytes: &[u8]) -> Result<(), GltfError> {
+    let claimed = bytes
+        .get(8..12)
+        .map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    if claimed < GLB_HEADERS {
+        let reason = format!("claims to be {claimed} bytes long, less than its own headers");
+        return Err(GltfError::invalid("GLB header", reason));
+    }
+    Ok(())
+}
+
+fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfError> {
+    let refused = match Root::from_slice(json) {
+        Ok(root) => return Ok(root),
+        Err(error) => gltf::Error::Deserialize(error),
+    };
+    // Channels without a node are legal and to be passed over, but the parser requires one.
+    let Ok(mut value) = gltf::json::deserialize::from_slice::<Value>(json) else {
+        return Err(refused.into());
+    };
+    let mut dropped = 0;
+    let animations = value.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            let before = channels.len();
+            channels.retain(|channel| channel.pointer("/target/node").is_some());
+            dropped += before - channels.len();
+        }
+    }
+    if dropped == 0 {
+        return Err(refused.into());
+    }
+    warnings.push(format!(
+        "{dropped} animation channels have no node; passed over"
+    ));
+    let patched = gltf::json::serialize::to_vec(&value).map_err(gltf::Error::Deserialize)?;
+    Ok(Root::from_slice(&patched).map_err(gltf::Error::Deserialize)?)
+}
+
+/// Every attribute names an accessor.
+fn check_attributes(root: &Root) -> Result<(), GltfError> {
+    let count = root.accessors.len();
+    for (mesh, object) in root.meshes.iter().enumerate() {
+        for primitive in &object.primitives {
+            if let Some(bad) = primitive.attributes.values().find(|a| a.value() >= count) {
+                let reason = format!("an attribute names accessor {} of {count}", bad.value());
+                return Err(GltfError::invalid(format!("mesh {mesh}"), reason));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every channel names a node; those that move something unknown are dropped.
+fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), GltfError> {
+    let nodes = root.nodes.len();
+    for (animation, object) in root.animations.iter_mut().enumerate() {
+        if let Some(bad) = object
+            .channels
+            .iter()
+            .find(|c| c.target.node.value() >= nodes)
+        {
+            let reason = format!(
+                "a channel names node {} of {nodes}",
+                bad.target.node.value()
+            );
+            return Err(GltfError::invalid(format!("animation {animation}"), reason));
+        }
+        let before = object.channels.len();
+        let known = |path: &Checked<_>| matches!(path, Checked::Valid(_));
+        object
+            .channels
+            .retain(|channel| known(&channel.target.path));
+        let dropped = before - object.channels.len();
+        if dropped > 0 {
+            warnings.push(format!(
+                "animation {animation}: {dropped} channels move something unknown; passed over"
+            ));
+        }
+    }
+    Ok(())
+}
