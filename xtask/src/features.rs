@@ -1,5 +1,5 @@
-//! Every crate with no features, and with each of its features alone. All together are linted in
-//! another step.
+//! Every crate with no features, and with each of its features alone, without warnings. All together
+//! are linted in another step.
 
 use cargo_metadata::Metadata;
 
@@ -10,16 +10,14 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         if package.features.is_empty() {
             continue;
         }
-        let bare = [
-            "check",
-            "--quiet",
-            "-p",
-            &package.name,
-            "--no-default-features",
-        ];
-        cargo(&bare)?;
+        let mut selections = vec![vec!["--no-default-features"]];
         for feature in package.features.keys().filter(|name| *name != "default") {
-            cargo(&[&bare[..], &["--features", feature]].concat())?;
+            selections.push(vec!["--no-default-features", "--features", feature]);
+        }
+        for selection in selections {
+            let bare = ["clippy", "--quiet", "-p", &package.name, "--all-targets"];
+            let strict = ["--", "-D", "warnings"];
+            cargo(&[&bare[..], &selection, &strict].concat())?;
         }
     }
     Ok(())

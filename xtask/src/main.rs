@@ -71,11 +71,13 @@ fn main() -> ExitCode {
         }
     };
     let mut failures = Vec::new();
+    let mut ran = 0;
     for (name, step) in STEPS {
         if only.as_deref().is_some_and(|only| !name.contains(only)) {
             continue;
         }
         println!("== {name}");
+        ran += 1;
         let start = Instant::now();
         if let Err(reason) = step(&metadata) {
             eprintln!("{name} FAILED: {reason}");
@@ -83,8 +85,12 @@ fn main() -> ExitCode {
         }
         println!("   {name}: {:.0} s", start.elapsed().as_secs_f64());
     }
-    if failures.is_empty() {
-        println!("all steps passed");
+    if ran == 0 {
+        let names = STEPS.map(|(name, _)| name).join(", ");
+        eprintln!("no step has such a name; there are {names}");
+        ExitCode::FAILURE
+    } else if failures.is_empty() {
+        println!("{ran} of {} steps ran, all passed", STEPS.len());
         ExitCode::SUCCESS
     } else {
         eprintln!("failed: {}", failures.join(", "));

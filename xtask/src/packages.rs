@@ -30,11 +30,19 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         check_licences(metadata, package)?;
         check_files(package)?;
     }
+    // A folder of its own each time: cargo remembers the packages of a folder by their version, and
+    // would check today's crates against yesterday's.
+    let folder = metadata
+        .target_directory
+        .join(format!("xtask-packages-{}", std::process::id()));
     let mut arguments = vec!["package", "--quiet", "--allow-dirty"];
+    arguments.extend(["--target-dir", folder.as_str()]);
     for package in &packages {
         arguments.extend(["-p", package.name.as_str()]);
     }
-    cargo(&arguments)
+    let packaged = cargo(&arguments);
+    let removed = std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"));
+    packaged.and(removed)
 }
 
 fn check_metadata(package: &Package) -> Result<(), String> {

@@ -1,4 +1,11 @@
-#![doc = include_str!("../../../README.md")]
+#![cfg_attr(
+    all(feature = "gltf", feature = "rapier"),
+    doc = include_str!("../../../README.md")
+)]
+#![cfg_attr(
+    not(all(feature = "gltf", feature = "rapier")),
+    doc = "clamber without some of its features; its front page is that of all features."
+)]
 
 #[doc(inline)]
 pub use clamber_climber as climber;

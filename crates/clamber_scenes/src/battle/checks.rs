@@ -10,7 +10,8 @@ use glam::DVec3;
 use super::CREATURE;
 use crate::{solid_angle, valley};
 
-/// Ticks between two looks at whether the climber is inside the creature: over all triangles.
+/// Ticks between two looks at whether the climber is inside the creature, which take longer than the
+/// tick itself: they go over all triangles.
 const INSIDE_EVERY: u64 = 10;
 
 /// Watches a climber from tick to tick.
@@ -18,10 +19,8 @@ const INSIDE_EVERY: u64 = 10;
 pub(super) struct Watch {
     /// The material point under the climber when it landed or its input ended.
     recorded: Option<MaterialPoint>,
-    /// Ticks at which it was inside the creature or under the ground.
+    /// Ticks at which its centre was seen inside the creature or under the ground.
     pub(super) fell_through: u32,
-    /// Ticks with a number that is not finite.
-    pub(super) not_finite: u32,
     /// Deepest that the sphere reached into the skin while it stood without input, metres.
     pub(super) deepest: f64,
 }
@@ -37,10 +36,10 @@ impl Watch {
         tick: u64,
     ) -> Option<f64> {
         let state = climber.state();
-        if !(state.position.is_finite() && state.velocity.is_finite()) {
-            self.not_finite += 1;
-        }
-        if tick.is_multiple_of(INSIDE_EVERY) && fell_through(surface, state.position) {
+        let center = state.position;
+        let look_inside = tick.is_multiple_of(INSIDE_EVERY);
+        let under_ground = center.y < valley::height(center.x, center.z);
+        if under_ground || look_inside && is_inside(surface, center) {
             self.fell_through += 1;
         }
         let riding = state
@@ -55,12 +54,15 @@ impl Watch {
             return None;
         };
         let radius = climber.config().radius;
-        let nearest = Obstacle::closest_point(surface, state.position, 2.0 * radius)?;
-        self.deepest = self.deepest.max(radius - nearest.distance);
-        let expected = reference_position(surface, palette, &recorded)?;
+        if let Some(nearest) = Obstacle::closest_point(surface, center, radius) {
+            self.deepest = self.deepest.max(radius - nearest.distance);
+        }
         // Off its point, or out of touch with it.
-        let gap = (state.position.distance(expected) - radius).abs();
-        Some(footing.contact.distance(expected).max(gap))
+        let off = |expected: DVec3| {
+            let gap = (center.distance(expected) - radius).abs();
+            footing.contact.distance(expected).max(gap)
+        };
+        Some(reference_position(surface, palette, &recorded).map_or(f64::INFINITY, off))
     }
 }
 
@@ -79,9 +81,8 @@ fn reference_position(
     Some(surface.world_from_model().transform_point(position))
 }
 
-/// True if the climber's centre is inside the creature or under the ground.
-fn fell_through(surface: &SkinnedSurface, center: DVec3) -> bool {
-    let in_model = surface.world_from_model().inverse_transform_point(center);
-    let under_ground = center.y < valley::height(center.x, center.z);
-    under_ground || solid_angle::is_inside(surface.positions(), surface.mesh(), in_model)
+/// True if a point of the world is inside the creature.
+fn is_inside(surface: &SkinnedSurface, point: DVec3) -> bool {
+    let in_model = surface.world_from_model().inverse_transform_point(point);
+    solid_angle::is_inside(surface.positions(), surface.mesh(), in_model)
 }

@@ -13,9 +13,9 @@ const BEAST_VERTICES: usize = 6_000;
 
 /// A climber rides a walking, shaking creature.
 ///
-/// Drops a climber on the creature's back, where it stands, walks and jumps by script, and checks
-/// at every tick that it is carried exactly and never falls through. Ends with a table, and exits
-/// with 1 if a check failed.
+/// Drops a climber on the creature's back, where it stands, walks and jumps by script. Checks at
+/// every tick that it is carried exactly and stays above the ground, and six times a second that it
+/// is not inside the creature. Ends with a table, and exits with 1 if a check failed.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {

@@ -8,6 +8,10 @@ use super::{Battle, BattleError, BattleOptions};
 /// Farthest that a standing climber's contact may be from its material point, metres.
 const MAX_DRIFT: f64 = 1e-4;
 
+/// Largest share of the ticks that may be spent off the creature: a battle that rides less has
+/// shown nothing.
+const MAX_OFF: f64 = 0.9;
+
 /// Longest push-out of a climber that stands without input, metres.
 const MAX_PUSH_OUT: f64 = 0.01;
 
@@ -104,7 +108,11 @@ impl Summary {
                     MAX_PUSH_OUT,
                 ),
                 check("ticks inside or below", f64::from(watch.fell_through), 0.0),
-                check("ticks not finite", f64::from(watch.not_finite), 0.0),
+                check(
+                    "share of ticks not riding",
+                    1.0 - recording.riding_share(),
+                    MAX_OFF,
+                ),
             ],
         }
     }
@@ -166,7 +174,7 @@ impl fmt::Display for Summary {
         for check in &self.checks {
             let verdict = if check.holds { "ok" } else { "FAILED" };
             let values = format!(
-                "{:<12.3e} at most {:<8.0e} {verdict}",
+                "{:<12.3e} at most {:<8.1e} {verdict}",
                 check.found, check.at_most
             );
             row(f, check.name, values)?;

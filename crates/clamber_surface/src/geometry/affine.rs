@@ -1,4 +1,6 @@
-use glam::{DAffine3, DMat3, DVec3, Mat4, Vec3};
+#[expect(clippy::disallowed_types, reason = "what other engines have")]
+use glam::Mat4;
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::widen;
 
@@ -98,6 +100,7 @@ impl Affine {
     }
 }
 
+#[expect(clippy::disallowed_types, reason = "read element by element")]
 impl From<Mat4> for Affine {
     /// Takes the upper three rows.
     fn from(m: Mat4) -> Self {
