@@ -87,7 +87,8 @@ fn check_files(package: &Package) -> Result<(), String> {
         &package.name,
     ];
     let files = cargo_output(&list)?;
-    let source = |file: &str| file.ends_with(".rs") && file.contains("src/");
+    let source =
+        |file: &str| file.ends_with(".rs") && (file.contains("src/") || file.starts_with("tests/"));
     for file in files.lines() {
         if !TOP_LEVEL.contains(&file) && !source(file) {
             return Err(format!("{} would ship {file}", package.name));
