@@ -82,18 +82,9 @@ fn beast_answers_like_brute_force() {
 
 #[test]
 fn five_models_answer_like_brute_force() {
-    for name in [
-        "Trex.glb",
-        "Fox.glb",
-        "CesiumMan.glb",
-        "Stag.glb",
-        "George.glb",
-    ] {
-        let Some(path) = test_data::file("query agreement", &format!("models/{name}")) else {
-            continue;
-        };
-        let found = assert_agreement(&Creature::load(&path).unwrap());
-        println!("{name}: {found} hits, all equal to brute force");
-        assert!(found > 100, "{name}: only {found} hits");
+    for creature in test_data::five_creatures("query agreement").unwrap() {
+        let found = assert_agreement(&creature);
+        println!("{}: {found} hits, all equal to brute force", creature.name);
+        assert!(found > 100, "{}: only {found} hits", creature.name);
     }
 }

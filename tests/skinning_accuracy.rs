@@ -53,18 +53,9 @@ fn beast_stays_within_the_bound() {
 
 #[test]
 fn five_models_stay_within_the_bound_over_all_clips() {
-    for name in [
-        "Trex.glb",
-        "Fox.glb",
-        "CesiumMan.glb",
-        "Stag.glb",
-        "George.glb",
-    ] {
-        let Some(path) = test_data::file("skinning accuracy", &format!("models/{name}")) else {
-            continue;
-        };
-        let creature = Creature::load(&path).unwrap();
-        assert!(!creature.clips.is_empty());
+    for creature in test_data::five_creatures("skinning accuracy").unwrap() {
+        let name = &creature.name;
+        assert!(!creature.clips.is_empty(), "{name}");
         let (worst, compared) = worst_share(&creature);
         println!("{name}: {worst:.3} of the bound, {compared} vertices");
         assert!(worst > 0.05, "{name}: nothing was measured");

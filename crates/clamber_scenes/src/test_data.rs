@@ -4,6 +4,8 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use crate::{Creature, CreatureError};
+
 /// The environment variable that names the folder.
 pub const VARIABLE: &str = "CLAMBER_TEST_DATA";
 
@@ -26,4 +28,27 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
         path.display()
     );
     Some(path)
+}
+
+/// Models of several makers, with 19 to 48 joints and 1 to 20 clips, to measure on.
+const FIVE_MODELS: [&str; 5] = [
+    "Trex.glb",
+    "Fox.glb",
+    "CesiumMan.glb",
+    "Stag.glb",
+    "George.glb",
+];
+
+/// Five models to measure on; none, said on standard error, without [`VARIABLE`].
+///
+/// # Errors
+/// [`CreatureError`] if one cannot be loaded.
+///
+/// # Panics
+/// As [`file`].
+pub fn five_creatures(test: &str) -> Result<Vec<Creature>, CreatureError> {
+    let paths = FIVE_MODELS
+        .iter()
+        .map(|name| file(test, &format!("models/{name}")));
+    paths.flatten().map(|path| Creature::load(&path)).collect()
 }

@@ -73,12 +73,17 @@ impl From<SurfaceError> for BattleError {
     }
 }
 
-/// Fights a battle from beginning to end, writes `summary.json` and `timeline.svg`, and gives the
-/// summary.
+/// Fights a battle from beginning to end, writes `summary.json` and `timeline.svg` into its folder,
+/// which is made if need be, and gives the summary.
 ///
 /// # Errors
 /// [`BattleError`]. Failed checks are no error: they stand in the summary.
 pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
+    // First, so that a folder that cannot be is not found out about at the end.
+    std::fs::create_dir_all(&options.out).map_err(|error| BattleError::Write {
+        path: options.out.clone(),
+        reason: error.to_string(),
+    })?;
     let creature = options.load_creature()?;
     let mut battle = Battle::new(&creature, options.height, options.seed)?;
     let ticks = options.ticks();

@@ -24,11 +24,13 @@ pub struct BattleOptions {
     pub creature: Option<PathBuf>,
 
     /// Height of the creature.
-    #[arg(long, value_name = "METRES", default_value_t = 20.0, value_parser = positive)]
+    #[arg(long, value_name = "METRES", default_value_t = 20.0)]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: f64,
 
     /// Length of the battle.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: f64,
 
     /// Where exactly the climber comes down: any number; the same one gives the same battle.

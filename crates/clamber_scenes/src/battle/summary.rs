@@ -122,16 +122,15 @@ impl Summary {
         self.checks.iter().all(|check| check.holds)
     }
 
-    /// Writes `summary.json` into a folder, which is made if need be.
+    /// Writes `summary.json` into a folder that exists.
     pub(super) fn write(&self, folder: &Path) -> Result<(), BattleError> {
-        let failed = |path: &Path, reason: String| BattleError::Write {
-            path: path.to_owned(),
+        let path = folder.join("summary.json");
+        let failed = |reason: String| BattleError::Write {
+            path: path.clone(),
             reason,
         };
-        std::fs::create_dir_all(folder).map_err(|e| failed(folder, e.to_string()))?;
-        let path = folder.join("summary.json");
-        let json = serde_json::to_string_pretty(self).map_err(|e| failed(&path, e.to_string()))?;
-        std::fs::write(&path, json + "\n").map_err(|e| failed(&path, e.to_string()))
+        let json = serde_json::to_string_pretty(self).map_err(|e| failed(e.to_string()))?;
+        std::fs::write(&path, json + "\n").map_err(|e| failed(e.to_string()))
     }
 }
 

@@ -1,6 +1,6 @@
 use glam::{DQuat, Quat};
 
-use super::motion::material_frame;
+use super::deformation::material_frame;
 use super::{SkinnedSurface, SurfaceError, SurfaceHit};
 use crate::mesh::TriangleId;
 use crate::rig::rotation_f32;

@@ -5,6 +5,7 @@
 //! brute-force twin over all triangles, `*_reference`, with which it agrees bit for bit.
 
 mod anchor;
+mod deformation;
 mod edit;
 mod error;
 mod motion;

@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle};
 use crate::rig::Palette;
+use crate::surface::deformation::frame_of;
 use crate::testing::{bend, rigid, tube};
 
 const JOINTS: u32 = 5;

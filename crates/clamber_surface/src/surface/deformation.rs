@@ -1,0 +1,118 @@
+//! What became of a triangle: its rotation and its stretch, from one pose to another.
+
+use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+
+use crate::geometry::triangle::scaled_normal;
+use crate::geometry::{Affine, widen};
+
+/// A triangle lower than this share of its longest edge has collapsed, 2^-22: its direction is
+/// rounding. Larger freezes frames of slivers that still have one.
+const COLLAPSED: f64 = 1.0 / (1u32 << 22) as f64;
+
+/// So has one lower than this share of its corners' distance from the origin, 2^-20: skinning
+/// rounds each corner by some 2^-24 of that, which would turn the triangle by a quarter radian.
+const COLLAPSED_FAR_OUT: f64 = 1.0 / (1u32 << 20) as f64;
+
+/// True if the triangle has no direction of its own.
+pub(super) fn is_collapsed(corners: [Vec3; 3]) -> bool {
+    let [a, b, c] = corners.map(widen);
+    let longest_sq = (b - a)
+        .length_squared()
+        .max((c - b).length_squared())
+        .max((a - c).length_squared());
+    let longest = longest_sq.sqrt();
+    let farthest = a.length().max(b.length()).max(c.length());
+    let lowest = (COLLAPSED * longest).max(COLLAPSED_FAR_OUT * farthest);
+    // Twice the area is the longest edge times the height over it.
+    scaled_normal(corners).length() <= longest * lowest
+}
+
+/// The rotation of the material from rest to now. A sliver that has no frame even at rest turns with
+/// the joint of its part.
+pub(super) fn material_frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) -> Option<DQuat> {
+    if !is_collapsed(rest) {
+        return frame_of(rest, now);
+    }
+    let linear = joint.to_f64().matrix3;
+    let x = linear.x_axis.try_normalize()?;
+    let z = x.cross(linear.y_axis).try_normalize()?;
+    Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
+}
+
+/// A triangle in the plane: its orthonormal axes (first edge, in-plane perpendicular, normal) and
+/// its two edges in them, `(length, 0)` and `(x, y)` with y positive.
+struct Flattened {
+    axes: DMat3,
+    first: f64,
+    second: DVec2,
+}
+
+impl Flattened {
+    fn new(corners: [Vec3; 3]) -> Option<Self> {
+        if is_collapsed(corners) {
+            return None;
+        }
+        let [a, b, c] = corners.map(widen);
+        let along = (b - a).try_normalize()?;
+        let normal = scaled_normal(corners).try_normalize()?;
+        let across = normal.cross(along);
+        Some(Self {
+            axes: DMat3::from_cols(along, across, normal),
+            first: (b - a).length(),
+            second: DVec2::new((c - a).dot(along), (c - a).dot(across)),
+        })
+    }
+
+    /// The in-plane map that takes this triangle's edges to `to`'s, each in its own axes. It is
+    /// `[[a, b], [0, d]]` with positive a and d, given as (a, b, d).
+    fn gradient(&self, to: &Self) -> (f64, f64, f64) {
+        let a = to.first / self.first;
+        let b = (to.second.x - a * self.second.x) / self.second.y;
+        let d = to.second.y / self.second.y;
+        (a, b, d)
+    }
+}
+
+/// The rotation nearest to the map from one triangle to the other; `None` if either collapsed.
+///
+/// The in-plane gradient `[[a, b], [0, d]]` has as its nearest rotation the one with cosine and
+/// sine proportional to `a + d` and `-b` (polar decomposition in two dimensions).
+pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
+    let (rest, now) = (Flattened::new(rest)?, Flattened::new(now)?);
+    let (a, b, d) = rest.gradient(&now);
+    let (cos, sin) = (a + d, -b);
+    let length = (cos * cos + sin * sin).sqrt();
+    let (cos, sin) = (cos / length, sin / length);
+    let in_plane = DMat3::from_cols(
+        DVec3::new(cos, sin, 0.0),
+        DVec3::new(-sin, cos, 0.0),
+        DVec3::Z,
+    );
+    let rotation = now.axes * in_plane * rest.axes.transpose();
+    let frame = DQuat::from_mat3(&rotation).normalize();
+    frame.is_finite().then_some(frame)
+}
+
+/// Area ratio and principal stretches, larger first, from one triangle to the other.
+pub(super) fn stretch(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
+    let Some(flat_before) = Flattened::new(before) else {
+        return (1.0, [1.0, 1.0]);
+    };
+    let Some(flat_now) = Flattened::new(now) else {
+        // Collapsed into a segment or a point: the longest edge tells the stretch along it.
+        let area = scaled_normal(now).length() / scaled_normal(before).length();
+        let along = longest_edge(now) / longest_edge(before);
+        return (area, [along, if along > 0.0 { area / along } else { 0.0 }]);
+    };
+    let (a, b, d) = flat_before.gradient(&flat_now);
+    // Singular values of [[a, b], [0, d]] without cancellation (Blinn 1996).
+    let sum = ((a + d) * (a + d) + b * b).sqrt();
+    let difference = ((a - d) * (a - d) + b * b).sqrt();
+    let larger = 0.5 * (sum + difference);
+    (a * d, [larger, a * d / larger])
+}
+
+fn longest_edge(corners: [Vec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(widen);
+    (b - a).length().max((c - b).length()).max((a - c).length())
+}
