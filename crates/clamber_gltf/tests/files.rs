@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use clamber_gltf::{GltfError, LoadOptions, Rig, load, load_slice};
-use clamber_surface::geometry::Similarity;
+use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::SurfaceKind;
 use clamber_surface::rig::{JointId, Playback};
 use clamber_surface::surface::SkinnedSurface;
@@ -291,9 +291,20 @@ fn the_larger_of_two_skins_is_taken_and_the_other_one_named() {
 
 #[test]
 fn joints_and_bind_matrices_beyond_the_skin() {
+    // A third bind matrix is legal to have, whatever it holds, and belongs to no one.
+    let mut file = File::square();
+    let mut binds = [f32::NAN; 48];
+    for k in 0..8 {
+        binds[4 * k..4 * k + 4].fill(0.0);
+        binds[4 * k + k % 4] = 1.0;
+    }
+    let binds = file.floats("MAT4", &binds);
+    file.json["skins"][0]["inverseBindMatrices"] = json!(binds);
+    let rig = file.load().unwrap();
+    assert_eq!(rig.skeleton.joints()[2].inverse_bind, Affine::IDENTITY);
+
     let mut file = File::square();
     file.json["skins"][0]["joints"] = json!([1]);
-    // The second bind matrix is legal to have; joint 1 of the vertices is not.
     let error = file.load().unwrap_err();
     assert!(
         error.to_string().contains("joint 1 of a skin of 1"),
