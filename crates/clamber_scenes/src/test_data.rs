@@ -45,7 +45,7 @@ const FIVE_MODELS: [&str; 5] = [
 /// [`CreatureError`] if one cannot be loaded.
 ///
 /// # Panics
-/// As [`file`].
+/// As [`file()`].
 pub fn five_creatures(test: &str) -> Result<Vec<Creature>, CreatureError> {
     let paths = FIVE_MODELS
         .iter()
