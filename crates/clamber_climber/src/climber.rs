@@ -20,6 +20,8 @@ pub struct Climber {
     pub(crate) state: ClimberState,
     /// Contacts of the current query; kept for its memory.
     pub(crate) contacts: Vec<Contact>,
+    /// Direction away from each contact, and its velocity; kept for its memory.
+    pub(crate) planes: Vec<(DVec3, DVec3)>,
 }
 
 impl Climber {
@@ -43,6 +45,7 @@ impl Climber {
             config,
             state,
             contacts: Vec::new(),
+            planes: Vec::new(),
         })
     }
 

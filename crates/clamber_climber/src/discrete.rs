@@ -10,7 +10,7 @@ use glam::DVec3;
 const TOUCH: f64 = 1e-4;
 
 /// What the contacts of a tick do to a sphere.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PushOut {
     /// By how much to move the sphere: the mean of all push-outs.
     pub displacement: DVec3,

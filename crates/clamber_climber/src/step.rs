@@ -40,7 +40,7 @@ pub enum ClimberEvent {
 }
 
 /// What a step did, beside the new state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// In the order in which they happened; empty in most ticks, and then without memory.
     pub events: Vec<ClimberEvent>,
@@ -87,10 +87,7 @@ impl Climber {
         }
         let before = self.state;
         let tick = Tick { obstacles, dt };
-        let mut report = StepReport {
-            events: Vec::new(),
-            push_out: average_push_out(&[], DVec3::ZERO, 0.0),
-        };
+        let mut report = StepReport::default();
         match self.state.mode {
             ClimberMode::Standing => self.stand(input, &tick, &mut report),
             ClimberMode::Falling => self.fall(&tick, &mut report),
@@ -98,7 +95,7 @@ impl Climber {
         if !self.state.is_finite() {
             // Obstacles of one's own may answer nonsense; the climber waits for better.
             self.state = before;
-            report.events.clear();
+            report = StepReport::default();
         }
         Ok(report)
     }
@@ -211,18 +208,24 @@ impl Climber {
     /// Takes away the velocity into everything that is touched, relative to its own: contact by
     /// contact, some rounds of it. In a corner some of it may remain.
     fn stop_at_contacts(&mut self, tick: &Tick<'_>, reach: f64) {
-        for (id, obstacle) in (0..STOPS).flat_map(|_| tick.sorted()) {
+        let center = self.state.position;
+        self.planes.clear();
+        for (id, obstacle) in tick.sorted() {
             self.contacts.clear();
-            obstacle.overlap_sphere(self.state.position, reach, &mut self.contacts);
-            for contact in &self.contacts {
+            obstacle.overlap_sphere(center, reach, &mut self.contacts);
+            self.planes.extend(self.contacts.iter().map(|contact| {
                 let ground = Ground {
                     obstacle: id,
                     contact: *contact,
                 };
-                let away = contact.away(self.state.position);
-                let into = (self.state.velocity - tick.velocity_of(&ground)).dot(away);
+                (contact.away(center), tick.velocity_of(&ground))
+            }));
+        }
+        for _ in 0..STOPS {
+            for (away, velocity) in &self.planes {
+                let into = (self.state.velocity - *velocity).dot(*away);
                 if into < 0.0 {
-                    self.state.velocity -= away * into;
+                    self.state.velocity -= *away * into;
                 }
             }
         }
@@ -275,8 +278,8 @@ impl Climber {
                 };
                 // In ascending order of obstacle and material: the first of equals stays.
                 let nearer = contact.distance < best.map_or(f64::INFINITY, |b| b.contact.distance);
-                let stands = self.slope(contact.away(center)) <= max_slope;
-                if nearer && stands && accept(&ground) {
+                let stands = || self.slope(contact.away(center)) <= max_slope;
+                if nearer && stands() && accept(&ground) {
                     best = Some(ground);
                 }
             }

@@ -196,27 +196,51 @@ impl Gathered {
         let base = u32::try_from(self.positions.len())
             .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 vertices"))?;
         let positions = reader.floats::<3>(&positions)?;
-        for list in influences(primitive, positions.len(), object, skin_joints, reader)? {
-            let start = self.influences.len();
-            self.influences
-                .extend(list.iter().filter(|influence| influence.weight != 0.0));
-            if self.influences.len() == start {
-                self.unweighted += 1;
-                let first = list.first().map_or(JointId(0), |influence| influence.joint);
-                self.influences.push(Influence {
-                    joint: first,
-                    weight: 1.0,
-                });
-            }
-            let end = u32::try_from(self.influences.len())
-                .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 weights"))?;
-            self.influence_ends.push(end);
+        let sets = weight_sets(primitive, positions.len(), object, reader)?;
+        for vertex in 0..positions.len() {
+            self.push_influences(&sets, vertex, object, skin_joints)?;
         }
         let count = positions.len();
         self.positions
             .extend(positions.into_iter().map(Vec3::from_array));
         self.bases.insert(key, base);
         Ok((base, count))
+    }
+
+    /// Appends the influences of a vertex. What weighs nothing is padding and may name any joint.
+    fn push_influences(
+        &mut self,
+        sets: &[WeightSet],
+        vertex: usize,
+        object: &str,
+        skin_joints: usize,
+    ) -> Result<(), GltfError> {
+        let start = self.influences.len();
+        let named = sets
+            .iter()
+            .flat_map(|(joints, weights)| joints[vertex].into_iter().zip(weights[vertex]))
+            .map(|(joint, weight)| Influence {
+                joint: JointId(joint),
+                weight,
+            });
+        self.influences
+            .extend(named.clone().filter(|influence| influence.weight != 0.0));
+        if self.influences.len() == start {
+            self.unweighted += 1;
+            self.influences.extend(named.take(1).map(|first| Influence {
+                weight: 1.0,
+                ..first
+            }));
+        }
+        let beyond = |i: &&Influence| i.joint.0 as usize >= skin_joints;
+        if let Some(bad) = self.influences[start..].iter().find(beyond) {
+            let reason = format!("follows joint {} of a skin of {skin_joints}", bad.joint);
+            return Err(GltfError::invalid(object, reason));
+        }
+        let end = u32::try_from(self.influences.len())
+            .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 weights"))?;
+        self.influence_ends.push(end);
+        Ok(())
     }
 
     fn build(
@@ -237,16 +261,17 @@ impl Gathered {
     }
 }
 
-/// The influences of every vertex, from all sets. At least the first set is there.
-fn influences(
+/// Joints and weights of every vertex, four of each.
+type WeightSet = (Vec<[u32; 4]>, Vec<[f32; 4]>);
+
+/// All sets of a primitive, at least one.
+fn weight_sets(
     primitive: &Primitive<'_>,
     vertices: usize,
     object: &str,
-    skin_joints: usize,
     reader: &Reader<'_>,
-) -> Result<Vec<Vec<Influence>>, GltfError> {
-    reader.charge(object, vertices.saturating_mul(size_of::<Vec<Influence>>()))?;
-    let mut lists: Vec<Vec<Influence>> = vec![Vec::new(); vertices];
+) -> Result<Vec<WeightSet>, GltfError> {
+    let mut sets = Vec::new();
     for set in 0.. {
         let (joints, weights) = match (
             primitive.get(&Semantic::Joints(set)),
@@ -269,20 +294,9 @@ fn influences(
             );
             return Err(GltfError::invalid(object, reason));
         }
-        for ((list, joints), weights) in lists.iter_mut().zip(joints).zip(weights) {
-            for (joint, weight) in joints.into_iter().zip(weights) {
-                if joint as usize >= skin_joints {
-                    let reason = format!("follows joint {joint} of a skin of {skin_joints}");
-                    return Err(GltfError::invalid(object, reason));
-                }
-                list.push(Influence {
-                    joint: JointId(joint),
-                    weight,
-                });
-            }
-        }
+        sets.push((joints, weights));
     }
-    Ok(lists)
+    Ok(sets)
 }
 
 /// The triangles of a list, strip or fan, all with the same side outside.

@@ -176,16 +176,10 @@ fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let error = share(off.x_axis, linear.x_axis)
         .max(share(off.y_axis, linear.y_axis))
         .max(share(off.z_axis, linear.z_axis));
-    let narrow = |v: DVec3| Vec3::new(v.x as f32, v.y as f32, v.z as f32);
     let transform = Transform {
-        translation: narrow(column(3)),
-        rotation: Quat::from_xyzw(
-            rotation.x as f32,
-            rotation.y as f32,
-            rotation.z as f32,
-            rotation.w as f32,
-        ),
-        scale: narrow(scale),
+        translation: column(3).as_vec3(),
+        rotation: rotation.as_quat(),
+        scale: scale.as_vec3(),
     };
     (transform, error)
 }

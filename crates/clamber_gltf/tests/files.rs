@@ -310,6 +310,12 @@ fn joints_and_bind_matrices_beyond_the_skin() {
         error.to_string().contains("joint 1 of a skin of 1"),
         "{error}"
     );
+    // Where it weighs nothing, it is padding.
+    let all_on_joint_0 = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(4));
+    let attributes = &mut file.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["WEIGHTS_0"] = json!(all_on_joint_0);
+    file.json["animations"] = json!([]);
+    assert!(file.load().is_ok());
     file.json["skins"][0]["joints"] = json!([1, 2, 0]);
     let error = file.load().unwrap_err();
     assert!(

@@ -20,6 +20,8 @@ pub struct Creature {
     pub clips: Vec<Clip>,
     /// Its skin.
     pub collider: Arc<ColliderMesh>,
+    /// Model units that its walk covers in a second, where that is known.
+    pub walk_speed: Option<f64>,
 }
 
 /// Why a creature cannot play in a scene.
@@ -50,6 +52,7 @@ impl Creature {
             skeleton,
             clips,
             collider,
+            walk_speed: None,
         }
     }
 

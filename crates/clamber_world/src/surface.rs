@@ -3,13 +3,9 @@
 use clamber_surface::geometry::{Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceHit};
-use glam::{DQuat, DVec3, Quat, Vec3};
+use glam::{DQuat, DVec3, Quat};
 
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion};
-
-fn widen(v: Vec3) -> DVec3 {
-    v.as_dvec3()
-}
 
 /// A hit in the world. `from` is the query's point, to which the distance is measured anew: the
 /// one in the hit starts from the point's rounding to f32.
@@ -18,7 +14,7 @@ fn contact(surface: &SkinnedSurface, hit: &SurfaceHit, from: DVec3) -> Contact {
     let point = world_from_model.transform_point_f32(hit.point);
     Contact {
         point,
-        normal: (world_from_model.rotation * widen(hit.normal)).normalize_or(DVec3::Y),
+        normal: (world_from_model.rotation * hit.normal.as_dvec3()).normalize_or(DVec3::Y),
         distance: (from - point).length(),
         material: MaterialPoint {
             key: u64::from(hit.triangle.0),
@@ -82,14 +78,14 @@ impl Obstacle for SkinnedSurface {
         };
         let motion = self.motion(&anchor, dt).ok()?;
         let world_from_model = self.world_from_model();
-        let spin = world_from_model.rotation * widen(motion.angular_velocity) * dt;
+        let spin = world_from_model.rotation * motion.angular_velocity.as_dvec3() * dt;
         let angle = spin.length();
         Some(PointMotion {
             position: world_from_model.transform_point_f32(motion.position),
             previous_position: world_from_model.transform_point_f32(motion.previous_position),
-            velocity: world_from_model.transform_vector(widen(motion.velocity)),
+            velocity: world_from_model.transform_vector(motion.velocity.as_dvec3()),
             frame: (!motion.collapsed)
-                .then(|| (world_from_model.rotation * widen_rotation(motion.frame)).normalize()),
+                .then(|| (world_from_model.rotation * motion.frame.as_dquat()).normalize()),
             turn: if angle > 0.0 {
                 rotation_from_axis_angle(spin / angle, angle)
             } else {
@@ -99,10 +95,6 @@ impl Obstacle for SkinnedSurface {
             stretches: motion.stretches.map(f64::from),
         })
     }
-}
-
-fn widen_rotation(q: Quat) -> DQuat {
-    DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into())
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
 use super::BattleError;
-use crate::{Creature, beast, valley};
+use crate::{Creature, valley};
 
 /// Seconds over which one clip fades into the next.
 const FADE: f64 = 0.6;
@@ -63,11 +63,9 @@ impl<'a> Choreography<'a> {
                 height,
             });
         }
-        let speed = if creature.name == "beast" {
-            beast::WALK_SPEED * scale
-        } else {
-            SPEED_PER_HEIGHT * height
-        };
+        let speed = creature
+            .walk_speed
+            .map_or(SPEED_PER_HEIGHT * height, |speed| speed * scale);
         Ok(Self {
             creature,
             acts,
@@ -123,9 +121,9 @@ impl<'a> Choreography<'a> {
         &self.palette
     }
 
-    /// Metres of the world per unit of the model.
-    pub fn scale(&self) -> f64 {
-        self.scale
+    /// Who plays.
+    pub fn creature(&self) -> &Creature {
+        self.creature
     }
 
     fn clip(&self, act: usize) -> Option<&'a Clip> {

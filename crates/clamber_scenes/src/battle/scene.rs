@@ -167,6 +167,11 @@ impl<'a> Battle<'a> {
         &self.climber
     }
 
+    /// The creature.
+    pub fn creature(&self) -> &Creature {
+        self.choreography.creature()
+    }
+
     /// The creature's skin.
     pub fn surface(&self) -> &SkinnedSurface {
         &self.surface

@@ -45,7 +45,7 @@ pub struct Summary {
     pub ticks: usize,
     /// Their length, seconds.
     pub seconds: f64,
-    /// A number over every bit of the climber's states: equal for equal battles, on any machine.
+    /// A number over every bit of the climber's states: equal for equal battles.
     pub hash: String,
     /// Times that the climber was dropped on the creature: 1 if it never fell to the ground.
     pub drops: u32,
@@ -74,7 +74,6 @@ impl Summary {
     pub(super) fn new(battle: &Battle<'_>, options: &BattleOptions) -> Self {
         let recording = battle.recording();
         let mesh = battle.surface().mesh();
-        let name = options.creature.as_ref().and_then(|path| path.file_stem());
         let watch = battle.watch();
         let check = |name, found: f64, at_most: f64| Check {
             name,
@@ -83,7 +82,7 @@ impl Summary {
             holds: found <= at_most,
         };
         Self {
-            creature: name.map_or("beast".into(), |name| name.to_string_lossy().into_owned()),
+            creature: battle.creature().name.clone(),
             joints: mesh.joint_count(),
             vertices: mesh.positions().len(),
             triangles: mesh.triangles().len(),
@@ -97,7 +96,9 @@ impl Summary {
             max_anchor_drift_m: recording.max_drift(),
             max_push_out_m: recording.max_push_out(),
             max_penetration_m: watch.deepest,
-            vertices_skinned_share: 1.0,
+            // The surface holds as many skinned positions as it has skinned this tick.
+            vertices_skinned_share: battle.surface().positions().len() as f64
+                / mesh.positions().len() as f64,
             tick_us_median: recording.tick_us(0.5),
             tick_us_p99: recording.tick_us(0.99),
             checks: vec![

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes, RigError};
-use glam::{DQuat, DVec3, Quat};
+use glam::{DQuat, DVec3};
 
 use super::body::Bone;
 
@@ -178,7 +178,7 @@ fn clip(bones: &[Bone], name: &str, seconds: f64, motion: Motion) -> Result<Clip
             joint,
             Interpolation::CubicSpline,
             times.clone(),
-            Keyframes::Rotation(spline.into_iter().map(narrow).collect()),
+            Keyframes::Rotation(spline.into_iter().map(|q| q.as_quat()).collect()),
         )?);
         if bone.parent.is_none() {
             let position = |k: isize| bone.at + at(k).shift;
@@ -212,8 +212,4 @@ fn rotation(movement: Movement) -> DQuat {
     rotation_from_axis_angle(DVec3::Y, movement.yaw)
         * rotation_from_axis_angle(DVec3::X, movement.pitch)
         * rotation_from_axis_angle(DVec3::Z, movement.roll)
-}
-
-fn narrow(q: DQuat) -> Quat {
-    Quat::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32)
 }

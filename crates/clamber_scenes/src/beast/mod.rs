@@ -23,9 +23,6 @@ use crate::Creature;
 use body::Bone;
 use field::Field;
 
-/// Metres that the walking beast covers in a second.
-pub const WALK_SPEED: f64 = clips::WALK_SPEED;
-
 /// Surface of the beast, square metres; with the number of vertices it gives the size of a cell.
 const SURFACE: f64 = 1560.0;
 
@@ -78,7 +75,10 @@ fn build(vertices: usize) -> Result<Creature, BeastError> {
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
     let clips = clips::clips(&bones)?;
-    Ok(Creature::new("beast", skeleton, clips, Arc::new(mesh)))
+    Ok(Creature {
+        walk_speed: Some(clips::WALK_SPEED),
+        ..Creature::new("beast", skeleton, clips, Arc::new(mesh))
+    })
 }
 
 fn skeleton(bones: &[Bone]) -> Result<Skeleton, RigError> {

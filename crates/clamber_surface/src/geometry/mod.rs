@@ -21,12 +21,12 @@ pub(crate) const MAX_COORDINATE: f64 = (1u128 << 100) as f64;
 
 /// Rounds each coordinate to the nearest f32.
 pub(crate) fn round_to_f32(v: DVec3) -> Vec3 {
-    Vec3::new(v.x as f32, v.y as f32, v.z as f32)
+    v.as_vec3()
 }
 
 /// Widens each coordinate; exact.
 pub(crate) fn widen(v: Vec3) -> DVec3 {
-    DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+    v.as_dvec3()
 }
 
 /// The smallest f32 that is not below `x`; infinity where no finite f32 is.

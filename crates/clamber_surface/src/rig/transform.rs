@@ -57,17 +57,12 @@ impl Default for Transform {
 
 /// Widens a quaternion; exact.
 pub(crate) fn rotation_f64(q: Quat) -> DQuat {
-    DQuat::from_xyzw(
-        f64::from(q.x),
-        f64::from(q.y),
-        f64::from(q.z),
-        f64::from(q.w),
-    )
+    q.as_dquat()
 }
 
 /// Rounds a quaternion's components once.
 pub(crate) fn rotation_f32(q: DQuat) -> Quat {
-    Quat::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32)
+    q.as_quat()
 }
 
 /// `a` at 0, `b` at 1, computed in f64.

@@ -38,7 +38,7 @@ pub struct Motion {
 }
 
 impl SkinnedSurface {
-    /// The motion of a material point over a tick of `dt` seconds. Skins six vertices at most.
+    /// The motion of a material point over a tick of `dt` seconds. Skins three vertices.
     ///
     /// # Errors
     /// [`SurfaceError::Triangle`] if the triangle does not exist or was removed,

@@ -210,10 +210,8 @@ struct PoseF64 {
 
 impl PoseF64 {
     fn new(pose: &Pose) -> Self {
-        let q = pose.rotation;
-        let wide = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
         Self {
-            rotation: wide.normalize(),
+            rotation: pose.rotation.as_dquat().normalize(),
             translation: pose.translation.as_dvec3(),
         }
     }

@@ -54,6 +54,9 @@ fn height_fields_and_meshes_answer_per_triangle() {
         let mut contacts = Vec::new();
         terrain.overlap_sphere(p, 0.7, &mut contacts);
         assert!(contacts.len() >= 2, "{name}: {contacts:?}");
+        let few = contacts.len();
+        terrain.overlap_sphere(p, f64::INFINITY, &mut contacts);
+        assert!(contacts.len() >= 2 * few, "{name}: all of them, appended");
         let hit = terrain
             .cast_ray(p, DVec3::new(0.0, -3.0, 0.0), 2.0)
             .unwrap();
