@@ -11,9 +11,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         positions: &corners.map(|(x, z)| Vec3::new(x, 0.0, z)),
         triangles: &[[0, 1, 2], [0, 2, 3]],
         influences: &joints.map(|joint| Influence { joint, weight }),
-        influence_ends: &[],
-        tags: &[],
         joint_count: 2,
+        ..MeshSource::default()
     };
     let (mesh, _report) = ColliderMesh::build(&source, &BuildOptions::default())?;
     let mut raft = SkinnedSurface::new(mesh.into());

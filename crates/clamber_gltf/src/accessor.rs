@@ -7,7 +7,7 @@ use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
 
-use crate::GltfError;
+use crate::GltfErrorKind;
 
 /// How many bytes may be decoded for each byte that a file holds: exporters let primitives share
 /// accessors, but a file that is read again and again wants to fill the memory.
@@ -36,10 +36,10 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes note of bytes that are about to be allocated for what a file claims.
-    pub(crate) fn charge(&self, object: &str, bytes: usize) -> Result<(), GltfError> {
+    pub(crate) fn charge(&self, object: &str, bytes: usize) -> Result<(), GltfErrorKind> {
         let left = self.budget.get().checked_sub(bytes).ok_or_else(|| {
             let reason = "would take far more memory than the file holds";
-            GltfError::invalid(object, reason)
+            GltfErrorKind::invalid(object, reason)
         })?;
         self.budget.set(left);
         Ok(())
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
     pub(crate) fn floats<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
-    ) -> Result<Vec<[f32; N]>, GltfError> {
+    ) -> Result<Vec<[f32; N]>, GltfErrorKind> {
         let data_type = accessor.data_type();
         let normalized = accessor.normalized();
         self.elements(accessor, |bytes| decode_float(bytes, data_type, normalized))
@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
     pub(crate) fn integers<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
-    ) -> Result<Vec<[u32; N]>, GltfError> {
+    ) -> Result<Vec<[u32; N]>, GltfErrorKind> {
         let data_type = accessor.data_type();
         if !matches!(data_type, DataType::U8 | DataType::U16 | DataType::U32) {
             return Err(invalid(
@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
         &self,
         accessor: &Accessor<'_>,
         decode: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<[T; N]>, GltfError> {
+    ) -> Result<Vec<[T; N]>, GltfErrorKind> {
         let dimensions = accessor.dimensions();
         if dimensions.multiplicity() != N {
             let reason = format!("is of {dimensions:?}, but {N} numbers an element are needed");
@@ -116,7 +116,7 @@ impl<'a> Reader<'a> {
         size: usize,
         element: impl Fn(&[u8]) -> [T; N],
         elements: &mut [[T; N]],
-    ) -> Result<(), GltfError> {
+    ) -> Result<(), GltfErrorKind> {
         let Some(sparse) = accessor.sparse() else {
             return Ok(());
         };
@@ -190,8 +190,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn invalid(accessor: &Accessor<'_>, reason: String) -> GltfError {
-    GltfError::invalid(format!("accessor {}", accessor.index()), reason)
+fn invalid(accessor: &Accessor<'_>, reason: String) -> GltfErrorKind {
+    GltfErrorKind::invalid(format!("accessor {}", accessor.index()), reason)
 }
 
 /// One little-endian number; 0 if the slice is too short, which its callers rule out.

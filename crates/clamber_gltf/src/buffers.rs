@@ -8,7 +8,7 @@ use base64::Engine;
 use gltf::Document;
 use gltf::buffer::Source;
 
-use crate::GltfError;
+use crate::GltfErrorKind;
 
 /// All buffers, each at least as long as it claims. `base` is the folder that relative URIs start
 /// from; without one they are refused.
@@ -16,16 +16,18 @@ pub(crate) fn load(
     document: &Document,
     mut blob: Option<Vec<u8>>,
     base: Option<&Path>,
-) -> Result<Vec<Vec<u8>>, GltfError> {
+) -> Result<Vec<Vec<u8>>, GltfErrorKind> {
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let object = format!("buffer {}", buffer.index());
         let bytes = match buffer.source() {
-            Source::Bin => blob
-                .take()
-                .ok_or_else(|| GltfError::invalid(&object, "has no URI, and the file no chunk"))?,
+            Source::Bin => blob.take().ok_or_else(|| {
+                GltfErrorKind::invalid(&object, "has no URI, and the file no chunk")
+            })?,
             Source::Uri(uri) => match uri.strip_prefix("data:") {
-                Some(data) => decode_data_uri(data).map_err(|e| GltfError::invalid(&object, e))?,
+                Some(data) => {
+                    decode_data_uri(data).map_err(|e| GltfErrorKind::invalid(&object, e))?
+                }
                 None => read_beside(base, uri, buffer.length(), &object)?,
             },
         };
@@ -35,7 +37,7 @@ pub(crate) fn load(
                 buffer.length(),
                 bytes.len()
             );
-            return Err(GltfError::invalid(object, reason));
+            return Err(GltfErrorKind::invalid(object, reason));
         }
         buffers.push(bytes);
     }
@@ -63,21 +65,21 @@ fn read_beside(
     uri: &str,
     length: usize,
     object: &str,
-) -> Result<Vec<u8>, GltfError> {
+) -> Result<Vec<u8>, GltfErrorKind> {
     let base = base.ok_or_else(|| {
         let reason = format!("its data is in the file {uri:?}: load from a path, not from bytes");
-        GltfError::invalid(object, reason)
+        GltfErrorKind::invalid(object, reason)
     })?;
     let name = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
-        .map_err(|e| GltfError::invalid(object, format!("its URI {uri:?} is no UTF-8: {e}")))?;
+        .map_err(|e| GltfErrorKind::invalid(object, format!("its URI {uri:?} is no UTF-8: {e}")))?;
     let relative = Path::new(name.as_ref());
     if relative.has_root() || relative.is_absolute() || name.contains(':') {
         let reason = format!("its URI {uri:?} is not relative to the document");
-        return Err(GltfError::invalid(object, reason));
+        return Err(GltfErrorKind::invalid(object, reason));
     }
     let path = base.join(relative);
-    read_plain_file(&path, length as u64).map_err(|source| GltfError::Read { path, source })
+    read_plain_file(&path, length as u64).map_err(|source| GltfErrorKind::Read { path, source })
 }
 
 fn read_plain_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {

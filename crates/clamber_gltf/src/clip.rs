@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 
 use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
 use glam::{Quat, Vec3};
-use gltf::Document;
 use gltf::animation::{self, Property};
 
-use crate::GltfError;
+use crate::GltfErrorKind;
 use crate::accessor::Reader;
+use crate::contents::Contents;
 
-/// All animations, each with the channels that move the skeleton.
+/// All animations that move the skeleton, each with the channels that do.
 pub(crate) fn load(
-    document: &Document,
+    contents: &Contents<'_>,
     of_node: &BTreeMap<usize, Vec<JointId>>,
-    reader: &Reader<'_>,
     warnings: &mut Vec<String>,
-) -> Result<Vec<Clip>, GltfError> {
+) -> Result<Vec<Clip>, GltfErrorKind> {
     let mut clips = Vec::new();
-    for animation in document.animations() {
+    let reader = &contents.reader;
+    for animation in contents.document.animations() {
         let name = match animation.name() {
             Some(name) => name.to_owned(),
             None => format!("clip {}", animation.index()),
@@ -38,10 +38,16 @@ pub(crate) fn load(
                 _ => passed_over += 1,
             }
         }
+        if channels.is_empty() {
+            warnings.push(format!(
+                "animation {name:?} moves nothing of the skeleton; passed over"
+            ));
+            continue;
+        }
         if passed_over > 0 {
             warnings.push(format!(
-                "animation {name:?}: {passed_over} channels move nothing of the skeleton; \
-                 passed over"
+                "animation {name:?}: {passed_over} channels move nothing of the skeleton, or move \
+                 morph targets; passed over"
             ));
         }
         clips.push(Clip::new(name, channels));
@@ -57,7 +63,7 @@ fn push_channels(
     values: Keyframes,
     reader: &Reader<'_>,
     object: &str,
-) -> Result<(), GltfError> {
+) -> Result<(), GltfErrorKind> {
     let sampler = channel.sampler();
     let times = reader.floats::<1>(&sampler.input())?.into_flattened();
     let interpolation = match sampler.interpolation() {
@@ -69,7 +75,7 @@ fn push_channels(
         // A value takes at most as much as a rotation and its time, thrice in a spline.
         reader.charge(object, times.len() * 13 * size_of::<f32>())?;
         let channel = Channel::new(*joint, interpolation, times.clone(), values.clone());
-        channels.push(channel.map_err(|rig| GltfError::invalid(object, rig))?);
+        channels.push(channel.map_err(|rig| GltfErrorKind::invalid(object, rig))?);
     }
     Ok(())
 }
@@ -78,9 +84,9 @@ fn push_channels(
 fn keyframes(
     channel: &animation::Channel<'_>,
     reader: &Reader<'_>,
-) -> Result<Option<Keyframes>, GltfError> {
+) -> Result<Option<Keyframes>, GltfErrorKind> {
     let output = channel.sampler().output();
-    let vectors = || -> Result<Vec<Vec3>, GltfError> {
+    let vectors = || -> Result<Vec<Vec3>, GltfErrorKind> {
         let values = reader.floats::<3>(&output)?;
         Ok(values.into_iter().map(Vec3::from_array).collect())
     };

@@ -6,8 +6,9 @@
 use gltf::Document;
 use gltf::json::validation::Checked;
 use gltf::json::{Root, Value};
+use gltf::mesh::Semantic;
 
-use crate::GltfError;
+use crate::GltfErrorKind;
 
 /// Length of a GLB's header and of its first chunk's.
 const GLB_HEADERS: u32 = 20;
@@ -27,7 +28,7 @@ const HARMLESS: [&str; 6] = [
 pub(crate) fn parse(
     bytes: &[u8],
     warnings: &mut Vec<String>,
-) -> Result<(Document, Option<Vec<u8>>), GltfError> {
+) -> Result<(Document, Option<Vec<u8>>), GltfErrorKind> {
     let (mut root, blob) = if bytes.starts_with(b"glTF") {
         check_glb_length(bytes)?;
         let glb = gltf::Glb::from_slice(bytes)?;
@@ -42,22 +43,23 @@ pub(crate) fn parse(
         .retain(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
     check_attributes(&root)?;
     check_channels(&mut root, warnings)?;
+    fill_in_ranges(&mut root);
     Ok((Document::from_json(root)?, blob))
 }
 
 /// The parser subtracts the headers' length from what the file claims.
-fn check_glb_length(bytes: &[u8]) -> Result<(), GltfError> {
+fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     let claimed = bytes
         .get(8..12)
         .map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     if claimed < GLB_HEADERS {
         let reason = format!("claims to be {claimed} bytes long, less than its own headers");
-        return Err(GltfError::invalid("GLB header", reason));
+        return Err(GltfErrorKind::invalid("GLB header", reason));
     }
     Ok(())
 }
 
-fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfError> {
+fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfErrorKind> {
     let refused = match Root::from_slice(json) {
         Ok(root) => return Ok(root),
         Err(error) => gltf::Error::Deserialize(error),
@@ -86,21 +88,39 @@ fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfError
 }
 
 /// Every attribute names an accessor.
-fn check_attributes(root: &Root) -> Result<(), GltfError> {
+fn check_attributes(root: &Root) -> Result<(), GltfErrorKind> {
     let count = root.accessors.len();
     for (mesh, object) in root.meshes.iter().enumerate() {
         for primitive in &object.primitives {
             if let Some(bad) = primitive.attributes.values().find(|a| a.value() >= count) {
                 let reason = format!("an attribute names accessor {} of {count}", bad.value());
-                return Err(GltfError::invalid(format!("mesh {mesh}"), reason));
+                return Err(GltfErrorKind::invalid(format!("mesh {mesh}"), reason));
             }
         }
     }
     Ok(())
 }
 
+/// Positions must state their range, and some exporters do not. Nothing here reads it.
+fn fill_in_ranges(root: &mut Root) {
+    let zero = || Some(Value::from(vec![0.0; 3]));
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for primitive in primitives {
+        let positions = primitive
+            .attributes
+            .get(&Checked::Valid(Semantic::Positions));
+        let Some(accessor) = positions.and_then(|index| root.accessors.get_mut(index.value()))
+        else {
+            continue;
+        };
+        if accessor.min.is_none() || accessor.max.is_none() {
+            (accessor.min, accessor.max) = (zero(), zero());
+        }
+    }
+}
+
 /// Every channel names a node; those that move something unknown are dropped.
-fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), GltfError> {
+fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), GltfErrorKind> {
     let nodes = root.nodes.len();
     for (animation, object) in root.animations.iter_mut().enumerate() {
         if let Some(bad) = object
@@ -112,7 +132,10 @@ fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), Glt
                 "a channel names node {} of {nodes}",
                 bad.target.node.value()
             );
-            return Err(GltfError::invalid(format!("animation {animation}"), reason));
+            return Err(GltfErrorKind::invalid(
+                format!("animation {animation}"),
+                reason,
+            ));
         }
         let before = object.channels.len();
         let known = |path: &Checked<_>| matches!(path, Checked::Valid(_));

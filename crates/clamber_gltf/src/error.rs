@@ -1,14 +1,39 @@
-use std::io;
 use std::path::PathBuf;
+use std::{fmt, io};
 
 use clamber_surface::mesh::MeshError;
 use clamber_surface::rig::RigError;
 use thiserror::Error;
 
+/// Which file could not be loaded, and why.
+#[derive(Debug)]
+pub struct GltfError {
+    /// The document; `None` if it came as bytes.
+    pub path: Option<PathBuf>,
+    /// Which of its objects is wrong, and in what way.
+    pub kind: GltfErrorKind,
+}
+
+impl fmt::Display for GltfError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.path, &self.kind) {
+            // Names the file itself.
+            (_, GltfErrorKind::Read { .. }) | (None, _) => write!(f, "{}", self.kind),
+            (Some(path), kind) => write!(f, "{}: {kind}", path.display()),
+        }
+    }
+}
+
+impl std::error::Error for GltfError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.kind.source()
+    }
+}
+
 /// Why a file could not be loaded.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum GltfError {
+pub enum GltfErrorKind {
     /// The file, or one it names, cannot be read.
     #[error("cannot read {path}: {source}")]
     Read {
@@ -36,31 +61,31 @@ pub enum GltfError {
         /// How many there are.
         found: usize,
     },
-    /// No triangles are attached to the skin.
-    #[error("no mesh with triangles is attached to skin {skin}")]
-    NoSkinnedMesh {
-        /// Index of the skin.
-        skin: usize,
+    /// There is nothing to touch.
+    #[error("{object} has no mesh with triangles for collision")]
+    NoTriangles {
+        /// Which skins, or the file.
+        object: String,
     },
     /// The joints do not make a skeleton.
-    #[error("the joints of skin {skin} make no skeleton: {source}")]
+    #[error("the joints of {object} make no skeleton: {source}")]
     Skeleton {
-        /// Index of the skin.
-        skin: usize,
+        /// Which skins, or the file.
+        object: String,
         /// Why.
         source: RigError,
     },
     /// The primitives do not make a collider mesh.
-    #[error("the primitives of skin {skin} make no collider: {source}")]
+    #[error("the meshes of {object} make no collider: {source}")]
     Collider {
-        /// Index of the skin.
-        skin: usize,
+        /// Which skins, or the file.
+        object: String,
         /// Why.
         source: MeshError,
     },
 }
 
-impl GltfError {
+impl GltfErrorKind {
     pub(crate) fn invalid(object: impl Into<String>, reason: impl ToString) -> Self {
         Self::Invalid {
             object: object.into(),

@@ -3,12 +3,23 @@
 mod accessor;
 mod buffers;
 mod clip;
+mod contents;
+mod decompose;
 mod document;
 mod error;
+mod extras;
 mod load;
+mod members;
 mod mesh;
 mod skeleton;
-mod tag;
+mod tree;
+mod vertices;
+mod visual;
+mod weak_point;
 
-pub use error::GltfError;
-pub use load::{ImportReport, LoadOptions, Rig, TagOfMaterial, load, load_slice, load_with};
+pub use error::{GltfError, GltfErrorKind};
+pub use load::{
+    ImportReport, LoadOptions, Rig, TagOfMaterial, load, load_all, load_slice, load_with,
+};
+pub use visual::{Alpha, Material, VisualMesh, VisualPrimitive};
+pub use weak_point::WeakPoint;

@@ -1,111 +1,103 @@
-//! The primitives of all meshes that a skin deforms, as one collider mesh.
+//! The meshes of a creature: what a climber touches of them as one collider mesh, what is drawn as
+//! they are.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use clamber_surface::mesh::{
-    BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
-};
-use clamber_surface::rig::JointId;
+use clamber_surface::mesh::{BuildReport, ColliderMesh, Influence, MeshSource, SurfaceTag};
 use glam::Vec3;
-use gltf::mesh::{Mode, Primitive, Semantic};
-use gltf::{Document, Mesh, Skin};
+use gltf::mesh::Semantic;
+use gltf::{Mesh, Node, Primitive};
 
+use crate::GltfErrorKind;
 use crate::accessor::Reader;
-use crate::tag::tag_of;
-use crate::{GltfError, LoadOptions};
+use crate::contents::Contents;
+use crate::extras::Role;
+use crate::members::Members;
+use crate::skeleton::Joints;
+use crate::vertices::{self, Binding, Vertices};
+use crate::visual::VisualMesh;
 
-/// The skin asked for, or the one that deforms the most triangles; says which others and which
-/// meshes without a skin are passed over.
-pub(crate) fn choose_skin<'a>(
-    document: &'a Document,
-    wanted: Option<usize>,
-    warnings: &mut Vec<String>,
-) -> Result<Skin<'a>, GltfError> {
-    let mut corners = vec![0u64; document.skins().len()];
-    let mut unskinned = 0;
-    for node in document.nodes() {
-        match (node.mesh(), node.skin()) {
-            (Some(mesh), Some(skin)) => corners[skin.index()] += corner_count(&mesh),
-            (Some(_), None) => unskinned += 1,
-            (None, _) => {}
-        }
-    }
-    if unskinned > 0 {
-        warnings.push(format!("{unskinned} meshes without a skin; passed over"));
-    }
-    // Of equal ones the first.
-    let largest = (0..corners.len()).rev().max_by_key(|skin| corners[*skin]);
-    let chosen = wanted.or(largest).unwrap_or(0);
-    let others = corners.len().saturating_sub(1);
-    if others > 0 {
-        warnings.push(format!(
-            "took skin {chosen}; {others} other skins were passed over"
-        ));
-    }
-    document.skins().nth(chosen).ok_or(GltfError::NoSuchSkin {
-        wanted: chosen,
-        found: corners.len(),
-    })
+/// What all meshes of a creature add up to.
+pub(crate) struct Meshes {
+    pub(crate) collider: Arc<ColliderMesh>,
+    pub(crate) build: BuildReport,
+    pub(crate) visual: Vec<VisualMesh>,
 }
 
-/// How many triangle corners a mesh has, more or less.
-fn corner_count(mesh: &Mesh<'_>) -> u64 {
-    let count = |primitive: Primitive<'_>| {
-        let positions = || primitive.get(&Semantic::Positions);
-        let accessor = primitive.indices().or_else(positions);
-        accessor.map_or(0, |accessor| accessor.count() as u64)
-    };
-    mesh.primitives().map(count).fold(0, u64::saturating_add)
-}
-
-/// What all primitives add up to.
+/// Meshes under construction.
 #[derive(Default)]
 struct Gathered {
+    collision: Collision,
+    visual: Vec<VisualMesh>,
+    /// First vertex in the collider, and index of the visual mesh, of each set of vertices:
+    /// primitives often share them.
+    places: BTreeMap<Vec<usize>, Place>,
+    unweighted: usize,
+    morphed: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Place {
+    vertices: usize,
+    /// First vertex in the collider.
+    collision: Option<u32>,
+    /// Index of the visual mesh.
+    visual: Option<usize>,
+}
+
+/// What all primitives that a climber touches add up to.
+#[derive(Default)]
+struct Collision {
     positions: Vec<Vec3>,
     influences: Vec<Influence>,
-    /// Where each vertex's influences end.
     influence_ends: Vec<u32>,
+    /// The rest space of each vertex: a rigid mesh has one of its own.
+    spaces: Vec<u32>,
     triangles: Vec<[u32; 3]>,
     tags: Vec<SurfaceTag>,
-    unweighted: usize,
-    /// First vertex of each set of attributes, by its accessors: primitives often share them.
-    bases: BTreeMap<Vec<usize>, u32>,
+}
+
+/// A node that shows a mesh, and how.
+struct Instance<'a> {
+    node: &'a Node<'a>,
+    mesh: Mesh<'a>,
+    binding: Binding<'a>,
+    /// Different for what is bound differently.
+    space: u32,
+    role: Role,
+    morph_weights: &'a [f32],
 }
 
 pub(crate) fn load(
-    document: &Document,
-    skin: &Skin<'_>,
-    joint_count: usize,
-    reader: &Reader<'_>,
-    options: &LoadOptions<'_>,
+    contents: &Contents<'_>,
+    members: &Members,
+    joints: &Joints,
     warnings: &mut Vec<String>,
-) -> Result<(Arc<ColliderMesh>, BuildReport), GltfError> {
+) -> Result<Meshes, GltfErrorKind> {
     let mut gathered = Gathered::default();
     // A mesh that several nodes show with one skin is one mesh: the skin says where it stands.
-    let deformed: BTreeSet<usize> = document
-        .nodes()
-        .filter(|node| node.skin().is_some_and(|s| s.index() == skin.index()))
-        .filter_map(|node| Some(node.mesh()?.index()))
-        .collect();
-    let skin_joints = skin.joints().count();
-    for mesh in document
-        .meshes()
-        .filter(|mesh| deformed.contains(&mesh.index()))
-    {
-        for primitive in mesh.primitives() {
-            let object = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
-            match passed_over(&primitive) {
+    let mut shown = BTreeSet::new();
+    for instance in instances(contents, members, joints) {
+        let weights: Vec<u32> = instance.morph_weights.iter().map(|w| w.to_bits()).collect();
+        if !shown.insert((instance.mesh.index(), instance.space, weights)) {
+            continue;
+        }
+        for primitive in instance.mesh.primitives() {
+            let object = format!(
+                "mesh {}, primitive {}",
+                instance.mesh.index(),
+                primitive.index()
+            );
+            match vertices::passed_over(&primitive, &instance.binding) {
                 Some(reason) => warnings.push(format!("{object}: {reason}; passed over")),
-                None => gathered.add(&primitive, &object, skin_joints, reader, options)?,
-            }
-            if primitive.morph_targets().next().is_some() {
-                warnings.push(format!("{object}: its morph targets were passed over"));
+                None => gathered.add(&instance, &primitive, &object, contents)?,
             }
         }
     }
-    if gathered.triangles.is_empty() {
-        return Err(GltfError::NoSkinnedMesh { skin: skin.index() });
+    if gathered.collision.triangles.is_empty() {
+        let object = members.object();
+        return Err(GltfErrorKind::NoTriangles { object });
     }
     if gathered.unweighted > 0 {
         warnings.push(format!(
@@ -113,216 +105,195 @@ pub(crate) fn load(
             gathered.unweighted
         ));
     }
-    gathered
-        .build(joint_count, options)
-        .map_err(|source| GltfError::Collider {
-            skin: skin.index(),
-            source,
-        })
+    if gathered.morphed > 0 {
+        warnings.push(format!(
+            "{} primitives have morph targets, which stay at their rest weights",
+            gathered.morphed
+        ));
+    }
+    let joint_count = joints.skeleton.joints().len();
+    let source = gathered.collision.source(joint_count);
+    let (collider, build) =
+        ColliderMesh::build(&source, &contents.options.build).map_err(|source| {
+            GltfErrorKind::Collider {
+                object: members.object(),
+                source,
+            }
+        })?;
+    Ok(Meshes {
+        collider: Arc::new(collider),
+        build,
+        visual: gathered.visual,
+    })
 }
 
-/// Why a primitive is no part of a collider; `None` if it is.
-fn passed_over(primitive: &Primitive<'_>) -> Option<String> {
-    let mode = primitive.mode();
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
-        return Some(format!("{mode:?} have no surface"));
-    }
-    if primitive.get(&Semantic::Positions).is_none() {
-        return Some("has no positions".into());
-    }
-    let sets = [Semantic::Joints(0), Semantic::Weights(0)];
-    let unskinned = sets.iter().all(|set| primitive.get(set).is_none());
-    unskinned.then(|| "has no joints and weights".into())
+/// The nodes of a creature that show a mesh. Once one of them is for collision, those that do not
+/// say what they are for are to be seen only.
+fn instances<'a>(
+    contents: &'a Contents<'a>,
+    members: &'a Members,
+    joints: &'a Joints,
+) -> impl Iterator<Item = Instance<'a>> {
+    let Contents { tree, extras, .. } = contents;
+    let role = |node: &usize| extras[*node].role;
+    let split = members
+        .meshes
+        .iter()
+        .any(|node| role(node) == Some(Role::Collision));
+    let unsaid = if split { Role::Visual } else { Role::Both };
+    members.meshes.iter().filter_map(move |index| {
+        let node = &tree.nodes[*index];
+        let mesh = node.mesh()?;
+        let (binding, space) = match node.skin() {
+            Some(skin) => {
+                let of_skin = joints.of_skin.get(&skin.index())?;
+                (Binding::Skin(of_skin), skin.index())
+            }
+            None => {
+                let joint = joints.of_rigid.get(index)?;
+                (Binding::Rigid(*joint), tree.skins.len() + index)
+            }
+        };
+        Some(Instance {
+            node,
+            morph_weights: node.weights().or(mesh.weights()).unwrap_or_default(),
+            mesh,
+            binding,
+            space: space as u32,
+            role: role(index).unwrap_or(unsaid),
+        })
+    })
 }
 
 impl Gathered {
     fn add(
         &mut self,
+        instance: &Instance<'_>,
         primitive: &Primitive<'_>,
         object: &str,
-        skin_joints: usize,
-        reader: &Reader<'_>,
-        options: &LoadOptions<'_>,
-    ) -> Result<(), GltfError> {
-        let (base, vertices) = self.vertices_of(primitive, object, skin_joints, reader)?;
-        let indices = match primitive.indices() {
-            Some(accessor) => reader.integers::<1>(&accessor)?.into_flattened(),
-            None => {
-                reader.charge(object, vertices * size_of::<u32>())?;
-                (0..vertices as u32).collect()
-            }
-        };
-        if let Some(index) = indices.iter().find(|i| **i as usize >= vertices) {
-            let reason = format!("names vertex {index} of {vertices}");
-            return Err(GltfError::invalid(object, reason));
+        contents: &Contents<'_>,
+    ) -> Result<(), GltfErrorKind> {
+        let reader = &contents.reader;
+        let place = self.place(instance, primitive, object, reader)?;
+        let triangles = vertices::triangles(primitive, place.vertices, object, reader)?;
+        if let Some(base) = place.collision {
+            let material = primitive.material().index();
+            let tag = material.and_then(|index| Some(contents.materials.get(index)?.tag));
+            let collision = &mut self.collision;
+            collision
+                .triangles
+                .extend(triangles.iter().map(|t| t.map(|v| v + base)));
+            let count = collision.triangles.len();
+            collision.tags.resize(count, tag.unwrap_or_default());
         }
-        let tag = tag_of(&primitive.material(), options)?;
-        let before = self.triangles.len();
-        // A strip makes three corners of every index.
-        reader.charge(object, indices.len() * size_of::<[u32; 4]>())?;
-        self.triangles
-            .extend(triangles(&indices, primitive.mode()).map(|t| t.map(|v| v + base)));
-        self.tags
-            .resize(self.tags.len() + self.triangles.len() - before, tag);
+        if let Some(visual) = place.visual {
+            self.visual[visual].push(primitive, triangles);
+        }
         Ok(())
     }
 
-    /// Number of the first of a primitive's vertices and how many there are, read unless another
-    /// primitive has the same ones.
-    fn vertices_of(
+    /// Where a primitive's vertices are, read unless another primitive has the same ones.
+    fn place(
         &mut self,
+        instance: &Instance<'_>,
         primitive: &Primitive<'_>,
         object: &str,
-        skin_joints: usize,
         reader: &Reader<'_>,
-    ) -> Result<(u32, usize), GltfError> {
-        let Some(positions) = primitive.get(&Semantic::Positions) else {
-            return Ok((0, 0));
+    ) -> Result<Place, GltfErrorKind> {
+        let key = key(instance, primitive);
+        if let Some(place) = self.places.get(&key) {
+            return Ok(*place);
+        }
+        let weights = instance.morph_weights;
+        let vertices = vertices::vertices(primitive, &instance.binding, weights, object, reader)?;
+        let count = vertices.positions.len();
+        self.unweighted += vertices.unweighted;
+        self.morphed += usize::from(primitive.morph_targets().next().is_some());
+        let visual = if instance.role == Role::Collision {
+            None
+        } else {
+            let looks = vertices::looks(primitive, count, weights, object, reader)?;
+            let name = instance
+                .node
+                .name()
+                .or(instance.mesh.name())
+                .unwrap_or_default();
+            let mesh = VisualMesh::new(name.to_owned(), &vertices, looks, object)?;
+            self.visual.push(mesh);
+            Some(self.visual.len() - 1)
         };
-        let mut key = vec![positions.index()];
-        for (semantic, accessor) in primitive.attributes() {
-            if let Semantic::Joints(set) = semantic {
-                key.extend([2 * set as usize, accessor.index()]);
-            } else if let Semantic::Weights(set) = semantic {
-                key.extend([2 * set as usize + 1, accessor.index()]);
-            }
-        }
-        if let Some(base) = self.bases.get(&key) {
-            return Ok((*base, positions.count()));
-        }
-        let base = u32::try_from(self.positions.len())
-            .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 vertices"))?;
-        let positions = reader.floats::<3>(&positions)?;
-        let sets = weight_sets(primitive, positions.len(), object, reader)?;
-        for vertex in 0..positions.len() {
-            self.push_influences(&sets, vertex, object, skin_joints)?;
-        }
-        let count = positions.len();
-        self.positions
-            .extend(positions.into_iter().map(Vec3::from_array));
-        self.bases.insert(key, base);
-        Ok((base, count))
+        let collision = if instance.role == Role::Visual {
+            None
+        } else {
+            Some(self.collision.append(&vertices, instance.space, object)?)
+        };
+        let place = Place {
+            vertices: count,
+            collision,
+            visual,
+        };
+        self.places.insert(key, place);
+        Ok(place)
     }
+}
 
-    /// Appends the influences of a vertex. What weighs nothing is padding and may name any joint.
-    fn push_influences(
+/// What makes the vertices of two primitives the same ones.
+fn key(instance: &Instance<'_>, primitive: &Primitive<'_>) -> Vec<usize> {
+    let mut key = vec![instance.space as usize, instance.role as usize];
+    let mut push = |kind: usize, set: u32, accessor: usize| {
+        key.extend([kind, set as usize, accessor]);
+    };
+    for (semantic, accessor) in primitive.attributes() {
+        match semantic {
+            Semantic::Positions => push(0, 0, accessor.index()),
+            Semantic::Joints(set) => push(1, set, accessor.index()),
+            Semantic::Weights(set) => push(2, set, accessor.index()),
+            Semantic::Normals => push(3, 0, accessor.index()),
+            Semantic::TexCoords(set) => push(4, set, accessor.index()),
+            Semantic::Colors(set) => push(5, set, accessor.index()),
+            _ => {}
+        }
+    }
+    // Morphed vertices are their primitive's alone.
+    if primitive.morph_targets().next().is_some() {
+        push(6, instance.mesh.index() as u32, primitive.index());
+        key.extend(instance.morph_weights.iter().map(|w| w.to_bits() as usize));
+    }
+    key
+}
+
+impl Collision {
+    /// Takes vertices in; gives the number of the first.
+    fn append(
         &mut self,
-        sets: &[WeightSet],
-        vertex: usize,
+        vertices: &Vertices,
+        space: u32,
         object: &str,
-        skin_joints: usize,
-    ) -> Result<(), GltfError> {
-        let start = self.influences.len();
-        let named = sets
+    ) -> Result<u32, GltfErrorKind> {
+        let too_many = || GltfErrorKind::invalid(object, "the file has more than 2^32 vertices");
+        let base = u32::try_from(self.positions.len()).map_err(|_| too_many())?;
+        let before = u32::try_from(self.influences.len()).map_err(|_| too_many())?;
+        let ends = vertices
+            .influence_ends
             .iter()
-            .flat_map(|(joints, weights)| joints[vertex].into_iter().zip(weights[vertex]))
-            .map(|(joint, weight)| Influence {
-                joint: JointId(joint),
-                weight,
-            });
-        self.influences
-            .extend(named.clone().filter(|influence| influence.weight != 0.0));
-        if self.influences.len() == start {
-            self.unweighted += 1;
-            self.influences.extend(named.take(1).map(|first| Influence {
-                weight: 1.0,
-                ..first
-            }));
-        }
-        let beyond = |i: &&Influence| i.joint.0 as usize >= skin_joints;
-        if let Some(bad) = self.influences[start..].iter().find(beyond) {
-            let reason = format!("follows joint {} of a skin of {skin_joints}", bad.joint);
-            return Err(GltfError::invalid(object, reason));
-        }
-        let end = u32::try_from(self.influences.len())
-            .map_err(|_| GltfError::invalid(object, "the file has more than 2^32 weights"))?;
-        self.influence_ends.push(end);
-        Ok(())
+            .map(|end| before.checked_add(*end));
+        let ends: Option<Vec<u32>> = ends.collect();
+        self.influence_ends.extend(ends.ok_or_else(too_many)?);
+        self.influences.extend_from_slice(&vertices.influences);
+        self.positions.extend_from_slice(&vertices.positions);
+        self.spaces.resize(self.positions.len(), space);
+        Ok(base)
     }
 
-    fn build(
-        &self,
-        joint_count: usize,
-        options: &LoadOptions<'_>,
-    ) -> Result<(Arc<ColliderMesh>, BuildReport), MeshError> {
-        let source = MeshSource {
+    fn source(&self, joint_count: usize) -> MeshSource<'_> {
+        MeshSource {
             positions: &self.positions,
             triangles: &self.triangles,
             influences: &self.influences,
             influence_ends: &self.influence_ends,
             tags: &self.tags,
+            rest_spaces: &self.spaces,
             joint_count,
-        };
-        let (mesh, report) = ColliderMesh::build(&source, &options.build)?;
-        Ok((Arc::new(mesh), report))
-    }
-}
-
-/// Joints and weights of every vertex, four of each.
-type WeightSet = (Vec<[u32; 4]>, Vec<[f32; 4]>);
-
-/// All sets of a primitive, at least one.
-fn weight_sets(
-    primitive: &Primitive<'_>,
-    vertices: usize,
-    object: &str,
-    reader: &Reader<'_>,
-) -> Result<Vec<WeightSet>, GltfError> {
-    let mut sets = Vec::new();
-    for set in 0.. {
-        let (joints, weights) = match (
-            primitive.get(&Semantic::Joints(set)),
-            primitive.get(&Semantic::Weights(set)),
-        ) {
-            (Some(joints), Some(weights)) => (joints, weights),
-            (None, None) => break,
-            _ => {
-                let reason = format!("has only one of JOINTS_{set} and WEIGHTS_{set}");
-                return Err(GltfError::invalid(object, reason));
-            }
-        };
-        let joints = reader.integers::<4>(&joints)?;
-        let weights = reader.floats::<4>(&weights)?;
-        if joints.len() != vertices || weights.len() != vertices {
-            let reason = format!(
-                "has {vertices} positions, but {} joints and {} weights in set {set}",
-                joints.len(),
-                weights.len()
-            );
-            return Err(GltfError::invalid(object, reason));
         }
-        sets.push((joints, weights));
-    }
-    Ok(sets)
-}
-
-/// The triangles of a list, strip or fan, all with the same side outside.
-fn triangles(indices: &[u32], mode: Mode) -> impl Iterator<Item = [u32; 3]> {
-    let count = match mode {
-        Mode::Triangles => indices.len() / 3,
-        _ => indices.len().saturating_sub(2),
-    };
-    (0..count).map(move |k| match mode {
-        Mode::TriangleStrip if k % 2 == 0 => [indices[k], indices[k + 1], indices[k + 2]],
-        Mode::TriangleStrip => [indices[k], indices[k + 2], indices[k + 1]],
-        Mode::TriangleFan => [indices[k + 1], indices[k + 2], indices[0]],
-        _ => [indices[3 * k], indices[3 * k + 1], indices[3 * k + 2]],
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lists_strips_and_fans() {
-        let all = |mode| triangles(&[0, 1, 2, 3, 4], mode).collect::<Vec<_>>();
-        assert_eq!(all(Mode::Triangles), [[0, 1, 2]]);
-        assert_eq!(all(Mode::TriangleStrip), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
-        assert_eq!(all(Mode::TriangleFan), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
-        assert_eq!(triangles(&[0], Mode::TriangleStrip).count(), 0);
     }
 }

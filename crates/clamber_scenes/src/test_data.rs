@@ -30,6 +30,34 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
+/// All glTF files of the test data, models and fixtures, by path within the folder, sorted; none,
+/// said on standard error, without [`VARIABLE`].
+///
+/// # Panics
+/// If the variable is set and the folder cannot be read.
+pub fn gltf_files(test: &str) -> Vec<(String, PathBuf)> {
+    let Some(trex) = file(test, "models/Trex.glb") else {
+        return Vec::new();
+    };
+    let root = trex.ancestors().nth(2).unwrap_or(&trex);
+    let mut files = Vec::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(&folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+        let entries = entries.unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+        for path in entries.into_iter().map(|entry| entry.path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
+                let name = path.strip_prefix(root).unwrap_or(&path);
+                files.push((name.to_string_lossy().replace('\\', "/"), path));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
 /// Models of several makers, with 19 to 48 joints and 1 to 20 clips, to measure on.
 const FIVE_MODELS: [&str; 5] = [
     "Trex.glb",
@@ -47,8 +75,17 @@ const FIVE_MODELS: [&str; 5] = [
 /// # Panics
 /// As [`file()`].
 pub fn five_creatures(test: &str) -> Result<Vec<Creature>, CreatureError> {
+    let paths = five_models(test).into_iter();
+    paths.map(|path| Creature::load(&path)).collect()
+}
+
+/// The files of [`five_creatures`].
+///
+/// # Panics
+/// As [`file()`].
+pub fn five_models(test: &str) -> Vec<PathBuf> {
     let paths = FIVE_MODELS
         .iter()
         .map(|name| file(test, &format!("models/{name}")));
-    paths.flatten().map(|path| Creature::load(&path)).collect()
+    paths.flatten().collect()
 }

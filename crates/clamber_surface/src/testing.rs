@@ -53,9 +53,8 @@ pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {
         positions: &positions,
         triangles: &triangles,
         influences: &influences,
-        influence_ends: &[],
-        tags: &[],
         joint_count: joints as usize,
+        ..MeshSource::default()
     };
     let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     assert_eq!(report.degenerate_triangles + report.duplicate_triangles, 0);

@@ -29,9 +29,8 @@ fn patch(corners: &[(f32, f32, f32)], triangles: &[[u32; 3]]) -> SkinnedSurface 
         positions: &positions,
         triangles,
         influences: &vec![influence; positions.len()],
-        influence_ends: &[],
-        tags: &[],
         joint_count: 1,
+        ..MeshSource::default()
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))

@@ -69,9 +69,9 @@ fn build(vertices: usize) -> Result<Creature, BeastError> {
         positions: &positions,
         triangles: &surface.triangles,
         influences: &influences,
-        influence_ends: &[],
         tags: &tags,
         joint_count: bones.len(),
+        ..MeshSource::default()
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
     let clips = clips::clips(&bones)?;

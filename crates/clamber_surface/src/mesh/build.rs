@@ -6,15 +6,13 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use glam::Vec3;
 
 use super::collider::has_area;
-use super::weights::normalize;
-use super::{
-    ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId, WEIGHT_ONE,
-};
+use super::weights::{normalize, weight_of};
+use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
 
 /// What a mesh is built from, as importers and engines have it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct MeshSource<'a> {
     /// Rest positions, in mesh space.
     pub positions: &'a [Vec3],
@@ -27,6 +25,10 @@ pub struct MeshSource<'a> {
     pub influence_ends: &'a [u32],
     /// A tag per triangle, or empty for [`SurfaceTag::default`] everywhere.
     pub tags: &'a [SurfaceTag],
+    /// A number per vertex, equal for those whose rest positions are in one space; empty if all
+    /// are. Vertices of different spaces, as the pieces of a robot each in its own, are never taken
+    /// for one because their rest positions are equal.
+    pub rest_spaces: &'a [u32],
     /// How many joints the skeleton has.
     pub joint_count: usize,
 }
@@ -82,8 +84,11 @@ pub struct BuildReport {
     pub worst_weight_error: f64,
 }
 
-/// Position (bits, with one zero) and influences: what makes two vertices the same one.
-type VertexKey = ([u32; 3], Vec<(JointId, u32)>);
+/// Where a vertex is at rest: position (bits, with one zero), and the space that it is in.
+type Place = ([u32; 3], u32);
+
+/// Place and influences: what makes two vertices the same one.
+type VertexKey = (Place, Vec<(JointId, u32)>);
 
 impl ColliderMesh {
     /// Builds a mesh: normalises weights to exact sums, welds vertices that are equal in position
@@ -100,9 +105,8 @@ impl ColliderMesh {
     ///     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
     ///     triangles: &[[0, 1, 2], [2, 0, 1]],
     ///     influences: &influences,
-    ///     influence_ends: &[],
-    ///     tags: &[],
     ///     joint_count: 1,
+    ///     ..MeshSource::default()
     /// };
     /// let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
     /// assert_eq!(mesh.triangles().len(), 1);
@@ -226,6 +230,12 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
             vertices,
         });
     }
+    if !source.rest_spaces.is_empty() && source.rest_spaces.len() != vertices {
+        return Err(MeshError::RestSpaceCount {
+            expected: vertices,
+            found: source.rest_spaces.len(),
+        });
+    }
     if !source.tags.is_empty() && source.tags.len() != source.triangles.len() {
         return Err(MeshError::TagCount {
             expected: source.triangles.len(),
@@ -290,7 +300,8 @@ fn vertex_keys(
         report.worst_weight_error = report.worst_weight_error.max((sum - 1.0).abs());
         // Adding +0 turns -0 into +0 and leaves all else alone.
         let bits = position.to_array().map(|x| (x + 0.0).to_bits());
-        keys.push((bits, weights));
+        let space = source.rest_spaces.get(vertex).copied().unwrap_or_default();
+        keys.push(((bits, space), weights));
     }
     Ok(keys)
 }
@@ -302,9 +313,9 @@ struct CoincidentGroup {
 }
 
 fn coincident_groups(keys: &[VertexKey]) -> Vec<CoincidentGroup> {
-    let mut at: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
-    for (vertex, (bits, _)) in keys.iter().enumerate() {
-        at.entry(*bits).or_default().push(vertex as u32);
+    let mut at: BTreeMap<Place, Vec<u32>> = BTreeMap::new();
+    for (vertex, (place, _)) in keys.iter().enumerate() {
+        at.entry(*place).or_default().push(vertex as u32);
     }
     let groups = at.into_values().filter_map(|vertices| {
         let mut kinds: Vec<_> = vertices.iter().map(|v| &keys[*v as usize].1).collect();
@@ -357,7 +368,7 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
             mesh.positions.push(*position + Vec3::ZERO);
             for (joint, units) in &key.1 {
                 mesh.joints.push(joint.0);
-                mesh.weights.push(*units as f32 / WEIGHT_ONE as f32);
+                mesh.weights.push(weight_of(*units));
             }
             mesh.influence_start.push(mesh.joints.len() as u32);
             (mesh.positions.len() - 1) as u32

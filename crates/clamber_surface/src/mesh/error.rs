@@ -22,6 +22,14 @@ pub enum MeshError {
         /// Number of tags.
         found: usize,
     },
+    /// There are numbers of rest spaces, but not one per vertex.
+    #[error("expected {expected} rest spaces, one per vertex, or none; found {found}")]
+    RestSpaceCount {
+        /// Number of vertices.
+        expected: usize,
+        /// Number of rest spaces.
+        found: usize,
+    },
     /// A position is infinite, NaN, or farther than 2^99 from the origin.
     #[error("the position of vertex {vertex} is not finite, or larger than 2^99")]
     Position {

@@ -15,6 +15,22 @@ pub struct Influence {
 /// sum of weights that add up to it.
 pub(crate) const WEIGHT_ONE: u32 = 1 << 24;
 
+/// The influences of one vertex as a collider keeps them: one for each joint, by ascending joint,
+/// none of weight zero; weights are multiples of 2^-24 that sum to exactly 1. `None` if a weight
+/// is negative or not finite, or all are zero.
+pub fn normalize_influences(influences: &[Influence]) -> Option<Vec<Influence>> {
+    let influence = |(joint, units): (JointId, u32)| Influence {
+        joint,
+        weight: weight_of(units),
+    };
+    Some(normalize(influences)?.into_iter().map(influence).collect())
+}
+
+/// A weight from its units; exact.
+pub(crate) fn weight_of(units: u32) -> f32 {
+    units as f32 / WEIGHT_ONE as f32
+}
+
 /// Weights that add up to exactly [`WEIGHT_ONE`], by joint id, without zeros. `None` if a weight
 /// is negative or not finite, or all are zero.
 ///

@@ -40,7 +40,7 @@ impl Transform {
     }
 
     /// As a matrix in f64, with the rotation normalised.
-    pub(crate) fn to_affine(self) -> DAffine3 {
+    pub fn to_affine(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(
             widen(self.scale),
             rotation_f64(self.rotation).normalize(),

@@ -89,9 +89,8 @@ mod tests {
             positions: &positions,
             triangles: &triangles,
             influences: &given,
-            influence_ends: &[],
-            tags: &[],
             joint_count: joints as usize,
+            ..MeshSource::default()
         };
         let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
         (mesh, palette)
@@ -131,9 +130,8 @@ mod tests {
             positions: &[Vec3::ONE, Vec3::X, Vec3::Y],
             triangles: &[[0, 1, 2]],
             influences: &given,
-            influence_ends: &[],
-            tags: &[],
             joint_count: palette.len(),
+            ..MeshSource::default()
         };
         let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
         skin(&mesh, palette).unwrap()[0]

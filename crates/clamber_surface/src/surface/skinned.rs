@@ -29,9 +29,8 @@ use crate::skin::{skin_into, skin_vertex};
 ///         positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
 ///         triangles: &[[0, 1, 2]],
 ///         influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
-///         influence_ends: &[],
-///         tags: &[],
 ///         joint_count: 1,
+///         ..MeshSource::default()
 ///     },
 ///     &BuildOptions::default(),
 /// )?;

@@ -19,9 +19,8 @@ fn square() -> SkinnedSurface {
         positions: &positions,
         triangles: &[[0, 1, 2], [0, 2, 3]],
         influences: &[influence; 4],
-        influence_ends: &[],
-        tags: &[],
         joint_count: 1,
+        ..MeshSource::default()
     };
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     SkinnedSurface::new(Arc::new(mesh))

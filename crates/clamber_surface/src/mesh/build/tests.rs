@@ -38,9 +38,9 @@ impl Square {
             positions: &self.positions,
             triangles: &self.triangles,
             influences: &self.influences,
-            influence_ends: &[],
             tags: &self.tags,
             joint_count: 2,
+            ..MeshSource::default()
         }
     }
 

@@ -1,0 +1,67 @@
+"""Which joints move a point of the rest pose, and by how much: one rule for both meshes."""
+
+import numpy as np
+
+from . import field as f
+from . import stone
+from .skeleton import HEADS, INDEX, JOINTS, RADII, TAILS
+
+# Weights fall with this power of the distance to a bone over the flesh's radius around it: the
+# smaller, the wider a joint bends.
+FALL_OFF = 5.0
+# Shares below this one, of the strongest, are cut off: a limb does not pull at its neighbour.
+LEAST_SHARE = 0.03
+# A plate holds its own surface rigidly; flesh follows it less and less over this distance.
+PLATE_HOLD = 0.30
+PLATE_REACH = 1.3
+MOST_INFLUENCES = 4
+# Bones that carry nothing by themselves.
+_WITHOUT_FLESH = {"root", "loin.front", "loin.back", "jaw"}
+
+
+def weights(points):
+    """Weights (points, joints): not negative, sums 1, at most four of a point above 0."""
+    result = _flesh_weights(points)
+    distance = stone.distances(points)
+    nearest = distance.argmin(axis=0)
+    hold = 1.0 - f.smooth_step(PLATE_HOLD, PLATE_REACH, distance.min(axis=0))
+    for number, plate in enumerate(stone.PLATES):
+        for side in (1, -1):
+            there = (nearest == number) & (np.where(points[:, 0] >= 0.0, 1, -1) == side)
+            rigid = np.zeros(len(JOINTS))
+            for name, weight in plate.weights(side).items():
+                rigid[INDEX[name]] = weight
+            share = hold[there, None]
+            result[there] = (1.0 - share) * result[there] + share * rigid
+    return _strongest(result)
+
+
+def _flesh_weights(points):
+    """Weights by distance to the bones, without plates."""
+    closeness = np.zeros((len(points), len(JOINTS)))
+    for number, joint in enumerate(JOINTS):
+        if joint.name not in _WITHOUT_FLESH:
+            gap = f.round_cone(points, HEADS[number], TAILS[number], 0.0, 0.0)
+            closeness[:, number] = (RADII[number] / np.maximum(gap, 0.2)) ** FALL_OFF
+    _separate_sides(points, closeness)
+    closeness /= closeness.max(axis=1, keepdims=True)
+    closeness = np.maximum(closeness - LEAST_SHARE, 0.0)
+    return closeness / closeness.sum(axis=1, keepdims=True)
+
+
+def _separate_sides(points, closeness):
+    """Fades out the limbs of the other side of the body."""
+    left = f.smooth_step(-2.0, 2.0, points[:, 0])
+    for number, joint in enumerate(JOINTS):
+        if joint.name.endswith(".L"):
+            closeness[:, number] *= left
+        elif joint.name.endswith(".R"):
+            closeness[:, number] *= 1.0 - left
+
+
+def _strongest(weights):
+    """The four largest of each row, less the fifth so that none appears or goes suddenly."""
+    order = np.sort(weights, axis=1)
+    fifth = order[:, -MOST_INFLUENCES - 1, None]
+    cut = np.maximum(weights - fifth, 0.0)
+    return cut / cut.sum(axis=1, keepdims=True)

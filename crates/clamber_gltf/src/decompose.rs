@@ -1,0 +1,89 @@
+//! Matrices of nodes as translation, rotation and scale.
+
+use clamber_surface::rig::Transform;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Translation, rotation and scale of a matrix, and how far its columns are from theirs, as a
+/// share of their length. A column of length zero takes the direction that the others leave it.
+pub(crate) fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
+    let column = |c: usize| DVec3::from_array([0, 1, 2].map(|row| f64::from(matrix[c][row])));
+    let linear = DMat3::from_cols(column(0), column(1), column(2));
+    let mut scale = DVec3::new(
+        linear.x_axis.length(),
+        linear.y_axis.length(),
+        linear.z_axis.length(),
+    );
+    if linear.determinant() < 0.0 {
+        scale.x = -scale.x;
+    }
+    let mut x = (linear.x_axis / scale.x).try_normalize();
+    let mut y = (linear.y_axis / scale.y).try_normalize();
+    let z = (linear.z_axis / scale.z)
+        .try_normalize()
+        .or_else(|| Some(x?.cross(y?).normalize_or(DVec3::Z)))
+        .unwrap_or(DVec3::Z);
+    y = y.or_else(|| Some(z.cross(x?).normalize_or(DVec3::Y)));
+    x = x.or_else(|| Some(y?.cross(z).normalize_or(DVec3::X)));
+    let axes = DMat3::from_cols(x.unwrap_or(DVec3::X), y.unwrap_or(DVec3::Y), z);
+    let rotation = glam::DQuat::from_mat3(&axes).normalize();
+    let recomposed =
+        DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO).matrix3;
+    let off = linear - recomposed;
+    // A column of length zero is met exactly: 0 over the smallest number, not over 0.
+    let share = |off: DVec3, of: DVec3| off.length() / of.length().max(f64::MIN_POSITIVE);
+    let error = share(off.x_axis, linear.x_axis)
+        .max(share(off.y_axis, linear.y_axis))
+        .max(share(off.z_axis, linear.z_axis));
+    let transform = Transform {
+        translation: column(3).as_vec3(),
+        rotation: rotation.as_quat(),
+        scale: scale.as_vec3(),
+    };
+    (transform, error)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    fn columns(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [[f32; 4]; 4] {
+        let direction = |v: [f32; 3]| [v[0], v[1], v[2], 0.0];
+        [
+            direction(x),
+            direction(y),
+            direction(z),
+            [5.0, 6.0, 7.0, 1.0],
+        ]
+    }
+
+    #[test]
+    fn matrices_become_translation_rotation_scale() {
+        // A quarter turn about Z, scaled by 2, 3, 4.
+        let matrix = columns([0.0, 2.0, 0.0], [-3.0, 0.0, 0.0], [0.0, 0.0, 4.0]);
+        let (t, error) = decompose(&matrix);
+        assert!(error < 1e-12);
+        assert_eq!(t.translation, Vec3::new(5.0, 6.0, 7.0));
+        assert!((t.scale - Vec3::new(2.0, 3.0, 4.0)).length() < 1e-6);
+        assert!((t.rotation.z - 0.5f32.sqrt()).abs() < 1e-6, "{t:?}");
+    }
+
+    #[test]
+    fn mirrors_zero_columns_and_shear() {
+        let mirror = columns([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]);
+        let (t, error) = decompose(&mirror);
+        assert!(error < 1e-12 && t.scale.x < 0.0 && t.is_valid(), "{t:?}");
+        for flat in [
+            columns([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
+            columns([1.0, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0]),
+            columns([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]),
+            columns([0.0; 3], [0.0; 3], [0.0; 3]),
+        ] {
+            let (t, error) = decompose(&flat);
+            assert!(t.is_valid() && error < 1e-6, "{flat:?}: {t:?} {error}");
+        }
+        let shear = columns([1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        assert!(decompose(&shear).1 > 0.01);
+    }
+}

@@ -1,0 +1,195 @@
+//! What a file says to this library, under the key `clamber` of an object's extras:
+//!
+//! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
+//! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
+//! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "major": true}}}`.
+
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use gltf::{Material, Node};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use crate::{GltfErrorKind, LoadOptions};
+
+/// Extras of any tool's; only the key that is ours is read.
+#[derive(Deserialize)]
+struct Extras<T> {
+    clamber: Option<T>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialExtras {
+    #[serde(default)]
+    surface: Surface,
+    #[serde(default)]
+    ledge: Flag,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Surface {
+    #[default]
+    Skin,
+    Fur,
+    Stone,
+}
+
+/// What a node says of itself.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NodeExtras {
+    pub(crate) role: Option<Role>,
+    pub(crate) weak_point: Option<WeakPointExtras>,
+}
+
+/// What a mesh is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Role {
+    Collision,
+    Visual,
+    Both,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct WeakPointExtras {
+    pub(crate) hit_points: f64,
+    #[serde(default)]
+    pub(crate) major: Flag,
+}
+
+/// True or false. Also as 1 or 0, which is how some tools write what they have no checkbox for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "serde_json::Value")]
+pub(crate) struct Flag(pub(crate) bool);
+
+impl TryFrom<serde_json::Value> for Flag {
+    type Error = String;
+
+    fn try_from(value: serde_json::Value) -> Result<Self, String> {
+        let number = value.as_f64();
+        value
+            .as_bool()
+            .or_else(|| (number == Some(1.0)).then_some(true))
+            .or_else(|| (number == Some(0.0)).then_some(false))
+            .map(Self)
+            .ok_or_else(|| format!("expected true or false, found {value}"))
+    }
+}
+
+/// The tag of a primitive's material: what the caller says of its name, else what its extras say,
+/// else the default.
+pub(crate) fn tag_of(
+    material: &Material<'_>,
+    options: &LoadOptions<'_>,
+) -> Result<SurfaceTag, GltfErrorKind> {
+    let by_name = options.tag_of_material.zip(material.name());
+    if let Some(tag) = by_name.and_then(|(tag_of, name)| tag_of(name)) {
+        return Ok(tag);
+    }
+    let object = || {
+        let name = material.name().unwrap_or("without a name");
+        format!("extras of material {name:?}")
+    };
+    let extras: MaterialExtras = ours(material.extras(), object)?;
+    let kind = match extras.surface {
+        Surface::Skin => SurfaceKind::Skin,
+        Surface::Fur => SurfaceKind::Fur,
+        Surface::Stone => SurfaceKind::Stone,
+    };
+    Ok(SurfaceTag {
+        kind,
+        ledge: extras.ledge.0,
+    })
+}
+
+/// What each node says of itself; nothing if it says nothing.
+pub(crate) fn of_nodes(nodes: &[Node<'_>]) -> Result<Vec<NodeExtras>, GltfErrorKind> {
+    nodes.iter().map(node_extras).collect()
+}
+
+fn node_extras(node: &Node<'_>) -> Result<NodeExtras, GltfErrorKind> {
+    let object = || match node.name() {
+        Some(name) => format!("extras of node {name:?}"),
+        None => format!("extras of node {}", node.index()),
+    };
+    let extras: NodeExtras = ours(node.extras(), object)?;
+    if let Some(weak_point) = &extras.weak_point
+        && !(weak_point.hit_points > 0.0 && weak_point.hit_points.is_finite())
+    {
+        let reason = format!(
+            "a weak point has {} hit points, where more than 0 are needed",
+            weak_point.hit_points
+        );
+        return Err(GltfErrorKind::invalid(object(), reason));
+    }
+    Ok(extras)
+}
+
+fn ours<T: DeserializeOwned + Default>(
+    extras: &gltf::json::Extras,
+    object: impl Fn() -> String,
+) -> Result<T, GltfErrorKind> {
+    let text = extras.as_ref().map_or("{}", |extras| extras.get());
+    parse(text).map_err(|reason| GltfErrorKind::invalid(object(), reason))
+}
+
+fn parse<T: DeserializeOwned + Default>(extras: &str) -> Result<T, serde_json::Error> {
+    // Extras may be any JSON; only an object can hold our key.
+    if !extras.trim_start().starts_with('{') {
+        return Ok(T::default());
+    }
+    let extras: Extras<T> = serde_json::from_str(extras)?;
+    Ok(extras.clamber.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn own_extras_are_read_and_foreign_ones_passed_over() {
+        let text = r#"{"other": [1], "clamber": {"surface": "stone", "ledge": true}}"#;
+        let stone_ledge: MaterialExtras = parse(text).unwrap();
+        assert!(matches!(stone_ledge.surface, Surface::Stone) && stone_ledge.ledge.0);
+        for foreign in [
+            "{}",
+            "7",
+            "\"text\"",
+            r#"{"clamber": {}}"#,
+            r#"{"clamber": null}"#,
+            r#"{"a": {"surface": 3}}"#,
+        ] {
+            let skin: MaterialExtras = parse(foreign).unwrap();
+            assert!(
+                matches!(skin.surface, Surface::Skin) && !skin.ledge.0,
+                "{foreign}"
+            );
+            assert_eq!(parse::<NodeExtras>(foreign).unwrap(), NodeExtras::default());
+        }
+        let text = r#"{"clamber": {"weak_point": {"hit_points": 3, "major": 1}, "role": "both"}}"#;
+        let node: NodeExtras = parse(text).unwrap();
+        assert_eq!(node.role, Some(Role::Both));
+        assert!(
+            node.weak_point
+                .is_some_and(|w| w.hit_points == 3.0 && w.major.0)
+        );
+    }
+
+    #[test]
+    fn a_misspelt_word_is_an_error_that_lists_the_choices() {
+        let error = |text| parse::<MaterialExtras>(text).err().map(|e| e.to_string());
+        let furr = error(r#"{"clamber": {"surface": "furr"}}"#).unwrap();
+        assert!(furr.contains("`skin`, `fur`, `stone`"), "{furr}");
+        assert!(error(r#"{"clamber": {"surfaces": "fur"}}"#).is_some());
+        assert!(error(r#"{"clamber": {"ledge": 2}}"#).is_some());
+        let role = parse::<NodeExtras>(r#"{"clamber": {"role": "colision"}}"#).unwrap_err();
+        assert!(
+            role.to_string().contains("`collision`, `visual`, `both`"),
+            "{role}"
+        );
+        assert!(parse::<NodeExtras>(r#"{"clamber": {"weak_point": {}}}"#).is_err());
+    }
+}

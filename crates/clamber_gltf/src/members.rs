@@ -1,0 +1,198 @@
+//! Which skins and meshes of a file make up one creature.
+//!
+//! Skins that move the same joints, or of which one's joints hang under the other's, are one
+//! creature: exporters write a skin per mesh, per material, or per armature. Meshes without a skin
+//! belong to the creature under whose joints they hang. A file without any skin is one creature of
+//! rigid pieces.
+
+use gltf::Mesh;
+use gltf::mesh::Semantic;
+
+use crate::GltfErrorKind;
+use crate::extras::NodeExtras;
+use crate::tree::Tree;
+
+/// The pieces of one creature.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Members {
+    /// Indices of its skins, ascending.
+    pub(crate) skins: Vec<usize>,
+    /// Nodes that show a mesh, ascending, each deformed by the skin that it names, or rigid.
+    pub(crate) meshes: Vec<usize>,
+    /// Nodes that are weak points, ascending.
+    pub(crate) weak_points: Vec<usize>,
+    /// Corners of all its triangles, more or less.
+    corners: u64,
+}
+
+impl Members {
+    /// For messages.
+    pub(crate) fn object(&self) -> String {
+        match self.skins.as_slice() {
+            [] => "a file without skins".into(),
+            [one] => format!("skin {one}"),
+            many => {
+                let list: Vec<String> = many.iter().map(usize::to_string).collect();
+                format!("skins {}", list.join(", "))
+            }
+        }
+    }
+}
+
+/// All creatures of a file that have a mesh, by their first skin, and what the nodes say of
+/// themselves.
+pub(crate) fn all(
+    tree: &Tree<'_>,
+    extras: &[NodeExtras],
+    warnings: &mut Vec<String>,
+) -> Vec<Members> {
+    let of_skin = creature_of_skin(tree);
+    let mut creatures = vec![Members::default(); of_skin.len().max(1)];
+    for (skin, creature) in of_skin.iter().enumerate() {
+        creatures[*creature].skins.push(skin);
+    }
+    let of_node = creature_of_node(tree, &of_skin);
+    let mut static_meshes = 0;
+    for node in &tree.nodes {
+        let index = node.index();
+        if let Some(mesh) = node.mesh() {
+            let creature = match node.skin() {
+                Some(skin) => Some(of_skin[skin.index()]),
+                None if of_skin.is_empty() => Some(0),
+                None => of_node[index],
+            };
+            match creature {
+                Some(creature) => {
+                    let corners = &mut creatures[creature].corners;
+                    *corners = corners.saturating_add(corner_count(&mesh));
+                    creatures[creature].meshes.push(index);
+                }
+                None => static_meshes += 1,
+            }
+        }
+        if extras[index].weak_point.is_some() {
+            match of_node[index] {
+                Some(creature) => creatures[creature].weak_points.push(index),
+                None => warnings.push(format!(
+                    "node {:?} is a weak point, but hangs under no joint; passed over",
+                    tree.name(index)
+                )),
+            }
+        }
+    }
+    if static_meshes > 0 {
+        warnings.push(format!(
+            "{static_meshes} meshes have no skin and hang under no joint; passed over"
+        ));
+    }
+    creatures.retain(|creature| !creature.meshes.is_empty());
+    creatures
+}
+
+/// The creature with the wanted skin, or the one with the most triangles; of equal ones the first.
+pub(crate) fn choose(
+    tree: &Tree<'_>,
+    creatures: &[Members],
+    wanted: Option<usize>,
+    warnings: &mut Vec<String>,
+) -> Result<Members, GltfErrorKind> {
+    let found = tree.skins.len();
+    let chosen = match wanted {
+        Some(wanted) if wanted >= found => return Err(GltfErrorKind::NoSuchSkin { wanted, found }),
+        Some(wanted) => creatures.iter().find(|c| c.skins.contains(&wanted)),
+        None => creatures.iter().rev().max_by_key(|c| c.corners),
+    };
+    let object = || wanted.map_or_else(|| "the file".into(), |skin| format!("skin {skin}"));
+    let chosen = chosen.ok_or_else(|| GltfErrorKind::NoTriangles { object: object() })?;
+    if creatures.len() > 1 {
+        warnings.push(format!(
+            "took the creature of {}; {} others of the file were passed over",
+            chosen.object(),
+            creatures.len() - 1
+        ));
+    }
+    Ok(chosen.clone())
+}
+
+/// Number of the creature that each skin belongs to, ascending from 0 by first skin.
+fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
+    let count = tree.skins.len();
+    let mut above: Vec<usize> = (0..count).collect();
+    let mut skin_of_joint: Vec<Option<usize>> = vec![None; tree.nodes.len()];
+    for skin in &tree.skins {
+        for joint in skin.joints() {
+            match skin_of_joint[joint.index()] {
+                Some(other) => unite(&mut above, other, skin.index()),
+                None => skin_of_joint[joint.index()] = Some(skin.index()),
+            }
+        }
+    }
+    // From the roots down: the skin of the nearest joint at or above each node.
+    let mut skin_above: Vec<Option<usize>> = vec![None; tree.nodes.len()];
+    for &node in &tree.order {
+        let inherited = tree.parent_of[node].and_then(|parent| skin_above[parent]);
+        if let (Some(above_it), Some(own)) = (inherited, skin_of_joint[node]) {
+            unite(&mut above, above_it, own);
+        }
+        skin_above[node] = skin_of_joint[node].or(inherited);
+    }
+    // The smallest skin stands for its creature, so numbers ascend by first skin.
+    let first: Vec<usize> = (0..count)
+        .map(|skin| representative(&above, skin))
+        .collect();
+    let mut numbers = vec![0; count];
+    let mut next = 0;
+    for skin in 0..count {
+        numbers[skin] = if first[skin] == skin {
+            next += 1;
+            next - 1
+        } else {
+            numbers[first[skin]]
+        };
+    }
+    numbers
+}
+
+/// Number of the creature whose joint each node is or hangs under; in a file without skins, where
+/// every node may be a joint, all are the first's.
+fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
+    let nobody = of_skin.is_empty().then_some(0);
+    let mut of_node = vec![nobody; tree.nodes.len()];
+    for skin in &tree.skins {
+        for joint in skin.joints() {
+            of_node[joint.index()] = Some(of_skin[skin.index()]);
+        }
+    }
+    for &node in &tree.order {
+        let inherited = tree.parent_of[node].and_then(|parent| of_node[parent]);
+        of_node[node] = of_node[node].or(inherited);
+    }
+    of_node
+}
+
+/// The smallest skin of the set that `skin` is in.
+fn representative(above: &[usize], mut skin: usize) -> usize {
+    while above[skin] != skin {
+        skin = above[skin];
+    }
+    skin
+}
+
+/// Makes one set of two, under the smaller representative, and shortens the ways to it.
+fn unite(above: &mut [usize], a: usize, b: usize) {
+    let (a_first, b_first) = (representative(above, a), representative(above, b));
+    let first = a_first.min(b_first);
+    for skin in [a, b, a_first, b_first] {
+        above[skin] = first;
+    }
+}
+
+/// How many triangle corners a mesh has, more or less.
+fn corner_count(mesh: &Mesh<'_>) -> u64 {
+    let count = |primitive: gltf::Primitive<'_>| {
+        let positions = || primitive.get(&Semantic::Positions);
+        let accessor = primitive.indices().or_else(positions);
+        accessor.map_or(0, |accessor| accessor.count() as u64)
+    };
+    mesh.primitives().map(count).fold(0, u64::saturating_add)
+}

@@ -1,0 +1,191 @@
+//! What is drawn of a creature, on the joints that move its collider.
+
+use clamber_surface::mesh::{
+    BuildOptions, BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+    normalize_influences,
+};
+use glam::{Vec2, Vec3};
+use gltf::material::AlphaMode;
+use gltf::{Document, Primitive};
+
+use crate::extras::tag_of;
+use crate::vertices::{Looks, Vertices};
+use crate::{GltfErrorKind, LoadOptions};
+
+/// A mesh to be drawn: vertices as the file has them, split where normals or texture coordinates
+/// are, and their triangles by material.
+#[derive(Clone, Debug, Default)]
+pub struct VisualMesh {
+    /// Of the node that shows it, or of its mesh.
+    pub name: String,
+    /// Rest positions in mesh space, with morph targets at their rest weights.
+    pub positions: Vec<Vec3>,
+    /// Unit vectors in mesh space, one a vertex; empty if the file gives none.
+    pub normals: Vec<Vec3>,
+    /// For each `TEXCOORD_n`, from 0 on, coordinates of every vertex.
+    pub tex_coords: Vec<Vec<Vec2>>,
+    /// `COLOR_0`: linear red, green, blue and opacity, one a vertex; empty if the file gives none.
+    pub colors: Vec<[f32; 4]>,
+    /// Influences of the first vertex, then of the second, and so on: by ascending joint, weights
+    /// normalised as those of a collider.
+    pub influences: Vec<Influence>,
+    /// Where in `influences` those of each vertex end.
+    pub influence_ends: Vec<u32>,
+    /// The triangles, by material.
+    pub primitives: Vec<VisualPrimitive>,
+}
+
+/// The triangles of one material.
+#[derive(Clone, Debug, Default)]
+pub struct VisualPrimitive {
+    /// Index into [`Rig::materials`](crate::Rig::materials); `None` for glTF's default material.
+    pub material: Option<usize>,
+    /// Corners, counter-clockwise seen from outside, as indices into the mesh's vertices.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// How a surface looks: the factors of glTF's metallic-roughness model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// As the file names it.
+    pub name: Option<String>,
+    /// Linear red, green, blue and opacity.
+    pub base_color: [f32; 4],
+    /// 0 to 1.
+    pub metallic: f32,
+    /// 0 to 1.
+    pub roughness: f32,
+    /// Linear red, green, blue of the light that it gives off.
+    pub emissive: [f32; 3],
+    /// What its opacity means.
+    pub alpha: Alpha,
+    /// True if its back is to be seen.
+    pub double_sided: bool,
+    /// What a climber finds there.
+    pub tag: SurfaceTag,
+}
+
+/// What a material's opacity means.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Alpha {
+    /// Nothing.
+    #[default]
+    Opaque,
+    /// A point is solid from this opacity on, and else not there.
+    Mask(f32),
+    /// A point lets through what is behind it.
+    Blend,
+}
+
+impl VisualMesh {
+    /// The mesh as a collider, for queries against what is drawn. `joint_count` is that of the
+    /// rig's skeleton.
+    ///
+    /// # Errors
+    /// [`MeshError`] if there is no triangle in it.
+    pub fn to_collider(
+        &self,
+        joint_count: usize,
+    ) -> Result<(ColliderMesh, BuildReport), MeshError> {
+        let triangles: Vec<[u32; 3]> = self
+            .primitives
+            .iter()
+            .flat_map(|primitive| primitive.triangles.iter().copied())
+            .collect();
+        let source = MeshSource {
+            positions: &self.positions,
+            triangles: &triangles,
+            influences: &self.influences,
+            influence_ends: &self.influence_ends,
+            joint_count,
+            ..MeshSource::default()
+        };
+        ColliderMesh::build(&source, &BuildOptions::default())
+    }
+
+    /// From what a file holds, refusing positions and weights that cannot be skinned.
+    pub(crate) fn new(
+        name: String,
+        vertices: &Vertices,
+        looks: Looks,
+        object: &str,
+    ) -> Result<Self, GltfErrorKind> {
+        if let Some(vertex) = vertices.positions.iter().position(|p| !p.is_finite()) {
+            let reason = format!("vertex {vertex} has a position that is not finite");
+            return Err(GltfErrorKind::invalid(object, reason));
+        }
+        let mut influences = Vec::with_capacity(vertices.influences.len());
+        let mut influence_ends = Vec::with_capacity(vertices.influence_ends.len());
+        let mut start = 0;
+        for (vertex, end) in vertices.influence_ends.iter().enumerate() {
+            let given = &vertices.influences[start..*end as usize];
+            let normalized = normalize_influences(given).ok_or_else(|| {
+                let weights: Vec<f32> = given.iter().map(|i| i.weight).collect();
+                let reason = format!("weights {weights:?} of vertex {vertex} cannot be normalised");
+                GltfErrorKind::invalid(object, reason)
+            })?;
+            influences.extend(normalized);
+            influence_ends.push(influences.len() as u32);
+            start = *end as usize;
+        }
+        Ok(Self {
+            name,
+            positions: vertices.positions.clone(),
+            normals: looks.normals,
+            tex_coords: looks.tex_coords,
+            colors: looks.colors,
+            influences,
+            influence_ends,
+            primitives: Vec::new(),
+        })
+    }
+
+    pub(crate) fn push(&mut self, primitive: &Primitive<'_>, triangles: Vec<[u32; 3]>) {
+        self.primitives.push(VisualPrimitive {
+            material: primitive.material().index(),
+            triangles,
+        });
+    }
+}
+
+/// All materials of a file, in its order.
+pub(crate) fn materials(
+    document: &Document,
+    options: &LoadOptions<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Material>, GltfErrorKind> {
+    let mut textured = 0;
+    let mut materials = Vec::new();
+    for material in document.materials() {
+        let pbr = material.pbr_metallic_roughness();
+        let textures = [
+            pbr.base_color_texture().is_some(),
+            pbr.metallic_roughness_texture().is_some(),
+            material.normal_texture().is_some(),
+            material.occlusion_texture().is_some(),
+            material.emissive_texture().is_some(),
+        ];
+        textured += usize::from(textures.contains(&true));
+        materials.push(Material {
+            name: material.name().map(str::to_owned),
+            base_color: pbr.base_color_factor(),
+            metallic: pbr.metallic_factor(),
+            roughness: pbr.roughness_factor(),
+            emissive: material.emissive_factor(),
+            alpha: match material.alpha_mode() {
+                AlphaMode::Opaque => Alpha::Opaque,
+                // The specification's default.
+                AlphaMode::Mask => Alpha::Mask(material.alpha_cutoff().unwrap_or(0.5)),
+                AlphaMode::Blend => Alpha::Blend,
+            },
+            double_sided: material.double_sided(),
+            tag: tag_of(&material, options)?,
+        });
+    }
+    if textured > 0 {
+        warnings.push(format!(
+            "{textured} materials have textures; only their factors were taken"
+        ));
+    }
+    Ok(materials)
+}

@@ -1,0 +1,159 @@
+//! Files that claim too much, and files with changed values, flipped bits and cuts.
+
+use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::Playback;
+use clamber_surface::surface::SkinnedSurface;
+use serde_json::{Value, json};
+
+use crate::builder::File;
+
+/// Poses a rig in the middle of every clip, as a user would; a rig that loads must not panic later.
+fn use_rig(rig: &Rig) {
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    for clip in &rig.clips {
+        let rest = rig.skeleton.rest_pose();
+        if let Ok(pose) = clip.sample(&rest, clip.duration() * 0.5, Playback::Loop)
+            && let Ok(palette) = rig.skeleton.palette(&pose)
+        {
+            let _ = surface.advance(&palette, Similarity::IDENTITY);
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
+    let mut file = File::square();
+    let vertices = 5_000;
+    let many = vec![0.5f32; vertices * 3];
+    let positions = file.floats("VEC3", &many);
+    file.json["accessors"][positions]["min"] = json!([0.5, 0.5, 0.5]);
+    file.json["accessors"][positions]["max"] = json!([0.5, 0.5, 0.5]);
+    let joints = file.accessor("VEC4", 5121, vertices, &vec![0; vertices * 4]);
+    let weights = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(vertices));
+    let primitive = json!({"attributes": {
+        "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights
+    }});
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.extend(vec![primitive; 2_000]);
+    let error = file.load().unwrap_err();
+    assert!(error.to_string().contains("more memory"), "{error}");
+
+    // Sparse over nothing: a claim that no bytes back.
+    let mut file = File::square();
+    let accessor = file.json["accessors"][0].as_object_mut().unwrap();
+    accessor.remove("bufferView");
+    accessor.insert("count".into(), json!(1u64 << 40));
+    accessor.insert(
+        "sparse".into(),
+        json!({
+            "count": 1, "values": {"bufferView": 0},
+            "indices": {"bufferView": 3, "componentType": 5123}
+        }),
+    );
+    let error = file.load().unwrap_err();
+    assert!(error.to_string().contains("more memory"), "{error}");
+}
+
+/// Every place in a JSON value, as a pointer.
+fn pointers(value: &Value, at: String, all: &mut Vec<String>) {
+    match value {
+        Value::Array(items) => {
+            for (k, item) in items.iter().enumerate() {
+                pointers(item, format!("{at}/{k}"), all);
+            }
+        }
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                pointers(field, format!("{at}/{name}"), all);
+            }
+        }
+        _ => {}
+    }
+    all.push(at);
+}
+
+#[test]
+fn no_change_of_a_value_panics() {
+    let file = File::square();
+    let mut all = Vec::new();
+    pointers(&file.json, String::new(), &mut all);
+    let hostile = [
+        json!(0),
+        json!(1),
+        json!(3),
+        json!(-1),
+        json!(999),
+        json!(u32::MAX),
+        json!(u64::MAX),
+        json!(0.5),
+        json!(1e308),
+        json!(null),
+        json!(true),
+        json!(""),
+        json!("VEC2"),
+        json!([]),
+        json!([0, 0, 0, 0]),
+        json!({}),
+        json!(5121),
+        json!(5125),
+    ];
+    let (mut loaded, mut refused) = (0, 0);
+    for pointer in &all {
+        for value in &hostile {
+            let mut json = file.json.clone();
+            *json.pointer_mut(pointer).unwrap() = value.clone();
+            let changed = File {
+                json,
+                bytes: file.bytes.clone(),
+            };
+            match changed.load() {
+                Ok(rig) => {
+                    use_rig(&rig);
+                    loaded += 1;
+                }
+                Err(error) => {
+                    assert!(!error.to_string().is_empty());
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(
+        loaded > 100 && refused > 500,
+        "{loaded} loaded, {refused} refused"
+    );
+}
+
+#[test]
+fn no_flip_or_cut_of_bytes_panics() {
+    let file = File::square();
+    let glb = file.glb();
+    let mut rng = fastrand::Rng::with_seed(31);
+    for _ in 0..20_000 {
+        let mut broken = glb.clone();
+        for _ in 0..rng.usize(1..4) {
+            let at = rng.usize(0..broken.len());
+            broken[at] ^= 1 << rng.u32(0..8);
+        }
+        if let Ok(rig) = load_slice(&broken, &LoadOptions::default()) {
+            use_rig(&rig);
+        }
+    }
+    for cut in 0..glb.len() {
+        // With the header as it was, and with the length that is left.
+        let mut broken = glb[..cut].to_vec();
+        assert!(
+            load_slice(&broken, &LoadOptions::default()).is_err(),
+            "cut at {cut}"
+        );
+        if cut >= 12 {
+            broken[8..12].copy_from_slice(&(cut as u32).to_le_bytes());
+            let _ = load_slice(&broken, &LoadOptions::default());
+        }
+    }
+    // The header alone, claiming less than itself.
+    let mut short = glb[..12].to_vec();
+    short[8..12].fill(0);
+    assert!(load_slice(&short, &LoadOptions::default()).is_err());
+}

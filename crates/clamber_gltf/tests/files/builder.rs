@@ -1,0 +1,176 @@
+//! A small file, made in code.
+
+use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
+use serde_json::{Value, json};
+
+/// A document under construction: JSON, and the bytes of its one buffer.
+pub(crate) struct File {
+    pub(crate) json: Value,
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl File {
+    /// A square of two triangles on two joints, the upper one turned by a clip; the joints hang
+    /// under a plain node.
+    pub(crate) fn square() -> Self {
+        let mut file = Self {
+            json: json!({
+                "asset": {"version": "2.0"},
+                "scene": 0,
+                "scenes": [{"nodes": [0]}],
+                "nodes": [
+                    {"name": "armature", "children": [1, 3], "scale": [2, 2, 2]},
+                    {"name": "lower", "children": [2]},
+                    {"name": "upper", "translation": [0, 1, 0]},
+                    {"name": "body", "mesh": 0, "skin": 0}
+                ],
+                "materials": [{"extras": {"clamber": {"surface": "fur"}}}],
+                "accessors": [], "bufferViews": []
+            }),
+            bytes: Vec::new(),
+        };
+        let square: [[f32; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
+        let positions = file.positions(&square);
+        let joints = file.accessor("VEC4", 5121, 4, &[0, 1, 0, 0].repeat(4));
+        let weights: Vec<f32> = [1.0, 1.0, 0.0, 0.0]
+            .iter()
+            .flat_map(|w| [*w, 1.0 - w, 0.0, 0.0])
+            .collect();
+        let weights = file.floats("VEC4", &weights);
+        let indices = [0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes);
+        let indices = file.accessor("SCALAR", 5123, 6, indices.as_flattened());
+        let mut binds = [[0.0f32; 16]; 2];
+        for bind in &mut binds {
+            for k in 0..4 {
+                bind[5 * k] = 1.0;
+            }
+        }
+        binds[1][13] = -1.0;
+        let binds = file.floats("MAT4", binds.as_flattened());
+        let times = file.floats("SCALAR", &[0.0, 1.0]);
+        let half = 0.5f32.sqrt();
+        let turns = file.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half]);
+        file.json["meshes"] = json!([{"primitives": [{
+            "attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights},
+            "indices": indices, "material": 0
+        }]}]);
+        file.json["skins"] = json!([{"joints": [1, 2], "inverseBindMatrices": binds}]);
+        file.json["animations"] = json!([{
+            "name": "turn",
+            "channels": [{"sampler": 0, "target": {"node": 2, "path": "rotation"}}],
+            "samplers": [{"input": times, "output": turns}]
+        }]);
+        file
+    }
+
+    pub(crate) fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let width = match kind {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
+        self.accessor(kind, 5126, values.len() / width, &bytes)
+    }
+
+    /// Appends an accessor of positions with their range.
+    pub(crate) fn positions(&mut self, points: &[[f32; 3]]) -> usize {
+        let index = self.floats("VEC3", points.as_flattened());
+        let range = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
+            let of = |k: usize| points.iter().map(move |p| p[k]);
+            (0..3).filter_map(|k| of(k).reduce(pick)).collect()
+        };
+        self.json["accessors"][index]["min"] = json!(range(f32::min));
+        self.json["accessors"][index]["max"] = json!(range(f32::max));
+        index
+    }
+
+    /// Appends to an array of the document; gives the index.
+    pub(crate) fn push(&mut self, array: &str, value: Value) -> usize {
+        if self.json.get(array).is_none() {
+            self.json[array] = json!([]);
+        }
+        let items = self.json[array].as_array_mut().unwrap();
+        items.push(value);
+        items.len() - 1
+    }
+
+    /// Appends a node under another one; gives its index.
+    pub(crate) fn node_under(&mut self, parent: usize, node: Value) -> usize {
+        let index = self.push("nodes", node);
+        let parent = &mut self.json["nodes"][parent];
+        if parent.get("children").is_none() {
+            parent["children"] = json!([]);
+        }
+        parent["children"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!(index));
+        index
+    }
+
+    /// Appends an accessor with a view of its own; gives its index.
+    pub(crate) fn accessor(
+        &mut self,
+        kind: &str,
+        component: u32,
+        count: usize,
+        bytes: &[u8],
+    ) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let view = json!({
+            "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()
+        });
+        self.bytes.extend_from_slice(bytes);
+        let views = self.json["bufferViews"].as_array_mut().unwrap();
+        views.push(view);
+        let accessor = json!({
+            "bufferView": views.len() - 1, "componentType": component, "count": count, "type": kind
+        });
+        let accessors = self.json["accessors"].as_array_mut().unwrap();
+        accessors.push(accessor);
+        accessors.len() - 1
+    }
+
+    /// As a GLB.
+    pub(crate) fn glb(&self) -> Vec<u8> {
+        let mut json = self.json.clone();
+        if json.is_object() && json.get("buffers").is_none() {
+            json["buffers"] = json!([{"byteLength": self.bytes.len()}]);
+        }
+        glb_of(&serde_json::to_vec(&json).unwrap(), &self.bytes)
+    }
+
+    /// As a `.gltf` whose buffer is at a URI.
+    pub(crate) fn gltf(&self, uri: &str) -> Vec<u8> {
+        let mut json = self.json.clone();
+        json["buffers"] = json!([{"byteLength": self.bytes.len(), "uri": uri}]);
+        serde_json::to_vec(&json).unwrap()
+    }
+
+    pub(crate) fn load(&self) -> Result<Rig, GltfErrorKind> {
+        load_slice(&self.glb(), &LoadOptions::default()).map_err(|error| error.kind)
+    }
+}
+
+fn glb_of(json: &[u8], bin: &[u8]) -> Vec<u8> {
+    let padded = |bytes: &[u8], with: u8| {
+        let mut bytes = bytes.to_vec();
+        bytes.resize(bytes.len().next_multiple_of(4), with);
+        bytes
+    };
+    let (json, bin) = (padded(json, b' '), padded(bin, 0));
+    let length = (12 + 8 + json.len() + 8 + bin.len()) as u32;
+    let mut glb = b"glTF".to_vec();
+    for word in [2, length, json.len() as u32] {
+        glb.extend(word.to_le_bytes());
+    }
+    glb.extend(b"JSON");
+    glb.extend(&json);
+    glb.extend((bin.len() as u32).to_le_bytes());
+    glb.extend(b"BIN\0");
+    glb.extend(&bin);
+    glb
+}

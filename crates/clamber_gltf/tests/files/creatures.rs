@@ -1,0 +1,239 @@
+//! Skins, joints, clips and weak points.
+
+use clamber_gltf::{GltfErrorKind, LoadOptions, load_all, load_slice};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::SurfaceKind;
+use clamber_surface::rig::{JointId, Playback};
+use clamber_surface::surface::SkinnedSurface;
+use glam::Vec3;
+use serde_json::json;
+
+use crate::builder::File;
+
+#[test]
+fn the_square_loads_as_it_was_made() {
+    let rig = File::square().load().unwrap();
+    assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);
+    let names: Vec<_> = rig
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
+    assert_eq!(names, ["lower", "upper", "armature"]);
+    assert_eq!(rig.skeleton.joints()[0].parent, Some(JointId(2)));
+    assert_eq!(rig.collider.positions().len(), 4);
+    assert!(
+        rig.collider
+            .tags()
+            .iter()
+            .all(|tag| tag.kind == SurfaceKind::Fur)
+    );
+    // Half way the upper edge has turned by 45 degrees about (0, 1), at twice the size.
+    let clip = rig.clip("turn").unwrap();
+    let pose = clip
+        .sample(&rig.skeleton.rest_pose(), 0.5, Playback::Clamp)
+        .unwrap();
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    surface
+        .advance(&rig.skeleton.palette(&pose).unwrap(), Similarity::IDENTITY)
+        .unwrap();
+    let corner = surface.positions()[2];
+    let diagonal = 2.0 * 0.5f32.sqrt();
+    let expected = glam::Vec3::new(diagonal, 2.0 + diagonal, 0.0);
+    assert!((corner - expected).length() < 1e-6, "{corner} {expected}");
+}
+
+#[test]
+fn what_does_not_concern_a_collider_is_passed_over() {
+    let mut file = File::square();
+    file.json["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_mesh_quantization"]);
+    file.json["extensionsRequired"] = file.json["extensionsUsed"].clone();
+    let channels = file.json["animations"][0]["channels"]
+        .as_array_mut()
+        .unwrap();
+    channels.push(json!({"sampler": 0, "target": {"path": "rotation"}}));
+    channels.push(json!({"sampler": 0, "target": {"node": 1, "path": "pointer"}}));
+    // Of a node outside the skeleton, and with values that do not fit.
+    channels.push(json!({"sampler": 0, "target": {"node": 3, "path": "scale"}}));
+    file.json["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"mesh": 0}));
+    let rig = file.load().unwrap();
+    assert_eq!(rig.clips[0].channels().len(), 1);
+    assert_eq!(rig.report.warnings.len(), 4, "{:?}", rig.report.warnings);
+
+    file.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    assert!(matches!(file.load(), Err(GltfErrorKind::Format(_))));
+}
+
+#[test]
+fn joints_and_bind_matrices_beyond_the_skin() {
+    // A third bind matrix is legal to have, whatever it holds, and belongs to no one.
+    let mut file = File::square();
+    let mut binds = [f32::NAN; 48];
+    for k in 0..8 {
+        binds[4 * k..4 * k + 4].fill(0.0);
+        binds[4 * k + k % 4] = 1.0;
+    }
+    let binds = file.floats("MAT4", &binds);
+    file.json["skins"][0]["inverseBindMatrices"] = json!(binds);
+    let rig = file.load().unwrap();
+    assert_eq!(rig.skeleton.joints()[2].inverse_bind, Affine::IDENTITY);
+
+    let mut file = File::square();
+    file.json["skins"][0]["joints"] = json!([1]);
+    let error = file.load().unwrap_err();
+    assert!(
+        error.to_string().contains("joint 1 of a skin of 1"),
+        "{error}"
+    );
+    // Where it weighs nothing, it is padding.
+    let all_on_joint_0 = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(4));
+    let attributes = &mut file.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["WEIGHTS_0"] = json!(all_on_joint_0);
+    file.json["animations"] = json!([]);
+    assert!(file.load().is_ok());
+    file.json["skins"][0]["joints"] = json!([1, 2, 0]);
+    let error = file.load().unwrap_err();
+    assert!(
+        error.to_string().contains("2 inverse bind matrices"),
+        "{error}"
+    );
+}
+
+/// A second pair of joints, under a root of their own, and a mesh on them.
+fn with_a_stranger(file: &mut File) {
+    let root = file.push(
+        "nodes",
+        json!({"name": "stranger", "translation": [9, 0, 0]}),
+    );
+    let tip = file.node_under(root, json!({"name": "its tip"}));
+    let binds = file.json["skins"][0]["inverseBindMatrices"].clone();
+    let skin = file.push(
+        "skins",
+        json!({"joints": [root, tip], "inverseBindMatrices": binds}),
+    );
+    file.push("nodes", json!({"mesh": 0, "skin": skin}));
+}
+
+#[test]
+fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
+    let mut file = File::square();
+    // The same nodes the other way round, and bound where they are.
+    let again = file.push("skins", json!({"joints": [2, 1]}));
+    let twice = json!({"mesh": 0, "skin": again});
+    file.push("nodes", twice.clone());
+    file.push("nodes", twice);
+    // A joint that hangs under another skin's.
+    let finger = file.node_under(2, json!({"name": "finger"}));
+    let third = file.push("skins", json!({"joints": [finger, 1]}));
+    file.push("nodes", json!({"mesh": 0, "skin": third}));
+    with_a_stranger(&mut file);
+
+    let rig = file.load().unwrap();
+    let names: Vec<_> = rig
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
+    // "lower" is bound alike by all three; "upper" by the first one elsewhere.
+    assert_eq!(names, ["lower", "upper", "upper", "finger", "armature"]);
+    assert_eq!(rig.skeleton.joints()[3].parent, Some(JointId(1)));
+    assert_eq!(
+        rig.collider.triangles().len(),
+        6,
+        "what is shown twice is one"
+    );
+    assert_eq!(
+        rig.report.build.cracks, 0,
+        "each skin has a space of its own"
+    );
+    assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
+    assert!(rig.report.warnings[0].contains("took the creature of skins 0, 1, 2; 1 others"));
+
+    let pick = |skin| LoadOptions {
+        skin: Some(skin),
+        ..LoadOptions::default()
+    };
+    let stranger = load_slice(&file.glb(), &pick(3)).unwrap();
+    assert_eq!(stranger.skeleton.joints()[0].name, "stranger");
+    assert!(stranger.clips.is_empty(), "the clip moves the others");
+    let same = load_slice(&file.glb(), &pick(2)).unwrap();
+    assert_eq!(same.skeleton.joints().len(), 5);
+    let error = load_slice(&file.glb(), &pick(4)).unwrap_err();
+    assert!(error.path.is_none());
+    let expected = matches!(
+        error.kind,
+        GltfErrorKind::NoSuchSkin {
+            wanted: 4,
+            found: 4
+        }
+    );
+    assert!(expected, "{error}");
+}
+
+#[test]
+fn all_creatures_of_a_file_can_be_had() {
+    let mut file = File::square();
+    with_a_stranger(&mut file);
+    let path = std::env::temp_dir().join(format!("clamber-all-{}.glb", std::process::id()));
+    std::fs::write(&path, file.glb()).unwrap();
+    let rigs = load_all(&path, &LoadOptions::default()).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let first_joints: Vec<_> = rigs
+        .iter()
+        .map(|rig| &rig.skeleton.joints()[0].name)
+        .collect();
+    assert_eq!(first_joints, ["lower", "stranger"]);
+    assert_eq!(rigs[0].clips.len(), 1);
+}
+
+#[test]
+fn weak_points_are_on_the_joint_that_they_hang_under() {
+    let mut file = File::square();
+    let between = file.node_under(2, json!({"translation": [0, 1, 0], "scale": [2, 2, 2]}));
+    let says = |json| json!({"clamber": {"weak_point": json}});
+    let eye = json!({"name": "eye", "translation": [1, 0, 0],
+        "extras": says(json!({"hit_points": 3.0, "major": true}))});
+    file.node_under(between, eye);
+    file.json["nodes"][1]["extras"] = says(json!({"hit_points": 1}));
+    file.push("nodes", json!({"extras": says(json!({"hit_points": 1}))}));
+
+    let rig = file.load().unwrap();
+    let [lower, eye] = rig.weak_points.as_slice() else {
+        panic!("{:?}", rig.weak_points);
+    };
+    assert_eq!((lower.joint, lower.position), (JointId(0), Vec3::ZERO));
+    assert!(!lower.major && lower.hit_points == 1.0 && lower.name == "lower");
+    assert_eq!(
+        (eye.joint, eye.position),
+        (JointId(1), Vec3::new(2.0, 1.0, 0.0))
+    );
+    assert!(eye.major && eye.hit_points == 3.0 && eye.name == "eye");
+    assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
+
+    for bad in [
+        json!({"hit_points": 0}),
+        json!({"hit_points": -1}),
+        json!({}),
+        json!(3),
+    ] {
+        file.json["nodes"][1]["extras"] = says(bad.clone());
+        let error = file.load().unwrap_err().to_string();
+        assert!(error.contains("extras of node \"lower\""), "{bad}: {error}");
+    }
+}
+
+#[test]
+fn nodes_in_a_circle_are_refused() {
+    let mut file = File::square();
+    file.json["nodes"][2]["children"] = json!([0]);
+    let error = file.load().unwrap_err();
+    assert!(
+        error.to_string().contains("one of its own ancestors"),
+        "{error}"
+    );
+}

@@ -1,0 +1,12 @@
+//! Small files made here: what they load as, and what becomes of them when they are broken.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+mod broken;
+mod buffers;
+mod builder;
+mod creatures;
+mod meshes;

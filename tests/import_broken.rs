@@ -1,0 +1,81 @@
+//! Real models, cut short and with flipped bits: an error or a rig that can be used, never a panic,
+//! an endless loop, or memory without measure.
+
+use allocation_counter::measure;
+use clamber::gltf::{LoadOptions, load_slice};
+use clamber::prelude::*;
+use clamber_scenes::test_data;
+
+/// Cuts of each model, and as many with flipped bits.
+const TRIALS: usize = 1_000;
+
+/// Memory at its peak, bytes for each byte of the file.
+const MEMORY: u64 = 100;
+
+#[test]
+fn cut_models_are_refused() {
+    each_model("cut models", |bytes, rng| {
+        let mut cut = bytes[..rng.usize(0..bytes.len())].to_vec();
+        // Every other one claims the length that is left.
+        if cut.len() >= 12 && rng.bool() {
+            let length = cut.len() as u32;
+            cut[8..12].copy_from_slice(&length.to_le_bytes());
+        }
+        cut
+    });
+}
+
+#[test]
+fn models_with_flipped_bits_load_or_are_refused() {
+    each_model("models with flipped bits", |bytes, rng| {
+        let mut flipped = bytes.to_vec();
+        // The JSON, behind the container's header, is where most of the meaning is.
+        let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
+        let reach = if rng.bool() { length + 20 } else { bytes.len() };
+        for _ in 0..rng.usize(1..4) {
+            flipped[rng.usize(0..reach)] ^= 1 << rng.u32(0..8);
+        }
+        flipped
+    });
+}
+
+/// Loads every model as `broken` leaves it, and uses what loads.
+fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>) {
+    for path in test_data::five_models(test) {
+        let name = path.display();
+        let bytes = std::fs::read(&path).unwrap();
+        let mut rng = fastrand::Rng::with_seed(37);
+        let (mut loaded, mut worst) = (0, 0);
+        for trial in 0..TRIALS {
+            let bytes = broken(&bytes, &mut rng);
+            let mut rig = None;
+            let memory = measure(|| rig = load_slice(&bytes, &LoadOptions::default()).ok());
+            let allowed = MEMORY * bytes.len().max(1 << 10) as u64;
+            assert!(
+                memory.bytes_max < allowed,
+                "{name}, trial {trial}: {memory:?}"
+            );
+            worst = worst.max(memory.bytes_max / bytes.len().max(1 << 10) as u64);
+            let Some(rig) = rig else {
+                continue;
+            };
+            loaded += 1;
+            // What loads can be posed, or says why not.
+            let mut surface = SkinnedSurface::new(rig.collider.clone());
+            let clip = rig.clips.get(trial % rig.clips.len().max(1));
+            let rest = rig.skeleton.rest_pose();
+            let pose = clip.map(|clip| clip.sample(&rest, clip.duration() * 0.3, Playback::Loop));
+            if let Ok(palette) = rig
+                .skeleton
+                .palette(&pose.and_then(Result::ok).unwrap_or(rest))
+                && surface.advance(&palette, Similarity::IDENTITY).is_ok()
+            {
+                assert!(
+                    surface.positions().iter().all(|p| p.is_finite()),
+                    "{name}, trial {trial}"
+                );
+            }
+        }
+        println!("{test}: {name}: {loaded} of {TRIALS} load, memory up to {worst} times the file");
+    }
+}
