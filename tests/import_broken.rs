@@ -1,6 +1,11 @@
 //! Real models, cut short and with flipped bits: an error or a rig that can be used, never a panic,
 //! an endless loop, or memory without measure.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
 use allocation_counter::measure;
 use clamber::gltf::{LoadOptions, load_slice};
 use clamber::prelude::*;

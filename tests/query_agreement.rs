@@ -7,8 +7,9 @@
 )]
 
 use clamber::prelude::*;
+use clamber_scenes::inspect::compare_queries;
 use clamber_scenes::{Creature, beast::beast, test_data};
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3};
 
 /// Poses of each clip, and places in each pose.
 const POSES: u32 = 4;
@@ -19,8 +20,7 @@ fn assert_agreement(creature: &Creature) -> usize {
     let mut rng = fastrand::Rng::with_seed(0x5eed);
     let mut surface = SkinnedSurface::new(creature.collider.clone());
     let rest = creature.skeleton.rest_pose();
-    let (mut hits, mut expected) = (Vec::new(), Vec::new());
-    let mut found = 0;
+    let mut hits = 0;
     for clip in &creature.clips {
         for k in 0..POSES {
             let time = clip.duration() * f64::from(k) / f64::from(POSES);
@@ -32,46 +32,13 @@ fn assert_agreement(creature: &Creature) -> usize {
                 translation: DVec3::new(f64::from(k), 0.0, 0.0),
             };
             surface.advance(&palette, world_from_model).unwrap();
-            let positions = surface.positions();
-            let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-            let high = positions
-                .iter()
-                .copied()
-                .fold(Vec3::NEG_INFINITY, Vec3::max);
-            let size = (high - low).length();
-            for _ in 0..PLACES {
-                let near = positions[rng.usize(0..positions.len())];
-                let mut offset = || (rng.f32() - 0.5) * size * 0.2;
-                let place = near + Vec3::new(offset(), offset(), offset());
-                let target = positions[rng.usize(0..positions.len())];
-                let context = format!("{}, {}, {time} s, {place}", creature.name, clip.name);
-                if let Some(ray) = Ray::new(place, target - place) {
-                    let hit = surface.cast_ray(&ray, size).unwrap();
-                    assert_eq!(
-                        hit,
-                        surface.cast_ray_reference(&ray, size).unwrap(),
-                        "{context}"
-                    );
-                    found += usize::from(hit.is_some());
-                }
-                let reach = size * rng.f32() * 0.2;
-                let closest = surface.closest_point(place, reach).unwrap();
-                let reference = surface.closest_point_reference(place, reach).unwrap();
-                assert_eq!(closest, reference, "{context}");
-                let sphere = Sphere {
-                    center: place,
-                    radius: reach,
-                };
-                surface.overlap_sphere(&sphere, &mut hits).unwrap();
-                surface
-                    .overlap_sphere_reference(&sphere, &mut expected)
-                    .unwrap();
-                assert_eq!(hits, expected, "{context}");
-                found += usize::from(closest.is_some()) + hits.len();
-            }
+            let agreement = compare_queries(&surface, &mut rng, PLACES).unwrap();
+            let context = format!("{}, {}, {time} s", creature.name, clip.name);
+            assert_eq!(agreement.mismatches, 0, "{context}");
+            hits += agreement.hits;
         }
     }
-    found
+    hits
 }
 
 #[test]

@@ -5,9 +5,9 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::mesh::VertexId;
 use clamber::prelude::*;
-use clamber::skin::{error_bound, skin, skin_vertex_reference};
+use clamber::skin::skin;
+use clamber_scenes::inspect::skinning_error_share;
 use clamber_scenes::{Creature, beast::beast, test_data};
 
 /// Poses of each clip.
@@ -25,19 +25,10 @@ fn worst_share(creature: &Creature) -> (f64, usize) {
             let palette = creature.skeleton.palette(&pose).unwrap();
             let matrices = palette.matrices();
             let skinned = skin(&creature.collider, matrices).unwrap();
-            for (v, position) in skinned.iter().enumerate() {
-                let vertex = VertexId(v as u32);
-                let exact = skin_vertex_reference(&creature.collider, matrices, vertex).unwrap();
-                let bound = error_bound(&creature.collider, matrices, vertex).unwrap();
-                let share = ((position.as_dvec3() - exact).abs() / bound).max_element();
-                assert!(
-                    share <= 1.0,
-                    "{}, {}, {time} s: {share}",
-                    creature.name,
-                    clip.name
-                );
-                worst = worst.max(share);
-            }
+            let share = skinning_error_share(&creature.collider, matrices, &skinned);
+            let context = format!("{}, {}, {time} s", creature.name, clip.name);
+            assert!(share <= 1.0, "{context}: {share}");
+            worst = worst.max(share);
             compared += skinned.len();
         }
     }

@@ -1,12 +1,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildOptions, BuildReport, ColliderMesh, SurfaceTag};
+use clamber_surface::mesh::{BuildOptions, BuildReport, ColliderMesh, MeshError, SurfaceTag};
 use clamber_surface::rig::{Clip, Skeleton};
 
 use crate::accessor::Reader;
 use crate::contents::Contents;
 use crate::members::{self, Members};
+use crate::visual;
 use crate::{
     GltfError, GltfErrorKind, Material, VisualMesh, WeakPoint, buffers, clip, document, mesh,
     skeleton, weak_point,
@@ -36,6 +37,15 @@ impl Rig {
     /// The first clip of this name.
     pub fn clip(&self, name: &str) -> Option<&Clip> {
         self.clips.iter().find(|clip| clip.name == name)
+    }
+
+    /// What is to be seen, as one mesh that can be queried like the collider.
+    ///
+    /// # Errors
+    /// [`MeshError`] if nothing is to be seen.
+    pub fn visual_collider(&self) -> Result<(ColliderMesh, BuildReport), MeshError> {
+        let joints = self.skeleton.joints().len();
+        visual::merged(&self.visual, &self.materials, joints)
     }
 }
 

@@ -78,31 +78,6 @@ pub enum Alpha {
 }
 
 impl VisualMesh {
-    /// The mesh as a collider, for queries against what is drawn. `joint_count` is that of the
-    /// rig's skeleton.
-    ///
-    /// # Errors
-    /// [`MeshError`] if there is no triangle in it.
-    pub fn to_collider(
-        &self,
-        joint_count: usize,
-    ) -> Result<(ColliderMesh, BuildReport), MeshError> {
-        let triangles: Vec<[u32; 3]> = self
-            .primitives
-            .iter()
-            .flat_map(|primitive| primitive.triangles.iter().copied())
-            .collect();
-        let source = MeshSource {
-            positions: &self.positions,
-            triangles: &triangles,
-            influences: &self.influences,
-            influence_ends: &self.influence_ends,
-            joint_count,
-            ..MeshSource::default()
-        };
-        ColliderMesh::build(&source, &BuildOptions::default())
-    }
-
     /// From what a file holds, refusing positions and weights that cannot be skinned.
     pub(crate) fn new(
         name: String,
@@ -146,6 +121,39 @@ impl VisualMesh {
             triangles,
         });
     }
+}
+
+/// All that is to be seen as one collider mesh, tagged by its materials.
+pub(crate) fn merged(
+    visual: &[VisualMesh],
+    materials: &[Material],
+    joint_count: usize,
+) -> Result<(ColliderMesh, BuildReport), MeshError> {
+    let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
+    let (mut triangles, mut tags) = (vec![], vec![]);
+    for seen in visual {
+        let (vertices, before) = (positions.len() as u32, influences.len() as u32);
+        positions.extend_from_slice(&seen.positions);
+        influences.extend_from_slice(&seen.influences);
+        influence_ends.extend(seen.influence_ends.iter().map(|end| end + before));
+        for primitive in &seen.primitives {
+            let corners = primitive.triangles.iter();
+            triangles.extend(corners.map(|t| t.map(|v| v + vertices)));
+            let material = primitive.material.and_then(|index| materials.get(index));
+            let tag = material.map(|material| material.tag).unwrap_or_default();
+            tags.resize(triangles.len(), tag);
+        }
+    }
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &influences,
+        influence_ends: &influence_ends,
+        tags: &tags,
+        joint_count,
+        ..MeshSource::default()
+    };
+    ColliderMesh::build(&source, &BuildOptions::default())
 }
 
 /// All materials of a file, in its order.

@@ -2,7 +2,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clamber_gltf::{GltfError, LoadOptions};
-use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::mesh::{ColliderMesh, MeshError};
 use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::SurfaceError;
@@ -34,6 +34,9 @@ pub enum CreatureError {
     /// Its skeleton cannot be posed.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// Its mesh cannot be built.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// Its skin cannot be posed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),

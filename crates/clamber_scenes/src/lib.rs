@@ -1,15 +1,21 @@
 //! Creatures and scenes that clamber's tests, benches and examples share. Not published.
 //!
 //! - [`beast`]: a quadruped built in code, of any number of vertices.
+//! - [`giant`]: the project's own giant, from its file, at any number of vertices.
+//! - [`resample`]: any mesh at any number of vertices.
 //! - [`Creature`]: what a scene needs of a creature, from code or from a file.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
+//! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
 
 pub mod battle;
 pub mod beast;
 mod creature;
+pub mod giant;
+pub mod inspect;
+pub mod resample;
 pub mod solid_angle;
 pub mod test_data;
 pub mod valley;

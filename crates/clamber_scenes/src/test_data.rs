@@ -33,19 +33,21 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
 /// All glTF files of the test data, models and fixtures, by path within the folder, sorted; none,
 /// said on standard error, without [`VARIABLE`].
 ///
+/// # Errors
+/// If a folder cannot be read.
+///
 /// # Panics
-/// If the variable is set and the folder cannot be read.
-pub fn gltf_files(test: &str) -> Vec<(String, PathBuf)> {
+/// As [`file()`].
+pub fn gltf_files(test: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
     let Some(trex) = file(test, "models/Trex.glb") else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let root = trex.ancestors().nth(2).unwrap_or(&trex);
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
-        let entries = std::fs::read_dir(&folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-        let entries = entries.unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-        for path in entries.into_iter().map(|entry| entry.path()) {
+        for entry in std::fs::read_dir(folder)? {
+            let path = entry?.path();
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
@@ -55,7 +57,7 @@ pub fn gltf_files(test: &str) -> Vec<(String, PathBuf)> {
         }
     }
     files.sort();
-    files
+    Ok(files)
 }
 
 /// Models of several makers, with 19 to 48 joints and 1 to 20 clips, to measure on.

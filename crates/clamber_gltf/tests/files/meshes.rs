@@ -60,7 +60,7 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     );
     assert_eq!((glow.base_color[3], glow.roughness), (0.5, 0.25));
     assert!(glow.double_sided);
-    let (again, _) = seen.to_collider(rig.skeleton.joints().len()).unwrap();
+    let (again, _) = rig.visual_collider().unwrap();
     assert_eq!(again.triangles().len(), 2);
 }
 

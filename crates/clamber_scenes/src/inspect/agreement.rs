@@ -1,0 +1,64 @@
+//! Queries against brute force over all triangles.
+
+use clamber_surface::geometry::{Ray, Sphere};
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use glam::Vec3;
+
+/// What a comparison found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Agreement {
+    /// Hits of the queries.
+    pub hits: usize,
+    /// Queries whose answer differs from brute force in any bit.
+    pub mismatches: usize,
+}
+
+/// Compares every query with brute force at random places near the skin, in the surface's pose.
+///
+/// # Errors
+/// [`SurfaceError`] if a query refuses its input, which for a finite surface none does.
+pub fn compare_queries(
+    surface: &SkinnedSurface,
+    rng: &mut fastrand::Rng,
+    places: usize,
+) -> Result<Agreement, SurfaceError> {
+    let positions = surface.positions();
+    let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = positions
+        .iter()
+        .copied()
+        .fold(Vec3::NEG_INFINITY, Vec3::max);
+    let size = (high - low).length();
+    let (mut hits, mut expected) = (Vec::new(), Vec::new());
+    let mut agreement = Agreement::default();
+    for _ in 0..places {
+        let near = positions[rng.usize(0..positions.len())];
+        let mut offset = || (rng.f32() - 0.5) * size * 0.2;
+        let place = near + Vec3::new(offset(), offset(), offset());
+        let target = positions[rng.usize(0..positions.len())];
+        if let Some(ray) = Ray::new(place, target - place) {
+            let hit = surface.cast_ray(&ray, size)?;
+            let reference = surface.cast_ray_reference(&ray, size)?;
+            agreement.count(hit.is_some().into(), hit == reference);
+        }
+        let reach = size * rng.f32() * 0.2;
+        let closest = surface.closest_point(place, reach)?;
+        let reference = surface.closest_point_reference(place, reach)?;
+        agreement.count(closest.is_some().into(), closest == reference);
+        let sphere = Sphere {
+            center: place,
+            radius: reach,
+        };
+        surface.overlap_sphere(&sphere, &mut hits)?;
+        surface.overlap_sphere_reference(&sphere, &mut expected)?;
+        agreement.count(hits.len(), hits == expected);
+    }
+    Ok(agreement)
+}
+
+impl Agreement {
+    fn count(&mut self, hits: usize, equal: bool) {
+        self.hits += hits;
+        self.mismatches += usize::from(!equal);
+    }
+}

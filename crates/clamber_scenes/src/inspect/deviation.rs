@@ -1,0 +1,99 @@
+//! How far the skin is from exact arithmetic, and from what is to be seen.
+
+use clamber_gltf::Rig;
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{ColliderMesh, MeshError, VertexId};
+use clamber_surface::rig::Palette;
+use clamber_surface::skin::{error_bound, skin_vertex_reference};
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use glam::Vec3;
+use std::sync::Arc;
+
+use super::report::Distances;
+
+/// The worst error of any coordinate of any vertex against f64, as a share of its bound.
+/// `positions` are the mesh's vertices as skinned by `matrices`.
+pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions: &[Vec3]) -> f64 {
+    let mut worst = 0.0f64;
+    for (index, position) in positions.iter().enumerate() {
+        let vertex = VertexId(index as u32);
+        let exact = skin_vertex_reference(mesh, matrices, vertex);
+        let bound = error_bound(mesh, matrices, vertex);
+        if let (Some(exact), Some(bound)) = (exact, bound) {
+            let error = (position.as_dvec3() - exact).abs();
+            // A bound of zero is met by no error only.
+            let share = error.to_array().into_iter().zip(bound.to_array());
+            let share = share.map(|(e, b)| if e == 0.0 { 0.0 } else { e / b });
+            worst = share.fold(worst, f64::max);
+        }
+    }
+    worst
+}
+
+/// Vertices to be seen that are measured in each pose.
+const SAMPLES: usize = 200;
+
+/// Distances of what is to be seen from the collider.
+pub(super) struct VisualDistance {
+    /// `None` if nothing is to be seen.
+    visual: Option<SkinnedSurface>,
+    distances: Vec<f64>,
+}
+
+impl VisualDistance {
+    pub(super) fn new(rig: &Rig) -> Result<Self, MeshError> {
+        let visual = match rig.visual_collider() {
+            Ok((mesh, _)) => Some(SkinnedSurface::new(Arc::new(mesh))),
+            Err(MeshError::NoTriangles { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        let distances = Vec::new();
+        Ok(Self { visual, distances })
+    }
+
+    /// Measures at random vertices in a pose.
+    pub(super) fn measure(
+        &mut self,
+        palette: &Palette,
+        collider: &SkinnedSurface,
+        rng: &mut fastrand::Rng,
+    ) -> Result<(), SurfaceError> {
+        let Some(visual) = &mut self.visual else {
+            return Ok(());
+        };
+        visual.advance(palette, Similarity::IDENTITY)?;
+        for _ in 0..SAMPLES {
+            let place = visual.positions()[rng.usize(0..visual.positions().len())];
+            self.distances.push(distance(collider, place)?);
+        }
+        Ok(())
+    }
+
+    /// Median and worst; `None` if there was nothing to measure.
+    pub(super) fn finish(&mut self) -> Option<Distances> {
+        let worst = self.distances.iter().copied().reduce(f64::max)?;
+        Some(Distances {
+            median_m: super::median(&mut self.distances),
+            worst_m: worst,
+        })
+    }
+}
+
+/// Distance of a place from the skin, looked for in ever wider spheres: near skin is found fast.
+fn distance(collider: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> {
+    let mut reach = collider.mesh().radius() * 0.01;
+    loop {
+        if let Some(hit) = collider.closest_point(place, reach)? {
+            return Ok(f64::from(hit.distance));
+        }
+        if reach == f32::INFINITY {
+            return Ok(f64::INFINITY);
+        }
+        // From nothing straight to everything.
+        reach = if reach > 0.0 {
+            reach * 4.0
+        } else {
+            f32::INFINITY
+        };
+    }
+}

@@ -1,0 +1,174 @@
+//! A mesh with more or fewer vertices: the same creature at any size, for benches.
+
+mod coarsen;
+mod refine;
+
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, VertexId,
+    normalize_influences,
+};
+use glam::DVec3;
+
+/// The mesh with so many vertices, or nearly: longest edges are halved until there are enough, or
+/// shortest ones drawn together until there are few enough, as far as no triangle turns over.
+///
+/// # Errors
+/// [`MeshError`] if nothing is left, which takes a mesh that was nearly nothing.
+pub fn resample(mesh: &ColliderMesh, vertices: usize) -> Result<ColliderMesh, MeshError> {
+    let mut pieces = Pieces::of(mesh);
+    if vertices > pieces.points.len() {
+        refine::refine(&mut pieces, vertices);
+    } else {
+        coarsen::coarsen(&mut pieces, vertices);
+    }
+    pieces.build(mesh.joint_count())
+}
+
+/// A mesh taken apart.
+struct Pieces {
+    points: Vec<Point>,
+    triangles: Vec<Triangle>,
+}
+
+/// A vertex.
+#[derive(Clone)]
+struct Point {
+    position: DVec3,
+    influences: Vec<Influence>,
+}
+
+#[derive(Clone, Copy)]
+struct Triangle {
+    corners: [u32; 3],
+    tag: SurfaceTag,
+}
+
+impl Point {
+    /// Half way between two points, in place and in influences.
+    fn between(a: &Self, b: &Self) -> Self {
+        let halves = a.influences.iter().chain(&b.influences);
+        let halves: Vec<Influence> = halves
+            .map(|influence| Influence {
+                weight: influence.weight * 0.5,
+                ..*influence
+            })
+            .collect();
+        Self {
+            position: (a.position + b.position) * 0.5,
+            // Both were normalised, so this always is something.
+            influences: normalize_influences(&halves).unwrap_or(halves),
+        }
+    }
+}
+
+/// An edge, the smaller vertex first.
+type Edge = [u32; 2];
+
+fn edge(a: u32, b: u32) -> Edge {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+impl Pieces {
+    fn of(mesh: &ColliderMesh) -> Self {
+        let point = |(index, position): (usize, &glam::Vec3)| Point {
+            position: position.as_dvec3(),
+            influences: mesh
+                .influences(VertexId(index as u32))
+                .map(|(joint, weight)| Influence { joint, weight })
+                .collect(),
+        };
+        let triangles = mesh.triangles().iter().zip(mesh.tags());
+        Self {
+            points: mesh.positions().iter().enumerate().map(point).collect(),
+            triangles: triangles
+                .map(|(corners, tag)| Triangle {
+                    corners: corners.map(|v| v.0),
+                    tag: *tag,
+                })
+                .collect(),
+        }
+    }
+
+    /// Length of an edge, squared, as bits: of numbers that are not negative these are in order.
+    fn length(&self, [a, b]: Edge) -> u64 {
+        let (a, b) = (&self.points[a as usize], &self.points[b as usize]);
+        a.position.distance_squared(b.position).to_bits()
+    }
+
+    /// The mesh of all points that a triangle has.
+    fn build(&self, joint_count: usize) -> Result<ColliderMesh, MeshError> {
+        let mut number = vec![u32::MAX; self.points.len()];
+        let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        for triangle in &self.triangles {
+            triangles.push(triangle.corners.map(|corner| {
+                let index = corner as usize;
+                if number[index] == u32::MAX {
+                    number[index] = positions.len() as u32;
+                    positions.push(self.points[index].position.as_vec3());
+                    influences.extend_from_slice(&self.points[index].influences);
+                    influence_ends.push(influences.len() as u32);
+                }
+                number[index]
+            }));
+        }
+        let tags: Vec<SurfaceTag> = self.triangles.iter().map(|t| t.tag).collect();
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &influences,
+            influence_ends: &influence_ends,
+            tags: &tags,
+            joint_count,
+            ..MeshSource::default()
+        };
+        Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beast::beast;
+    use std::collections::HashMap;
+
+    /// Edges that two triangles do not share in opposite directions.
+    fn open_edges(mesh: &ColliderMesh) -> usize {
+        let mut balance: HashMap<Edge, i32> = HashMap::new();
+        for corners in mesh.triangles() {
+            for k in 0..3 {
+                let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
+                *balance.entry(edge(a, b)).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        balance.values().filter(|sum| **sum != 0).count()
+    }
+
+    fn volume(mesh: &ColliderMesh) -> f64 {
+        let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
+        let six = mesh.triangles().iter().map(|t| {
+            let [a, b, c] = t.map(corner);
+            a.dot(b.cross(c))
+        });
+        six.sum::<f64>() / 6.0
+    }
+
+    #[test]
+    fn the_beast_keeps_its_shape_at_any_size() {
+        let beast = beast(3_000).collider;
+        let whole = volume(&beast);
+        assert_eq!(open_edges(&beast), 0);
+        for vertices in [1_000, 2_000, beast.positions().len(), 8_000, 20_000] {
+            let mesh = resample(&beast, vertices).unwrap();
+            let found = mesh.positions().len();
+            assert!(
+                found <= vertices && found + vertices / 100 >= vertices,
+                "{found}"
+            );
+            assert_eq!(open_edges(&mesh), 0, "{vertices}");
+            let change = (volume(&mesh) / whole - 1.0).abs();
+            assert!(change < 0.05, "{vertices}: volume is off by {change}");
+            assert_eq!(mesh.joint_count(), beast.joint_count());
+        }
+    }
+}
