@@ -103,6 +103,36 @@ fn joints_and_bind_matrices_beyond_the_skin() {
     );
 }
 
+#[test]
+fn animated_nodes_above_the_joints_move_them_at_any_scale() {
+    let mut file = File::square();
+    // Doubled, through nothing, to mirrored and non-uniform.
+    let times = file.floats("SCALAR", &[0.0, 1.0, 2.0]);
+    let scales = file.floats("VEC3", &[2.0, 2.0, 2.0, 0.0, 0.0, 0.0, -3.0, 1e-6, 1.0]);
+    let animation = &mut file.json["animations"][0];
+    let samplers = animation["samplers"].as_array_mut().unwrap();
+    samplers.push(json!({"input": times, "output": scales}));
+    let channels = animation["channels"].as_array_mut().unwrap();
+    channels.push(json!({"sampler": 1, "target": {"node": 0, "path": "scale"}}));
+    // Both joints as they are: only the node above moves.
+    channels.remove(0);
+    let rig = file.load().unwrap();
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    for (time, scale) in [
+        (0.0, Vec3::splat(2.0)),
+        (0.5, Vec3::ONE),
+        (1.0, Vec3::ZERO),
+        (2.0, Vec3::new(-3.0, 1e-6, 1.0)),
+    ] {
+        let rest = rig.skeleton.rest_pose();
+        let pose = rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap();
+        let palette = rig.skeleton.palette(&pose).unwrap();
+        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        let expected = Vec3::new(1.0, 1.0, 0.0) * scale;
+        assert_eq!(surface.positions()[2], expected, "at {time} s");
+    }
+}
+
 /// A second pair of joints, under a root of their own, and a mesh on them.
 fn with_a_stranger(file: &mut File) {
     let root = file.push(

@@ -10,3 +10,4 @@ mod buffers;
 mod builder;
 mod creatures;
 mod meshes;
+mod weights;
