@@ -14,4 +14,4 @@ pub use collider::{ColliderMesh, Part, PartId, TriangleId, VertexId};
 pub use error::MeshError;
 pub use tag::{SurfaceKind, SurfaceTag};
 pub use weights::Influence;
-pub(crate) use weights::WEIGHT_ONE;
+pub(crate) use weights::{WEIGHT_ONE, normalize};

@@ -5,6 +5,7 @@
 //! brute-force twin over all triangles, `*_reference`, with which it agrees bit for bit.
 
 mod anchor;
+mod bounds;
 mod deformation;
 mod edit;
 mod error;
@@ -14,6 +15,7 @@ mod refit;
 mod skinned;
 
 pub use anchor::Anchor;
+pub use bounds::{JointMaps, NodeBounds, PartBounds, WeightInterval};
 pub use error::SurfaceError;
 pub use motion::Motion;
 pub use query::SurfaceHit;
