@@ -137,6 +137,19 @@ mod tests {
     use super::*;
     use crate::testing::{direction, point};
 
+    /// Three cases in place of a clamp: beyond a, beyond b, beside the segment.
+    fn distance_reference(capsule: &Capsule, point: Vec3) -> f64 {
+        let [a, b, p] = [capsule.a, capsule.b, point].map(widen);
+        let axis = b - a;
+        if (p - a).dot(axis) <= 0.0 {
+            (p - a).length()
+        } else if (p - b).dot(axis) >= 0.0 {
+            (p - b).length()
+        } else {
+            axis.cross(p - a).length() / axis.length()
+        }
+    }
+
     #[test]
     fn holds_every_point_at_any_scale_and_place() {
         let mut rng = fastrand::Rng::with_seed(31);
@@ -151,6 +164,10 @@ mod tests {
             let capsule = Capsule::around_principal_axis(points.iter().copied()).unwrap();
             for p in &points {
                 assert!(capsule.contains(*p), "case {case}: {p} outside {capsule:?}");
+                let size = f64::from(capsule.radius) + widen(capsule.b - capsule.a).length();
+                let distance = distance_reference(&capsule, *p);
+                let over = distance - f64::from(capsule.radius);
+                assert!(over <= size * 1e-15, "case {case}: {p} outside {capsule:?}");
             }
         }
         assert_eq!(Capsule::around_principal_axis(core::iter::empty()), None);

@@ -3,6 +3,8 @@
 //! This is the eager form: [`SkinnedSurface::advance`] skins every vertex once and refits a sphere
 //! per part; queries test the triangles of the parts whose sphere they meet. Each query has a
 //! brute-force twin over all triangles, `*_reference`, with which it agrees bit for bit.
+//!
+//! [`PartBounds`] bounds parts in any pose without skinning a vertex.
 
 mod anchor;
 mod bounds;
