@@ -4,12 +4,14 @@
 //! - [`Creature`]: what a scene needs of a creature, from code or from a file.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
+//! - [`measure`]: tables, quantiles and yardsticks for benches.
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
 
 pub mod battle;
 pub mod beast;
 mod creature;
+pub mod measure;
 pub mod solid_angle;
 pub mod test_data;
 pub mod valley;
