@@ -1,7 +1,8 @@
 //! `cargo xtask ci` runs what CI runs after the tests, for a person as well: format, lints, each
-//! feature, documentation, examples, dependency arrows, packages.
+//! feature, documentation, examples, benches, dependency arrows, packages.
 
 mod arrows;
+mod benches;
 mod examples;
 mod features;
 mod packages;
@@ -36,7 +37,7 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 8] = [
+const STEPS: [Step; 9] = [
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
         let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
@@ -57,6 +58,7 @@ const STEPS: [Step; 8] = [
         cargo(&["test", "--workspace", "--doc", "--quiet"])
     }),
     ("examples", examples::run),
+    ("benches", benches::run),
     ("arrows", arrows::check),
     ("packages", packages::check),
 ];

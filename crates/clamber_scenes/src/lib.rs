@@ -7,6 +7,7 @@
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
+//! - [`measure`]: tables, quantiles and yardsticks for benches.
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
 
@@ -15,6 +16,7 @@ pub mod beast;
 mod creature;
 pub mod giant;
 pub mod inspect;
+pub mod measure;
 pub mod resample;
 pub mod solid_angle;
 pub mod test_data;

@@ -10,6 +10,7 @@ use glam::Vec3;
 use std::sync::Arc;
 
 use super::report::Distances;
+use crate::measure::quantile;
 
 /// The worst error of any coordinate of any vertex against f64, as a share of its bound.
 /// `positions` are the mesh's vertices as skinned by `matrices`.
@@ -73,7 +74,7 @@ impl VisualDistance {
     pub(super) fn finish(&mut self) -> Option<Distances> {
         let worst = self.distances.iter().copied().reduce(f64::max)?;
         Some(Distances {
-            median_m: super::median(&mut self.distances),
+            median_m: quantile(&mut self.distances, 0.5),
             worst_m: worst,
         })
     }

@@ -2,6 +2,7 @@
 //! creatures, and for measuring on models.
 
 mod agreement;
+mod bounds;
 mod deviation;
 mod options;
 mod report;
@@ -23,6 +24,8 @@ pub use deviation::skinning_error_share;
 pub use options::InspectOptions;
 pub use report::Inspection;
 
+use crate::measure::quantile;
+use bounds::BoundCheck;
 use deviation::VisualDistance;
 
 /// Places in each pose at which queries are compared with brute force.
@@ -67,6 +70,7 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     let mut inspection = Inspection::of_import(rig);
     let mut surface = SkinnedSurface::new(rig.collider.clone());
     let mut visual = VisualDistance::new(rig)?;
+    let mut bounds = BoundCheck::new(&rig.collider);
     let mut rng = fastrand::Rng::with_seed(options.seed);
     let mut timings = Timings::default();
     let poses = poses(rig, options.poses)?;
@@ -82,6 +86,7 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
         let agreement = compare_queries(&surface, &mut rng, PLACES)?;
         inspection.query_hits += agreement.hits;
         inspection.query_mismatches += agreement.mismatches;
+        inspection.bound_violations += bounds.violations(&rig.collider, &palette, &surface)?;
         visual.measure(&palette, &surface, &mut rng)?;
         timings.measure(rig, &palette)?;
         bar.inc(1);
@@ -130,12 +135,9 @@ impl Timings {
     }
 
     fn medians(&mut self) -> (f64, f64) {
-        (median(&mut self.skin), median(&mut self.refit))
+        (
+            quantile(&mut self.skin, 0.5),
+            quantile(&mut self.refit, 0.5),
+        )
     }
-}
-
-/// The middle value, the greater of two; 0 if there is none.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }

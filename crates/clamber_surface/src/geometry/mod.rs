@@ -1,6 +1,8 @@
 //! Shapes and maps: plain values with the arithmetic that the bit contract asks for.
 
 mod affine;
+mod bounding_volume;
+mod capsule;
 mod quaternion;
 mod ray;
 mod similarity;
@@ -8,6 +10,8 @@ mod sphere;
 pub(crate) mod triangle;
 
 pub use affine::Affine;
+pub use bounding_volume::BoundingVolume;
+pub use capsule::Capsule;
 pub use quaternion::{rotation_from_axis_angle, rotation_vector, slerp};
 pub use ray::Ray;
 pub use similarity::Similarity;

@@ -13,5 +13,5 @@ pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
 pub use collider::{ColliderMesh, Part, PartId, TriangleId, VertexId};
 pub use error::MeshError;
 pub use tag::{SurfaceKind, SurfaceTag};
-pub(crate) use weights::WEIGHT_ONE;
 pub use weights::{Influence, normalize_influences};
+pub(crate) use weights::{WEIGHT_ONE, normalize};

@@ -1,0 +1,152 @@
+//! The ways to bound all parts of a creature in one pose.
+
+use std::fmt;
+
+use clamber::geometry::{BoundingVolume, Capsule, Sphere};
+use clamber::mesh::PartId;
+use clamber::rig::Palette;
+use clamber::skin::skin_into;
+use clamber::surface::{JointMaps, NodeBounds, refit_part_spheres};
+use glam::Vec3;
+
+use crate::poses::Subject;
+use crate::precomputed::model_from_joint;
+
+/// Where bounds come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    Precomputed,
+    Refitted,
+    PaletteHull,
+    PaletteInterval,
+    /// The smaller of both.
+    Palette,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Sphere,
+    Capsule,
+    /// Whichever has the smaller volume.
+    Smaller,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Method {
+    pub(crate) source: Source,
+    pub(crate) shape: Shape,
+}
+
+const fn method(source: Source, shape: Shape) -> Method {
+    Method { source, shape }
+}
+
+pub(crate) const METHODS: [Method; 9] = [
+    method(Source::Precomputed, Shape::Sphere),
+    method(Source::Precomputed, Shape::Capsule),
+    method(Source::Refitted, Shape::Sphere),
+    method(Source::Refitted, Shape::Capsule),
+    method(Source::PaletteHull, Shape::Sphere),
+    method(Source::PaletteInterval, Shape::Sphere),
+    method(Source::Palette, Shape::Sphere),
+    method(Source::Palette, Shape::Capsule),
+    method(Source::Palette, Shape::Smaller),
+];
+
+/// Memory that ticks use again.
+#[derive(Default)]
+pub(crate) struct Workspace {
+    maps: JointMaps,
+    positions: Vec<Vec3>,
+    spheres: Vec<Option<Sphere>>,
+    /// The result, by part.
+    pub(crate) volumes: Vec<Option<BoundingVolume>>,
+}
+
+impl Method {
+    /// Bounds every part in the pose of a palette: one tick's work.
+    ///
+    /// # Panics
+    /// If the palette is not the subject's.
+    pub(crate) fn bound(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
+        workspace.volumes.clear();
+        match self.source {
+            Source::Precomputed => self.place(subject, palette, workspace),
+            Source::Refitted => self.refit(subject, palette, workspace),
+            _ => self.derive(subject, palette, workspace),
+        }
+    }
+
+    fn place(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
+        let parts = subject.creature.collider.parts().iter().enumerate();
+        workspace.volumes.extend(parts.map(|(index, part)| {
+            let moved = model_from_joint(palette, part);
+            match self.shape {
+                Shape::Sphere => subject.precomputed.sphere(index, &moved),
+                _ => subject.precomputed.capsule(index, &moved),
+            }
+        }));
+    }
+
+    fn refit(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
+        let mesh = &subject.creature.collider;
+        let skinned = skin_into(mesh, palette.matrices(), &mut workspace.positions);
+        assert_eq!(skinned, Ok(()), "{}", subject.label());
+        let positions = &workspace.positions;
+        if self.shape == Shape::Sphere {
+            refit_part_spheres(mesh, positions, &mut workspace.spheres);
+            let spheres = workspace.spheres.iter();
+            let spheres = spheres.map(|sphere| sphere.map(BoundingVolume::Sphere));
+            workspace.volumes.extend(spheres);
+        } else {
+            workspace.volumes.extend(mesh.parts().iter().map(|part| {
+                let vertices = part.vertices.iter().map(|v| positions[v.index()]);
+                Capsule::around_principal_axis(vertices).map(BoundingVolume::Capsule)
+            }));
+        }
+    }
+
+    fn derive(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
+        let read = workspace.maps.update(&subject.creature.collider, palette);
+        assert_eq!(read, Ok(()), "{}", subject.label());
+        let maps = &workspace.maps;
+        let volume = |node: &NodeBounds| match (self.source, self.shape) {
+            (Source::PaletteHull, _) => BoundingVolume::Sphere(node.hull(maps)),
+            (Source::PaletteInterval, _) => BoundingVolume::Sphere(node.weight_interval(maps)),
+            (_, Shape::Sphere) => BoundingVolume::Sphere(node.sphere(maps)),
+            (_, Shape::Capsule) => BoundingVolume::Capsule(node.capsule(maps)),
+            (_, Shape::Smaller) => node.volume(maps),
+        };
+        let parts = (0..subject.bounds.part_count() as u32).map(PartId);
+        let volumes = parts.map(|part| subject.bounds.node(part).map(volume));
+        workspace.volumes.extend(volumes);
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.source, self.shape)
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Precomputed => "precomputed",
+            Self::Refitted => "refitted",
+            Self::PaletteHull => "palette, hull",
+            Self::PaletteInterval => "palette, weight interval",
+            Self::Palette => "palette",
+        })
+    }
+}
+
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Sphere => "sphere",
+            Self::Capsule => "capsule",
+            Self::Smaller => "smaller",
+        })
+    }
+}

@@ -1,0 +1,46 @@
+//! What benches share: tables, quantiles, times, and the smallest ball as a yardstick.
+
+mod smallest_ball;
+mod table;
+
+pub use smallest_ball::{Ball, smallest_ball};
+pub use table::Table;
+
+use std::time::{Duration, Instant};
+
+/// The value that the share `part` (0 to 1) of `values` does not exceed; NaN without values. Sorts
+/// them.
+pub fn quantile(values: &mut [f64], part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = (values.len() as f64 * part).ceil() as usize;
+    let last = values.len().checked_sub(1);
+    last.map_or(f64::NAN, |last| values[index.saturating_sub(1).min(last)])
+}
+
+/// The median time of `run`, microseconds, over as many runs as fit into `budget`, but at least
+/// three; the first is not counted.
+pub fn median_us(budget: Duration, mut run: impl FnMut()) -> f64 {
+    run();
+    let begin = Instant::now();
+    let mut times = Vec::new();
+    while times.len() < 3 || begin.elapsed() < budget {
+        let start = Instant::now();
+        run();
+        times.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    quantile(&mut times, 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_few_values() {
+        let mut values = [4.0, 1.0, 3.0, 2.0];
+        assert_eq!(quantile(&mut values, 0.5), 2.0);
+        assert_eq!(quantile(&mut values, 0.95), 4.0);
+        assert_eq!(quantile(&mut values, 0.0), 1.0);
+        assert!(quantile(&mut [], 0.5).is_nan());
+    }
+}

@@ -1,0 +1,155 @@
+//! Random creatures and palettes, as unlike a limb as the contract allows.
+
+use glam::{DAffine3, DMat3, Vec3};
+
+use crate::geometry::{Affine, MAX_COORDINATE, rotation_from_axis_angle, widen};
+use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
+use crate::rig::{JointId, Palette};
+use crate::testing::{direction, point};
+
+pub(super) const JOINTS: u32 = 20;
+const VERTICES: usize = 60;
+
+/// How the weights of a test creature are spread.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Spread {
+    Random,
+    /// All near their mean, as in the middle of a limb.
+    NearlyEqual,
+    /// From 1 down to some 1e-9, which rounds to nothing, on joints in any order.
+    Uneven,
+    /// A vertex follows one or two joints of the node's many.
+    Few,
+    /// All vertices alike.
+    Constant,
+}
+
+fn weight(rng: &mut fastrand::Rng, spread: Spread, k: usize) -> f32 {
+    match spread {
+        Spread::Random => rng.f32(),
+        Spread::NearlyEqual => 1.0 + 1e-3 * rng.f32(),
+        Spread::Uneven => libm::powf(10.0, -9.0 * rng.f32()),
+        Spread::Few => rng.f32() * [0.0, 1.0][usize::from(rng.u32(0..4) == 0 || k == 0)],
+        Spread::Constant => 1.0 + k as f32,
+    }
+}
+
+/// A patch of vertices in a ball (or at one point) somewhere, of `influences` joints each, and one
+/// triangle beside it, since the patch may have no area.
+pub(super) fn creature(
+    rng: &mut fastrand::Rng,
+    influences: usize,
+    spread: Spread,
+) -> (ColliderMesh, Vec<VertexId>) {
+    let size = [1e-3, 1.0, 1e3][rng.usize(0..3)];
+    let offset = direction(rng) * [0.0, 1.0, 1e3][rng.usize(0..3)];
+    // A part of a creature is often thin, or small beside its distance from the origin.
+    let stretch = Vec3::new(1.0, rng.f32(), rng.f32()) * size * [1e-3, 1.0][rng.usize(0..2)];
+    let mut positions: Vec<Vec3> = (0..VERTICES)
+        .map(|_| direction(rng) * stretch + offset)
+        .collect();
+    positions.extend([Vec3::ONE, Vec3::X, Vec3::Y].map(|p| (p + Vec3::ONE) * size + offset));
+    let first = rng.u32(0..JOINTS);
+    let mut given = Vec::new();
+    for _ in 0..positions.len() {
+        for k in 0..influences {
+            given.push(Influence {
+                joint: JointId((first + k as u32) % JOINTS),
+                weight: weight(rng, spread, k),
+            });
+        }
+    }
+    let triangles: Vec<[u32; 3]> = (0..21).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &given,
+        joint_count: JOINTS as usize,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let patch = (0..mesh.positions().len() as u32 - 3).map(VertexId);
+    let patch = patch.collect();
+    (mesh, patch)
+}
+
+/// Kinds of random palettes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Motion {
+    /// The whole creature as one.
+    Rigid,
+    /// Each joint turned a little, as in a limb.
+    Bent,
+    Rotations,
+    NonUniform,
+    Mirrored,
+    /// Any elements.
+    Sheared,
+    Tiny,
+    Subnormal,
+    /// As far as a surface takes it.
+    Huge,
+    /// Some matrices zero.
+    Zeros,
+}
+
+pub(super) const MOTIONS: [Motion; 10] = [
+    Motion::Rigid,
+    Motion::Bent,
+    Motion::Rotations,
+    Motion::NonUniform,
+    Motion::Mirrored,
+    Motion::Sheared,
+    Motion::Tiny,
+    Motion::Subnormal,
+    Motion::Huge,
+    Motion::Zeros,
+];
+
+fn rotation(rng: &mut fastrand::Rng, angle: f64) -> DAffine3 {
+    let axis = widen(direction(rng));
+    DAffine3::from_quat(rotation_from_axis_angle(
+        axis.normalize(),
+        angle * rng.f64(),
+    ))
+}
+
+fn matrix(rng: &mut fastrand::Rng, motion: Motion, radius: f32) -> DAffine3 {
+    let shift = DAffine3::from_translation(widen(point(rng, radius)));
+    let diagonal = |scale: Vec3| DAffine3::from_mat3(DMat3::from_diagonal(widen(scale)));
+    let scale = Vec3::new(rng.f32(), rng.f32(), rng.f32()) * 4.0;
+    let linear = match motion {
+        Motion::Rigid | Motion::Bent => rotation(rng, 0.3),
+        Motion::Rotations => rotation(rng, 6.3),
+        Motion::NonUniform => rotation(rng, 6.3) * diagonal(scale) * rotation(rng, 6.3),
+        Motion::Mirrored => rotation(rng, 6.3) * diagonal(Vec3::new(-1.0, 1.0, 1.0)),
+        _ => {
+            let mut column = || widen(point(rng, 2.0));
+            DAffine3::from_mat3(DMat3::from_cols(column(), column(), column()))
+        }
+    };
+    let map = shift * linear;
+    let scaled = |factor: f64| DAffine3 {
+        matrix3: map.matrix3 * factor,
+        translation: map.translation * factor,
+    };
+    match motion {
+        Motion::Tiny => scaled(1e-20),
+        Motion::Subnormal => scaled(1e-43),
+        Motion::Huge => {
+            scaled(MAX_COORDINATE * 0.999 / Affine::from_f64(&map).reach(f64::from(radius)))
+        }
+        Motion::Zeros if rng.bool() => scaled(0.0),
+        _ => map,
+    }
+}
+
+pub(super) fn palette(rng: &mut fastrand::Rng, motion: Motion, radius: f32) -> Palette {
+    let one = matrix(rng, motion, radius);
+    let matrices = (0..JOINTS).map(|_| match motion {
+        Motion::Rigid => one,
+        Motion::Bent => one * rotation(rng, 0.3),
+        _ => matrix(rng, motion, radius),
+    });
+    Palette::from_matrices(matrices.map(|m| Affine::from_f64(&m)))
+}
