@@ -76,11 +76,13 @@ pub(crate) fn load(
     warnings: &mut Vec<String>,
 ) -> Result<Meshes, GltfErrorKind> {
     let mut gathered = Gathered::default();
-    // A mesh that several nodes show with one skin is one mesh: the skin says where it stands.
+    // A mesh that several nodes show with one skin is one mesh: the skin says where it stands. Each
+    // of these nodes may show it to another purpose.
     let mut shown = BTreeSet::new();
     for instance in instances(contents, members, joints) {
         let weights: Vec<u32> = instance.morph_weights.iter().map(|w| w.to_bits()).collect();
-        if !shown.insert((instance.mesh.index(), instance.space, weights)) {
+        let role = instance.role as usize;
+        if !shown.insert((instance.mesh.index(), instance.space, role, weights)) {
             continue;
         }
         for primitive in instance.mesh.primitives() {

@@ -158,7 +158,8 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
     file.push("nodes", twice);
     // A joint that hangs under another skin's.
     let finger = file.node_under(2, json!({"name": "finger"}));
-    let third = file.push("skins", json!({"joints": [finger, 1]}));
+    let nail = file.node_under(finger, json!({"name": "nail"}));
+    let third = file.push("skins", json!({"joints": [finger, nail]}));
     file.push("nodes", json!({"mesh": 0, "skin": third}));
     with_a_stranger(&mut file);
 
@@ -169,8 +170,11 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
         .iter()
         .map(|j| j.name.as_str())
         .collect();
-    // "lower" is bound alike by all three; "upper" by the first one elsewhere.
-    assert_eq!(names, ["lower", "upper", "upper", "finger", "armature"]);
+    // "lower" is bound alike by two; "upper" by the first one elsewhere.
+    assert_eq!(
+        names,
+        ["lower", "upper", "upper", "finger", "nail", "armature"]
+    );
     assert_eq!(rig.skeleton.joints()[3].parent, Some(JointId(1)));
     assert_eq!(
         rig.collider.triangles().len(),
@@ -192,7 +196,7 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
     assert_eq!(stranger.skeleton.joints()[0].name, "stranger");
     assert!(stranger.clips.is_empty(), "the clip moves the others");
     let same = load_slice(&file.glb(), &pick(2)).unwrap();
-    assert_eq!(same.skeleton.joints().len(), 5);
+    assert_eq!(same.skeleton.joints().len(), 6);
     let error = load_slice(&file.glb(), &pick(4)).unwrap_err();
     assert!(error.path.is_none());
     let expected = matches!(

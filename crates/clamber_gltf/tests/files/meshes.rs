@@ -2,6 +2,7 @@
 
 use clamber_gltf::{Alpha, GltfErrorKind};
 use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::VertexId;
 use clamber_surface::rig::{JointId, Playback};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{Vec2, Vec3};
@@ -62,6 +63,53 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     assert!(glow.double_sided);
     let (again, _) = rig.visual_collider().unwrap();
     assert_eq!(again.triangles().len(), 2);
+}
+
+#[test]
+fn meshes_to_be_seen_make_one_collider_with_their_tags() {
+    let mut file = File::square();
+    let apart: [[f32; 3]; 3] = [[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]];
+    let positions = file.positions(&apart);
+    let joints = file.accessor("VEC4", 5121, 3, &[1, 0, 0, 0].repeat(3));
+    let weights = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.push(json!({"attributes": {
+        "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}));
+    let rig = file.load().unwrap();
+    assert_eq!(rig.visual.len(), 2);
+    let (seen, _) = rig.visual_collider().unwrap();
+    assert_eq!(seen.positions(), rig.collider.positions());
+    assert_eq!(seen.triangles(), rig.collider.triangles());
+    assert_eq!(seen.tags(), rig.collider.tags());
+    for vertex in (0..7).map(VertexId) {
+        assert!(
+            seen.influences(vertex).eq(rig.collider.influences(vertex)),
+            "{vertex:?}"
+        );
+    }
+
+    // Positions need not state their range; normals have to be as many.
+    let accessor = file.json["accessors"][positions].as_object_mut().unwrap();
+    accessor.remove("min");
+    accessor.remove("max");
+    let normals = file.floats("VEC3", &[0.0; 6]);
+    assert!(file.load().is_ok());
+    file.json["meshes"][0]["primitives"][1]["attributes"]["NORMAL"] = json!(normals);
+    let error = file.load().unwrap_err().to_string();
+    assert!(error.contains("has 3 positions, but 2 normals"), "{error}");
+}
+
+#[test]
+fn one_mesh_can_be_shown_to_two_purposes() {
+    let role = |role: &str| json!({"clamber": {"role": role}});
+    let mut file = File::square();
+    file.json["nodes"][3]["extras"] = role("visual");
+    file.push(
+        "nodes",
+        json!({"mesh": 0, "skin": 0, "extras": role("collision")}),
+    );
+    let rig = file.load().unwrap();
+    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 1));
 }
 
 #[test]
