@@ -3,6 +3,8 @@
 import numpy as np
 
 from . import field as f
+from .signs import BARE, SIGNS
+from .skeleton import INDEX, TAILS
 from .skeleton import head as joint
 
 # How far fur lifts the skin, and how long its streaks are compared to their width.
@@ -49,7 +51,11 @@ def fur_amount(points):
     fur *= 1.0 - f.smooth_step(9.4, 8.2, z + ragged) * f.smooth_step(10.5, 11.2, x)  # hands
     fur *= f.smooth_step(2.0, 3.4, z + ragged)  # feet
     face = np.hypot(x / 3.0, (z - 33.0) / 4.0) + 0.5 * (y + 9.6).clip(0.0)
-    return fur * f.smooth_step(0.8, 1.0, face)
+    fur *= f.smooth_step(0.8, 1.0, face)
+    for sign in SIGNS:
+        gap = np.linalg.norm(points - np.asarray(sign.place), axis=1) / sign.size
+        fur *= f.smooth_step(BARE - 0.5, BARE, gap + 0.2 * ragged)
+    return fur
 
 
 def _torso(p):
@@ -142,6 +148,4 @@ def _foot(p):
 
 
 def _tail(name):
-    from .skeleton import INDEX, TAILS
-
     return TAILS[INDEX[name]]

@@ -26,6 +26,7 @@ class Plate:
     joints: dict
     shape: Callable
     sided: bool = False
+    ledge: bool = True
 
     def distance(self, points, fine=False):
         """Distance to the plate, or to the nearer of a pair."""
@@ -74,10 +75,10 @@ def _shoulder(p, fine):
     """Two tiers and a parapet, like the corner of a ruined tower."""
     upper = [(6.0, -3.0), (7.2, -4.0), (11.4, -3.8), (13.2, -2.0), (13.2, 1.6), (11.6, 3.4), (7.4, 3.8), (6.0, 2.8)]
     lower = [(6.4, -4.6), (12.0, -4.8), (14.8, -2.6), (14.8, 2.2), (12.2, 4.6), (6.8, 5.0)]
-    solid = f.prism(p, upper, 32.6, 35.0)
+    solid = f.prism(p, upper, 31.4, 35.0)
     tier = f.prism(p, lower, 30.6, 32.8)
     tier = np.maximum(tier, f.half_space(p, (14.8, 0, 31.6), (1.0, 0, -0.8)))
-    solid = _with_grooves(solid, [p[:, 2] - 34.2, p[:, 1] - 0.9, p[:, 1] + 1.6], fine & True)
+    solid = _with_grooves(solid, [p[:, 2] - 34.2, p[:, 1] - 0.9, p[:, 1] + 1.6], fine)
     tier = _with_grooves(tier, [p[:, 1] - 2.0, p[:, 1] + 0.4, p[:, 1] + 2.8, p[:, 0] - 9.6, p[:, 0] - 12.2], fine)
     result = np.minimum(solid, tier)
     for centre, half in (
@@ -91,8 +92,8 @@ def _shoulder(p, fine):
 
 def _pauldron(p, fine):
     """A slab that hangs over the outside of the upper arm."""
-    outer = f.box(p, (14.1, -0.1, 28.9), (0.75, 3.0, 2.6), roll=-0.22)
-    point = f.box(p, (14.1, -0.1, 26.6), (0.75, 2.2, 2.2), roll=-0.22, pitch=np.pi / 4)
+    outer = f.box(p, (13.7, -0.1, 28.9), (1.15, 3.0, 2.6), roll=-0.22)
+    point = f.box(p, (13.7, -0.1, 26.6), (1.15, 2.2, 2.2), roll=-0.22, pitch=np.pi / 4)
     solid = np.minimum(outer, np.maximum(point, p[:, 2] - 27.5))
     return _with_grooves(solid, [p[:, 1] - 1.2, p[:, 1] + 1.4, p[:, 2] - 29.8], fine)
 
@@ -101,7 +102,7 @@ def _belt(p, fine):
     """A ring of blocks around the waist with a rim to walk on."""
     outer = [(-4.4, -6.8), (4.4, -6.8), (7.9, -3.6), (8.3, 1.0), (7.4, 5.6), (4.2, 8.4), (-4.2, 8.4), (-7.4, 5.6), (-8.3, 1.0), (-7.9, -3.6)]
     rim = f.prism(p, outer, 18.2, 19.6)
-    under = f.prism(p, np.array(outer) * 0.92 + (0, 0.05), 16.6, 18.4)
+    under = f.prism(p, np.array(outer) * 0.92 + (0, 0.05), 16.6, 19.3)
     angle = np.arctan2(p[:, 0], -p[:, 1] + 0.8)
     blocks = 14
     seam = (np.mod(angle / (2 * np.pi) * blocks, 1.0) - 0.5) * 2 * np.pi / blocks * 7.0
@@ -136,9 +137,9 @@ def _bracer(p, fine):
     body = np.array(rim) * 0.86
     lower = np.array(rim) * 0.72
     result = f.prism(p, np.array(rim) + (cx, cy), 15.0, 16.4)
-    middle = f.prism(p, body + (cx, cy - 0.5), 13.1, 15.2)
+    middle = f.prism(p, body + (cx, cy - 0.5), 13.1, 16.1)
     middle = _with_grooves(middle, [p[:, 2] - 14.1, p[:, 0] - cx - 1.0, p[:, 1] - cy], fine)
-    cuff = f.prism(p, lower + (cx, cy - 0.9), 11.9, 13.3)
+    cuff = f.prism(p, lower + (cx, cy - 0.9), 11.9, 14.6)
     return np.minimum(np.minimum(result, middle), cuff)
 
 
@@ -156,7 +157,7 @@ def _knee(p, fine):
 def _crown(p, fine):
     """The level top of the head: two steps."""
     top = [(-2.3, -10.4), (2.3, -10.4), (2.9, -8.4), (2.5, -5.6), (1.4, -4.6), (-1.4, -4.6), (-2.5, -5.6), (-2.9, -8.4)]
-    slab = f.prism(p, top, 36.0, 37.8)
+    slab = f.prism(p, top, 35.5, 37.8)
     base = f.prism(p, np.array(top) * 1.16 + (0, 1.15), 35.2, 36.5)
     slab = _with_grooves(slab, [p[:, 2] - 37.1], fine)
     return np.minimum(slab, base)
@@ -225,15 +226,15 @@ def _dorsals():
 
 PLATES = [
     Plate("shoulder", {"clavicle.*": 1.0}, _shoulder, sided=True),
-    Plate("pauldron", {"clavicle.*": 0.6, "upper_arm.*": 0.4}, _pauldron, sided=True),
+    Plate("pauldron", {"clavicle.*": 0.6, "upper_arm.*": 0.4}, _pauldron, sided=True, ledge=False),
     Plate("belt", {"pelvis": 1.0}, _belt),
-    Plate("loin.front", {"loin.front": 1.0}, lambda p, fine: _loin(p, fine, -6.1, 18.0, 11.6, 1.9)),
-    Plate("loin.back", {"loin.back": 1.0}, lambda p, fine: _loin(p, fine, 7.5, 18.0, 12.6, 1.7)),
+    Plate("loin.front", {"loin.front": 1.0}, lambda p, fine: _loin(p, fine, -6.1, 18.0, 11.6, 1.9), ledge=False),
+    Plate("loin.back", {"loin.back": 1.0}, lambda p, fine: _loin(p, fine, 7.5, 18.0, 12.6, 1.7), ledge=False),
     *_dorsals(),
     Plate("bracer", {"forearm.*": 1.0}, _bracer, sided=True),
     Plate("knee", {"shin.*": 0.75, "thigh.*": 0.25}, _knee, sided=True),
     Plate("crown", {"head": 1.0}, _crown),
-    Plate("mask", {"head": 1.0}, _mask),
-    Plate("jaw", {"jaw": 1.0}, _jaw),
-    Plate("horns", {"head": 1.0}, _horns),
+    Plate("mask", {"head": 1.0}, _mask, ledge=False),
+    Plate("jaw", {"jaw": 1.0}, _jaw, ledge=False),
+    Plate("horns", {"head": 1.0}, _horns, ledge=False),
 ]

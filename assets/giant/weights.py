@@ -15,6 +15,10 @@ LEAST_SHARE = 0.03
 PLATE_HOLD = 0.30
 PLATE_REACH = 1.3
 MOST_INFLUENCES = 4
+# The heel belongs to the foot, though it lies under the shin: an end of a second line of the foot
+# (metres, left side), and the share of the shin that pulls at the skin.
+HEEL = np.array([6.2, 2.2, 0.8])
+SHIN_SHARE = 0.80
 # Bones that carry nothing by themselves.
 _WITHOUT_FLESH = {"root", "loin.front", "loin.back", "jaw"}
 
@@ -41,12 +45,22 @@ def _flesh_weights(points):
     closeness = np.zeros((len(points), len(JOINTS)))
     for number, joint in enumerate(JOINTS):
         if joint.name not in _WITHOUT_FLESH:
-            gap = f.round_cone(points, HEADS[number], TAILS[number], 0.0, 0.0)
+            gap = f.round_cone(points, HEADS[number], _end(number), 0.0, 0.0)
+            if joint.name.startswith("foot"):
+                heel = HEEL * (np.sign(HEADS[number, 0]), 1.0, 1.0)
+                gap = np.minimum(gap, f.round_cone(points, heel, TAILS[number], 0.0, 0.0))
             closeness[:, number] = (RADII[number] / np.maximum(gap, 0.2)) ** FALL_OFF
     _separate_sides(points, closeness)
     closeness /= closeness.max(axis=1, keepdims=True)
     closeness = np.maximum(closeness - LEAST_SHARE, 0.0)
     return closeness / closeness.sum(axis=1, keepdims=True)
+
+
+def _end(number):
+    """Where a bone ends as far as flesh is concerned: a shin stops above the heel."""
+    if JOINTS[number].name.startswith("shin"):
+        return HEADS[number] + SHIN_SHARE * (TAILS[number] - HEADS[number])
+    return TAILS[number]
 
 
 def _separate_sides(points, closeness):

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use clamber_scenes::giant::{giant, giant_of};
 use clamber_scenes::{Creature, beast::beast, test_data};
 use criterion::Criterion;
 use method::{METHODS, Workspace};
@@ -29,6 +30,8 @@ struct Effort {
     brief: bool,
     /// Vertices of the beasts.
     beasts: &'static [usize],
+    /// Vertices of giants beside the one from the file.
+    giants: &'static [usize],
     /// Poses of each clip that precomputed bounds are made from.
     samples: u32,
     /// For the median of one method on one creature.
@@ -37,7 +40,8 @@ struct Effort {
 
 const FULL: Effort = Effort {
     brief: false,
-    beasts: &[1_000, 6_000, 25_000, 100_000],
+    beasts: &[1_000, 6_000],
+    giants: &[25_000, 100_000],
     samples: 16,
     budget: Duration::from_millis(300),
 };
@@ -45,6 +49,7 @@ const FULL: Effort = Effort {
 const BRIEF: Effort = Effort {
     brief: true,
     beasts: &[1_000],
+    giants: &[],
     samples: 8,
     budget: Duration::ZERO,
 };
@@ -98,9 +103,9 @@ fn run(effort: &Effort) -> Result<usize, Box<dyn Error>> {
 
 fn creatures(effort: &Effort) -> Result<Vec<Creature>, Box<dyn Error>> {
     let mut creatures: Vec<Creature> = effort.beasts.iter().map(|n| beast(*n)).collect();
-    let colossus = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/colossus.glb");
-    if colossus.is_file() {
-        creatures.push(Creature::load(&colossus)?);
+    creatures.push(giant()?);
+    for vertices in effort.giants {
+        creatures.push(giant_of(*vertices)?);
     }
     creatures.extend(test_data::five_creatures("bounds of five models")?);
     Ok(creatures)

@@ -5,18 +5,17 @@ use cargo_metadata::{Metadata, TargetKind};
 
 use crate::run::{cargo, cargo_output};
 
+/// What an example cannot do without.
+const ARGUMENTS: [(&str, &[&str]); 1] = [("inspect", &["assets/colossus.glb", "--poses", "2"])];
+
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     for package in metadata.workspace_packages() {
         for target in &package.targets {
             if target.kind.contains(&TargetKind::Example) && target.name != "battle" {
-                cargo(&[
-                    "run",
-                    "--quiet",
-                    "-p",
-                    &package.name,
-                    "--example",
-                    &target.name,
-                ])?;
+                let run = ["run", "--quiet", "-p", &package.name, "--example"];
+                let needed = ARGUMENTS.iter().find(|(name, _)| *name == target.name);
+                let arguments = needed.map_or(&[][..], |(_, arguments)| *arguments);
+                cargo(&[&run[..], &[&target.name, "--"], arguments].concat())?;
             }
         }
     }

@@ -8,27 +8,27 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
 
 use crate::GltfErrorKind;
+use crate::buffers::Buffers;
 
-/// How many bytes may be decoded for each byte that a file holds: exporters let primitives share
-/// accessors, but a file that is read again and again wants to fill the memory.
+/// How many bytes may be taken for each byte that a file holds: exporters let primitives share
+/// accessors, and real models take up to 3 times their size, but a file that is read again and again
+/// wants to fill the memory. Charges are estimates; with this one the peak stays below 100 times.
 const MAX_GROWTH: usize = 24;
 
-/// What any file may decode, bytes: small files may well grow more.
+/// What any file may take, bytes: small files may well grow more.
 const FREE_GROWTH: usize = 1 << 20;
 
 /// Reads accessors of one file.
 pub(crate) struct Reader<'a> {
-    buffers: &'a [Vec<u8>],
+    buffers: &'a Buffers,
     /// Bytes that may still be decoded.
     budget: Cell<usize>,
 }
 
 impl<'a> Reader<'a> {
     /// For the buffers of a file that is itself so many bytes long.
-    pub(crate) fn new(buffers: &'a [Vec<u8>], file: usize) -> Self {
-        let held = buffers
-            .iter()
-            .fold(file, |sum, bytes| sum.saturating_add(bytes.len()));
+    pub(crate) fn new(buffers: &'a Buffers, file: usize) -> Self {
+        let held = buffers.held().saturating_add(file);
         Self {
             buffers,
             budget: Cell::new(held.saturating_mul(MAX_GROWTH).saturating_add(FREE_GROWTH)),
@@ -86,7 +86,10 @@ impl<'a> Reader<'a> {
             return Err(invalid(accessor, "matrices must be of floats".into()));
         }
         let size = component * N;
-        let decoded = accessor.count().saturating_mul(N * size_of::<T>());
+        // What is replaced is decoded twice.
+        let sparse = accessor.sparse().map_or(0, |sparse| sparse.count());
+        let elements = accessor.count().saturating_add(sparse);
+        let decoded = elements.saturating_mul(N * size_of::<T>());
         self.charge(&format!("accessor {}", accessor.index()), decoded)?;
         let element = |bytes: &[u8]| {
             let mut element = [T::default(); N];
@@ -120,6 +123,14 @@ impl<'a> Reader<'a> {
         let Some(sparse) = accessor.sparse() else {
             return Ok(());
         };
+        if sparse.count() > accessor.count() {
+            let reason = format!(
+                "replaces {} of {} elements",
+                sparse.count(),
+                accessor.count()
+            );
+            return Err(invalid(accessor, reason));
+        }
         let named = sparse.indices();
         let index_type = match named.index_type() {
             IndexType::U8 => DataType::U8,

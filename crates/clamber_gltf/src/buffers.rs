@@ -1,8 +1,9 @@
 //! The bytes behind a file's buffers: the GLB's own chunk, data URIs, files beside it.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
 use gltf::Document;
@@ -10,38 +11,78 @@ use gltf::buffer::Source;
 
 use crate::GltfErrorKind;
 
-/// All buffers, each at least as long as it claims. `base` is the folder that relative URIs start
-/// from; without one they are refused.
-pub(crate) fn load(
-    document: &Document,
-    mut blob: Option<Vec<u8>>,
-    base: Option<&Path>,
-) -> Result<Vec<Vec<u8>>, GltfErrorKind> {
-    let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let object = format!("buffer {}", buffer.index());
-        let bytes = match buffer.source() {
-            Source::Bin => blob.take().ok_or_else(|| {
-                GltfErrorKind::invalid(&object, "has no URI, and the file no chunk")
-            })?,
-            Source::Uri(uri) => match uri.strip_prefix("data:") {
-                Some(data) => {
-                    decode_data_uri(data).map_err(|e| GltfErrorKind::invalid(&object, e))?
-                }
-                None => read_beside(base, uri, buffer.length(), &object)?,
-            },
-        };
-        if bytes.len() < buffer.length() {
-            let reason = format!(
-                "claims {} bytes, but holds {}",
-                buffer.length(),
-                bytes.len()
-            );
-            return Err(GltfErrorKind::invalid(object, reason));
-        }
-        buffers.push(bytes);
+/// The bytes of every buffer; a file that several buffers name is held once.
+pub(crate) struct Buffers {
+    held: Vec<Vec<u8>>,
+    /// Where in `held` each buffer is.
+    of_buffer: Vec<usize>,
+}
+
+impl Buffers {
+    /// The bytes of a buffer, at least as many as it claims.
+    pub(crate) fn get(&self, buffer: usize) -> Option<&[u8]> {
+        let bytes = self.held.get(*self.of_buffer.get(buffer)?)?;
+        Some(bytes.as_slice())
     }
-    Ok(buffers)
+
+    /// How many bytes all buffers hold.
+    pub(crate) fn held(&self) -> usize {
+        let lengths = self.held.iter().map(Vec::len);
+        lengths.fold(0, usize::saturating_add)
+    }
+
+    /// Reads all buffers. `base` is the folder that relative URIs start from; without one they are
+    /// refused.
+    pub(crate) fn load(
+        document: &Document,
+        mut blob: Option<Vec<u8>>,
+        base: Option<&Path>,
+    ) -> Result<Self, GltfErrorKind> {
+        let mut buffers = Self {
+            held: Vec::new(),
+            of_buffer: Vec::new(),
+        };
+        let mut files: BTreeMap<PathBuf, usize> = BTreeMap::new();
+        for buffer in document.buffers() {
+            let object = format!("buffer {}", buffer.index());
+            let invalid = |reason: String| GltfErrorKind::invalid(&object, reason);
+            let next = buffers.held.len();
+            let place = match buffer.source() {
+                Source::Bin => {
+                    let bytes = blob.take();
+                    let missing = || invalid("has no URI, and the file no chunk".into());
+                    buffers.held.push(bytes.ok_or_else(missing)?);
+                    next
+                }
+                Source::Uri(uri) => match uri.strip_prefix("data:") {
+                    Some(data) => {
+                        buffers.held.push(decode_data_uri(data).map_err(invalid)?);
+                        next
+                    }
+                    None => {
+                        let path = path_beside(base, uri).map_err(invalid)?;
+                        let place = *files.entry(path.clone()).or_insert(next);
+                        if place == next {
+                            buffers.held.push(Vec::new());
+                        }
+                        let held = &mut buffers.held[place];
+                        if held.len() < buffer.length() {
+                            *held = read_beside(&path, buffer.length() as u64)?;
+                        }
+                        place
+                    }
+                },
+            };
+            buffers.of_buffer.push(place);
+            let (claimed, found) = (buffer.length(), buffers.held[place].len());
+            if found < claimed {
+                return Err(invalid(format!(
+                    "claims {claimed} bytes, but holds {found}"
+                )));
+            }
+        }
+        Ok(buffers)
+    }
 }
 
 /// Decodes what follows `data:`.
@@ -58,39 +99,43 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// No more of a file beside the document than the buffer claims. Only plain files by relative paths:
-/// a document from elsewhere must not name devices or files of the system.
-fn read_beside(
-    base: Option<&Path>,
-    uri: &str,
-    length: usize,
-    object: &str,
-) -> Result<Vec<u8>, GltfErrorKind> {
+/// Where a URI leads: only to relative paths that stay within the folder, since a document from
+/// elsewhere must not name devices or files of the system.
+fn path_beside(base: Option<&Path>, uri: &str) -> Result<PathBuf, String> {
     let base = base.ok_or_else(|| {
-        let reason = format!("its data is in the file {uri:?}: load from a path, not from bytes");
-        GltfErrorKind::invalid(object, reason)
+        format!("its data is in the file {uri:?}: load from a path, not from bytes")
     })?;
     let name = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
-        .map_err(|e| GltfErrorKind::invalid(object, format!("its URI {uri:?} is no UTF-8: {e}")))?;
+        .map_err(|e| format!("its URI {uri:?} is no UTF-8: {e}"))?;
     let relative = Path::new(name.as_ref());
-    if relative.has_root() || relative.is_absolute() || name.contains(':') {
-        let reason = format!("its URI {uri:?} is not relative to the document");
-        return Err(GltfErrorKind::invalid(object, reason));
-    }
-    let path = base.join(relative);
-    read_plain_file(&path, length as u64).map_err(|source| GltfErrorKind::Read { path, source })
-}
-
-fn read_plain_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {
-    // Before opening: to open a pipe would wait for its other end.
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "not a plain file",
+    let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+    if !relative.components().all(inside) || name.contains(':') {
+        return Err(format!(
+            "its URI {uri:?} does not lead to a file in the document's folder or below"
         ));
     }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(length).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    let parts = relative
+        .components()
+        .filter(|part| *part != Component::CurDir);
+    Ok(parts.fold(base.to_owned(), |path, part| path.join(part)))
+}
+
+/// No more of a file beside the document than is claimed; it has to be a plain one.
+fn read_beside(path: &Path, length: u64) -> Result<Vec<u8>, GltfErrorKind> {
+    // Before opening: to open a pipe would wait for its other end.
+    let plain = std::fs::metadata(path).and_then(|found| {
+        let error = || io::Error::new(io::ErrorKind::InvalidInput, "not a plain file");
+        found.is_file().then_some(()).ok_or_else(error)
+    });
+    plain
+        .and_then(|()| {
+            let mut bytes = Vec::new();
+            File::open(path)?.take(length).read_to_end(&mut bytes)?;
+            Ok(bytes)
+        })
+        .map_err(|source| GltfErrorKind::Read {
+            path: path.to_owned(),
+            source,
+        })
 }

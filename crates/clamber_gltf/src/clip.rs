@@ -27,13 +27,13 @@ pub(crate) fn load(
         let mut passed_over = 0;
         for (index, channel) in animation.channels().enumerate() {
             let target = channel.target();
-            let object = format!("animation {name:?}, channel {index}");
+            let object = || format!("animation {name:?}, channel {index}");
             // Only what moves the skeleton is read at all.
             let joints = of_node.get(&target.node().index());
             let values = joints.map(|_| keyframes(&channel, reader)).transpose()?;
             match (joints, values.flatten()) {
                 (Some(joints), Some(values)) => {
-                    push_channels(&mut channels, &channel, joints, values, reader, &object)?;
+                    push_channels(&mut channels, &channel, joints, values, reader, object)?;
                 }
                 _ => passed_over += 1,
             }
@@ -46,8 +46,8 @@ pub(crate) fn load(
         }
         if passed_over > 0 {
             warnings.push(format!(
-                "animation {name:?}: {passed_over} channels move nothing of the skeleton, or move \
-                 morph targets; passed over"
+                "animation {name:?}: passed over channels that move nothing of the skeleton, or \
+                 morph targets: {passed_over}"
             ));
         }
         clips.push(Clip::new(name, channels));
@@ -62,8 +62,9 @@ fn push_channels(
     joints: &[JointId],
     values: Keyframes,
     reader: &Reader<'_>,
-    object: &str,
+    object: impl Fn() -> String,
 ) -> Result<(), GltfErrorKind> {
+    let object = object();
     let sampler = channel.sampler();
     let times = reader.floats::<1>(&sampler.input())?.into_flattened();
     let interpolation = match sampler.interpolation() {
@@ -73,9 +74,9 @@ fn push_channels(
     };
     for joint in joints {
         // A value takes at most as much as a rotation and its time, thrice in a spline.
-        reader.charge(object, times.len() * 13 * size_of::<f32>())?;
+        reader.charge(&object, times.len() * 13 * size_of::<f32>())?;
         let channel = Channel::new(*joint, interpolation, times.clone(), values.clone());
-        channels.push(channel.map_err(|rig| GltfErrorKind::invalid(object, rig))?);
+        channels.push(channel.map_err(|rig| GltfErrorKind::invalid(&object, rig))?);
     }
     Ok(())
 }

@@ -4,9 +4,8 @@
 //! concern a collider; both are seen to before it runs.
 
 use gltf::Document;
-use gltf::json::validation::Checked;
+use gltf::json::validation::{Checked, Error, Validate};
 use gltf::json::{Root, Value};
-use gltf::mesh::Semantic;
 
 use crate::GltfErrorKind;
 
@@ -14,7 +13,8 @@ use crate::GltfErrorKind;
 const GLB_HEADERS: u32 = 20;
 
 /// Extensions that a file may require although nothing here reads them: they change how it looks,
-/// or allow integers where this importer takes them anyway.
+/// allow integers where this importer takes them anyway, or animate what has no node; what such a
+/// channel moves is passed over and reported.
 const HARMLESS: [&str; 6] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -43,8 +43,8 @@ pub(crate) fn parse(
         .retain(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
     check_attributes(&root)?;
     check_channels(&mut root, warnings)?;
-    fill_in_ranges(&mut root);
-    Ok((Document::from_json(root)?, blob))
+    validate(&root)?;
+    Ok((Document::from_json_without_validation(root), blob))
 }
 
 /// The parser subtracts the headers' length from what the file claims.
@@ -81,7 +81,7 @@ fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfError
         return Err(refused.into());
     }
     warnings.push(format!(
-        "{dropped} animation channels have no node; passed over"
+        "passed over animation channels without a node: {dropped}"
     ));
     let patched = gltf::json::serialize::to_vec(&value).map_err(gltf::Error::Deserialize)?;
     Ok(Root::from_slice(&patched).map_err(gltf::Error::Deserialize)?)
@@ -101,21 +101,24 @@ fn check_attributes(root: &Root) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-/// Positions must state their range, and some exporters do not. Nothing here reads it.
-fn fill_in_ranges(root: &mut Root) {
-    let zero = || Some(Value::from(vec![0.0; 3]));
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for primitive in primitives {
-        let positions = primitive
-            .attributes
-            .get(&Checked::Valid(Semantic::Positions));
-        let Some(accessor) = positions.and_then(|index| root.accessors.get_mut(index.value()))
-        else {
-            continue;
-        };
-        if accessor.min.is_none() || accessor.max.is_none() {
-            (accessor.min, accessor.max) = (zero(), zero());
+/// The parser's checks, but for what does no harm: positions without their range, primitives without
+/// positions, and accessors without data, which are all zeros.
+fn validate(root: &Root) -> Result<(), GltfErrorKind> {
+    let mut errors = Vec::new();
+    root.validate(root, gltf::json::Path::new, &mut |path, error| {
+        let path = path();
+        let place = path.as_str();
+        let harmless = error == Error::Missing
+            && (place.contains("attributes[\"POSITION\"]")
+                || place.starts_with("accessors[") && place.ends_with("].bufferView"));
+        if !harmless {
+            errors.push((path, error));
         }
+    });
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(gltf::Error::Validation(errors).into())
     }
 }
 
@@ -145,7 +148,7 @@ fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), Glt
         let dropped = before - object.channels.len();
         if dropped > 0 {
             warnings.push(format!(
-                "animation {animation}: {dropped} channels move something unknown; passed over"
+                "animation {animation}: passed over channels that move something unknown: {dropped}"
             ));
         }
     }

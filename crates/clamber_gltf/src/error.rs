@@ -62,7 +62,7 @@ pub enum GltfErrorKind {
         found: usize,
     },
     /// There is nothing to touch.
-    #[error("{object} has no mesh with triangles for collision")]
+    #[error("no mesh with triangles for collision in {object}")]
     NoTriangles {
         /// Which skins, or the file.
         object: String,

@@ -18,7 +18,10 @@ struct Extras<T> {
 }
 
 #[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object such as {\"surface\": \"fur\"}"
+)]
 struct MaterialExtras {
     #[serde(default)]
     surface: Surface,
@@ -37,7 +40,10 @@ enum Surface {
 
 /// What a node says of itself.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object such as {\"role\": \"collision\"}"
+)]
 pub(crate) struct NodeExtras {
     pub(crate) role: Option<Role>,
     pub(crate) weak_point: Option<WeakPointExtras>,
@@ -53,7 +59,10 @@ pub(crate) enum Role {
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object such as {\"hit_points\": 3.0}"
+)]
 pub(crate) struct WeakPointExtras {
     pub(crate) hit_points: f64,
     #[serde(default)]
@@ -105,12 +114,36 @@ pub(crate) fn tag_of(
     })
 }
 
-/// What each node says of itself; nothing if it says nothing.
-pub(crate) fn of_nodes(nodes: &[Node<'_>]) -> Result<Vec<NodeExtras>, GltfErrorKind> {
-    nodes.iter().map(node_extras).collect()
+/// What each node says of itself; nothing if it says nothing. A mesh's own extras say its role where
+/// its node does not.
+pub(crate) fn of_nodes(
+    nodes: &[Node<'_>],
+    warnings: &mut Vec<String>,
+) -> Result<Vec<NodeExtras>, GltfErrorKind> {
+    let mut roles_of_nothing = 0;
+    let mut all = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let mut extras = of_node(node)?;
+        match node.mesh() {
+            Some(mesh) if extras.role.is_none() => {
+                let object = || format!("extras of mesh {}", mesh.index());
+                let of_mesh: NodeExtras = ours(mesh.extras(), object)?;
+                extras.role = of_mesh.role;
+            }
+            Some(_) => {}
+            None => roles_of_nothing += usize::from(extras.role.is_some()),
+        }
+        all.push(extras);
+    }
+    if roles_of_nothing > 0 {
+        warnings.push(format!(
+            "nodes with a role, but without a mesh: {roles_of_nothing}"
+        ));
+    }
+    Ok(all)
 }
 
-fn node_extras(node: &Node<'_>) -> Result<NodeExtras, GltfErrorKind> {
+fn of_node(node: &Node<'_>) -> Result<NodeExtras, GltfErrorKind> {
     let object = || match node.name() {
         Some(name) => format!("extras of node {name:?}"),
         None => format!("extras of node {}", node.index()),
@@ -185,6 +218,12 @@ mod tests {
         assert!(furr.contains("`skin`, `fur`, `stone`"), "{furr}");
         assert!(error(r#"{"clamber": {"surfaces": "fur"}}"#).is_some());
         assert!(error(r#"{"clamber": {"ledge": 2}}"#).is_some());
+        assert!(error(r#"{"clamber": {"ledge": 0}}"#).is_none());
+        let text = error(r#"{"clamber": "fur"}"#).unwrap();
+        assert!(
+            text.contains(r#"expected an object such as {"surface": "fur"}"#),
+            "{text}"
+        );
         let role = parse::<NodeExtras>(r#"{"clamber": {"role": "colision"}}"#).unwrap_err();
         assert!(
             role.to_string().contains("`collision`, `visual`, `both`"),

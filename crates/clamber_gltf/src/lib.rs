@@ -3,12 +3,14 @@
 mod accessor;
 mod buffers;
 mod clip;
+mod collision;
 mod contents;
 mod decompose;
 mod document;
 mod error;
 mod extras;
 mod load;
+mod looks;
 mod members;
 mod mesh;
 mod skeleton;

@@ -5,12 +5,13 @@ use clamber_surface::mesh::{BuildOptions, BuildReport, ColliderMesh, MeshError, 
 use clamber_surface::rig::{Clip, Skeleton};
 
 use crate::accessor::Reader;
+use crate::buffers::Buffers;
 use crate::contents::Contents;
 use crate::members::{self, Members};
 use crate::visual;
 use crate::{
-    GltfError, GltfErrorKind, Material, VisualMesh, WeakPoint, buffers, clip, document, mesh,
-    skeleton, weak_point,
+    GltfError, GltfErrorKind, Material, VisualMesh, WeakPoint, clip, document, mesh, skeleton,
+    weak_point,
 };
 
 /// A creature as a file describes it.
@@ -43,7 +44,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`MeshError`] if nothing is to be seen.
-    pub fn visual_collider(&self) -> Result<(ColliderMesh, BuildReport), MeshError> {
+    pub fn visual_collider(&self) -> Result<ColliderMesh, MeshError> {
         let joints = self.skeleton.joints().len();
         visual::merged(&self.visual, &self.materials, joints)
     }
@@ -143,10 +144,9 @@ fn one(bytes: &[u8], base: Option<&Path>, options: &LoadOptions<'_>) -> Result<R
         let chosen = members::choose(&contents.tree, &creatures, options.skin, warnings)?;
         Ok(vec![chosen])
     };
-    let rigs = from_bytes(bytes, base, options, choose)?;
-    let object = || "the file".to_owned();
-    let first = rigs.into_iter().next();
-    first.ok_or_else(|| GltfErrorKind::NoTriangles { object: object() })
+    let mut rigs = from_bytes(bytes, base, options, choose)?;
+    let object = "the file".to_owned();
+    rigs.pop().ok_or(GltfErrorKind::NoTriangles { object })
 }
 
 /// Those of a file's creatures that `choose` picks; at least one.
@@ -162,7 +162,7 @@ fn from_bytes(
 ) -> Result<Vec<Rig>, GltfErrorKind> {
     let mut warnings = Vec::new();
     let (document, blob) = document::parse(bytes, &mut warnings)?;
-    let buffers = buffers::load(&document, blob, base)?;
+    let buffers = Buffers::load(&document, blob, base)?;
     let reader = Reader::new(&buffers, bytes.len());
     let contents = Contents::new(&document, reader, options, &mut warnings)?;
     let creatures = members::all(&contents.tree, &contents.extras, &mut warnings);
@@ -182,6 +182,10 @@ fn rig(
     members: &Members,
     mut warnings: Vec<String>,
 ) -> Result<Rig, GltfErrorKind> {
+    // Every creature has these to itself.
+    let lines: usize = warnings.iter().map(String::len).sum();
+    let bytes = size_of_val(contents.materials.as_slice()) + lines;
+    contents.reader.charge(&members.object(), bytes)?;
     let joints = skeleton::load(contents, members, &mut warnings)?;
     let meshes = mesh::load(contents, members, &joints, &mut warnings)?;
     let clips = clip::load(contents, &joints.of_node, &mut warnings)?;

@@ -11,6 +11,7 @@ use gltf::mesh::Semantic;
 use crate::GltfErrorKind;
 use crate::extras::NodeExtras;
 use crate::tree::Tree;
+use crate::vertices::has_surface;
 
 /// The pieces of one creature.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +83,7 @@ pub(crate) fn all(
     }
     if static_meshes > 0 {
         warnings.push(format!(
-            "{static_meshes} meshes have no skin and hang under no joint; passed over"
+            "passed over meshes without a skin that hang under no joint: {static_meshes}"
         ));
     }
     creatures.retain(|creature| !creature.meshes.is_empty());
@@ -106,7 +107,7 @@ pub(crate) fn choose(
     let chosen = chosen.ok_or_else(|| GltfErrorKind::NoTriangles { object: object() })?;
     if creatures.len() > 1 {
         warnings.push(format!(
-            "took the creature of {}; {} others of the file were passed over",
+            "took the creature of {}; other creatures passed over: {}",
             chosen.object(),
             creatures.len() - 1
         ));
@@ -136,18 +137,16 @@ fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
         }
         skin_above[node] = skin_of_joint[node].or(inherited);
     }
-    // The smallest skin stands for its creature, so numbers ascend by first skin.
-    let first: Vec<usize> = (0..count)
-        .map(|skin| representative(&above, skin))
-        .collect();
+    // The smallest skin stands for its creature, so numbers ascend by first skin, and what is above
+    // a skin has its number already.
     let mut numbers = vec![0; count];
     let mut next = 0;
     for skin in 0..count {
-        numbers[skin] = if first[skin] == skin {
+        numbers[skin] = if above[skin] == skin {
             next += 1;
             next - 1
         } else {
-            numbers[first[skin]]
+            numbers[above[skin]]
         };
     }
     numbers
@@ -170,21 +169,20 @@ fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
     of_node
 }
 
-/// The smallest skin of the set that `skin` is in.
-fn representative(above: &[usize], mut skin: usize) -> usize {
+/// The smallest skin of the set that `skin` is in. Halves the way to it, so that no order of skins
+/// makes it long.
+fn representative(above: &mut [usize], mut skin: usize) -> usize {
     while above[skin] != skin {
+        above[skin] = above[above[skin]];
         skin = above[skin];
     }
     skin
 }
 
-/// Makes one set of two, under the smaller representative, and shortens the ways to it.
+/// Makes one set of two, under the smaller representative.
 fn unite(above: &mut [usize], a: usize, b: usize) {
-    let (a_first, b_first) = (representative(above, a), representative(above, b));
-    let first = a_first.min(b_first);
-    for skin in [a, b, a_first, b_first] {
-        above[skin] = first;
-    }
+    let (a, b) = (representative(above, a), representative(above, b));
+    above[a.max(b)] = a.min(b);
 }
 
 /// How many triangle corners a mesh has, more or less.
@@ -194,5 +192,6 @@ fn corner_count(mesh: &Mesh<'_>) -> u64 {
         let accessor = primitive.indices().or_else(positions);
         accessor.map_or(0, |accessor| accessor.count() as u64)
     };
-    mesh.primitives().map(count).fold(0, u64::saturating_add)
+    let primitives = mesh.primitives().filter(has_surface);
+    primitives.map(count).fold(0, u64::saturating_add)
 }

@@ -4,18 +4,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh, Influence, MeshSource, SurfaceTag};
-use glam::Vec3;
+use clamber_surface::mesh::{BuildReport, ColliderMesh};
 use gltf::mesh::Semantic;
 use gltf::{Mesh, Node, Primitive};
 
 use crate::GltfErrorKind;
 use crate::accessor::Reader;
+use crate::collision::Collision;
 use crate::contents::Contents;
 use crate::extras::Role;
+use crate::looks;
 use crate::members::Members;
 use crate::skeleton::Joints;
-use crate::vertices::{self, Binding, Vertices};
+use crate::vertices::{self, Binding};
 use crate::visual::VisualMesh;
 
 /// What all meshes of a creature add up to.
@@ -35,6 +36,10 @@ struct Gathered {
     places: BTreeMap<Vec<usize>, Place>,
     unweighted: usize,
     morphed: usize,
+    /// Primitives without a surface, by what they are.
+    passed_over: BTreeMap<&'static str, usize>,
+    /// Attributes that were not read.
+    ignored: BTreeSet<String>,
 }
 
 #[derive(Clone, Copy)]
@@ -44,18 +49,6 @@ struct Place {
     collision: Option<u32>,
     /// Index of the visual mesh.
     visual: Option<usize>,
-}
-
-/// What all primitives that a climber touches add up to.
-#[derive(Default)]
-struct Collision {
-    positions: Vec<Vec3>,
-    influences: Vec<Influence>,
-    influence_ends: Vec<u32>,
-    /// The rest space of each vertex: a rigid mesh has one of its own.
-    spaces: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
-    tags: Vec<SurfaceTag>,
 }
 
 /// A node that shows a mesh, and how.
@@ -81,37 +74,29 @@ pub(crate) fn load(
     let mut shown = BTreeSet::new();
     for instance in instances(contents, members, joints) {
         let weights: Vec<u32> = instance.morph_weights.iter().map(|w| w.to_bits()).collect();
+        let mesh = format!("mesh {}", instance.mesh.index());
+        contents
+            .reader
+            .charge(&mesh, size_of_val(weights.as_slice()))?;
         let role = instance.role as usize;
         if !shown.insert((instance.mesh.index(), instance.space, role, weights)) {
             continue;
         }
         for primitive in instance.mesh.primitives() {
-            let object = format!(
-                "mesh {}, primitive {}",
-                instance.mesh.index(),
-                primitive.index()
-            );
+            contents.reader.charge(&mesh, PRIMITIVE_BYTES)?;
             match vertices::passed_over(&primitive, &instance.binding) {
-                Some(reason) => warnings.push(format!("{object}: {reason}; passed over")),
-                None => gathered.add(&instance, &primitive, &object, contents)?,
+                Some(reason) => *gathered.passed_over.entry(reason).or_default() += 1,
+                None => {
+                    let object = format!("{mesh}, primitive {}", primitive.index());
+                    gathered.add(&instance, &primitive, &object, contents)?;
+                }
             }
         }
     }
+    gathered.report(warnings);
     if gathered.collision.triangles.is_empty() {
         let object = members.object();
         return Err(GltfErrorKind::NoTriangles { object });
-    }
-    if gathered.unweighted > 0 {
-        warnings.push(format!(
-            "{} vertices have no weights and follow the first joint that they name",
-            gathered.unweighted
-        ));
-    }
-    if gathered.morphed > 0 {
-        warnings.push(format!(
-            "{} primitives have morph targets, which stay at their rest weights",
-            gathered.morphed
-        ));
     }
     let joint_count = joints.skeleton.joints().len();
     let source = gathered.collision.source(joint_count);
@@ -128,6 +113,9 @@ pub(crate) fn load(
         visual: gathered.visual,
     })
 }
+
+/// What a primitive takes apart from its vertices and triangles, bytes: more than that.
+const PRIMITIVE_BYTES: usize = 256;
 
 /// The nodes of a creature that show a mesh. Once one of them is for collision, those that do not
 /// say what they are for are to be seen only.
@@ -168,6 +156,33 @@ fn instances<'a>(
 }
 
 impl Gathered {
+    /// Says what was passed over or mended.
+    fn report(&self, warnings: &mut Vec<String>) {
+        let mut count = |what: &str, count: usize| {
+            if count > 0 {
+                warnings.push(format!("{what}: {count}"));
+            }
+        };
+        for (kind, primitives) in &self.passed_over {
+            count(&format!("passed over primitives {kind}"), *primitives);
+        }
+        count(
+            "vertices without weights, which follow the first joint that they name",
+            self.unweighted,
+        );
+        count(
+            "primitives with morph targets, which stay at their rest weights",
+            self.morphed,
+        );
+        if !self.ignored.is_empty() {
+            let names: Vec<&str> = self.ignored.iter().map(String::as_str).collect();
+            warnings.push(format!(
+                "attributes that were not read: {}",
+                names.join(", ")
+            ));
+        }
+    }
+
     fn add(
         &mut self,
         instance: &Instance<'_>,
@@ -214,12 +229,14 @@ impl Gathered {
         let visual = if instance.role == Role::Collision {
             None
         } else {
-            let looks = vertices::looks(primitive, count, weights, object, reader)?;
+            let looks = looks::looks(primitive, count, weights, object, reader)?;
+            self.ignored.extend(looks::ignored(primitive));
             let name = instance
                 .node
                 .name()
                 .or(instance.mesh.name())
                 .unwrap_or_default();
+            reader.charge(object, name.len())?;
             let mesh = VisualMesh::new(name.to_owned(), &vertices, looks, object)?;
             self.visual.push(mesh);
             Some(self.visual.len() - 1)
@@ -256,46 +273,9 @@ fn key(instance: &Instance<'_>, primitive: &Primitive<'_>) -> Vec<usize> {
             _ => {}
         }
     }
-    // Morphed vertices are their primitive's alone.
+    // Morphed vertices are their primitive's alone, and their node's.
     if primitive.morph_targets().next().is_some() {
-        push(6, instance.mesh.index() as u32, primitive.index());
-        key.extend(instance.morph_weights.iter().map(|w| w.to_bits() as usize));
+        push(6, instance.node.index() as u32, primitive.index());
     }
     key
-}
-
-impl Collision {
-    /// Takes vertices in; gives the number of the first.
-    fn append(
-        &mut self,
-        vertices: &Vertices,
-        space: u32,
-        object: &str,
-    ) -> Result<u32, GltfErrorKind> {
-        let too_many = || GltfErrorKind::invalid(object, "the file has more than 2^32 vertices");
-        let base = u32::try_from(self.positions.len()).map_err(|_| too_many())?;
-        let before = u32::try_from(self.influences.len()).map_err(|_| too_many())?;
-        let ends = vertices
-            .influence_ends
-            .iter()
-            .map(|end| before.checked_add(*end));
-        let ends: Option<Vec<u32>> = ends.collect();
-        self.influence_ends.extend(ends.ok_or_else(too_many)?);
-        self.influences.extend_from_slice(&vertices.influences);
-        self.positions.extend_from_slice(&vertices.positions);
-        self.spaces.resize(self.positions.len(), space);
-        Ok(base)
-    }
-
-    fn source(&self, joint_count: usize) -> MeshSource<'_> {
-        MeshSource {
-            positions: &self.positions,
-            triangles: &self.triangles,
-            influences: &self.influences,
-            influence_ends: &self.influence_ends,
-            tags: &self.tags,
-            rest_spaces: &self.spaces,
-            joint_count,
-        }
-    }
 }

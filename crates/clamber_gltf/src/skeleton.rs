@@ -87,12 +87,15 @@ pub(crate) fn load(
     let Gathering {
         joints, of_node, ..
     } = gathering;
+    let bytes = |node: usize| tree.nodes[node].name().map_or(0, str::len) + size_of::<Joint>();
+    let bytes = joints.iter().map(|(node, _)| bytes(*node)).sum();
+    contents.reader.charge(&members.object(), bytes)?;
     let joints = joints.into_iter().map(|(node, inverse_bind)| {
         let parent = tree.parent_of[node].and_then(|parent| of_node.get(&parent)?.first().copied());
         Joint {
             name: tree.name(node),
             parent,
-            rest: transform(&tree.nodes[node], warnings),
+            rest: contents.transforms[node],
             inverse_bind,
         }
     });
@@ -133,17 +136,23 @@ fn inverse_binds(
     let projective = matrices.iter().filter(|m| !last_row(m)).count();
     if projective > 0 {
         warnings.push(format!(
-            "skin {}: the last row of {projective} inverse bind matrices is not (0, 0, 0, 1); \
-             it was taken as if it were",
+            "skin {}: inverse bind matrices whose last row is not (0, 0, 0, 1), and was taken as if \
+             it were: {projective}",
             skin.index()
         ));
     }
     Ok(matrices.iter().map(Affine::from_cols_array).collect())
 }
 
-/// A node's transform as translation, rotation, scale.
-pub(crate) fn transform(node: &Node<'_>, warnings: &mut Vec<String>) -> Transform {
-    match node.transform() {
+/// The largest share of a column's length by which a decomposed matrix may be off before it is worth
+/// telling: a millimetre in a metre.
+const SHEAR_WORTH_TELLING: f64 = 1e-3;
+
+/// The transforms of nodes as translation, rotation, scale.
+pub(crate) fn transforms(nodes: &[Node<'_>], warnings: &mut Vec<String>) -> Vec<Transform> {
+    let mut sheared = 0;
+    let mut worst = 0.0f64;
+    let transforms = nodes.iter().map(|node| match node.transform() {
         gltf::scene::Transform::Decomposed {
             translation,
             rotation,
@@ -155,14 +164,17 @@ pub(crate) fn transform(node: &Node<'_>, warnings: &mut Vec<String>) -> Transfor
         },
         gltf::scene::Transform::Matrix { matrix } => {
             let (transform, error) = decompose(&matrix);
-            if error > 1e-3 {
-                warnings.push(format!(
-                    "node {}: its matrix shears, which a translation, rotation and scale cannot: \
-                     its columns are off by up to {error:.1e} of their length",
-                    node.index()
-                ));
-            }
+            sheared += usize::from(error > SHEAR_WORTH_TELLING);
+            worst = worst.max(error);
             transform
         }
+    });
+    let transforms = transforms.collect();
+    if sheared > 0 {
+        warnings.push(format!(
+            "nodes whose matrix shears, which a translation, rotation and scale cannot: {sheared}; \
+             columns are off by up to {worst:.1e} of their length"
+        ));
     }
+    transforms
 }

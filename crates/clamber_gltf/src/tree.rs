@@ -4,8 +4,8 @@ use gltf::{Document, Node, Skin};
 
 use crate::GltfErrorKind;
 
-/// All nodes and skins, and how the nodes hang together: every node has at most one parent, and none is above
-/// itself.
+/// All nodes and skins, and how the nodes hang together: every node has at most one parent, and none
+/// is above itself.
 pub(crate) struct Tree<'a> {
     pub(crate) nodes: Vec<Node<'a>>,
     pub(crate) skins: Vec<Skin<'a>>,

@@ -2,7 +2,7 @@
 
 use clamber_surface::mesh::Influence;
 use clamber_surface::rig::JointId;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use gltf::mesh::{Mode, Semantic};
 use gltf::{Accessor, Primitive};
 
@@ -28,29 +28,30 @@ pub(crate) struct Vertices {
     pub(crate) unweighted: usize,
 }
 
-/// How they look.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Looks {
-    pub(crate) normals: Vec<Vec3>,
-    pub(crate) tex_coords: Vec<Vec<Vec2>>,
-    pub(crate) colors: Vec<[f32; 4]>,
+/// True if a primitive is of triangles, not of points or lines.
+pub(crate) fn has_surface(primitive: &Primitive<'_>) -> bool {
+    let mode = primitive.mode();
+    matches!(
+        mode,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+    )
 }
 
 /// Why a primitive is no part of a surface; `None` if it is.
-pub(crate) fn passed_over(primitive: &Primitive<'_>, binding: &Binding<'_>) -> Option<String> {
-    let mode = primitive.mode();
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
-        return Some(format!("{mode:?} have no surface"));
+pub(crate) fn passed_over(
+    primitive: &Primitive<'_>,
+    binding: &Binding<'_>,
+) -> Option<&'static str> {
+    if !has_surface(primitive) {
+        return Some("of points or lines");
     }
     if primitive.get(&Semantic::Positions).is_none() {
-        return Some("has no positions".into());
+        return Some("without positions");
     }
     let sets = [Semantic::Joints(0), Semantic::Weights(0)];
     let unskinned = sets.iter().all(|set| primitive.get(set).is_none());
-    (unskinned && matches!(binding, Binding::Skin(_))).then(|| "has no joints and weights".into())
+    (unskinned && matches!(binding, Binding::Skin(_)))
+        .then_some("of a skinned mesh, without joints and weights")
 }
 
 /// Reads positions, with morph targets at their rest weights, and influences.
@@ -66,6 +67,12 @@ pub(crate) fn vertices(
     };
     let rest = reader.floats::<3>(&accessor)?;
     let count = rest.len();
+    let targets = primitive.morph_targets().len();
+    if !morph_weights.is_empty() && targets != morph_weights.len() {
+        let found = morph_weights.len();
+        let reason = format!("has {targets} morph targets, but {found} weights for them");
+        return Err(GltfErrorKind::invalid(object, reason));
+    }
     reader.charge(object, count.saturating_mul(BUILD_BYTES))?;
     let deltas = primitive.morph_targets().map(|target| target.positions());
     let positions = morphed(rest, deltas, morph_weights, object, reader)?;
@@ -98,7 +105,7 @@ const BUILD_BYTES: usize = 256;
 
 /// Positions or normals moved by morph targets, `None` for a target that does not move them.
 /// Added up in f64 in the order of the targets, rounded once.
-fn morphed<'a>(
+pub(crate) fn morphed<'a>(
     rest: Vec<[f32; 3]>,
     targets: impl Iterator<Item = Option<Accessor<'a>>>,
     weights: &[f32],
@@ -212,58 +219,6 @@ fn weight_sets(
     Ok(sets)
 }
 
-/// Reads normals, morphed as the positions are, texture coordinates and colours, of as many
-/// vertices as there are positions.
-pub(crate) fn looks(
-    primitive: &Primitive<'_>,
-    vertices: usize,
-    morph_weights: &[f32],
-    object: &str,
-    reader: &Reader<'_>,
-) -> Result<Looks, GltfErrorKind> {
-    let check = |what: &str, found: usize| {
-        let reason = || format!("has {vertices} positions, but {found} {what}");
-        (found == vertices)
-            .then_some(())
-            .ok_or_else(|| GltfErrorKind::invalid(object, reason()))
-    };
-    let mut looks = Looks::default();
-    if let Some(accessor) = primitive.get(&Semantic::Normals) {
-        let rest = reader.floats::<3>(&accessor)?;
-        check("normals", rest.len())?;
-        let deltas = primitive.morph_targets().map(|target| target.normals());
-        looks.normals = morphed(rest, deltas, morph_weights, object, reader)?;
-    }
-    for set in 0.. {
-        let Some(accessor) = primitive.get(&Semantic::TexCoords(set)) else {
-            break;
-        };
-        let coordinates = reader.floats::<2>(&accessor)?;
-        check("texture coordinates", coordinates.len())?;
-        looks
-            .tex_coords
-            .push(coordinates.into_iter().map(Vec2::from_array).collect());
-    }
-    if let Some(accessor) = primitive.get(&Semantic::Colors(0)) {
-        looks.colors = colors(&accessor, reader)?;
-        check("colours", looks.colors.len())?;
-    }
-    Ok(looks)
-}
-
-/// Colours with opacity, which is 1 where the file gives none.
-fn colors(accessor: &Accessor<'_>, reader: &Reader<'_>) -> Result<Vec<[f32; 4]>, GltfErrorKind> {
-    if accessor.dimensions().multiplicity() == 3 {
-        let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
-        return Ok(reader
-            .floats::<3>(accessor)?
-            .into_iter()
-            .map(opaque)
-            .collect());
-    }
-    reader.floats::<4>(accessor)
-}
-
 /// The triangles of a primitive that has so many vertices.
 pub(crate) fn triangles(
     primitive: &Primitive<'_>,
@@ -280,6 +235,10 @@ pub(crate) fn triangles(
     };
     if let Some(index) = indices.iter().find(|i| **i as usize >= vertices) {
         let reason = format!("names vertex {index} of {vertices}");
+        return Err(GltfErrorKind::invalid(object, reason));
+    }
+    if primitive.mode() == Mode::Triangles && !indices.len().is_multiple_of(3) {
+        let reason = format!("{} corners make no whole triangles", indices.len());
         return Err(GltfErrorKind::invalid(object, reason));
     }
     // A strip makes three corners of every index, for a collider and to be drawn.

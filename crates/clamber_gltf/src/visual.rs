@@ -1,15 +1,15 @@
 //! What is drawn of a creature, on the joints that move its collider.
 
 use clamber_surface::mesh::{
-    BuildOptions, BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
-    normalize_influences,
+    BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, normalize_influences,
 };
 use glam::{Vec2, Vec3};
 use gltf::material::AlphaMode;
 use gltf::{Document, Primitive};
 
 use crate::extras::tag_of;
-use crate::vertices::{Looks, Vertices};
+use crate::looks::Looks;
+use crate::vertices::Vertices;
 use crate::{GltfErrorKind, LoadOptions};
 
 /// A mesh to be drawn: vertices as the file has them, split where normals or texture coordinates
@@ -20,7 +20,8 @@ pub struct VisualMesh {
     pub name: String,
     /// Rest positions in mesh space, with morph targets at their rest weights.
     pub positions: Vec<Vec3>,
-    /// Unit vectors in mesh space, one a vertex; empty if the file gives none.
+    /// Unit vectors in mesh space, one a vertex, zero where the file has none of finite length; empty
+    /// if it gives none at all.
     pub normals: Vec<Vec3>,
     /// For each `TEXCOORD_n`, from 0 on, coordinates of every vertex.
     pub tex_coords: Vec<Vec<Vec2>>,
@@ -128,7 +129,7 @@ pub(crate) fn merged(
     visual: &[VisualMesh],
     materials: &[Material],
     joint_count: usize,
-) -> Result<(ColliderMesh, BuildReport), MeshError> {
+) -> Result<ColliderMesh, MeshError> {
     let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
     let (mut triangles, mut tags) = (vec![], vec![]);
     for seen in visual {
@@ -153,7 +154,7 @@ pub(crate) fn merged(
         joint_count,
         ..MeshSource::default()
     };
-    ColliderMesh::build(&source, &BuildOptions::default())
+    Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
 }
 
 /// All materials of a file, in its order.
@@ -192,7 +193,7 @@ pub(crate) fn materials(
     }
     if textured > 0 {
         warnings.push(format!(
-            "{textured} materials have textures; only their factors were taken"
+            "materials with textures, of which only the factors were taken: {textured}"
         ));
     }
     Ok(materials)

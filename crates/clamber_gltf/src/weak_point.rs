@@ -6,7 +6,7 @@ use glam::{DAffine3, Vec3};
 use crate::GltfErrorKind;
 use crate::contents::Contents;
 use crate::members::Members;
-use crate::skeleton::{Joints, transform};
+use crate::skeleton::Joints;
 
 /// A place where a creature can be wounded, as a node of the file marks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,18 +30,23 @@ pub(crate) fn load(
     joints: &Joints,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<WeakPoint>, GltfErrorKind> {
+    if members.weak_points.is_empty() {
+        return Ok(Vec::new());
+    }
+    let places = places(contents, joints);
     let mut weak_points = Vec::new();
     for &node in &members.weak_points {
         let name = contents.tree.name(node);
         let Some(says) = &contents.extras[node].weak_point else {
             continue;
         };
-        let Some((joint, position)) = place(contents, joints, node, warnings) else {
+        let Some((joint, joint_from_node)) = places[node] else {
             warnings.push(format!(
                 "node {name:?} is a weak point, but hangs under no joint; passed over"
             ));
             continue;
         };
+        let position = joint_from_node.translation.as_vec3();
         if !position.is_finite() {
             let reason = "is a weak point at a position that is not finite";
             return Err(GltfErrorKind::invalid(format!("node {name:?}"), reason));
@@ -57,22 +62,22 @@ pub(crate) fn load(
     Ok(weak_points)
 }
 
-/// The nearest joint at or above a node, and where the node is in its space.
-fn place(
-    contents: &Contents<'_>,
-    joints: &Joints,
-    node: usize,
-    warnings: &mut Vec<String>,
-) -> Option<(JointId, Vec3)> {
+/// For every node, the nearest joint at or above it, and the way to its space, at rest.
+fn places(contents: &Contents<'_>, joints: &Joints) -> Vec<Option<(JointId, DAffine3)>> {
     let tree = &contents.tree;
-    let mut joint_from_node = DAffine3::IDENTITY;
-    let mut at = node;
-    loop {
-        if let Some(joint) = joints.of_node.get(&at).and_then(|joints| joints.first()) {
-            return Some((*joint, joint_from_node.translation.as_vec3()));
-        }
-        let local = transform(&tree.nodes[at], warnings).to_affine();
-        joint_from_node = local * joint_from_node;
-        at = tree.parent_of[at]?;
+    let mut places = vec![None; tree.nodes.len()];
+    for &node in &tree.order {
+        let own = joints.of_node.get(&node).and_then(|joints| joints.first());
+        places[node] = match (own, tree.parent_of[node]) {
+            (Some(joint), _) => Some((*joint, DAffine3::IDENTITY)),
+            (None, Some(parent)) => places[parent].map(|(joint, joint_from_parent)| {
+                (
+                    joint,
+                    joint_from_parent * contents.transforms[node].to_affine(),
+                )
+            }),
+            (None, None) => None,
+        };
     }
+    places
 }

@@ -27,23 +27,16 @@ pub fn giant() -> Result<Creature, CreatureError> {
     Ok(creature(&clamber_gltf::load(path())?))
 }
 
-/// The giant with so many vertices, or nearly: made from its collision mesh, or from what is to be
-/// seen of it where more are asked for than that has.
+/// The giant with so many vertices, or nearly: its collision mesh with longest edges halved or
+/// shortest ones drawn together, closed as that is.
 ///
 /// # Errors
 /// As [`giant`].
 pub fn giant_of(vertices: usize) -> Result<Creature, CreatureError> {
-    let rig = clamber_gltf::load(path())?;
-    let (seen, _) = rig.visual_collider()?;
-    let base = if seen.positions().len() <= vertices {
-        &seen
-    } else {
-        &*rig.collider
-    };
+    let giant = giant()?;
     Ok(Creature {
-        name: format!("giant of {vertices} vertices"),
-        collider: Arc::new(resample(base, vertices)?),
-        ..creature(&rig)
+        collider: Arc::new(resample(&giant.collider, vertices)?),
+        ..giant
     })
 }
 

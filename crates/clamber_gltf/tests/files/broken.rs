@@ -24,7 +24,7 @@ fn use_rig(rig: &Rig) {
 #[test]
 fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
     let mut file = File::square();
-    let vertices = 5_000;
+    let vertices = 4_998;
     let many = vec![0.5f32; vertices * 3];
     let positions = file.floats("VEC3", &many);
     file.json["accessors"][positions]["min"] = json!([0.5, 0.5, 0.5]);
@@ -53,6 +53,61 @@ fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
     );
     let error = file.load().unwrap_err();
     assert!(error.to_string().contains("more memory"), "{error}");
+}
+
+#[test]
+fn what_is_small_in_a_file_and_large_in_memory_is_charged() {
+    let refused = |file: &File, what: &str| {
+        let error = file.load().unwrap_err().to_string();
+        assert!(error.contains("more memory"), "{what}: {error}");
+    };
+    // Every node shows every primitive.
+    let mut file = File::square();
+    let points = json!({"attributes": {"POSITION": 0}, "mode": 0});
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.extend(vec![points; 1_000]);
+    for _ in 0..1_000 {
+        file.node_under(1, json!({"mesh": 0}));
+    }
+    refused(&file, "primitives of many nodes");
+
+    let mut file = File::square();
+    file.json["meshes"][0]["weights"] = json!(vec![0; 20_000]);
+    for _ in 0..2_000 {
+        file.node_under(1, json!({"mesh": 0}));
+    }
+    let error = file.load().unwrap_err().to_string();
+    assert!(
+        error.contains("0 morph targets, but 20000 weights"),
+        "{error}"
+    );
+
+    let mut file = File::square();
+    file.json["nodes"][1]["name"] = json!("x".repeat(100_000));
+    let binds = file.accessor(
+        "MAT4",
+        5126,
+        600,
+        &(0..600 * 64).map(|k| (k % 61) as u8).collect::<Vec<_>>(),
+    );
+    file.json["skins"][0] = json!({"joints": vec![1; 600], "inverseBindMatrices": binds});
+    refused(&file, "a long name of many joints");
+}
+
+#[test]
+fn sparse_accessors_cannot_replace_more_than_there_is() {
+    let mut file = File::square();
+    let indices = file.accessor("SCALAR", 5121, 5, &[0, 1, 2, 3, 3]);
+    let values = file.floats("VEC3", &[0.5; 15]);
+    file.json["accessors"][0]["sparse"] = json!({
+        "count": 5, "indices": {"bufferView": indices, "componentType": 5121},
+        "values": {"bufferView": values}
+    });
+    let error = file.load().unwrap_err().to_string();
+    assert!(error.contains("replaces 5 of 4 elements"), "{error}");
+    file.json["accessors"][0]["sparse"]["count"] = json!(1);
+    let moved = file.load().unwrap().collider.positions()[0];
+    assert_eq!(moved, glam::Vec3::splat(0.5));
 }
 
 /// Every place in a JSON value, as a pointer.

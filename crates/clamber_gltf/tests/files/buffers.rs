@@ -13,11 +13,21 @@ fn buffers_come_from_data_uris_and_from_files_beside_the_document() {
     std::fs::create_dir_all(folder.join("a b")).unwrap();
     std::fs::write(folder.join("a b/data.bin"), &file.bytes).unwrap();
     let document = folder.join("square.gltf");
+    std::fs::write(&document, file.gltf("data:nothing")).unwrap();
+    let error = load(&document).unwrap_err();
+    assert_eq!(error.path.as_ref(), Some(&document));
+    assert!(
+        error
+            .to_string()
+            .starts_with(&document.display().to_string()),
+        "{error}"
+    );
     let load_with_uri = |uri: &str| {
         std::fs::write(&document, file.gltf(uri)).unwrap();
         load(&document).map_err(|error| error.kind)
     };
     assert!(load_with_uri("a%20b/data.bin").is_ok());
+    assert!(load_with_uri("./a%20b/data.bin").is_ok());
     let encoded: String = file
         .bytes
         .iter()
@@ -35,6 +45,8 @@ fn buffers_come_from_data_uris_and_from_files_beside_the_document() {
     );
     for refused in [
         "/dev/zero",
+        "../data.bin",
+        "a%20b/../../data.bin",
         "file:///dev/zero",
         "data:;base64,&&&",
         "data:nothing",

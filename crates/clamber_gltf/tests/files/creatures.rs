@@ -186,7 +186,10 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
         "each skin has a space of its own"
     );
     assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
-    assert!(rig.report.warnings[0].contains("took the creature of skins 0, 1, 2; 1 others"));
+    assert!(
+        rig.report.warnings[0]
+            .contains("creature of skins 0, 1, 2; other creatures passed over: 1")
+    );
 
     let pick = |skin| LoadOptions {
         skin: Some(skin),

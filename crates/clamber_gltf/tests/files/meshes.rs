@@ -61,7 +61,7 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     );
     assert_eq!((glow.base_color[3], glow.roughness), (0.5, 0.25));
     assert!(glow.double_sided);
-    let (again, _) = rig.visual_collider().unwrap();
+    let again = rig.visual_collider().unwrap();
     assert_eq!(again.triangles().len(), 2);
 }
 
@@ -77,7 +77,7 @@ fn meshes_to_be_seen_make_one_collider_with_their_tags() {
         "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}}));
     let rig = file.load().unwrap();
     assert_eq!(rig.visual.len(), 2);
-    let (seen, _) = rig.visual_collider().unwrap();
+    let seen = rig.visual_collider().unwrap();
     assert_eq!(seen.positions(), rig.collider.positions());
     assert_eq!(seen.triangles(), rig.collider.triangles());
     assert_eq!(seen.tags(), rig.collider.tags());
@@ -147,6 +147,11 @@ fn roles_say_what_is_for_collision() {
         .remove("extras");
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (3, 2));
+
+    // Of the mesh where its node says nothing.
+    file.json["meshes"][0]["extras"] = role("visual");
+    let rig = file.load().unwrap();
+    assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (1, 2));
 
     file.json["nodes"][3]["extras"] = role("colission");
     let error = file.load().unwrap_err().to_string();
@@ -238,6 +243,9 @@ fn morph_targets_stand_at_their_rest_weights() {
         json!([{"POSITION": up}, {"POSITION": aside}, {}]);
     let z = |file: &File| file.load().map(|rig| rig.collider.positions()[0]);
     assert_eq!(z(&file).unwrap(), Vec3::ZERO, "no weights are zero weights");
+    file.json["meshes"][0]["weights"] = json!([0.5]);
+    let error = z(&file).unwrap_err().to_string();
+    assert!(error.contains("3 morph targets, but 1 weights"), "{error}");
     file.json["meshes"][0]["weights"] = json!([0.5, 0.25, 1.0]);
     assert_eq!(z(&file).unwrap(), Vec3::new(1.0, 0.0, 0.5));
     file.json["nodes"][3]["weights"] = json!([2.0, 0.0, 0.0]);

@@ -85,7 +85,7 @@ pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
         reason: error.to_string(),
     })?;
     let creature = options.load_creature()?;
-    let mut battle = Battle::new(&creature, options.height, options.seed)?;
+    let mut battle = Battle::new(&creature, options.height(), options.seed)?;
     let ticks = options.ticks();
     let progress = options::Progress::new(ticks);
     for tick in 0..ticks {

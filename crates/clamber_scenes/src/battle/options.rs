@@ -6,10 +6,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::bot::Intent;
 use super::{BattleError, Recording, TICK};
-use crate::{Creature, beast::beast};
+use crate::{Creature, giant::giant};
 
-/// Vertices of the creature built in code.
-const BEAST_VERTICES: usize = 6_000;
+/// Metres; what a creature from a file is scaled to.
+const FILE_HEIGHT: f64 = 20.0;
+
+/// Metres; what the giant is scaled to, and about what it has.
+const GIANT_HEIGHT: f64 = 40.0;
 
 /// A climber rides a walking, shaking creature.
 ///
@@ -19,14 +22,14 @@ const BEAST_VERTICES: usize = 6_000;
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {
-    /// A skinned creature in a .glb or .gltf file [default: a quadruped built in code].
+    /// A skinned creature in a .glb or .gltf file [default: the giant, assets/colossus.glb].
     #[arg(long, value_name = "FILE")]
     pub creature: Option<PathBuf>,
 
-    /// Height of the creature.
-    #[arg(long, value_name = "METRES", default_value_t = 20.0)]
+    /// Height of the creature [default: 40 for the giant, 20 for one from a file].
+    #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
-    pub height: f64,
+    pub height: Option<f64>,
 
     /// Length of the battle.
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
@@ -65,8 +68,17 @@ impl BattleOptions {
     pub(super) fn load_creature(&self) -> Result<Creature, BattleError> {
         Ok(match &self.creature {
             Some(path) => Creature::load(path)?,
-            None => beast(BEAST_VERTICES),
+            None => giant()?,
         })
+    }
+
+    /// How tall the creature is to be, metres.
+    pub fn height(&self) -> f64 {
+        let default = match &self.creature {
+            Some(_) => FILE_HEIGHT,
+            None => GIANT_HEIGHT,
+        };
+        self.height.unwrap_or(default)
     }
 
     pub(super) fn ticks(&self) -> u64 {

@@ -86,7 +86,7 @@ impl Summary {
             joints: mesh.joint_count(),
             vertices: mesh.positions().len(),
             triangles: mesh.triangles().len(),
-            height_m: options.height,
+            height_m: options.height(),
             ticks: recording.samples().len(),
             seconds: recording.samples().last().map_or(0.0, |s| s.seconds),
             hash: format!("{:016x}", recording.hash()),

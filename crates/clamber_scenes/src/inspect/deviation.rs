@@ -22,19 +22,22 @@ pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions:
         let bound = error_bound(mesh, matrices, vertex);
         if let (Some(exact), Some(bound)) = (exact, bound) {
             let error = (position.as_dvec3() - exact).abs();
-            // A bound of zero is met by no error only.
-            let share = error.to_array().into_iter().zip(bound.to_array());
-            let share = share.map(|(e, b)| if e == 0.0 { 0.0 } else { e / b });
-            worst = share.fold(worst, f64::max);
+            for (error, bound) in error.to_array().into_iter().zip(bound.to_array()) {
+                // A bound of zero is met by no error only; and NaN is the worst of all.
+                let share = if error == 0.0 { 0.0 } else { error / bound };
+                if share.is_nan() || share > worst {
+                    worst = if share.is_nan() { f64::INFINITY } else { share };
+                }
+            }
         }
     }
     worst
 }
 
-/// Vertices to be seen that are measured in each pose.
-const SAMPLES: usize = 200;
+/// Vertices of either mesh that are measured in each pose.
+const SAMPLES: usize = 100;
 
-/// Distances of what is to be seen from the collider.
+/// Distances between what is to be seen and the collider, from vertices of both to the other one.
 pub(super) struct VisualDistance {
     /// `None` if nothing is to be seen.
     visual: Option<SkinnedSurface>,
@@ -44,7 +47,7 @@ pub(super) struct VisualDistance {
 impl VisualDistance {
     pub(super) fn new(rig: &Rig) -> Result<Self, MeshError> {
         let visual = match rig.visual_collider() {
-            Ok((mesh, _)) => Some(SkinnedSurface::new(Arc::new(mesh))),
+            Ok(mesh) => Some(SkinnedSurface::new(Arc::new(mesh))),
             Err(MeshError::NoTriangles { .. }) => None,
             Err(error) => return Err(error),
         };
@@ -52,7 +55,7 @@ impl VisualDistance {
         Ok(Self { visual, distances })
     }
 
-    /// Measures at random vertices in a pose.
+    /// Measures at random vertices of both in a pose.
     pub(super) fn measure(
         &mut self,
         palette: &Palette,
@@ -63,9 +66,11 @@ impl VisualDistance {
             return Ok(());
         };
         visual.advance(palette, Similarity::IDENTITY)?;
-        for _ in 0..SAMPLES {
-            let place = visual.positions()[rng.usize(0..visual.positions().len())];
-            self.distances.push(distance(collider, place)?);
+        for (from, to) in [(&*visual, collider), (collider, &*visual)] {
+            for _ in 0..SAMPLES {
+                let place = from.positions()[rng.usize(0..from.positions().len())];
+                self.distances.push(distance(to, place)?);
+            }
         }
         Ok(())
     }
@@ -80,11 +85,12 @@ impl VisualDistance {
     }
 }
 
-/// Distance of a place from the skin, looked for in ever wider spheres: near skin is found fast.
-fn distance(collider: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> {
-    let mut reach = collider.mesh().radius() * 0.01;
+/// Distance of a place from a surface, looked for in ever wider spheres: near skin is found fast.
+fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> {
+    // Most places are within a hundredth of the creature's size.
+    let mut reach = surface.mesh().radius() * 0.01;
     loop {
-        if let Some(hit) = collider.closest_point(place, reach)? {
+        if let Some(hit) = surface.closest_point(place, reach)? {
             return Ok(f64::from(hit.distance));
         }
         if reach == f32::INFINITY {

@@ -32,6 +32,11 @@ pub struct InspectOptions {
 }
 
 impl InspectOptions {
+    /// The defaults for a file.
+    pub fn of(file: PathBuf) -> Self {
+        Self::parse_from([PathBuf::from("inspect"), file])
+    }
+
     /// From the command line; prints help or what is wrong with it, and exits.
     pub fn from_command_line() -> Self {
         Self::parse()

@@ -48,7 +48,7 @@ pub struct Inspection {
     pub query_mismatches: usize,
     /// Vertices outside a bound that is to hold them.
     pub bound_violations: usize,
-    /// How far what is to be seen is from the collider; none if nothing is to be seen.
+    /// Between what is to be seen and the collider; none if nothing is to be seen.
     pub collision_to_visual: Option<Distances>,
     /// What it costs to skin all vertices, median of all poses.
     pub skin_us: f64,
@@ -78,12 +78,12 @@ pub struct WeakPointLine {
     pub major: bool,
 }
 
-/// Distances of what is to be seen from the collider.
+/// Distances between what is to be seen and the collider, at random vertices of both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distances {
     /// Half of the places are at most so far.
     pub median_m: f64,
-    /// The farthest place.
+    /// The farthest of these places.
     pub worst_m: f64,
 }
 

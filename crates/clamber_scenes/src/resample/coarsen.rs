@@ -9,7 +9,8 @@ use glam::DVec3;
 
 use super::{Edge, Pieces, Point, edge};
 
-/// The least cosine between a triangle's normals before and after.
+/// The least cosine between a triangle's normals before and after: some 70 degrees, so that creases
+/// may close but nothing turns over.
 const MIN_COSINE: f64 = 0.3;
 
 struct Coarsening<'a> {

@@ -138,17 +138,20 @@ impl ColliderMesh {
 
     /// The joint with the largest weight over three corners; the smaller id where two are equal.
     pub(super) fn dominant_joint(&self, corners: [VertexId; 3]) -> JointId {
-        let mut sums: Vec<(JointId, u64)> = Vec::new();
-        for corner in corners {
-            for (joint, weight) in self.influences(corner) {
-                // Exact: a weight is an integer times 2^-24.
-                let units = (weight * WEIGHT_ONE as f32) as u64;
-                match sums.iter_mut().find(|(known, _)| *known == joint) {
-                    Some((_, sum)) => *sum += units,
-                    None => sums.push((joint, units)),
-                }
+        // Exact: a weight is an integer times 2^-24.
+        let units = |weight: f32| (weight * WEIGHT_ONE as f32) as u64;
+        let influences = corners
+            .into_iter()
+            .flat_map(|corner| self.influences(corner));
+        let mut sums: Vec<(JointId, u64)> = influences.map(|(j, w)| (j, units(w))).collect();
+        sums.sort_unstable();
+        sums.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
             }
-        }
+            same
+        });
         sums.iter()
             .max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)))
             .map_or(JointId(0), |(joint, _)| *joint)

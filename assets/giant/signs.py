@@ -1,0 +1,40 @@
+"""The weak points: where they sit, on which joint, how much they take."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Sign:
+    """One weak point with its sigil; `place` lies near the skin, `normal` points away from it."""
+
+    name: str
+    joint: str
+    place: tuple
+    normal: np.ndarray
+    up: np.ndarray
+    size: float
+    hit_points: float
+    major: bool
+
+    def placed(self, path):
+        """A drawing in the plane (right, up), set into space."""
+        right = np.cross(self.up, self.normal)
+        return np.asarray(self.place) + path[:, :1] * right + path[:, 1:] * self.up
+
+
+def _sign(name, joint, place, normal, up, size, hit_points, major):
+    normal = np.asarray(normal, float)
+    normal /= np.linalg.norm(normal)
+    up = np.asarray(up, float) - normal * (np.asarray(up, float) @ normal)
+    return Sign(name, joint, place, normal, up / np.linalg.norm(up), size, hit_points, major)
+
+
+SIGNS = (
+    _sign("weak_point_head", "head", (0.0, -7.7, 37.8), (0, 0, 1), (0, -1, 0), 1.15, 3.0, True),
+    _sign("weak_point_nape", "chest", (0.0, -0.9, 35.0), (0, -0.15, 1), (0, -1, 0), 1.0, 2.0, False),
+    _sign("weak_point_forearm.L", "forearm.L", (16.3, 0.2, 18.6), (1, 0, 0.1), (0, 0, 1), 0.9, 2.0, False),
+)
+# Fur leaves a bare patch of this many sizes around a sigil.
+BARE = 1.9

@@ -1,0 +1,55 @@
+//! The collider mesh under construction.
+
+use clamber_surface::mesh::{Influence, MeshSource, SurfaceTag};
+use glam::Vec3;
+
+use crate::GltfErrorKind;
+use crate::vertices::Vertices;
+
+/// What all primitives that a climber touches add up to.
+#[derive(Default)]
+pub(crate) struct Collision {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) influences: Vec<Influence>,
+    pub(crate) influence_ends: Vec<u32>,
+    /// The rest space of each vertex: a rigid mesh has one of its own.
+    pub(crate) spaces: Vec<u32>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) tags: Vec<SurfaceTag>,
+}
+
+impl Collision {
+    /// Takes vertices in; gives the number of the first.
+    pub(crate) fn append(
+        &mut self,
+        vertices: &Vertices,
+        space: u32,
+        object: &str,
+    ) -> Result<u32, GltfErrorKind> {
+        let too_many = || GltfErrorKind::invalid(object, "the file has more than 2^32 vertices");
+        let base = u32::try_from(self.positions.len()).map_err(|_| too_many())?;
+        let before = u32::try_from(self.influences.len()).map_err(|_| too_many())?;
+        let ends = vertices
+            .influence_ends
+            .iter()
+            .map(|end| before.checked_add(*end));
+        let ends: Option<Vec<u32>> = ends.collect();
+        self.influence_ends.extend(ends.ok_or_else(too_many)?);
+        self.influences.extend_from_slice(&vertices.influences);
+        self.positions.extend_from_slice(&vertices.positions);
+        self.spaces.resize(self.positions.len(), space);
+        Ok(base)
+    }
+
+    pub(crate) fn source(&self, joint_count: usize) -> MeshSource<'_> {
+        MeshSource {
+            positions: &self.positions,
+            triangles: &self.triangles,
+            influences: &self.influences,
+            influence_ends: &self.influence_ends,
+            tags: &self.tags,
+            rest_spaces: &self.spaces,
+            joint_count,
+        }
+    }
+}

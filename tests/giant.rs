@@ -1,0 +1,235 @@
+//! The project's own giant: what its file promises to examples, benches and whoever borrows it.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::collections::HashMap;
+
+use clamber::gltf::{Rig, load};
+use clamber::mesh::VertexId;
+use clamber::prelude::*;
+use clamber_scenes::giant;
+use clamber_scenes::inspect::{InspectOptions, inspect};
+use glam::{DVec3, Vec3};
+
+fn rig() -> Rig {
+    load(giant::path()).unwrap()
+}
+
+/// Lowest and highest height of the skin.
+fn heights(positions: &[Vec3]) -> (f32, f32) {
+    let ys = || positions.iter().map(|p| p.y);
+    (ys().fold(f32::MAX, f32::min), ys().fold(f32::MIN, f32::max))
+}
+
+#[test]
+fn the_file_has_what_the_giant_is_to_have() {
+    let rig = rig();
+    let joints = rig.skeleton.joints().len();
+    assert!(joints >= 40, "{joints} joints");
+    let vertices = rig.collider.positions().len();
+    assert!((5_000..=10_000).contains(&vertices), "{vertices} vertices");
+    let seen: usize = rig.visual.iter().map(|seen| seen.positions.len()).sum();
+    assert!(
+        (50_000..=100_000).contains(&seen),
+        "{seen} vertices to be seen"
+    );
+    for seen in &rig.visual {
+        assert_eq!(seen.normals.len(), seen.positions.len());
+        assert_eq!(seen.tex_coords[0].len(), seen.positions.len());
+    }
+    let clips: Vec<&str> = rig.clips.iter().map(|clip| clip.name.as_str()).collect();
+    for name in ["idle", "walk", "shake", "swipe", "stomp", "stagger", "die"] {
+        assert!(clips.contains(&name), "{name} of {clips:?}");
+    }
+    assert_eq!(clips.len(), 7, "{clips:?}");
+    assert_eq!(rig.weak_points.len(), 3);
+    let major: Vec<_> = rig.weak_points.iter().filter(|point| point.major).collect();
+    assert_eq!(major.len(), 1);
+    let joint = &rig.skeleton.joints()[major[0].joint.0 as usize];
+    assert!(joint.name.to_lowercase().contains("head"), "{}", joint.name);
+    let has = |kind, ledge| rig.collider.tags().contains(&SurfaceTag { kind, ledge });
+    assert!(has(SurfaceKind::Fur, false) && has(SurfaceKind::Stone, true));
+    assert!(has(SurfaceKind::Stone, false) && has(SurfaceKind::Skin, false));
+    assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);
+    assert!(
+        rig.report.build.worst_weight_error < 1e-5,
+        "{:?}",
+        rig.report.build
+    );
+    let (low, high) = heights(rig.collider.positions());
+    assert!(
+        (36.0..44.0).contains(&(high - low)) && low.abs() < 0.5,
+        "{low} to {high}"
+    );
+}
+
+/// Edges that are not shared by two triangles in opposite directions.
+fn open_edges(mesh: &ColliderMesh) -> usize {
+    let mut shared: HashMap<[u32; 2], (u32, i32)> = HashMap::new();
+    for corners in mesh.triangles() {
+        for k in 0..3 {
+            let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
+            let edge = shared.entry([a.min(b), a.max(b)]).or_default();
+            edge.0 += 1;
+            edge.1 += if a < b { 1 } else { -1 };
+        }
+    }
+    shared.values().filter(|edge| **edge != (2, 0)).count()
+}
+
+/// Positive if triangles face outwards.
+fn volume(mesh: &ColliderMesh) -> f64 {
+    let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
+    let six_volumes = mesh.triangles().iter().map(|t| {
+        let [a, b, c] = t.map(corner);
+        a.dot(b.cross(c))
+    });
+    six_volumes.sum::<f64>() / 6.0
+}
+
+#[test]
+fn its_collision_mesh_is_closed_and_faces_outwards() {
+    let rig = rig();
+    assert_eq!(rig.report.build.cracks, 0);
+    assert_eq!(open_edges(&rig.collider), 0);
+    assert!(
+        volume(&rig.collider) > 1_000.0,
+        "{} m^3",
+        volume(&rig.collider)
+    );
+}
+
+#[test]
+fn ledges_are_level_and_wide_enough_to_stand_on() {
+    let rig = rig();
+    let mut area = 0.0;
+    for (corners, tag) in rig.collider.triangles().iter().zip(rig.collider.tags()) {
+        let [a, b, c] = corners.map(|v| rig.collider.positions()[v.index()].as_dvec3());
+        let normal = (b - a).cross(c - a);
+        if tag.ledge && normal.y > 0.98 * normal.length() {
+            area += normal.length() * 0.5;
+        }
+    }
+    assert!(area > 60.0, "{area} square metres of level ledges");
+}
+
+#[test]
+fn everything_promised_of_a_creature_holds_for_it() {
+    let options = InspectOptions {
+        poses: 4,
+        ..InspectOptions::of(giant::path())
+    };
+    let inspection = inspect(&rig(), &options).unwrap();
+    println!("{inspection}");
+    assert!(inspection.holds(), "{inspection}");
+    assert!(inspection.query_hits > 1_000);
+    // The worst places are slots between stone and fur, which the collision mesh closes.
+    let distance = inspection.collision_to_visual.unwrap();
+    assert!(
+        distance.median_m < 0.15 && distance.worst_m < 2.0,
+        "{distance:?}"
+    );
+}
+
+#[test]
+fn loops_close_and_no_clip_sinks_into_the_ground() {
+    let rig = rig();
+    let rest = rig.skeleton.rest_pose();
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    for clip in &rig.clips {
+        let ends = [0.0, clip.duration()].map(|time| {
+            let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
+            rig.skeleton.palette(&pose).unwrap()
+        });
+        if ["idle", "walk", "shake"].contains(&clip.name.as_str()) {
+            let mut at = |palette| {
+                surface.place(palette, Similarity::IDENTITY).unwrap();
+                surface.positions().to_vec()
+            };
+            let (first, last) = (at(&ends[0]), at(&ends[1]));
+            let gap = first.iter().zip(&last).map(|(a, b)| a.distance(*b));
+            let gap = gap.fold(0.0, f32::max);
+            assert!(gap < 1e-3, "{}: {gap} m between its ends", clip.name);
+        }
+        for k in 0..20 {
+            let time = clip.duration() * f64::from(k) / 20.0;
+            let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
+            let palette = rig.skeleton.palette(&pose).unwrap();
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            let (low, high) = heights(surface.positions());
+            assert!(
+                low > -0.75,
+                "{} at {time:.2} s reaches down to {low} m",
+                clip.name
+            );
+            assert!(
+                low < 0.75 && high < 48.0,
+                "{} at {time:.2} s: {low} to {high} m",
+                clip.name
+            );
+        }
+    }
+}
+
+#[test]
+fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
+    let giant = giant::giant().unwrap();
+    let walk = giant.clip_like(&["walk"]).unwrap();
+    let speed = giant.walk_speed.unwrap();
+    let rest = giant.skeleton.rest_pose();
+    let mut surface = SkinnedSurface::new(giant.collider.clone());
+    let dt = 1.0 / 60.0;
+    let ticks = (walk.duration() / dt) as u32;
+    let mut slides = Vec::new();
+    for tick in 0..ticks {
+        let time = f64::from(tick) * dt;
+        let pose = walk.sample(&rest, time, Playback::Loop).unwrap();
+        let forward = Similarity::from_translation(DVec3::Z * (speed * time));
+        surface
+            .advance(&giant.skeleton.palette(&pose).unwrap(), forward)
+            .unwrap();
+        if tick == 0 {
+            continue;
+        }
+        // The lowest point bears weight.
+        let lowest = (0..surface.positions().len()).min_by(|a, b| {
+            surface.positions()[*a]
+                .y
+                .total_cmp(&surface.positions()[*b].y)
+        });
+        let vertex = VertexId(lowest.unwrap() as u32);
+        let before = surface.previous_position(vertex).unwrap();
+        let moved = surface.positions()[vertex.index()] - before;
+        slides.push(moved.with_y(0.0).length() / dt as f32);
+    }
+    slides.sort_by(f32::total_cmp);
+    let median = slides[slides.len() / 2];
+    println!("soles slide at {median:.3} m/s in the median while it walks at {speed} m/s");
+    // The joints of the feet do not; the skin of the soles rolls, and follows the shins a little.
+    assert!(
+        f64::from(median) < speed / 10.0,
+        "soles slide at {median} m/s"
+    );
+}
+
+#[test]
+fn it_can_be_had_at_any_size() {
+    let whole = volume(&rig().collider);
+    for vertices in [3_000, 20_000, 100_000] {
+        let mesh = giant::giant_of(vertices).unwrap().collider;
+        let found = mesh.positions().len();
+        assert!(
+            found <= vertices && found * 1000 >= vertices * 999,
+            "{found} of {vertices}"
+        );
+        assert_eq!(open_edges(&mesh), 0, "{vertices}");
+        let change = volume(&mesh) / whole - 1.0;
+        assert!(
+            change.abs() < 0.02,
+            "{vertices}: volume changes by {change}"
+        );
+    }
+}
