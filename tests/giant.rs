@@ -5,11 +5,10 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use std::collections::HashMap;
-
 use clamber::gltf::{Rig, load};
 use clamber::mesh::VertexId;
 use clamber::prelude::*;
+use clamber_scenes::closed::{Flaws, flaws, volume};
 use clamber_scenes::giant;
 use clamber_scenes::inspect::{InspectOptions, inspect};
 use glam::{DVec3, Vec3};
@@ -66,35 +65,11 @@ fn the_file_has_what_the_giant_is_to_have() {
     );
 }
 
-/// Edges that are not shared by two triangles in opposite directions.
-fn open_edges(mesh: &ColliderMesh) -> usize {
-    let mut shared: HashMap<[u32; 2], (u32, i32)> = HashMap::new();
-    for corners in mesh.triangles() {
-        for k in 0..3 {
-            let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
-            let edge = shared.entry([a.min(b), a.max(b)]).or_default();
-            edge.0 += 1;
-            edge.1 += if a < b { 1 } else { -1 };
-        }
-    }
-    shared.values().filter(|edge| **edge != (2, 0)).count()
-}
-
-/// Positive if triangles face outwards.
-fn volume(mesh: &ColliderMesh) -> f64 {
-    let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
-    let six_volumes = mesh.triangles().iter().map(|t| {
-        let [a, b, c] = t.map(corner);
-        a.dot(b.cross(c))
-    });
-    six_volumes.sum::<f64>() / 6.0
-}
-
 #[test]
 fn its_collision_mesh_is_closed_and_faces_outwards() {
     let rig = rig();
     assert_eq!(rig.report.build.cracks, 0);
-    assert_eq!(open_edges(&rig.collider), 0);
+    assert_eq!(flaws(&rig.collider), Flaws::default());
     assert!(
         volume(&rig.collider) > 1_000.0,
         "{} m^3",
@@ -225,7 +200,7 @@ fn it_can_be_had_at_any_size() {
             found <= vertices && found * 1000 >= vertices * 999,
             "{found} of {vertices}"
         );
-        assert_eq!(open_edges(&mesh), 0, "{vertices}");
+        assert_eq!(flaws(&mesh), Flaws::default(), "{vertices}");
         let change = volume(&mesh) / whole - 1.0;
         assert!(
             change.abs() < 0.02,

@@ -7,7 +7,7 @@ use crate::accessor::Reader;
 use crate::extras::{self, NodeExtras};
 use crate::tree::Tree;
 use crate::visual::{self, Material};
-use crate::{GltfErrorKind, LoadOptions, skeleton};
+use crate::{GltfErrorKind, LoadOptions, transforms};
 
 /// A parsed file.
 pub(crate) struct Contents<'a> {
@@ -33,7 +33,7 @@ impl<'a> Contents<'a> {
         Ok(Self {
             document,
             extras: extras::of_nodes(&tree.nodes, warnings)?,
-            transforms: skeleton::transforms(&tree.nodes, warnings),
+            transforms: transforms::of_nodes(&tree.nodes, warnings),
             materials: visual::materials(document, options, warnings)?,
             tree,
             reader,

@@ -3,14 +3,12 @@
 use std::collections::BTreeMap;
 
 use clamber_surface::geometry::Affine;
-use clamber_surface::rig::{Joint, JointId, Skeleton, Transform};
-use glam::{Quat, Vec3};
-use gltf::{Node, Skin};
+use clamber_surface::rig::{Joint, JointId, Skeleton};
+use gltf::Skin;
 
 use crate::GltfErrorKind;
 use crate::accessor::Reader;
 use crate::contents::Contents;
-use crate::decompose::decompose;
 use crate::members::Members;
 
 /// A skeleton, and which of its joints stands for what.
@@ -142,39 +140,4 @@ fn inverse_binds(
         ));
     }
     Ok(matrices.iter().map(Affine::from_cols_array).collect())
-}
-
-/// The largest share of a column's length by which a decomposed matrix may be off before it is worth
-/// telling: a millimetre in a metre.
-const SHEAR_WORTH_TELLING: f64 = 1e-3;
-
-/// The transforms of nodes as translation, rotation, scale.
-pub(crate) fn transforms(nodes: &[Node<'_>], warnings: &mut Vec<String>) -> Vec<Transform> {
-    let mut sheared = 0;
-    let mut worst = 0.0f64;
-    let transforms = nodes.iter().map(|node| match node.transform() {
-        gltf::scene::Transform::Decomposed {
-            translation,
-            rotation,
-            scale,
-        } => Transform {
-            translation: Vec3::from_array(translation),
-            rotation: Quat::from_array(rotation),
-            scale: Vec3::from_array(scale),
-        },
-        gltf::scene::Transform::Matrix { matrix } => {
-            let (transform, error) = decompose(&matrix);
-            sheared += usize::from(error > SHEAR_WORTH_TELLING);
-            worst = worst.max(error);
-            transform
-        }
-    });
-    let transforms = transforms.collect();
-    if sheared > 0 {
-        warnings.push(format!(
-            "nodes whose matrix shears, which a translation, rotation and scale cannot: {sheared}; \
-             columns are off by up to {worst:.1e} of their length"
-        ));
-    }
-    transforms
 }

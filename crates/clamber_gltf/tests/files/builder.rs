@@ -1,6 +1,9 @@
 //! A small file, made in code.
 
 use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::Playback;
+use clamber_surface::surface::SkinnedSurface;
 use serde_json::{Value, json};
 
 /// A document under construction: JSON, and the bytes of its one buffer.
@@ -173,4 +176,20 @@ fn glb_of(json: &[u8], bin: &[u8]) -> Vec<u8> {
     glb.extend(b"BIN\0");
     glb.extend(&bin);
     glb
+}
+
+/// The names of a rig's joints, in order.
+pub(crate) fn joint_names(rig: &Rig) -> Vec<&str> {
+    let joints = rig.skeleton.joints().iter();
+    joints.map(|joint| joint.name.as_str()).collect()
+}
+
+/// The rig's skin at a time of its first clip.
+pub(crate) fn posed(rig: &Rig, time: f64) -> SkinnedSurface {
+    let rest = rig.skeleton.rest_pose();
+    let pose = rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap();
+    let palette = rig.skeleton.palette(&pose).unwrap();
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    surface
 }

@@ -1,25 +1,19 @@
 //! Skins, joints, clips and weak points.
 
 use clamber_gltf::{GltfErrorKind, LoadOptions, load_all, load_slice};
-use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::SurfaceKind;
-use clamber_surface::rig::{JointId, Playback};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::rig::JointId;
 use glam::Vec3;
 use serde_json::json;
 
-use crate::builder::File;
+use crate::builder::{File, joint_names, posed};
 
 #[test]
 fn the_square_loads_as_it_was_made() {
     let rig = File::square().load().unwrap();
     assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);
-    let names: Vec<_> = rig
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names = joint_names(&rig);
     assert_eq!(names, ["lower", "upper", "armature"]);
     assert_eq!(rig.skeleton.joints()[0].parent, Some(JointId(2)));
     assert_eq!(rig.collider.positions().len(), 4);
@@ -30,14 +24,8 @@ fn the_square_loads_as_it_was_made() {
             .all(|tag| tag.kind == SurfaceKind::Fur)
     );
     // Half way the upper edge has turned by 45 degrees about (0, 1), at twice the size.
-    let clip = rig.clip("turn").unwrap();
-    let pose = clip
-        .sample(&rig.skeleton.rest_pose(), 0.5, Playback::Clamp)
-        .unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    surface
-        .advance(&rig.skeleton.palette(&pose).unwrap(), Similarity::IDENTITY)
-        .unwrap();
+    assert_eq!(rig.clips[0].name, "turn");
+    let surface = posed(&rig, 0.5);
     let corner = surface.positions()[2];
     let diagonal = 2.0 * 0.5f32.sqrt();
     let expected = glam::Vec3::new(diagonal, 2.0 + diagonal, 0.0);
@@ -117,19 +105,14 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     // Both joints as they are: only the node above moves.
     channels.remove(0);
     let rig = file.load().unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
     for (time, scale) in [
         (0.0, Vec3::splat(2.0)),
         (0.5, Vec3::ONE),
         (1.0, Vec3::ZERO),
         (2.0, Vec3::new(-3.0, 1e-6, 1.0)),
     ] {
-        let rest = rig.skeleton.rest_pose();
-        let pose = rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap();
-        let palette = rig.skeleton.palette(&pose).unwrap();
-        surface.advance(&palette, Similarity::IDENTITY).unwrap();
         let expected = Vec3::new(1.0, 1.0, 0.0) * scale;
-        assert_eq!(surface.positions()[2], expected, "at {time} s");
+        assert_eq!(posed(&rig, time).positions()[2], expected, "at {time} s");
     }
 }
 
@@ -164,12 +147,7 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
     with_a_stranger(&mut file);
 
     let rig = file.load().unwrap();
-    let names: Vec<_> = rig
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names = joint_names(&rig);
     // "lower" is bound alike by two; "upper" by the first one elsewhere.
     assert_eq!(
         names,

@@ -1,14 +1,12 @@
 //! Meshes for collision and for the eye, rigid ones, morph targets.
 
 use clamber_gltf::{Alpha, GltfErrorKind};
-use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::VertexId;
-use clamber_surface::rig::{JointId, Playback};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::rig::JointId;
 use glam::{Vec2, Vec3};
 use serde_json::json;
 
-use crate::builder::File;
+use crate::builder::{File, joint_names, posed};
 
 #[test]
 fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() {
@@ -177,12 +175,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
     file.push("nodes", json!({"mesh": plate}));
 
     let rig = file.load().unwrap();
-    let names: Vec<_> = rig
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names = joint_names(&rig);
     assert_eq!(names, ["lower", "upper", "plate", "armature", "mount"]);
     assert_eq!(rig.collider.triangles().len(), 4);
     assert_eq!(
@@ -194,14 +187,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
     assert_eq!(rig.collider.parts()[2].joint, JointId(2));
 
     // Turned about (0, 1) with "upper", doubled by "armature", mirrored by "mount".
-    let clip = rig.clip("turn").unwrap();
-    let pose = clip
-        .sample(&rig.skeleton.rest_pose(), 1.0, Playback::Clamp)
-        .unwrap();
-    let mut surface = SkinnedSurface::new(rig.collider.clone());
-    surface
-        .advance(&rig.skeleton.palette(&pose).unwrap(), Similarity::IDENTITY)
-        .unwrap();
+    let surface = posed(&rig, 1.0);
     let corner = surface.positions()[4 + 1];
     let expected = Vec3::new(0.0, 2.0 + 2.0, -6.0);
     assert!((corner - expected).length() < 1e-5, "{corner}");
@@ -219,12 +205,7 @@ fn a_file_without_skins_is_one_creature_of_rigid_pieces() {
         .remove("skin");
     file.json["nodes"][2]["mesh"] = json!(0);
     let rig = file.load().unwrap();
-    let names: Vec<_> = rig
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names = joint_names(&rig);
     assert_eq!(names, ["upper", "body", "lower", "armature"]);
     assert_eq!((rig.collider.triangles().len(), rig.clips.len()), (4, 1));
     file.json["meshes"] = json!([{"primitives": []}]);

@@ -130,34 +130,13 @@ impl Pieces {
 mod tests {
     use super::*;
     use crate::beast::beast;
-    use std::collections::HashMap;
-
-    /// Edges that two triangles do not share in opposite directions.
-    fn open_edges(mesh: &ColliderMesh) -> usize {
-        let mut balance: HashMap<Edge, i32> = HashMap::new();
-        for corners in mesh.triangles() {
-            for k in 0..3 {
-                let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
-                *balance.entry(edge(a, b)).or_default() += if a < b { 1 } else { -1 };
-            }
-        }
-        balance.values().filter(|sum| **sum != 0).count()
-    }
-
-    fn volume(mesh: &ColliderMesh) -> f64 {
-        let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
-        let six = mesh.triangles().iter().map(|t| {
-            let [a, b, c] = t.map(corner);
-            a.dot(b.cross(c))
-        });
-        six.sum::<f64>() / 6.0
-    }
+    use crate::closed::{flaws, volume};
 
     #[test]
     fn the_beast_keeps_its_shape_at_any_size() {
         let beast = beast(3_000).collider;
         let whole = volume(&beast);
-        assert_eq!(open_edges(&beast), 0);
+        assert_eq!(flaws(&beast).open_edges, 0);
         for vertices in [1_000, 2_000, beast.positions().len(), 8_000, 20_000] {
             let mesh = resample(&beast, vertices).unwrap();
             let found = mesh.positions().len();
@@ -165,7 +144,7 @@ mod tests {
                 found <= vertices && found + vertices / 100 >= vertices,
                 "{found}"
             );
-            assert_eq!(open_edges(&mesh), 0, "{vertices}");
+            assert_eq!(flaws(&mesh).open_edges, 0, "{vertices}");
             let change = (volume(&mesh) / whole - 1.0).abs();
             assert!(change < 0.05, "{vertices}: volume is off by {change}");
             assert_eq!(mesh.joint_count(), beast.joint_count());

@@ -1,11 +1,47 @@
-//! Matrices of nodes as translation, rotation and scale.
+//! The transforms of nodes, matrices among them, as translation, rotation and scale.
 
 use clamber_surface::rig::Transform;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
+use gltf::Node;
+
+/// The largest share of a column's length by which a decomposed matrix may be off before it is worth
+/// telling: a millimetre in a metre.
+const SHEAR_WORTH_TELLING: f64 = 1e-3;
+
+/// The transforms of nodes as translation, rotation, scale.
+pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<String>) -> Vec<Transform> {
+    let mut sheared = 0;
+    let mut worst = 0.0f64;
+    let transforms = nodes.iter().map(|node| match node.transform() {
+        gltf::scene::Transform::Decomposed {
+            translation,
+            rotation,
+            scale,
+        } => Transform {
+            translation: Vec3::from_array(translation),
+            rotation: Quat::from_array(rotation),
+            scale: Vec3::from_array(scale),
+        },
+        gltf::scene::Transform::Matrix { matrix } => {
+            let (transform, error) = decompose(&matrix);
+            sheared += usize::from(error > SHEAR_WORTH_TELLING);
+            worst = worst.max(error);
+            transform
+        }
+    });
+    let transforms = transforms.collect();
+    if sheared > 0 {
+        warnings.push(format!(
+            "nodes whose matrix shears, which a translation, rotation and scale cannot: {sheared}; \
+             columns are off by up to {worst:.1e} of their length"
+        ));
+    }
+    transforms
+}
 
 /// Translation, rotation and scale of a matrix, and how far its columns are from theirs, as a
 /// share of their length. A column of length zero takes the direction that the others leave it.
-pub(crate) fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
+fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let column = |c: usize| DVec3::from_array([0, 1, 2].map(|row| f64::from(matrix[c][row])));
     let linear = DMat3::from_cols(column(0), column(1), column(2));
     let mut scale = DVec3::new(
@@ -44,8 +80,6 @@ pub(crate) fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
 
     fn columns(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [[f32; 4]; 4] {
