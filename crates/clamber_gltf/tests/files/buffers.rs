@@ -57,6 +57,16 @@ fn buffers_come_from_data_uris_and_from_files_beside_the_document() {
             "{refused}: {error}"
         );
     }
+    // Two buffers in one file, the first of them shorter.
+    let mut twice: serde_json::Value =
+        serde_json::from_slice(&file.gltf("a%20b/data.bin")).unwrap();
+    let whole = twice["buffers"][0].clone();
+    twice["buffers"] = serde_json::json!([{"byteLength": 4, "uri": "./a%20b/data.bin"}, whole]);
+    for view in twice["bufferViews"].as_array_mut().unwrap() {
+        view["buffer"] = serde_json::json!(1);
+    }
+    std::fs::write(&document, twice.to_string()).unwrap();
+    load(&document).unwrap();
     std::fs::write(folder.join("short.bin"), b"short").unwrap();
     assert!(matches!(
         load_with_uri("short.bin"),

@@ -194,6 +194,10 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
 fn all_creatures_of_a_file_can_be_had() {
     let mut file = File::square();
     with_a_stranger(&mut file);
+    // A second skin of the stranger's.
+    let joints = file.json["skins"][1]["joints"].clone();
+    let second = file.push("skins", json!({"joints": joints}));
+    file.push("nodes", json!({"mesh": 0, "skin": second}));
     let path = std::env::temp_dir().join(format!("clamber-all-{}.glb", std::process::id()));
     std::fs::write(&path, file.glb()).unwrap();
     let rigs = load_all(&path, &LoadOptions::default()).unwrap();
@@ -204,6 +208,11 @@ fn all_creatures_of_a_file_can_be_had() {
         .collect();
     assert_eq!(first_joints, ["lower", "stranger"]);
     assert_eq!(rigs[0].clips.len(), 1);
+    let triangles: Vec<_> = rigs
+        .iter()
+        .map(|rig| rig.collider.triangles().len())
+        .collect();
+    assert_eq!(triangles, [2, 4]);
 }
 
 #[test]

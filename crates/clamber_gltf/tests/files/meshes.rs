@@ -11,7 +11,7 @@ use crate::builder::{File, joint_names, posed};
 #[test]
 fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() {
     let mut file = File::square();
-    let normals = file.floats("VEC3", &[0.0, 0.0, 1.0].repeat(4));
+    let normals = file.floats("VEC3", &[0.0, 0.0, 0.5].repeat(4));
     let corners = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
     let first = file.floats("VEC2", &corners);
     let second = file.accessor("VEC2", 5121, 4, &[0, 0, 255, 0, 255, 255, 0, 255]);
@@ -23,6 +23,7 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     attributes["TEXCOORD_0"] = json!(first);
     attributes["TEXCOORD_1"] = json!(second);
     attributes["COLOR_0"] = json!(colors);
+    attributes["COLOR_1"] = json!(colors);
     // The same vertices once more, in another material.
     let mut other = file.json["meshes"][0]["primitives"][0].clone();
     other["material"] = json!(1);
@@ -39,6 +40,10 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     );
 
     let rig = file.load().unwrap();
+    assert_eq!(
+        rig.report.warnings,
+        ["attributes that were not read: COLOR_1"]
+    );
     let [seen] = rig.visual.as_slice() else {
         panic!("{} visual meshes", rig.visual.len());
     };
@@ -92,6 +97,17 @@ fn meshes_to_be_seen_make_one_collider_with_their_tags() {
     accessor.remove("max");
     let normals = file.floats("VEC3", &[0.0; 6]);
     assert!(file.load().is_ok());
+    let four = file.accessor("SCALAR", 5121, 4, &[0, 1, 2, 0]);
+    file.json["meshes"][0]["primitives"][1]["indices"] = json!(four);
+    let error = file.load().unwrap_err().to_string();
+    assert!(
+        error.contains("4 corners make no whole triangles"),
+        "{error}"
+    );
+    let primitive = file.json["meshes"][0]["primitives"][1]
+        .as_object_mut()
+        .unwrap();
+    primitive.remove("indices");
     file.json["meshes"][0]["primitives"][1]["attributes"]["NORMAL"] = json!(normals);
     let error = file.load().unwrap_err().to_string();
     assert!(error.contains("has 3 positions, but 2 normals"), "{error}");

@@ -104,3 +104,23 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beast::beast;
+
+    #[test]
+    fn what_is_off_or_no_number_exceeds_the_bound() {
+        let beast = beast(500);
+        let palette = beast.skeleton.palette(&beast.skeleton.rest_pose()).unwrap();
+        let mesh = &beast.collider;
+        let mut positions = clamber_surface::skin::skin(mesh, palette.matrices()).unwrap();
+        let share = |p: &[Vec3]| skinning_error_share(mesh, palette.matrices(), p);
+        assert!((0.01..1.0).contains(&share(&positions)));
+        positions[7].x += 1e-3;
+        assert!(share(&positions) > 10.0);
+        positions[8].y = f32::NAN;
+        assert_eq!(share(&positions), f64::INFINITY);
+    }
+}

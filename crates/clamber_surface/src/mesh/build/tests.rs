@@ -72,6 +72,52 @@ fn separate_triangles_are_welded_into_shared_vertices() {
 }
 
 #[test]
+fn a_joint_that_moves_all_corners_a_little_can_move_the_triangle_most() {
+    let mut square = square();
+    square.triangles.truncate(1);
+    square.positions.truncate(3);
+    let shares = [0, 1, 2].map(|corner| [influence(0, 0.4), influence(corner + 1, 0.6)]);
+    square.influences = shares.as_flattened().to_vec();
+    let source = MeshSource {
+        joint_count: 4,
+        ..square.source()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    assert_eq!(mesh.parts()[0].joint, JointId(0));
+}
+
+#[test]
+fn vertices_of_different_rest_spaces_never_coincide() {
+    let mut square = square();
+    // The upper triangle's lower left corner follows the other joint.
+    square.influences[6..8].copy_from_slice(&[influence(1, 1.0), influence(0, 0.0)]);
+    let report = square.build().unwrap().1;
+    assert_eq!((report.cracks, report.welded), (1, 1));
+    let source = MeshSource {
+        rest_spaces: &[0, 0, 0, 1, 1, 1],
+        ..square.source()
+    };
+    for cracks in [Cracks::Report, Cracks::Unify] {
+        let options = BuildOptions {
+            cracks,
+            ..BuildOptions::default()
+        };
+        let report = ColliderMesh::build(&source, &options).unwrap().1;
+        assert_eq!((report.cracks, report.welded), (0, 0), "{cracks:?}");
+    }
+    let short = MeshSource {
+        rest_spaces: &[0; 5],
+        ..square.source()
+    };
+    let error = ColliderMesh::build(&short, &BuildOptions::default()).unwrap_err();
+    let expected = MeshError::RestSpaceCount {
+        expected: 6,
+        found: 5,
+    };
+    assert_eq!(error, expected);
+}
+
+#[test]
 fn negative_zero_is_zero() {
     let mut given = square();
     given.positions[3].y = -0.0;
