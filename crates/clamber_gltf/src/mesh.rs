@@ -114,7 +114,7 @@ pub(crate) fn load(
     })
 }
 
-/// What a primitive takes apart from its vertices and triangles, bytes: more than that.
+/// What a primitive takes apart from its vertices and triangles, bytes, rounded up.
 const PRIMITIVE_BYTES: usize = 256;
 
 /// The nodes of a creature that show a mesh. Once one of them is for collision, those that do not
