@@ -12,7 +12,8 @@ use crate::buffers::Buffers;
 
 /// How many bytes may be taken for each byte that a file holds: exporters let primitives share
 /// accessors, and real models take up to 3 times their size, but a file that is read again and again
-/// wants to fill the memory. Charges are estimates; with this one the peak stays below 100 times.
+/// wants to fill the memory. Charges are estimates: a file that is made to take all it may takes up to
+/// 100 times its size, beside [`FREE_GROWTH`] (`tests/files/broken.rs`).
 const MAX_GROWTH: usize = 24;
 
 /// What any file may take, bytes: small files may well grow more.

@@ -40,8 +40,7 @@ impl Members {
     }
 }
 
-/// All creatures of a file that have a mesh, by their first skin, and what the nodes say of
-/// themselves.
+/// All creatures of a file that have a mesh, by their first skin.
 pub(crate) fn all(
     tree: &Tree<'_>,
     extras: &[NodeExtras],
@@ -85,6 +84,11 @@ pub(crate) fn all(
         warnings.push(format!(
             "passed over meshes without a skin that hang under no joint: {static_meshes}"
         ));
+    }
+    let bare = creatures.iter().filter(|c| c.meshes.is_empty());
+    let idle_skins: usize = bare.map(|creature| creature.skins.len()).sum();
+    if idle_skins > 0 {
+        warnings.push(format!("skins that deform no mesh: {idle_skins}"));
     }
     creatures.retain(|creature| !creature.meshes.is_empty());
     creatures

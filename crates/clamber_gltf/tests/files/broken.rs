@@ -1,5 +1,6 @@
 //! Files that claim too much, and files with changed values, flipped bits and cuts.
 
+use allocation_counter::measure;
 use clamber_gltf::{LoadOptions, Rig, load_slice};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Playback;
@@ -92,6 +93,47 @@ fn what_is_small_in_a_file_and_large_in_memory_is_charged() {
     );
     file.json["skins"][0] = json!({"joints": vec![1; 600], "inverseBindMatrices": binds});
     refused(&file, "a long name of many joints");
+}
+
+/// Files that take as much as they may: one large mesh, shown by as many nodes as the budget lets
+/// through, and by one more, is the worst that a file can ask for.
+#[test]
+fn the_greediest_file_stays_within_a_hundred_times_its_size() {
+    let vertices = 30_000;
+    let mut rng = fastrand::Rng::with_seed(43);
+    let points: Vec<[f32; 3]> = (0..vertices)
+        .map(|_| [rng.f32(), rng.f32(), rng.f32()])
+        .collect();
+    let mut file = File::square();
+    let positions = file.positions(&points);
+    file.json["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": positions}}]);
+    let zeros = json!({"componentType": 5126, "count": vertices, "type": "VEC3"});
+    let zeros = file.push("accessors", zeros);
+    let flat = file.push(
+        "meshes",
+        json!({"primitives": [{"attributes": {"POSITION": zeros}}]}),
+    );
+    for mesh in [0, flat] {
+        let mut greedy = File {
+            json: file.json.clone(),
+            bytes: file.bytes.clone(),
+        };
+        greedy.json["nodes"][3] = json!({"mesh": mesh});
+        greedy.json.as_object_mut().unwrap().remove("skins");
+        let (mut worst, mut refused) = (0.0f64, false);
+        while !refused {
+            let glb = greedy.glb();
+            let memory = measure(|| {
+                let loaded = load_slice(&glb, &LoadOptions::default());
+                refused = loaded.is_err_and(|error| error.to_string().contains("more memory"));
+            });
+            let taken = memory.bytes_max.saturating_sub(1 << 20) as f64;
+            worst = worst.max(taken / glb.len() as f64);
+            greedy.node_under(1, json!({"mesh": mesh}));
+        }
+        println!("mesh {mesh}: up to {worst:.0} times the file");
+        assert!(worst < 100.0, "mesh {mesh}: {worst} times the file");
+    }
 }
 
 #[test]

@@ -25,9 +25,7 @@ pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions:
             for (error, bound) in error.to_array().into_iter().zip(bound.to_array()) {
                 // A bound of zero is met by no error only; and NaN is the worst of all.
                 let share = if error == 0.0 { 0.0 } else { error / bound };
-                if share.is_nan() || share > worst {
-                    worst = if share.is_nan() { f64::INFINITY } else { share };
-                }
+                worst = worst.max(if share.is_nan() { f64::INFINITY } else { share });
             }
         }
     }

@@ -34,7 +34,8 @@ pub struct InspectOptions {
 impl InspectOptions {
     /// The defaults for a file.
     pub fn of(file: PathBuf) -> Self {
-        Self::parse_from([PathBuf::from("inspect"), file])
+        // Behind `--` a name may begin with a dash.
+        Self::parse_from(["inspect".into(), "--".into(), file])
     }
 
     /// From the command line; prints help or what is wrong with it, and exits.

@@ -141,6 +141,7 @@ mod tests {
             let crowded = flaws(&beast).crowded_edges;
             assert!(flaws(&mesh).crowded_edges <= crowded, "{vertices}");
             assert_eq!(flaws(&mesh).open_edges, 0, "{vertices}");
+            // Edges drawn together to their middles cut the round: 3.6 % from 3,000 to 1,000.
             let change = (volume(&mesh) / whole - 1.0).abs();
             assert!(change < 0.05, "{vertices}: volume is off by {change}");
             assert_eq!(mesh.joint_count(), beast.joint_count());
