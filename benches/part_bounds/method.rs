@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use clamber::SimdLevel;
 use clamber::geometry::{BoundingVolume, Capsule, Sphere};
 use clamber::mesh::PartId;
 use clamber::rig::Palette;
@@ -90,7 +91,12 @@ impl Method {
 
     fn refit(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
         let mesh = &subject.creature.collider;
-        let skinned = skin_into(mesh, palette.matrices(), &mut workspace.positions);
+        let skinned = skin_into(
+            mesh,
+            palette.matrices(),
+            SimdLevel::best(),
+            &mut workspace.positions,
+        );
         assert_eq!(skinned, Ok(()), "{}", subject.label());
         let positions = &workspace.positions;
         if self.shape == Shape::Sphere {

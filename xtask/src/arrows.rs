@@ -40,7 +40,10 @@ const KEPT_TO: [(&str, &str); 3] = [
 ];
 
 /// All that the core may depend on outside the workspace.
-const CORE: (&str, &[&str]) = ("clamber_surface", &["glam", "libm", "thiserror"]);
+const CORE: (&str, &[&str]) = (
+    "clamber_surface",
+    &["fearless_simd", "glam", "libm", "rayon", "thiserror"],
+);
 
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let packages = metadata.workspace_packages();

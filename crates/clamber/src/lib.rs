@@ -13,7 +13,7 @@ pub use clamber_climber as climber;
 #[doc(inline)]
 pub use clamber_gltf as gltf;
 #[doc(inline)]
-pub use clamber_surface::{geometry, mesh, rig, skin, surface};
+pub use clamber_surface::{SimdLevel, geometry, mesh, rig, skin, surface};
 #[doc(inline)]
 pub use clamber_world as world;
 

@@ -3,8 +3,11 @@
 pub mod geometry;
 pub mod mesh;
 pub mod rig;
+mod simd;
 pub mod skin;
 pub mod surface;
+
+pub use simd::SimdLevel;
 
 #[cfg(test)]
 mod testing;

@@ -204,7 +204,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
 
     // Turned about (0, 1) with "upper", doubled by "armature", mirrored by "mount".
     let surface = posed(&rig, 1.0);
-    let corner = surface.positions()[4 + 1];
+    let corner = surface.position(VertexId(4 + 1)).unwrap();
     let expected = Vec3::new(0.0, 2.0 + 2.0, -6.0);
     assert!((corner - expected).length() < 1e-5, "{corner}");
     let hit = surface.closest_point(expected, 1.0).unwrap().unwrap();

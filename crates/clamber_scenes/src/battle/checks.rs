@@ -84,5 +84,7 @@ fn reference_position(
 /// True if a point of the world is inside the creature.
 fn is_inside(surface: &SkinnedSurface, point: DVec3) -> bool {
     let in_model = surface.world_from_model().inverse_transform_point(point);
-    solid_angle::is_inside(surface.positions(), surface.mesh(), in_model)
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    solid_angle::is_inside(&positions, surface.mesh(), in_model)
 }

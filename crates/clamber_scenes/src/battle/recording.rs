@@ -16,6 +16,8 @@ pub struct Sample {
     pub drift: Option<f64>,
     /// Length of the tick's push-out, metres.
     pub push_out: f64,
+    /// Vertices of the creature that were skinned for the tick, as a share of all.
+    pub skinned_share: f64,
     /// What the tick cost: pose, physics, climber.
     pub microseconds: f64,
 }
@@ -78,6 +80,12 @@ impl Recording {
     pub fn max_push_out(&self) -> f64 {
         let standing = self.samples.iter().filter(|s| s.drift.is_some());
         standing.map(|s| s.push_out).fold(0.0, f64::max)
+    }
+
+    /// Vertices skinned per tick, as a share of all: the mean over the ticks.
+    pub fn skinned_share(&self) -> f64 {
+        let sum: f64 = self.samples.iter().map(|s| s.skinned_share).sum();
+        sum / self.samples.len().max(1) as f64
     }
 
     /// The share of ticks spent standing on the creature.

@@ -4,7 +4,7 @@ use std::time::Instant;
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
@@ -106,13 +106,20 @@ impl<'a> Battle<'a> {
             [(TERRAIN, &terrain), (CREATURE, &self.surface)];
         let report = self.climber.step(&input, &obstacles, TICK)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
+        let touched = self.surface.diagnostics();
 
         self.tick += 1;
-        self.record(&input, &report, microseconds);
+        self.record(&input, &report, touched, microseconds);
         self.lift_if_grounded()
     }
 
-    fn record(&mut self, input: &ClimberInput, report: &StepReport, microseconds: f64) {
+    fn record(
+        &mut self,
+        input: &ClimberInput,
+        report: &StepReport,
+        touched: Diagnostics,
+        microseconds: f64,
+    ) {
         let state = *self.climber.state();
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
@@ -130,6 +137,7 @@ impl<'a> Battle<'a> {
                 .is_some_and(|footing| footing.obstacle == CREATURE),
             drift,
             push_out: report.push_out.displacement.length(),
+            skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
             microseconds,
         };
         self.recording.push(sample, state.fingerprint());
@@ -201,8 +209,10 @@ impl<'a> Battle<'a> {
 /// the middle of its skin; the seed shifts the grid by up to half a cell.
 fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contact> {
     let world = |p: &glam::Vec3| surface.world_from_model().transform_point_f32(*p);
-    let count = surface.positions().len() as f64;
-    let middle = surface.positions().iter().map(world).sum::<DVec3>() / count;
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    let count = positions.len() as f64;
+    let middle = positions.iter().map(world).sum::<DVec3>() / count;
     let mut rng = fastrand::Rng::with_seed(seed);
     let cell = height * 0.02;
     let shift = DVec3::new(rng.f64() - 0.5, 0.0, rng.f64() - 0.5) * cell;

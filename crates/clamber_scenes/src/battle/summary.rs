@@ -60,7 +60,7 @@ pub struct Summary {
     pub max_push_out_m: f64,
     /// Deepest that the sphere reached into the skin while standing without input.
     pub max_penetration_m: f64,
-    /// Vertices skinned per tick, as a share of all: 1 for the eager surface.
+    /// Vertices skinned per tick, as a share of all: the mean over the ticks.
     pub vertices_skinned_share: f64,
     /// What half of the ticks cost at most: pose, physics, climber.
     pub tick_us_median: f64,
@@ -96,9 +96,7 @@ impl Summary {
             max_anchor_drift_m: recording.max_drift(),
             max_push_out_m: recording.max_push_out(),
             max_penetration_m: watch.deepest,
-            // The surface holds as many skinned positions as it has skinned this tick.
-            vertices_skinned_share: battle.surface().positions().len() as f64
-                / mesh.positions().len() as f64,
+            vertices_skinned_share: recording.skinned_share(),
             tick_us_median: recording.tick_us(0.5),
             tick_us_p99: recording.tick_us(0.99),
             checks: vec![

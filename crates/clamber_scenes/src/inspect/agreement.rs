@@ -1,7 +1,7 @@
 //! Queries against brute force over all triangles.
 
-use clamber_surface::geometry::{Ray, Sphere};
-use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use clamber_surface::geometry::{Capsule, Ray, Sphere};
+use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError};
 use glam::Vec3;
 
 /// What a comparison found.
@@ -22,7 +22,8 @@ pub fn compare_queries(
     rng: &mut fastrand::Rng,
     places: usize,
 ) -> Result<Agreement, SurfaceError> {
-    let positions = surface.positions();
+    let brute_force = BruteForce::new(surface);
+    let positions = brute_force.positions();
     let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = positions
         .iter()
@@ -38,19 +39,32 @@ pub fn compare_queries(
         let target = positions[rng.usize(0..positions.len())];
         if let Some(ray) = Ray::new(place, target - place) {
             let hit = surface.cast_ray(&ray, size)?;
-            let reference = surface.cast_ray_reference(&ray, size)?;
+            let reference = brute_force.cast_ray(&ray, size)?;
             agreement.count(hit.is_some().into(), hit == reference);
+            let met = surface.intersects_ray(&ray, size)?;
+            agreement.count(0, met == reference.is_some());
+            surface.cast_ray_all(&ray, size, &mut hits)?;
+            brute_force.cast_ray_all(&ray, size, &mut expected)?;
+            agreement.count(hits.len(), hits == expected);
         }
         let reach = size * rng.f32() * 0.2;
         let closest = surface.closest_point(place, reach)?;
-        let reference = surface.closest_point_reference(place, reach)?;
+        let reference = brute_force.closest_point(place, reach)?;
         agreement.count(closest.is_some().into(), closest == reference);
         let sphere = Sphere {
             center: place,
             radius: reach,
         };
         surface.overlap_sphere(&sphere, &mut hits)?;
-        surface.overlap_sphere_reference(&sphere, &mut expected)?;
+        brute_force.overlap_sphere(&sphere, &mut expected)?;
+        agreement.count(hits.len(), hits == expected);
+        let capsule = Capsule {
+            a: place,
+            b: place + (target - place) * 0.2 * rng.f32(),
+            radius: reach * 0.5,
+        };
+        surface.overlap_capsule(&capsule, &mut hits)?;
+        brute_force.overlap_capsule(&capsule, &mut expected)?;
         agreement.count(hits.len(), hits == expected);
     }
     Ok(agreement)

@@ -66,8 +66,10 @@ impl VisualDistance {
         visual.advance(palette, Similarity::IDENTITY)?;
         for (from, to) in [(&*visual, collider), (collider, &*visual)] {
             for _ in 0..SAMPLES {
-                let place = from.positions()[rng.usize(0..from.positions().len())];
-                self.distances.push(distance(to, place)?);
+                let vertex = rng.usize(0..from.mesh().positions().len());
+                if let Some(place) = from.position(VertexId(vertex as u32)) {
+                    self.distances.push(distance(to, place)?);
+                }
             }
         }
         Ok(())

@@ -10,6 +10,7 @@ mod report;
 use std::time::Instant;
 
 use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
+use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Similarity, Sphere};
 use clamber_surface::mesh::MeshError;
 use clamber_surface::rig::{Palette, Playback, Pose, RigError};
@@ -73,6 +74,7 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     let mut bounds = BoundCheck::new(&rig.collider);
     let mut rng = fastrand::Rng::with_seed(options.seed);
     let mut timings = Timings::default();
+    let mut positions = Vec::new();
     let poses = poses(rig, options.poses)?;
     let bar = ProgressBar::new(poses.len() as u64);
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} % of the poses  [{eta} left]");
@@ -80,13 +82,13 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     for pose in &poses {
         let palette = rig.skeleton.palette(pose)?;
         surface.advance(&palette, Similarity::IDENTITY)?;
-        let positions = surface.positions();
-        let share = skinning_error_share(&rig.collider, palette.matrices(), positions);
+        surface.skin_all(&mut positions);
+        let share = skinning_error_share(&rig.collider, palette.matrices(), &positions);
         inspection.skinning_error_share = inspection.skinning_error_share.max(share);
         let agreement = compare_queries(&surface, &mut rng, PLACES)?;
         inspection.query_hits += agreement.hits;
         inspection.query_mismatches += agreement.mismatches;
-        inspection.bound_violations += bounds.violations(&rig.collider, &palette, &surface)?;
+        inspection.bound_violations += bounds.violations(&rig.collider, &palette, &positions)?;
         visual.measure(&palette, &surface, &mut rng)?;
         timings.measure(rig, &palette)?;
         bar.inc(1);
@@ -125,7 +127,12 @@ impl Timings {
         let mesh = &rig.collider;
         self.positions.resize(mesh.positions().len(), Vec3::ZERO);
         let start = Instant::now();
-        skin_into(mesh, palette.matrices(), &mut self.positions)?;
+        skin_into(
+            mesh,
+            palette.matrices(),
+            SimdLevel::best(),
+            &mut self.positions,
+        )?;
         let skinned = Instant::now();
         refit_part_spheres(mesh, &self.positions, &mut self.spheres);
         let refitted = Instant::now();

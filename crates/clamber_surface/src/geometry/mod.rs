@@ -3,11 +3,13 @@
 mod affine;
 mod bounding_volume;
 mod capsule;
+mod lanes;
 mod quaternion;
 mod ray;
 mod similarity;
 mod sphere;
 pub(crate) mod triangle;
+mod vector3;
 
 pub use affine::Affine;
 pub use bounding_volume::BoundingVolume;

@@ -5,11 +5,14 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use glam::Vec3;
 
+use super::clusters::Clusters;
 use super::collider::has_area;
+use super::hierarchy::Hierarchy;
 use super::weights::{normalize, weight_of};
 use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
+use crate::surface::RootBalls;
 
 /// What a mesh is built from, as importers and engines have it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -140,6 +143,7 @@ impl ColliderMesh {
             });
         }
         mesh.assign_parts();
+        mesh.cluster();
         report.triangles = mesh.triangles.len();
         Ok((mesh, report))
     }
@@ -360,6 +364,9 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         part_of: Vec::new(),
         parts: Vec::new(),
         radius: 0.0,
+        clusters: Clusters::default(),
+        hierarchy: Hierarchy::default(),
+        root_balls: RootBalls::default(),
     };
     let mut number_of: HashMap<&VertexKey, u32> = HashMap::new();
     let mut vertex_of = Vec::with_capacity(keys.len());

@@ -2,10 +2,13 @@ use std::fmt;
 
 use glam::Vec3;
 
+use super::clusters::{self, Clusters};
+use super::hierarchy::Hierarchy;
 use super::{MeshError, SurfaceTag, WEIGHT_ONE};
 use crate::geometry::triangle::scaled_normal;
 use crate::geometry::{round_up_to_f32, widen};
 use crate::rig::JointId;
+use crate::surface::RootBalls;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -69,6 +72,9 @@ pub struct ColliderMesh {
     pub(super) part_of: Vec<Option<PartId>>,
     pub(super) parts: Vec<Part>,
     pub(super) radius: f32,
+    pub(super) clusters: Clusters,
+    pub(super) hierarchy: Hierarchy,
+    pub(super) root_balls: RootBalls,
 }
 
 impl ColliderMesh {
@@ -123,6 +129,43 @@ impl ColliderMesh {
     pub fn max_influences(&self) -> usize {
         let counts = self.influence_start.windows(2).map(|w| w[1] - w[0]);
         counts.max().unwrap_or(0) as usize
+    }
+
+    /// What is skinned together.
+    pub(crate) fn clusters(&self) -> &Clusters {
+        &self.clusters
+    }
+
+    /// The tree over the clusters.
+    pub(crate) fn hierarchy(&self) -> &Hierarchy {
+        &self.hierarchy
+    }
+
+    /// What bounds the whole mesh in any pose.
+    pub(crate) fn root_balls(&self) -> &RootBalls {
+        &self.root_balls
+    }
+
+    /// Makes clusters and hierarchy anew.
+    pub(super) fn cluster(&mut self) {
+        (self.clusters, self.hierarchy) = clusters::build(self, &[]);
+        self.root_balls = RootBalls::new(self);
+    }
+
+    /// Bytes of all rest data.
+    pub(crate) fn memory(&self) -> usize {
+        let parts = self.parts.iter();
+        let parts = parts.map(|p| size_of_val(&p.triangles[..]) + size_of_val(&p.vertices[..]));
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.influence_start[..])
+            + size_of_val(&self.joints[..])
+            + size_of_val(&self.weights[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.tags[..])
+            + size_of_val(&self.part_of[..])
+            + parts.sum::<usize>()
+            + self.clusters.memory()
+            + self.hierarchy.memory()
     }
 
     /// Joints and weights of vertex `v` as slices of equal length.
@@ -201,6 +244,7 @@ impl ColliderMesh {
         self.part_of.push(Some(PartId(part as u32)));
         self.parts[part].triangles.push(id);
         self.collect_vertices(part);
+        self.cluster();
         id
     }
 

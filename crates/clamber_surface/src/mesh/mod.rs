@@ -4,8 +4,10 @@
 //! immutable mesh that surfaces share by `Arc`.
 
 mod build;
+pub(crate) mod clusters;
 mod collider;
 mod error;
+pub(crate) mod hierarchy;
 mod tag;
 mod weights;
 

@@ -10,9 +10,13 @@
 //! is off by at most `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|)`, plus `(4 n + 4) 2^-149` where
 //! products underflow: see [`error_bound`].
 
-mod kernel;
+mod cluster;
 mod reference;
+mod scalar;
+mod whole;
 
-pub(crate) use kernel::skin_vertex;
-pub use kernel::{skin, skin_into};
+pub(crate) use cluster::{ClusterPositions, skin_cluster};
 pub use reference::{error_bound, skin_vertex_reference};
+pub(crate) use scalar::skin_vertex;
+pub(crate) use whole::skin_checked;
+pub use whole::{skin, skin_into, skin_scalar};

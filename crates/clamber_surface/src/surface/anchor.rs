@@ -50,7 +50,7 @@ impl SkinnedSurface {
         let frame = self.mesh.part_of(triangle).and_then(|part| {
             let joint = self.mesh.parts()[part.index()].joint.0 as usize;
             let rest = self.mesh.rest_corners(triangle);
-            material_frame(rest, self.corners(triangle), &self.palette[joint])
+            material_frame(rest, self.corners(triangle), &self.current.palette()[joint])
         });
         Anchor {
             triangle,

@@ -30,7 +30,8 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn enable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        *self.triangle_flag(triangle)? = true;
+        let hidden = !std::mem::replace(self.triangle_flag(triangle)?, true);
+        self.hidden_triangles -= usize::from(hidden);
         Ok(())
     }
 
@@ -39,14 +40,16 @@ impl SkinnedSurface {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn disable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        *self.triangle_flag(triangle)? = false;
+        let shown = std::mem::replace(self.triangle_flag(triangle)?, false);
+        self.hidden_triangles += usize::from(shown);
         Ok(())
     }
 
     /// Adds a triangle between existing vertices, counter-clockwise seen from outside. It joins
     /// the part of the joint that moves it most; if that part is new, it comes last and enabled.
     ///
-    /// A surface that shares its mesh gets a copy of its own with the first such edit.
+    /// A surface that shares its mesh gets a copy of its own with the first such edit. All clusters
+    /// are made anew, which takes as long as building the mesh.
     ///
     /// # Errors
     /// [`SurfaceError::Mesh`] if a vertex does not exist or the triangle has no area at rest.
@@ -59,9 +62,8 @@ impl SkinnedSurface {
         let triangle = Arc::make_mut(&mut self.mesh).add_triangle(corners, tag);
         self.triangle_enabled.push(true);
         self.part_enabled.resize(self.mesh.parts().len(), true);
-        if let Some(part) = self.mesh.part_of(triangle) {
-            self.refit_part(part);
-        }
+        self.current = self.current.renewed(&self.mesh);
+        self.previous = self.previous.renewed(&self.mesh);
         Ok(triangle)
     }
 
@@ -75,8 +77,8 @@ impl SkinnedSurface {
     pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
         let part = self.mesh.part_of(triangle);
         let part = part.ok_or(SurfaceError::Triangle(triangle))?;
+        self.disable_triangle(triangle)?;
         Arc::make_mut(&mut self.mesh).remove_triangle(triangle, part);
-        self.refit_part(part);
         Ok(())
     }
 
@@ -85,6 +87,12 @@ impl SkinnedSurface {
         self.mesh.part_of(triangle).is_some_and(|part| {
             self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]
         })
+    }
+
+    /// [`SkinnedSurface::is_enabled`] for a triangle of an enabled part. Where nothing is hidden, it
+    /// reads nothing.
+    pub(super) fn shows(&self, triangle: TriangleId) -> bool {
+        self.hidden_triangles == 0 || self.triangle_enabled[triangle.index()]
     }
 
     fn part_flag(&mut self, part: PartId) -> Result<&mut bool, SurfaceError> {

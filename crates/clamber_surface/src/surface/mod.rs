@@ -1,23 +1,31 @@
 //! The posed surface: one instance of a collider mesh, its queries, and points that stick to it.
 //!
-//! This is the eager form: [`SkinnedSurface::advance`] skins every vertex once and refits a sphere
-//! per part; queries test the triangles of the parts whose sphere they meet. Each query has a
-//! brute-force twin over all triangles, `*_reference`, with which it agrees bit for bit.
+//! [`SkinnedSurface::advance`] skins nothing. A query descends a hierarchy of spheres that follow from
+//! the palette alone, and skins the clusters of vertices that it reaches, once a tick; its answer is
+//! that of skinning everything and testing every triangle, bit for bit: [`BruteForce`].
 //!
 //! [`PartBounds`] bounds parts in any pose without skinning a vertex.
 
+#[cfg(test)]
+mod agreement;
 mod anchor;
 mod bounds;
+mod brute_force;
 mod deformation;
+mod diagnostics;
 mod edit;
 mod error;
 mod motion;
+mod pose;
 mod query;
 mod refit;
 mod skinned;
 
 pub use anchor::Anchor;
 pub use bounds::{JointMaps, NodeBounds, PartBounds, WeightInterval};
+pub(crate) use bounds::{RootBalls, inflation};
+pub use brute_force::BruteForce;
+pub use diagnostics::Diagnostics;
 pub use error::SurfaceError;
 pub use motion::Motion;
 pub use query::SurfaceHit;

@@ -63,20 +63,16 @@ impl SkinnedSurface {
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
         let joint = self.mesh.parts()[part.index()].joint.0 as usize;
-        let previous_frame = material_frame(rest, before, &self.previous_palette[joint]);
-        let current_frame = material_frame(rest, now, &self.palette[joint]);
+        let previous_frame = material_frame(rest, before, &self.previous.palette()[joint]);
+        let current_frame = material_frame(rest, now, &self.current.palette()[joint]);
         let frame = current_frame
             .or(previous_frame)
             .unwrap_or_else(|| last_frame(anchor));
         let previous_frame = previous_frame.unwrap_or(frame);
-        let normal = match self.outward_normal(triangle, part) {
+        let normal = match self.outward_normal(now, part) {
             Some(normal) if !is_collapsed(now) => normal,
             _ => {
-                let sign = if self.mirrored[part.index()] {
-                    -1.0
-                } else {
-                    1.0
-                };
+                let sign = if self.is_mirrored(part) { -1.0 } else { 1.0 };
                 frame * scaled_normal(rest).normalize_or(DVec3::Y) * sign
             }
         };

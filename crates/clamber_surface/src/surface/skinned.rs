@@ -1,13 +1,15 @@
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 use glam::Vec3;
 
-use super::refit::part_sphere;
-use super::{SurfaceError, refit_part_spheres};
-use crate::geometry::{Affine, MAX_COORDINATE, Similarity, Sphere};
-use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
+use super::SurfaceError;
+use super::pose::Pose;
+use crate::geometry::{Affine, MAX_COORDINATE, Similarity};
+use crate::mesh::{ColliderMesh, TriangleId, VertexId};
 use crate::rig::{JointId, Palette};
-use crate::skin::{skin_into, skin_vertex};
+use crate::simd::SimdLevel;
+use crate::skin::skin_checked;
 
 /// One posed instance of a [`ColliderMesh`], with a current and a previous pose.
 ///
@@ -44,41 +46,49 @@ use crate::skin::{skin_into, skin_vertex};
 /// assert_eq!(hit.distance, 1.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct SkinnedSurface {
     pub(super) mesh: Arc<ColliderMesh>,
-    pub(super) palette: Vec<Affine>,
-    /// Of the previous tick, expressed in the current model frame.
-    pub(super) previous_palette: Vec<Affine>,
+    pub(super) current: Pose,
+    /// That of the previous tick, expressed in the current model frame.
+    pub(super) previous: Pose,
     world_from_model: Similarity,
-    pub(super) positions: Vec<Vec3>,
-    pub(super) spheres: Vec<Option<Sphere>>,
-    /// Per part: its joint's matrix mirrors.
-    pub(super) mirrored: Vec<bool>,
+    pub(super) simd_level: SimdLevel,
     pub(super) part_enabled: Vec<bool>,
     pub(super) triangle_enabled: Vec<bool>,
+    /// How many triangles are not enabled.
+    pub(super) hidden_triangles: usize,
+    pub(super) triangles_tested: AtomicU64,
 }
 
 impl SkinnedSurface {
     /// A surface at rest at the world's origin: every matrix of its palette is the identity.
     pub fn new(mesh: Arc<ColliderMesh>) -> Self {
-        let palette = vec![Affine::IDENTITY; mesh.joint_count()];
-        let mut surface = Self {
-            previous_palette: palette.clone(),
-            palette,
-            world_from_model: Similarity::IDENTITY,
-            positions: mesh.positions().to_vec(),
-            spheres: Vec::new(),
-            mirrored: Vec::new(),
-            part_enabled: vec![true; mesh.parts().len()],
-            triangle_enabled: vec![true; mesh.triangles().len()],
-            mesh,
-        };
-        surface.refit();
-        surface
+        Self::with_simd_level(mesh, SimdLevel::best())
     }
 
-    /// The next tick: what is current becomes previous, and the given pose becomes current.
+    /// [`SkinnedSurface::new`] on a given instruction set: for measurements and tests, since the
+    /// results are the same.
+    pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
+        let ids = 0..mesh.triangles().len() as u32;
+        let triangle_enabled: Vec<bool> = ids
+            .map(|id| mesh.part_of(TriangleId(id)).is_some())
+            .collect();
+        Self {
+            current: Pose::at_rest(&mesh, simd_level),
+            previous: Pose::at_rest(&mesh, simd_level),
+            world_from_model: Similarity::IDENTITY,
+            simd_level,
+            part_enabled: vec![true; mesh.parts().len()],
+            hidden_triangles: triangle_enabled.iter().filter(|enabled| !**enabled).count(),
+            triangle_enabled,
+            triangles_tested: AtomicU64::new(0),
+            mesh,
+        }
+    }
+
+    /// The next tick: what is current becomes previous, and the given pose becomes current. Costs
+    /// O(joints): nothing is skinned, unless the last ticks touched nearly everything.
     ///
     /// # Errors
     /// [`SurfaceError::JointCount`], [`SurfaceError::Palette`] or [`SurfaceError::WorldFromModel`];
@@ -90,19 +100,21 @@ impl SkinnedSurface {
     ) -> Result<(), SurfaceError> {
         self.validate(palette, &world_from_model)?;
         let world_from_model = world_from_model.normalized();
+        let ahead = self.touched_nearly_everything();
         if world_from_model == self.world_from_model {
-            std::mem::swap(&mut self.palette, &mut self.previous_palette);
+            // The last tick's bounds and positions serve as they are.
+            std::mem::swap(&mut self.current, &mut self.previous);
         } else {
             let now_from_before = world_from_model.relative(&self.world_from_model);
             let moved = |before: &Affine| Affine::from_f64(&(now_from_before * before.to_f64()));
-            if let Some(joint) = self.palette.iter().position(|m| !self.keeps(&moved(m))) {
+            let before = self.current.palette();
+            if let Some(joint) = before.iter().position(|m| !self.keeps(&moved(m))) {
                 return Err(SurfaceError::Palette(JointId(joint as u32)));
             }
-            for (previous, before) in self.previous_palette.iter_mut().zip(&self.palette) {
-                *previous = moved(before);
-            }
+            self.previous.set(&self.mesh, before.iter().map(moved));
         }
-        self.pose(palette, world_from_model)
+        self.pose(palette, world_from_model, ahead);
+        Ok(())
     }
 
     /// Puts the surface somewhere without motion: the given pose becomes current and previous. For
@@ -116,8 +128,17 @@ impl SkinnedSurface {
         world_from_model: Similarity,
     ) -> Result<(), SurfaceError> {
         self.validate(palette, &world_from_model)?;
-        self.previous_palette.copy_from_slice(palette.matrices());
-        self.pose(palette, world_from_model.normalized())
+        self.previous
+            .set(&self.mesh, palette.matrices().iter().copied());
+        let ahead = self.touched_nearly_everything();
+        self.pose(palette, world_from_model.normalized(), ahead);
+        Ok(())
+    }
+
+    /// Skins everything now and refits every bound to it, where queries would skin and bound what
+    /// they touch: the eager way. For comparison; the surface does so by itself where it is faster.
+    pub fn skin_ahead(&mut self) {
+        self.current.fill(&self.mesh);
     }
 
     /// The shared rest data.
@@ -130,64 +151,67 @@ impl SkinnedSurface {
         &self.world_from_model
     }
 
-    /// Every vertex as skinned this tick, in model space.
-    pub fn positions(&self) -> &[Vec3] {
-        &self.positions
+    /// The instruction set that queries run on.
+    pub fn simd_level(&self) -> SimdLevel {
+        self.simd_level
+    }
+
+    /// Skins every vertex, each once, in model space, by vertex id: for renderers, and whoever wants
+    /// everything. `positions` keeps its memory. Queries neither need it nor profit from it.
+    pub fn skin_all(&self, positions: &mut Vec<Vec3>) {
+        skin_checked(
+            &self.mesh,
+            self.current.palette(),
+            self.simd_level,
+            positions,
+        );
+    }
+
+    /// Where a vertex stands now, in model space; `None` if it is out of range.
+    pub fn position(&self, vertex: VertexId) -> Option<Vec3> {
+        self.position_in(&self.current, vertex)
     }
 
     /// Where a vertex stood a tick ago, in the current model frame; `None` if it is out of range.
     pub fn previous_position(&self, vertex: VertexId) -> Option<Vec3> {
+        self.position_in(&self.previous, vertex)
+    }
+
+    fn position_in(&self, pose: &Pose, vertex: VertexId) -> Option<Vec3> {
         (vertex.index() < self.mesh.positions().len())
-            .then(|| skin_vertex(&self.mesh, &self.previous_palette, vertex.index()))
+            .then(|| pose.position(&self.mesh, vertex.index()))
     }
 
-    /// The bounding sphere of a part as refitted this tick, in model space; `None` for a part that
-    /// does not exist or has no triangles left.
-    pub fn part_sphere(&self, part: PartId) -> Option<Sphere> {
-        self.spheres.get(part.index()).copied().flatten()
-    }
-
-    /// The corners of a triangle as skinned this tick.
+    /// The corners of a triangle now.
     pub(super) fn corners(&self, triangle: TriangleId) -> [Vec3; 3] {
-        self.mesh.triangles()[triangle.index()].map(|v| self.positions[v.index()])
+        let corners = self.mesh.triangles()[triangle.index()];
+        corners.map(|v| self.current.position(&self.mesh, v.index()))
     }
 
     /// The corners of a triangle a tick ago, in the current model frame.
     pub(super) fn previous_corners(&self, triangle: TriangleId) -> [Vec3; 3] {
-        self.mesh.triangles()[triangle.index()]
-            .map(|v| skin_vertex(&self.mesh, &self.previous_palette, v.index()))
+        let corners = self.mesh.triangles()[triangle.index()];
+        corners.map(|v| self.previous.position(&self.mesh, v.index()))
     }
 
-    /// Makes a pose current; everything was checked before.
-    fn pose(
-        &mut self,
-        palette: &Palette,
-        world_from_model: Similarity,
-    ) -> Result<(), SurfaceError> {
-        self.palette.copy_from_slice(palette.matrices());
+    /// True if this tick touched so much that skinning the next one ahead costs less than finding out.
+    fn touched_nearly_everything(&self) -> bool {
+        let (asked, all) = (
+            self.current.clusters_asked(),
+            self.mesh.clusters().clusters.len(),
+        );
+        asked * 4 >= all * 3
+    }
+
+    /// Makes a pose current, skinned ahead or not; everything was checked before.
+    fn pose(&mut self, palette: &Palette, world_from_model: Similarity, ahead: bool) {
+        self.current
+            .set(&self.mesh, palette.matrices().iter().copied());
         self.world_from_model = world_from_model;
-        skin_into(&self.mesh, &self.palette, &mut self.positions)?;
-        self.refit();
-        Ok(())
-    }
-
-    /// Brings the sphere and mirror flag of one part, which may be a new last one, up to date.
-    pub(super) fn refit_part(&mut self, part: PartId) {
-        let index = part.index();
-        let part = &self.mesh.parts()[index];
-        self.spheres.resize(self.mesh.parts().len(), None);
-        self.mirrored.resize(self.mesh.parts().len(), false);
-        self.spheres[index] = part_sphere(part, &self.positions);
-        self.mirrored[index] = self.palette[part.joint.0 as usize].is_mirrored();
-    }
-
-    /// Brings all spheres and mirror flags up to the current pose.
-    fn refit(&mut self) {
-        refit_part_spheres(&self.mesh, &self.positions, &mut self.spheres);
-        self.mirrored.clear();
-        let parts = self.mesh.parts().iter();
-        self.mirrored
-            .extend(parts.map(|part| self.palette[part.joint.0 as usize].is_mirrored()));
+        *self.triangles_tested.get_mut() = 0;
+        if ahead {
+            self.current.fill(&self.mesh);
+        }
     }
 
     fn validate(
@@ -214,6 +238,23 @@ impl SkinnedSurface {
     /// True if a matrix keeps every vertex within 2^100 of the origin; false for NaN.
     fn keeps(&self, matrix: &Affine) -> bool {
         matrix.reach(f64::from(self.mesh.radius())) <= MAX_COORDINATE
+    }
+}
+
+impl Clone for SkinnedSurface {
+    /// Both poses and all flags; what queries computed is computed anew.
+    fn clone(&self) -> Self {
+        Self {
+            mesh: self.mesh.clone(),
+            current: self.current.renewed(&self.mesh),
+            previous: self.previous.renewed(&self.mesh),
+            world_from_model: self.world_from_model,
+            simd_level: self.simd_level,
+            part_enabled: self.part_enabled.clone(),
+            triangle_enabled: self.triangle_enabled.clone(),
+            hidden_triangles: self.hidden_triangles,
+            triangles_tested: AtomicU64::new(0),
+        }
     }
 }
 

@@ -1,4 +1,10 @@
+mod bits;
+mod cases;
+mod exact;
+mod leaks;
+
 use super::*;
+use crate::geometry::{Ray, round_to_f32};
 
 fn random_point(rng: &mut fastrand::Rng) -> Vec3 {
     Vec3::new(
@@ -115,8 +121,64 @@ fn collapsed_triangle_answers_as_segment_and_as_point() {
     let b = Vec3::new(3.0, 0.0, 0.0);
     let found = closest_point([a, b, a], Vec3::new(2.0, 2.0, 0.0));
     assert!((found.distance - 2.0).abs() < 1e-12);
+    let first_edge = DVec3::new(0.5, 0.5, 0.0);
+    assert_eq!(found.barycentric, first_edge, "of equal edges the first");
     let found = closest_point([a, a, a], Vec3::new(1.0, 5.0, 0.0));
     assert!((found.distance - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn segment_through_a_face_is_at_distance_zero_from_its_crossing_point() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    for case in 0..20_000 {
+        let corners = [(); 3].map(|()| random_point(&mut rng));
+        let (u, v) = (rng.f32() * 0.4 + 0.1, rng.f32() * 0.4 + 0.1);
+        let [a, b, c] = corners;
+        let inside = a + (b - a) * u + (c - a) * v;
+        let along = random_point(&mut rng);
+        let normal = round_to_f32(scaled_normal(corners).normalize());
+        if scaled_normal(corners).length() < 0.1 || normal.dot(along).abs() < 0.1 {
+            continue;
+        }
+        let p = inside - along * 0.5;
+        let found = closest_to_segment(corners, p, inside + along);
+        assert_eq!(found.distance, 0.0, "case {case} {corners:?} {p} {along}");
+        let at = round_to_f32(point_at(corners, found.barycentric));
+        assert!(
+            (at - inside).length() < 1e-5,
+            "case {case}: {at} for {inside}"
+        );
+    }
+}
+
+#[test]
+fn segments_beside_above_and_parallel_to_a_triangle() {
+    let corners = [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0];
+    let distance = |a: [f32; 3], b: [f32; 3]| {
+        let found = closest_to_segment(corners, Vec3::from(a), Vec3::from(b));
+        (
+            found.distance,
+            round_to_f32(point_at(corners, found.barycentric)),
+        )
+    };
+    let found = distance([0.5, 0.5, 1.0], [0.5, 0.5, 3.0]);
+    assert_eq!(
+        found,
+        (1.0, Vec3::new(0.5, 0.5, 0.0)),
+        "one end above the face"
+    );
+    let found = distance([0.25, 0.25, 2.0], [0.75, 0.75, 2.0]);
+    assert_eq!(found.0, 2.0, "parallel to the face");
+    let found = distance([0.5, -3.0, -1.0], [0.5, -3.0, 4.0]);
+    assert_eq!(found, (3.0, Vec3::X * 0.5), "beside an edge");
+    let found = distance([-4.0, -3.0, -1.0], [-4.0, -3.0, 1.0]);
+    assert_eq!(found, (5.0, Vec3::ZERO), "beside a corner");
+    let found = distance([-1.0, -1.0, 0.0], [3.0, -1.0, 0.0]);
+    assert_eq!(found.0, 1.0, "parallel to an edge, in the plane");
+    let found = distance([0.25, 0.25, 0.0], [0.5, 0.5, 0.0]);
+    assert_eq!(found.0, 0.0, "inside the face");
+    let found = distance([-1.0, 0.5, 0.0], [1.0, 0.5, 0.0]);
+    assert_eq!(found.0, 0.0, "across an edge in the plane");
 }
 
 #[test]

@@ -26,6 +26,12 @@ pub(super) struct JointMap {
 /// of 2^-53, of which the eighth root leaves an eighth.
 const STRETCH_SLACK: f64 = 1e-14;
 
+/// The exponent's bits of an f64: they alone are the power of two below a number.
+const EXPONENT: u64 = 0x7ff << 52;
+
+/// Less the bits of a power of two, those of its inverse.
+const INVERSE: u64 = 2046 << 52;
+
 impl JointMaps {
     /// Reads a palette for the nodes of `mesh`.
     ///
@@ -88,21 +94,50 @@ impl JointMap {
 /// uniform scale.
 ///
 /// The largest eigenvalue of `A^T A` is that singular value's square, and any induced norm is at
-/// least the largest eigenvalue. A is scaled to elements of at most 1 first, so that no eighth power
-/// overflows, and none that counts underflows.
+/// least the largest eigenvalue. A is scaled to elements below 2 first, by a power of two, which is
+/// exact, so that no eighth power overflows, and none that counts underflows.
 fn stretch_bound(linear: &DMat3) -> f64 {
-    let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
-    let largest = columns.map(|c| c.abs().max_element());
-    let largest = largest.into_iter().fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
+    StretchPower::new(linear).root()
+}
+
+/// What [`stretch_bound`] computes before its roots: they take as long as the rest, and that of many
+/// joints runs at a time where it stands apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StretchPower {
+    /// A power of two, or the bound itself where it is 0 or not finite.
+    scale: f64,
+    /// `norm_inf((A^T A)^4)` for A divided by `scale`.
+    norm: f64,
+}
+
+impl StretchPower {
+    pub(super) fn new(linear: &DMat3) -> Self {
+        let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let [x, y, z] = columns.map(|c| c.abs());
+        // Not `f64::max`: to keep NaN out costs it more than the rest of this function.
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let [x, y, z] = [x, y, z].map(|c| larger(larger(c.x, c.y), c.z));
+        let largest = larger(larger(x, y), z);
+        if !(largest > 0.0 && largest < f64::MAX) {
+            return Self {
+                scale: largest,
+                norm: 1.0,
+            };
+        }
+        let exponent = largest.to_bits() & EXPONENT;
+        let inverse = f64::from_bits(INVERSE - exponent);
+        let [x, y, z] = columns.map(|c| c * inverse);
+        let squared = square(&[x.dot(x), y.dot(y), z.dot(z), x.dot(y), x.dot(z), y.dot(z)]);
+        let [xx, yy, zz, xy, xz, yz] = square(&squared).map(f64::abs);
+        Self {
+            scale: f64::from_bits(exponent),
+            norm: larger(larger(xx + xy + xz, xy + yy + yz), xz + yz + zz),
+        }
     }
-    // By division: the reciprocal would be rounded as well.
-    let [x, y, z] = columns.map(|c| c / largest);
-    let squared = square(&[x.dot(x), y.dot(y), z.dot(z), x.dot(y), x.dot(z), y.dot(z)]);
-    let [xx, yy, zz, xy, xz, yz] = square(&squared).map(f64::abs);
-    let norm = (xx + xy + xz).max(xy + yy + yz).max(xz + yz + zz);
-    largest * norm.sqrt().sqrt().sqrt() * (1.0 + STRETCH_SLACK)
+
+    pub(super) fn root(self) -> f64 {
+        self.scale * self.norm.sqrt().sqrt().sqrt() * (1.0 + STRETCH_SLACK)
+    }
 }
 
 /// The square of a symmetric matrix: elements xx, yy, zz, xy, xz, yz.

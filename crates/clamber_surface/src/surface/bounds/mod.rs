@@ -38,13 +38,24 @@
 //! Unterguggenberger, Kerbl, Pernsteiner and Wimmer 2021 ("Conservative Meshlet Bounds for Robust
 //! Culling of Skinned Meshes", Computer Graphics Forum 40(7)) bound meshlets.
 
+mod eight;
 mod joint_maps;
+mod joint_table;
 mod node;
+#[cfg(test)]
+mod pack;
 mod part;
+mod root;
 
+pub use crate::mesh::hierarchy::WeightInterval;
+pub(crate) use eight::{Spheres, inflation, spheres};
 pub use joint_maps::JointMaps;
-pub use node::{NodeBounds, WeightInterval};
+pub(crate) use joint_table::JointTable;
+pub use node::NodeBounds;
+#[cfg(test)]
+use pack::push_node;
 pub use part::PartBounds;
+pub(crate) use root::{RootBalls, RootBox};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -4,24 +4,9 @@ use glam::{DVec3, Vec3};
 
 use super::JointMaps;
 use crate::geometry::{BoundingVolume, Capsule, Sphere, round_to_f32, round_up_to_f32, widen};
-use crate::mesh::{ColliderMesh, Influence, VertexId, WEIGHT_ONE, normalize};
+use crate::mesh::hierarchy::{WeightInterval, intervals};
+use crate::mesh::{ColliderMesh, VertexId};
 use crate::rig::JointId;
-
-/// How much one joint moves the vertices of a node. All weights are multiples of 2^-24, so the
-/// differences below are exact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WeightInterval {
-    /// The joint; it moves at least one vertex of the node.
-    pub joint: JointId,
-    /// Its smallest weight over the node's vertices; 0 if there is a vertex that it does not move.
-    pub low: f32,
-    /// Its largest weight.
-    pub high: f32,
-    /// Near the middle; those of a node add up to exactly 1.
-    pub middle: f32,
-    /// The most by which a weight differs from `middle`.
-    pub deviation: f32,
-}
 
 /// The rest data of a set of vertices, and from them bounds of the skinned vertices under any
 /// palette, whatever way the joints go. The module's documentation derives them.
@@ -33,9 +18,9 @@ pub struct NodeBounds {
     sphere: Sphere,
     capsule: Capsule,
     /// The largest distance of a rest position from the mesh's origin, rounded up.
-    reach: f64,
+    pub(crate) reach: f64,
     /// The most influences of one vertex.
-    influences: usize,
+    pub(crate) influences: usize,
 }
 
 /// A centre with a radius, not yet inflated and rounded.
@@ -251,30 +236,10 @@ fn weight_intervals(mesh: &ColliderMesh, vertices: &[VertexId]) -> Option<Vec<We
             *count += 1;
         }
     }
-    let intervals = seen.into_iter().map(|(joint, (low, high, count))| {
+    let ranges = seen.into_iter().map(|(joint, (low, high, count))| {
         let low = if count < vertices.len() { 0.0 } else { low };
         (joint, low, high)
     });
-    let intervals: Vec<(JointId, f32, f32)> = intervals.collect();
-    // Twice the middles. Their rounding does not matter, the sum of the integers they become does.
-    let middles: Vec<Influence> = intervals
-        .iter()
-        .map(|&(joint, low, high)| Influence {
-            joint,
-            weight: low + high,
-        })
-        .collect();
-    let middles: BTreeMap<JointId, u32> = normalize(&middles)?.into_iter().collect();
-    let interval = |(joint, low, high): (JointId, f32, f32)| {
-        let units = middles.get(&joint).copied().unwrap_or(0);
-        let middle = units as f32 / WEIGHT_ONE as f32;
-        WeightInterval {
-            joint,
-            low,
-            high,
-            middle,
-            deviation: (high - middle).max(middle - low),
-        }
-    };
-    Some(intervals.into_iter().map(interval).collect())
+    let ranges: Vec<(JointId, f32, f32)> = ranges.collect();
+    intervals(&ranges)
 }

@@ -1,6 +1,6 @@
 //! Every bound against every vertex that it must hold, and against the tightest.
 
-mod random;
+pub(crate) mod random;
 
 use glam::{DAffine3, DVec3, Vec3};
 

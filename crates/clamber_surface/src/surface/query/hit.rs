@@ -1,9 +1,9 @@
 use glam::{DVec3, Vec3};
 
-use super::SkinnedSurface;
 use crate::geometry::triangle::{TrianglePoint, point_at, scaled_normal};
 use crate::geometry::{round_to_f32, widen};
 use crate::mesh::{PartId, SurfaceTag, TriangleId};
+use crate::surface::SkinnedSurface;
 
 /// A material point that a query found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,30 +25,62 @@ pub struct SurfaceHit {
     pub tag: SurfaceTag,
 }
 
-/// The nearest triangle so far. Of equal distances the smaller triangle id wins, so the order in
-/// which triangles are tested does not matter.
-#[derive(Clone, Copy)]
-pub(super) struct Nearest {
-    pub(super) triangle: TriangleId,
-    pub(super) found: TrianglePoint,
+/// A triangle with its point that a query found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::surface) struct Nearest {
+    pub(in crate::surface) triangle: TriangleId,
+    pub(in crate::surface) found: TrianglePoint,
 }
 
 impl Nearest {
-    pub(super) fn closer(
-        best: Option<Self>,
-        triangle: TriangleId,
-        found: TrianglePoint,
-    ) -> Option<Self> {
-        let candidate = Self { triangle, found };
-        match best {
-            Some(best) if !candidate.precedes(&best) => Some(best),
-            _ => Some(candidate),
-        }
-    }
-
     fn precedes(&self, other: &Self) -> bool {
         self.found.distance < other.found.distance
             || (self.found.distance == other.found.distance && self.triangle < other.triangle)
+    }
+}
+
+/// The nearest triangle so far. Of equal distances the smaller triangle id wins, so the order in
+/// which triangles are tested does not matter.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::surface) struct Best {
+    nearest: Option<Nearest>,
+    limit: f64,
+}
+
+impl Best {
+    /// Nothing yet, and nothing farther than `limit` ever.
+    pub(in crate::surface) fn within(limit: f64) -> Self {
+        Self {
+            nearest: None,
+            limit,
+        }
+    }
+
+    /// What is farther than this does not matter; what is as far may.
+    pub(in crate::surface) fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    pub(in crate::surface) fn offer(&mut self, candidate: Nearest) {
+        let nearer = match &self.nearest {
+            Some(best) => candidate.precedes(best),
+            None => candidate.found.distance <= self.limit,
+        };
+        if nearer {
+            self.limit = candidate.found.distance;
+            self.nearest = Some(candidate);
+        }
+    }
+
+    /// The best as a hit; `origin` is where the query looked from.
+    pub(in crate::surface) fn hit(
+        &self,
+        surface: &SkinnedSurface,
+        origin: Vec3,
+    ) -> Option<SurfaceHit> {
+        let nearest = self.nearest?;
+        let part = surface.mesh.part_of(nearest.triangle)?;
+        Some(surface.hit(nearest, part, surface.corners(nearest.triangle), origin))
     }
 }
 
@@ -56,26 +88,38 @@ impl SkinnedSurface {
     /// The outward unit normal of a posed triangle; `None` if it has no area.
     pub(in crate::surface) fn outward_normal(
         &self,
-        triangle: TriangleId,
+        corners: [Vec3; 3],
         part: PartId,
     ) -> Option<DVec3> {
-        let normal = scaled_normal(self.corners(triangle)).try_normalize()?;
-        Some(if self.mirrored[part.index()] {
+        let normal = scaled_normal(corners).try_normalize()?;
+        Some(if self.is_mirrored(part) {
             -normal
         } else {
             normal
         })
     }
 
-    /// Completes a hit. `origin` is where the query looked from.
-    pub(super) fn hit(&self, nearest: Nearest, origin: Vec3) -> Option<SurfaceHit> {
+    /// True if the joint of a part mirrors.
+    pub(in crate::surface) fn is_mirrored(&self, part: PartId) -> bool {
+        let joint = self.mesh.parts()[part.index()].joint;
+        self.current.palette()[joint.0 as usize].is_mirrored()
+    }
+
+    /// Completes a hit on a triangle with the given posed corners. `origin` is where the query looked
+    /// from.
+    pub(in crate::surface) fn hit(
+        &self,
+        nearest: Nearest,
+        part: PartId,
+        corners: [Vec3; 3],
+        origin: Vec3,
+    ) -> SurfaceHit {
         let Nearest { triangle, found } = nearest;
-        let part = self.mesh.part_of(triangle)?;
-        let point = point_at(self.corners(triangle), found.barycentric);
+        let point = point_at(corners, found.barycentric);
         let normal = self
-            .outward_normal(triangle, part)
+            .outward_normal(corners, part)
             .unwrap_or_else(|| (widen(origin) - point).try_normalize().unwrap_or(DVec3::Y));
-        Some(SurfaceHit {
+        SurfaceHit {
             triangle,
             barycentric: round_to_f32(found.barycentric).to_array(),
             point: round_to_f32(point),
@@ -83,6 +127,6 @@ impl SkinnedSurface {
             distance: found.distance as f32,
             part,
             tag: self.mesh.tags()[triangle.index()],
-        })
+        }
     }
 }

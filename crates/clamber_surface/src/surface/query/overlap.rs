@@ -1,9 +1,12 @@
-use super::closest::{check, within_reach};
 use super::hit::Nearest;
-use super::{SkinnedSurface, SurfaceError, SurfaceHit};
-use crate::geometry::Sphere;
-use crate::geometry::triangle::closest_point;
-use crate::mesh::TriangleId;
+use super::posed_cluster::PosedCluster;
+use super::region::{Region, box_around};
+use super::stack::Stack;
+use super::{broad, root};
+use crate::geometry::triangle::EIGHT;
+use crate::geometry::{Capsule, Sphere};
+use crate::mesh::hierarchy::Child;
+use crate::surface::{SkinnedSurface, SurfaceError, SurfaceHit};
 
 impl SkinnedSurface {
     /// Every triangle within the sphere, each with its own point closest to the sphere's centre,
@@ -17,11 +20,21 @@ impl SkinnedSurface {
         sphere: &Sphere,
         hits: &mut Vec<SurfaceHit>,
     ) -> Result<(), SurfaceError> {
-        check(sphere.center, sphere.radius)?;
-        hits.clear();
-        self.visit_overlaps(sphere, |hit| hits.push(hit))?;
-        hits.sort_unstable_by_key(|hit| hit.triangle);
-        Ok(())
+        self.overlap(sphere, hits)
+    }
+
+    /// Every triangle within the capsule, each with its own point closest to the capsule's segment,
+    /// by ascending triangle id. A hit's distance is that from the segment: 0 where it crosses the
+    /// triangle. `hits` is cleared first and keeps its memory.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::overlap_sphere`], for both ends.
+    pub fn overlap_capsule(
+        &self,
+        capsule: &Capsule,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        self.overlap(capsule, hits)
     }
 
     /// [`SkinnedSurface::overlap_sphere`] for callers with a place of their own for the hits, which
@@ -34,38 +47,88 @@ impl SkinnedSurface {
         sphere: &Sphere,
         visit: impl FnMut(SurfaceHit),
     ) -> Result<(), SurfaceError> {
-        let radius = check(sphere.center, sphere.radius)?;
-        let center = sphere.center;
-        let near = self.triangles_near(move |part| within_reach(part, center, radius));
-        self.touching(near, sphere, radius).for_each(visit);
+        let radius = sphere.check()?;
+        self.visit_region(sphere, radius, visit);
         Ok(())
     }
 
-    /// [`SkinnedSurface::overlap_sphere`] over all triangles: slow and plain, for tests.
-    ///
-    /// # Errors
-    /// As [`SkinnedSurface::overlap_sphere`].
-    pub fn overlap_sphere_reference(
+    fn overlap(
         &self,
-        sphere: &Sphere,
+        region: &impl Region,
         hits: &mut Vec<SurfaceHit>,
     ) -> Result<(), SurfaceError> {
-        let radius = check(sphere.center, sphere.radius)?;
+        let radius = region.check()?;
         hits.clear();
-        hits.extend(self.touching(self.all_triangles(), sphere, radius));
+        self.visit_region(region, radius, |hit| hits.push(hit));
+        hits.sort_unstable_by_key(|hit| hit.triangle);
         Ok(())
     }
 
-    fn touching(
-        &self,
-        triangles: impl Iterator<Item = TriangleId>,
-        sphere: &Sphere,
-        radius: f64,
-    ) -> impl Iterator<Item = SurfaceHit> {
-        triangles.filter_map(move |triangle| {
-            let found = closest_point(self.corners(triangle), sphere.center);
-            let nearest = Nearest { triangle, found };
-            (found.distance <= radius).then(|| self.hit(nearest, sphere.center))?
-        })
+    fn visit_region(&self, region: &impl Region, radius: f64, mut visit: impl FnMut(SurfaceHit)) {
+        let [low, high] = box_around(region.core(), radius);
+        if !root::overlaps(self.current.root(), low, high) {
+            return;
+        }
+        let hierarchy = self.mesh.hierarchy();
+        let mut posed = PosedCluster::new(self);
+        let mut stack = Stack::new(0u32);
+        let mut tested = 0;
+        while let Some(index) = stack.pop() {
+            let node = &hierarchy.nodes[index as usize];
+            let near = region.near(&self.current.spheres(&self.mesh, index)) & node.lane_mask();
+            for lane in broad::each_lane(near) {
+                match node.child(lane) {
+                    Child::Node(child) => stack.push(child),
+                    Child::Cluster(cluster) => {
+                        if posed.visit(cluster) {
+                            tested += test(&posed, region, radius, [low, high], &mut visit);
+                        }
+                    }
+                }
+            }
+        }
+        self.count_tested(tested);
+    }
+}
+
+/// Tests a cluster's triangles; gives how many had to be tested exactly.
+fn test(
+    posed: &PosedCluster<'_>,
+    region: &impl Region,
+    radius: f64,
+    [low, high]: [[f32; 3]; 2],
+    visit: &mut impl FnMut(SurfaceHit),
+) -> usize {
+    let mut tested = 0;
+    let mut survivors = posed.enabled(posed.in_box(low, high));
+    let mut batch = [0; EIGHT];
+    loop {
+        let mut count = 0;
+        for (place, triangle) in batch.iter_mut().zip(&mut survivors) {
+            *place = triangle;
+            count += 1;
+        }
+        if count == 0 {
+            return tested;
+        }
+        tested += count;
+        let corners = posed.batch(&batch[..count]);
+        let points = region.closest_of_eight(posed.surface.simd_level, &corners);
+        for (lane, triangle) in batch[..count].iter().enumerate() {
+            let found = points.get(lane);
+            if found.distance <= radius {
+                let triangle_id = posed.id(*triangle);
+                let nearest = Nearest {
+                    triangle: triangle_id,
+                    found,
+                };
+                let corners = posed.corners(*triangle);
+                visit(
+                    posed
+                        .surface
+                        .hit(nearest, posed.cluster.part, corners, region.middle()),
+                );
+            }
+        }
     }
 }

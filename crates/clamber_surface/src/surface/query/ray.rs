@@ -1,8 +1,14 @@
-use super::hit::Nearest;
-use super::{SLACK, SkinnedSurface, SurfaceError, SurfaceHit, check_length};
-use crate::geometry::triangle::ShearedRay;
-use crate::geometry::{Ray, Sphere, widen};
+use super::closest::farthest_first;
+use super::hit::{Best, Nearest};
+use super::posed_cluster::PosedCluster;
+use super::stack::Stack;
+use super::{broad, check_length, root};
+use crate::geometry::triangle::{ShearedRay, TrianglePoint, intersect_sheared};
+use crate::geometry::{Ray, round_up_to_f32};
 use crate::mesh::TriangleId;
+use crate::mesh::hierarchy::Child;
+use crate::skin::ClusterPositions;
+use crate::surface::{SkinnedSurface, SurfaceError, SurfaceHit};
 
 impl SkinnedSurface {
     /// The first triangle along a ray, from either side, up to `max_distance` (may be infinite).
@@ -16,52 +22,123 @@ impl SkinnedSurface {
         ray: &Ray,
         max_distance: f32,
     ) -> Result<Option<SurfaceHit>, SurfaceError> {
-        let max_distance = check_length("the ray's maximum distance", max_distance)?;
-        let near = self.triangles_near(|sphere| may_meet(ray, max_distance, sphere));
-        Ok(self.cast_among(near, ray, max_distance))
+        let mut best = Best::within(check(max_distance)?);
+        self.visit_ray(ray, best.limit(), |posed, triangle, found| {
+            best.offer(Nearest {
+                triangle: posed.id(triangle),
+                found,
+            });
+            Some(best.limit())
+        });
+        Ok(best.hit(self, ray.origin()))
     }
 
-    /// [`SkinnedSurface::cast_ray`] over all triangles: slow and plain, for tests.
+    /// True if a ray meets any triangle, from either side, up to `max_distance` (may be infinite).
+    /// Stops at the first one that it finds.
     ///
     /// # Errors
     /// As [`SkinnedSurface::cast_ray`].
-    pub fn cast_ray_reference(
+    pub fn intersects_ray(&self, ray: &Ray, max_distance: f32) -> Result<bool, SurfaceError> {
+        let mut met = false;
+        self.visit_ray(ray, check(max_distance)?, |_, _, _| {
+            met = true;
+            None
+        });
+        Ok(met)
+    }
+
+    /// All triangles that a ray meets, from either side, up to `max_distance` (may be infinite), by
+    /// distance, equal ones by triangle id. A ray through an edge or a corner meets all triangles
+    /// that share it. `hits` is cleared first and keeps its memory.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::cast_ray`]; `hits` is unchanged then.
+    pub fn cast_ray_all(
         &self,
         ray: &Ray,
         max_distance: f32,
-    ) -> Result<Option<SurfaceHit>, SurfaceError> {
-        let max_distance = check_length("the ray's maximum distance", max_distance)?;
-        Ok(self.cast_among(self.all_triangles(), ray, max_distance))
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        let limit = check(max_distance)?;
+        hits.clear();
+        self.visit_ray(ray, limit, |posed, triangle, found| {
+            let nearest = Nearest {
+                triangle: posed.id(triangle),
+                found,
+            };
+            let corners = posed.corners(triangle);
+            hits.push(self.hit(nearest, posed.cluster.part, corners, ray.origin()));
+            Some(limit)
+        });
+        sort_along(hits);
+        Ok(())
     }
 
-    fn cast_among(
-        &self,
-        triangles: impl Iterator<Item = TriangleId>,
+    /// Calls `visit` with every triangle met, nearest bounds first; it gives the distance that still
+    /// matters, or none to stop.
+    fn visit_ray<'a>(
+        &'a self,
         ray: &Ray,
-        max_distance: f64,
-    ) -> Option<SurfaceHit> {
-        let sheared = ShearedRay::new(ray);
-        let mut best: Option<Nearest> = None;
-        for triangle in triangles {
-            // As far as the best one inclusive: an equal distance may belong to a smaller id.
-            let limit = best.map_or(max_distance, |best| best.found.distance);
-            if let Some(found) = sheared.intersect(self.corners(triangle), limit) {
-                best = Nearest::closer(best, triangle, found);
+        limit: f64,
+        mut visit: impl FnMut(&PosedCluster<'a>, usize, TrianglePoint) -> Option<f64>,
+    ) {
+        if !root::may_meet(self.current.root(), ray, limit) {
+            return;
+        }
+        let hierarchy = self.mesh.hierarchy();
+        let sheared_ray = ShearedRay::new(ray);
+        let mut posed = PosedCluster::new(self);
+        let mut sheared = ClusterPositions::ZERO;
+        let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        let (mut limit, mut tested) = (limit, 0);
+        'search: while let Some((distance, child)) = stack.pop() {
+            if f64::from(distance) > limit {
+                continue;
+            }
+            match child {
+                Child::Cluster(cluster) => {
+                    if !posed.visit(cluster) {
+                        continue;
+                    }
+                    let reach = round_up_to_f32(limit);
+                    let survivors = posed.along_ray(&sheared_ray, reach, &mut sheared);
+                    for triangle in posed.enabled(survivors) {
+                        tested += 1;
+                        let corners = posed.corners_in(&sheared, triangle);
+                        if let Some(found) = intersect_sheared(corners, limit) {
+                            match visit(&posed, triangle, found) {
+                                Some(distance) => limit = distance,
+                                None => break 'search,
+                            }
+                        }
+                    }
+                }
+                Child::Node(index) => {
+                    let node = &hierarchy.nodes[index as usize];
+                    let spheres = self.current.spheres(&self.mesh, index);
+                    let reach = round_up_to_f32(limit);
+                    let (met, distances) = broad::along_ray(&spheres, ray, reach);
+                    for lane in farthest_first(&distances, usize::from(node.lanes)) {
+                        if met & 1 << lane != 0 {
+                            stack.push((distances[lane], node.child(lane)));
+                        }
+                    }
+                }
             }
         }
-        self.hit(best?, ray.origin())
+        self.count_tested(tested);
     }
 }
 
-/// False only if no triangle inside the sphere can be met. By the perpendicular from the centre
-/// to the ray, which keeps its digits far out where the usual discriminant loses them.
-fn may_meet(ray: &Ray, max_distance: f64, sphere: &Sphere) -> bool {
-    let direction = widen(ray.direction());
-    let to_center = widen(sphere.center) - widen(ray.origin());
-    // The direction is of unit length only up to f32 rounding.
-    let along = to_center.dot(direction) / direction.length();
-    let perpendicular = to_center - direction * (along / direction.length());
-    let radius = f64::from(sphere.radius);
-    let reach = radius + SLACK * (to_center.length() + radius);
-    perpendicular.length() <= reach && along >= -reach && along - reach <= max_distance
+pub(super) fn check(max_distance: f32) -> Result<f64, SurfaceError> {
+    check_length("the ray's maximum distance", max_distance)
+}
+
+/// By distance, equal ones by triangle id.
+pub(in crate::surface) fn sort_along(hits: &mut [SurfaceHit]) {
+    let key = |hit: &SurfaceHit| (hit.distance, hit.triangle);
+    hits.sort_unstable_by(|a, b| {
+        let ((a, first), (b, second)): ((f32, TriangleId), _) = (key(a), key(b));
+        a.total_cmp(&b).then(first.cmp(&second))
+    });
 }

@@ -1,8 +1,9 @@
 use super::*;
-use crate::geometry::{Ray, rotation_from_axis_angle, widen};
-use crate::mesh::SurfaceTag;
-use crate::surface::SurfaceHit;
-use crate::testing::{bend, direction, point, rigid, tube};
+use crate::geometry::{Ray, Sphere, rotation_from_axis_angle, widen};
+use crate::mesh::{PartId, SurfaceTag};
+use crate::surface::agreement::assert_queries_agree;
+use crate::surface::{BruteForce, SurfaceHit, refit_part_spheres};
+use crate::testing::{bend, rigid, tube};
 use glam::{DQuat, DVec3};
 
 const JOINTS: u32 = 6;
@@ -11,35 +12,10 @@ fn surface() -> SkinnedSurface {
     SkinnedSurface::new(tube(JOINTS, 12))
 }
 
-/// Every query at seeded random places against its brute-force twin.
-fn assert_queries_agree(surface: &SkinnedSurface, rng: &mut fastrand::Rng, rounds: usize) -> usize {
-    let mut found = 0;
-    let (mut hits, mut expected) = (Vec::new(), Vec::new());
-    for _ in 0..rounds {
-        let origin = Vec3::new(2.5, 0.0, 0.0) + point(rng, 5.0);
-        let ray = Ray::new(origin, direction(rng)).unwrap();
-        let reach = [0.5, 3.0, f32::INFINITY][rng.usize(0..3)];
-        let hit = surface.cast_ray(&ray, reach).unwrap();
-        assert_eq!(
-            hit,
-            surface.cast_ray_reference(&ray, reach).unwrap(),
-            "{ray:?} {reach}"
-        );
-        let closest = surface.closest_point(origin, reach).unwrap();
-        let reference = surface.closest_point_reference(origin, reach).unwrap();
-        assert_eq!(closest, reference, "{origin} {reach}");
-        let sphere = Sphere {
-            center: origin,
-            radius: rng.f32() * 2.0,
-        };
-        surface.overlap_sphere(&sphere, &mut hits).unwrap();
-        surface
-            .overlap_sphere_reference(&sphere, &mut expected)
-            .unwrap();
-        assert_eq!(hits, expected, "{sphere:?}");
-        found += usize::from(hit.is_some()) + usize::from(closest.is_some()) + hits.len();
-    }
-    found
+fn positions_of(surface: &SkinnedSurface) -> Vec<Vec3> {
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    positions
 }
 
 #[test]
@@ -50,7 +26,7 @@ fn queries_agree_with_brute_force_in_every_pose() {
         let palette = bend(JOINTS, DVec3::new(0.0, 0.6, 0.8), angle);
         surface.advance(&palette, Similarity::IDENTITY).unwrap();
         let found = assert_queries_agree(&surface, &mut rng, 300);
-        assert!(found > 300, "only {found} hits at angle {angle}");
+        assert!(found > 1_000, "only {found} hits at angle {angle}");
     }
 }
 
@@ -60,11 +36,14 @@ fn no_bound_hides_its_outermost_vertices() {
     let mut surface = surface();
     let palette = bend(JOINTS, DVec3::new(0.6, 0.0, 0.8), 0.6);
     surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    let brute_force = BruteForce::new(&surface);
+    let mut spheres = Vec::new();
+    refit_part_spheres(surface.mesh(), brute_force.positions(), &mut spheres);
     let mut met = 0;
-    for part in 0..surface.mesh().parts().len() as u32 {
-        let sphere = surface.part_sphere(PartId(part)).unwrap();
-        for v in &surface.mesh().parts()[part as usize].vertices {
-            let vertex = surface.positions()[v.index()];
+    for (part, sphere) in surface.mesh().parts().iter().zip(spheres) {
+        let sphere = sphere.unwrap();
+        for v in &part.vertices {
+            let vertex = brute_force.positions()[v.index()];
             let outward = vertex - sphere.center;
             let target = sphere.center + outward * 0.9999;
             let along = outward.any_orthonormal_vector();
@@ -73,34 +52,19 @@ fn no_bound_hides_its_outermost_vertices() {
                 Ray::new(target + along * 3.0, -along).unwrap(),
             ] {
                 let hit = surface.cast_ray(&ray, 6.0).unwrap();
-                assert_eq!(
-                    hit,
-                    surface.cast_ray_reference(&ray, 6.0).unwrap(),
-                    "{ray:?}"
-                );
+                assert_eq!(hit, brute_force.cast_ray(&ray, 6.0).unwrap(), "{ray:?}");
                 met += usize::from(hit.is_some());
             }
             let beyond = vertex + outward.normalize();
             for reach in [1.0, 0.9999, 1.0001] {
                 assert_eq!(
                     surface.closest_point(beyond, reach).unwrap(),
-                    surface.closest_point_reference(beyond, reach).unwrap(),
+                    brute_force.closest_point(beyond, reach).unwrap(),
                 );
             }
         }
     }
     assert!(met > 100, "only {met} rays met anything");
-}
-
-#[test]
-fn a_part_without_triangles_has_no_sphere() {
-    let mut surface = surface();
-    let triangles = surface.mesh().parts()[2].triangles.clone();
-    for triangle in triangles {
-        assert!(surface.part_sphere(PartId(2)).is_some());
-        surface.remove_triangle(triangle).unwrap();
-    }
-    assert_eq!(surface.part_sphere(PartId(2)), None);
 }
 
 #[test]
@@ -173,27 +137,11 @@ fn a_disabled_triangle_is_seen_through() {
 }
 
 #[test]
-fn part_spheres_hold_their_vertices() {
-    let mut surface = surface();
-    surface
-        .advance(&bend(JOINTS, DVec3::Y, 1.0), Similarity::IDENTITY)
-        .unwrap();
-    for (index, part) in surface.mesh().parts().iter().enumerate() {
-        let sphere = surface.part_sphere(PartId(index as u32)).unwrap();
-        for v in &part.vertices {
-            let apart = widen(surface.positions()[v.index()]) - widen(sphere.center);
-            assert!(apart.length() <= f64::from(sphere.radius));
-        }
-    }
-    assert_eq!(surface.part_sphere(PartId(99)), None);
-}
-
-#[test]
 fn previous_positions_are_last_ticks_when_the_root_rests() {
     let mut surface = surface();
     let world = Similarity::from_translation(DVec3::new(1e5, 3.0, 0.0));
     surface.place(&bend(JOINTS, DVec3::Z, 0.1), world).unwrap();
-    let before = surface.positions().to_vec();
+    let before = positions_of(&surface);
     surface
         .advance(&bend(JOINTS, DVec3::Z, 0.2), world)
         .unwrap();
@@ -217,7 +165,7 @@ fn previous_positions_follow_a_moving_root_far_from_the_origin() {
     let at = |surface: &SkinnedSurface, v: usize| {
         surface
             .world_from_model()
-            .transform_point_f32(surface.positions()[v])
+            .transform_point_f32(surface.position(VertexId(v as u32)).unwrap())
     };
     let before: Vec<DVec3> = (0..40).map(|v| at(&surface, v)).collect();
     surface.advance(&palette, world(0.35, 0.8)).unwrap();
@@ -240,7 +188,7 @@ fn place_leaves_no_motion_behind() {
         .unwrap();
     let far = Similarity::from_translation(DVec3::splat(1e4));
     surface.place(&bend(JOINTS, DVec3::Z, -0.3), far).unwrap();
-    for (v, position) in surface.positions().iter().enumerate() {
+    for (v, position) in positions_of(&surface).iter().enumerate() {
         assert_eq!(
             surface.previous_position(VertexId(v as u32)),
             Some(*position)
@@ -283,7 +231,7 @@ fn bad_palettes_and_placements_change_nothing() {
     let mut surface = surface();
     let good = bend(JOINTS, DVec3::Z, 0.2);
     surface.advance(&good, Similarity::IDENTITY).unwrap();
-    let before = surface.positions().to_vec();
+    let before = positions_of(&surface);
     let refused = |surface: &mut SkinnedSurface, palette: &Palette, world: Similarity| {
         let by_advance = surface.advance(palette, world).unwrap_err();
         assert_eq!(surface.place(palette, world).unwrap_err(), by_advance);
@@ -319,7 +267,7 @@ fn bad_palettes_and_placements_change_nothing() {
         surface.advance(&good, far),
         Err(SurfaceError::Palette(_))
     ));
-    assert_eq!(surface.positions(), before);
+    assert_eq!(positions_of(&surface), before);
     assert_eq!(*surface.world_from_model(), Similarity::IDENTITY);
 }
 

@@ -7,12 +7,12 @@ use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
 use crate::rig::{JointId, Palette};
 use crate::testing::{direction, point};
 
-pub(super) const JOINTS: u32 = 20;
+pub(crate) const JOINTS: u32 = 20;
 const VERTICES: usize = 60;
 
 /// How the weights of a test creature are spread.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Spread {
+pub(crate) enum Spread {
     Random,
     /// All near their mean, as in the middle of a limb.
     NearlyEqual,
@@ -36,7 +36,7 @@ fn weight(rng: &mut fastrand::Rng, spread: Spread, k: usize) -> f32 {
 
 /// A patch of vertices in a ball (or at one point) somewhere, of `influences` joints each, and one
 /// triangle beside it, since the patch may have no area.
-pub(super) fn creature(
+pub(crate) fn creature(
     rng: &mut fastrand::Rng,
     influences: usize,
     spread: Spread,
@@ -75,7 +75,7 @@ pub(super) fn creature(
 
 /// Kinds of random palettes.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Motion {
+pub(crate) enum Motion {
     /// The whole creature as one.
     Rigid,
     /// Each joint turned a little, as in a limb.
@@ -93,7 +93,7 @@ pub(super) enum Motion {
     Zeros,
 }
 
-pub(super) const MOTIONS: [Motion; 10] = [
+pub(crate) const MOTIONS: [Motion; 10] = [
     Motion::Rigid,
     Motion::Bent,
     Motion::Rotations,
@@ -144,7 +144,7 @@ fn matrix(rng: &mut fastrand::Rng, motion: Motion, radius: f32) -> DAffine3 {
     }
 }
 
-pub(super) fn palette(rng: &mut fastrand::Rng, motion: Motion, radius: f32) -> Palette {
+pub(crate) fn palette(rng: &mut fastrand::Rng, motion: Motion, radius: f32) -> Palette {
     let one = matrix(rng, motion, radius);
     let matrices = (0..JOINTS).map(|_| match motion {
         Motion::Rigid => one,

@@ -1,0 +1,193 @@
+//! The skinning kernel against scalar loops, four joints a cluster, and against memory.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Duration;
+
+use clamber::SimdLevel;
+use clamber::prelude::*;
+use clamber::skin::skin_into;
+use clamber_scenes::measure::median_us;
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+
+use crate::table::{Bound, Cells};
+
+/// Joints that move every vertex.
+const JOINTS: usize = 4;
+
+/// Bytes that skinning one vertex reads and writes: position, weights, position.
+const BYTES: f64 = 40.0;
+
+pub(crate) fn measure(brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+    let budget = Duration::from_millis(if brief { 1 } else { 300 });
+    let (small, large) = if brief { (16, 32) } else { (64, 1_000) };
+    in_cache(&Sheet::new(small)?, budget, cells)?;
+    in_memory(&Sheet::new(large)?, budget, cells)
+}
+
+/// A square sheet of vertices that all follow four joints.
+struct Sheet {
+    mesh: Arc<ColliderMesh>,
+    palette: Palette,
+}
+
+impl Sheet {
+    fn new(side: u32) -> Result<Self, Box<dyn Error>> {
+        let mut positions = Vec::new();
+        let mut influences = Vec::new();
+        let mut rng = fastrand::Rng::with_seed(6);
+        for v in 0..side * side {
+            let place = Vec3::new((v % side) as f32, rng.f32(), (v / side) as f32);
+            positions.push(place);
+            influences.extend((0..JOINTS as u32).map(|joint| Influence {
+                joint: JointId(joint),
+                weight: 0.1 + rng.f32(),
+            }));
+        }
+        let mut triangles = Vec::new();
+        for v in 0..side * (side - 1) {
+            if v % side + 1 < side {
+                triangles.push([v, v + side, v + 1]);
+                triangles.push([v + 1, v + side, v + side + 1]);
+            }
+        }
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &influences,
+            joint_count: JOINTS,
+            ..MeshSource::default()
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        let matrix = |k: usize| {
+            let turn = DQuat::from_xyzw(0.0, 0.0, 0.1 * k as f64, 1.0).normalize();
+            Affine::from_f64(&DAffine3::from_rotation_translation(
+                turn,
+                DVec3::Y * k as f64,
+            ))
+        };
+        Ok(Self {
+            mesh: Arc::new(mesh),
+            palette: Palette::from_matrices((0..JOINTS).map(matrix)),
+        })
+    }
+
+    fn vertices(&self) -> f64 {
+        self.mesh.positions().len() as f64
+    }
+
+    /// Million vertices a second of our kernel.
+    fn ours(&self, level: SimdLevel, budget: Duration) -> Result<f64, Box<dyn Error>> {
+        let mut positions = Vec::new();
+        let matrices = self.palette.matrices();
+        skin_into(&self.mesh, matrices, level, &mut positions)?;
+        let us = median_us(budget, || {
+            let skinned = skin_into(black_box(&self.mesh), matrices, level, &mut positions);
+            assert_eq!(skinned, Ok(()));
+            black_box(&positions);
+        });
+        Ok(self.vertices() / us)
+    }
+}
+
+fn in_cache(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+    let scalar = fastest_scalar(sheet, budget);
+    cells.value("kernel: fastest scalar loop, Mvertices/s", scalar);
+    for level in SimdLevel::available() {
+        let ours = sheet.ours(level, budget)?;
+        cells.value(&format!("kernel: {level}, Mvertices/s"), ours);
+        let bound = match level.name() {
+            "AVX2" => Bound::at_least(4.0),
+            "SSE2" => Bound::at_least(2.5),
+            _ => Bound::NONE,
+        };
+        cells.ratio(
+            &format!("kernel: {level} / fastest scalar loop"),
+            ours / scalar,
+            bound,
+        );
+    }
+    Ok(())
+}
+
+/// The better of two usual loops over an array of structures.
+fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
+    #[derive(Clone, Copy)]
+    struct Vertex {
+        position: [f32; 3],
+        joints: [u16; JOINTS],
+        weights: [f32; JOINTS],
+    }
+    let mesh = &sheet.mesh;
+    let vertices: Vec<Vertex> = (0..mesh.positions().len())
+        .map(|v| {
+            let influences = mesh.influences(clamber::mesh::VertexId(v as u32));
+            let (mut joints, mut weights) = ([0; JOINTS], [0.0; JOINTS]);
+            for (k, (joint, weight)) in influences.enumerate() {
+                (joints[k], weights[k]) = (joint.0 as u16, weight);
+            }
+            Vertex {
+                position: mesh.positions()[v].to_array(),
+                joints,
+                weights,
+            }
+        })
+        .collect();
+    let palette: Vec<[[f32; 4]; 3]> = sheet.palette.matrices().iter().map(|m| m.rows).collect();
+    let mut out = vec![[0.0f32; 3]; vertices.len()];
+    // Each matrix moves the point, weighted sums of points.
+    let points = median_us(budget, || {
+        for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
+            let [x, y, z] = v.position;
+            let mut sum = [0.0; 3];
+            for (joint, weight) in v.joints.iter().zip(v.weights) {
+                let rows = &palette[usize::from(*joint)];
+                for (sum, m) in sum.iter_mut().zip(rows) {
+                    *sum += weight * ((m[0] * x + m[1] * y) + (m[2] * z + m[3]));
+                }
+            }
+            *out = sum;
+        }
+        black_box(&out);
+    });
+    // A weighted sum of matrices moves the point.
+    let matrices = median_us(budget, || {
+        for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
+            let mut blend = [[0.0; 4]; 3];
+            for (joint, weight) in v.joints.iter().zip(v.weights) {
+                let rows = &palette[usize::from(*joint)];
+                for (blend, row) in blend.iter_mut().zip(rows) {
+                    for (b, m) in blend.iter_mut().zip(row) {
+                        *b += weight * m;
+                    }
+                }
+            }
+            let [x, y, z] = v.position;
+            *out = blend.map(|m| (m[0] * x + m[1] * y) + (m[2] * z + m[3]));
+        }
+        black_box(&out);
+    });
+    vertices.len() as f64 / points.min(matrices)
+}
+
+fn in_memory(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+    // Copying reads and writes every byte: half of the bytes moved each.
+    let bytes = sheet.vertices() * BYTES;
+    let from = vec![1u64; (bytes / 16.0) as usize];
+    let mut to = vec![0u64; from.len()];
+    let copy = median_us(budget, || {
+        to.copy_from_slice(black_box(&from));
+        black_box(&to);
+    });
+    let ours = sheet.ours(SimdLevel::best(), budget)?;
+    cells.value("1M vertices: Mvertices/s", ours);
+    cells.value("1M vertices: copying, GB/s", bytes / copy / 1e3);
+    let share = ours * BYTES / (bytes / copy);
+    cells.ratio(
+        "1M vertices: share of copy bandwidth",
+        share,
+        Bound::at_least(0.6),
+    );
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! Whole ticks, timed in turns so that all contenders see the same machine.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use clamber_scenes::measure::quantile;
+
+use crate::contender::Contender;
+use crate::workload::Tick;
+
+/// Streamed between cold ticks, as the rest of a game would: more than the caches hold.
+const STREAM: usize = 64 << 20;
+
+/// Whether a tick finds its data in the caches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Caches {
+    Warm,
+    Cold,
+}
+
+/// Memory that cold ticks stream.
+pub(crate) struct Stream(Vec<u64>);
+
+impl Stream {
+    pub(crate) fn new() -> Self {
+        Self(vec![1; STREAM / 8])
+    }
+
+    fn run(&mut self) {
+        for number in &mut self.0 {
+            *number = number.wrapping_mul(3);
+        }
+        black_box(&self.0);
+    }
+}
+
+/// Median microseconds a tick of each contender, and how many hits each had in all.
+pub(crate) fn race(
+    contenders: &mut [&mut dyn Contender],
+    ticks: &[Tick],
+    caches: Caches,
+    stream: &mut Stream,
+) -> Vec<Lap> {
+    let mut times = vec![Vec::with_capacity(ticks.len()); contenders.len()];
+    let mut hits = vec![0; contenders.len()];
+    // The first ticks warm up.
+    for (turn, tick) in ticks.iter().take(3).chain(ticks).enumerate() {
+        for (k, contender) in contenders.iter_mut().enumerate() {
+            if caches == Caches::Cold {
+                stream.run();
+            } else {
+                // What others evicted comes back with a tick that does not count.
+                black_box(contender.tick(tick));
+            }
+            let start = Instant::now();
+            let found = black_box(contender.tick(tick));
+            let elapsed = start.elapsed().as_secs_f64() * 1e6;
+            if turn >= 3 {
+                times[k].push(elapsed);
+                hits[k] += found;
+            }
+        }
+    }
+    let laps = times.iter_mut().zip(hits);
+    laps.map(|(times, hits)| Lap {
+        median_us: quantile(times, 0.5),
+        quartiles_us: [quantile(times, 0.25), quantile(times, 0.75)],
+        hits,
+    })
+    .collect()
+}
+
+/// One contender's part of a race.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lap {
+    pub(crate) median_us: f64,
+    pub(crate) quartiles_us: [f64; 2],
+    pub(crate) hits: usize,
+}
+
+impl Lap {
+    /// How many times as long as another one.
+    pub(crate) fn over(&self, other: &Self) -> f64 {
+        self.median_us / other.median_us
+    }
+}

@@ -1,0 +1,122 @@
+//! What a tick has to answer: riders standing on a walking giant.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use clamber::mesh::VertexId;
+use clamber::prelude::*;
+use clamber_scenes::Creature;
+use clamber_scenes::giant::giant_of;
+use glam::Vec3;
+
+/// Ticks a second.
+const RATE: f64 = 60.0;
+
+/// Length of every rider's ray, metres.
+pub(crate) const RAY: f32 = 5.0;
+
+/// How deep a rider's spheres stand in the skin, as a share of the radius: a skin width of 10 mm for a
+/// sphere of 0.5 m.
+const DEPTH: f32 = 0.02;
+
+/// One rider's queries of one tick, in model space.
+pub(crate) struct Rider {
+    /// Ten mean edge lengths in radius.
+    pub(crate) body: Sphere,
+    /// One mean edge length in radius.
+    pub(crate) foot: Sphere,
+    pub(crate) ray: Ray,
+    pub(crate) anchor: Anchor,
+}
+
+/// One tick: the pose, and all riders' queries.
+pub(crate) struct Tick {
+    pub(crate) palette: Palette,
+    pub(crate) riders: Vec<Rider>,
+}
+
+/// A giant with its ticks.
+pub(crate) struct Workload {
+    pub(crate) mesh: Arc<ColliderMesh>,
+    pub(crate) ticks: Vec<Tick>,
+}
+
+impl Workload {
+    /// The giant with so many vertices walks for so many ticks, ridden by so many riders, who stand
+    /// on seeded random points of the skin.
+    pub(crate) fn new(
+        creature: &Creature,
+        riders: usize,
+        ticks: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let mesh = creature.collider.clone();
+        let mut surface = SkinnedSurface::new(mesh.clone());
+        let edge = mean_edge(&mesh);
+        let mut rng = fastrand::Rng::with_seed(4);
+        let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+        let walk = walk.ok_or("the giant cannot walk")?;
+        let rest = creature.skeleton.rest_pose();
+        surface.place(&creature.skeleton.palette(&rest)?, Similarity::IDENTITY)?;
+        let mut seats = Vec::with_capacity(riders);
+        while seats.len() < riders {
+            let triangle = TriangleId(rng.u32(0..mesh.triangles().len() as u32));
+            let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+            if fits(&surface, &rider(&surface, &seat, edge)?.body)? {
+                seats.push(seat);
+            }
+        }
+        let mut all = Vec::with_capacity(ticks);
+        for tick in 0..ticks {
+            let pose = walk.sample(&rest, tick as f64 / RATE, Playback::Loop)?;
+            let palette = creature.skeleton.palette(&pose)?;
+            surface.advance(&palette, Similarity::IDENTITY)?;
+            let riders = seats
+                .iter()
+                .map(|seat| rider(&surface, seat, edge))
+                .collect::<Result<_, Box<dyn Error>>>()?;
+            all.push(Tick { palette, riders });
+        }
+        Ok(Self { mesh, ticks: all })
+    }
+}
+
+/// True if a rider's sphere is nowhere deeper in the skin than it stands in it: not in a crease.
+fn fits(surface: &SkinnedSurface, body: &Sphere) -> Result<bool, Box<dyn Error>> {
+    let nearest = surface.closest_point(body.center, body.radius)?;
+    Ok(nearest.is_none_or(|hit| hit.distance > body.radius * (1.0 - 1.5 * DEPTH)))
+}
+
+fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Box<dyn Error>> {
+    let motion = surface.motion(seat, 1.0 / RATE)?;
+    let above = |radius: f32| Sphere {
+        center: motion.position + motion.normal * (radius * (1.0 - DEPTH)),
+        radius,
+    };
+    let body = above(10.0 * edge);
+    Ok(Rider {
+        body,
+        foot: above(edge),
+        ray: Ray::new(body.center, -motion.normal).ok_or("a normal without length")?,
+        anchor: *seat,
+    })
+}
+
+/// Mean length of the edges at rest.
+pub(crate) fn mean_edge(mesh: &ColliderMesh) -> f32 {
+    let place = |v: VertexId| mesh.positions()[v.index()];
+    let lengths = mesh.triangles().iter().flat_map(|&[a, b, c]| {
+        [(a, b), (b, c), (c, a)].map(|(from, to)| f64::from(place(from).distance(place(to))))
+    });
+    let sum: f64 = lengths.sum();
+    (sum / (3 * mesh.triangles().len()) as f64) as f32
+}
+
+/// A place where nothing is.
+pub(crate) fn nowhere(mesh: &ColliderMesh) -> Vec3 {
+    Vec3::splat(100.0 * mesh.radius())
+}
+
+/// The giant with so many vertices.
+pub(crate) fn giant(vertices: usize) -> Result<Creature, Box<dyn Error>> {
+    Ok(giant_of(vertices)?)
+}

@@ -1,0 +1,160 @@
+//! One text for scalar and SIMD arithmetic in f64.
+//!
+//! A geometric test that is written over [`Lanes`] runs on one `f64`, and is then its own readable
+//! reference, or on a SIMD register, one triangle a lane. The trait has only what IEEE 754 rounds
+//! correctly, so every lane has the bits of the scalar run at every SIMD level. For that reason it
+//! has no minimum, maximum, clamp, sum across lanes or fused product: levels differ in them.
+//!
+//! Everything is `#[inline(always)]`, since SIMD instructions are emitted only within the function
+//! that enables them (fearless_simd, MANUAL_INLINING.md); closures would end that.
+
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat};
+
+/// One f64, or as many as a SIMD register holds.
+pub(crate) trait Lanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// What a comparison gives: a truth value per lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+
+    /// `value` in every lane; `self` says how many there are.
+    fn splat(self, value: f64) -> Self;
+    fn sqrt(self) -> Self;
+    /// False where either is NaN, as all comparisons.
+    fn less(self, other: Self) -> Self::Mask;
+    fn at_most(self, other: Self) -> Self::Mask;
+    fn equals(self, other: Self) -> Self::Mask;
+    fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+
+    /// As [`f64::clamp`]: keeps NaN and -0.
+    #[inline(always)]
+    fn clamp_to_unit(self) -> Self {
+        let (zero, one) = (self.splat(0.0), self.splat(1.0));
+        let raised = Self::select(self.less(zero), zero, self);
+        Self::select(one.less(raised), one, raised)
+    }
+}
+
+impl Lanes for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn equals(self, other: Self) -> bool {
+        self == other
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
+        if mask { if_true } else { if_false }
+    }
+}
+
+/// A SIMD register of the level's native width.
+#[derive(Clone, Copy)]
+pub(crate) struct Wide<S: Simd>(pub(crate) S::f64s);
+
+impl<S: Simd> Add for Wide<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl<S: Simd> Sub for Wide<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl<S: Simd> Mul for Wide<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
+impl<S: Simd> Div for Wide<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(self.0 / other.0)
+    }
+}
+
+impl<S: Simd> Neg for Wide<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<S: Simd> Lanes for Wide<S> {
+    type Mask = S::mask64s;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Self(S::f64s::splat(self.0.token(), value))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> S::mask64s {
+        self.0.simd_lt(other.0)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> S::mask64s {
+        self.0.simd_le(other.0)
+    }
+
+    #[inline(always)]
+    fn equals(self, other: Self) -> S::mask64s {
+        self.0.simd_eq(other.0)
+    }
+
+    #[inline(always)]
+    fn select(mask: S::mask64s, if_true: Self, if_false: Self) -> Self {
+        Self(mask.select(if_true.0, if_false.0))
+    }
+}

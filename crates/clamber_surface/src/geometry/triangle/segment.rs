@@ -1,0 +1,153 @@
+//! The point of a triangle nearest to a segment, the axis of a capsule.
+//!
+//! The nearest pair of a segment and a triangle lies at an edge (Ericson 2004, 5.1.9), at the foot
+//! of one end on the face, or where the segment crosses the face. As for [points](super::point),
+//! every such pair is formed with one point on each of the two and measured, and the best is taken:
+//! no decision by sign can make the answer worse than rounding.
+
+use glam::Vec3;
+
+use super::TrianglePoint;
+use super::candidate::{Candidate, between, fraction};
+use super::point::{Edge, OnEdge, edges, foot, on_edges, volumes, weighted};
+use crate::geometry::lanes::Lanes;
+use crate::geometry::vector3::Vector3;
+use crate::geometry::widen;
+
+/// Pairs this near, as a share of the lengths involved, are one point where the segment passes
+/// through the face: 32 roundings of 2^-53. Smaller, and a crossing shows a distance of rounding;
+/// larger, and a gap is taken for a crossing.
+const TOUCHING: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// The point of triangle `corners` nearest to the segment from `a` to `b`, with its distance from the
+/// segment: 0 where they cross, and then it is the crossing point (crossings of a sliver may show
+/// the rounding that the [module](super) states).
+///
+/// The same in every bit with the ends swapped, and as [`closest_point`](super::closest_point) where
+/// they are equal.
+pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> TrianglePoint {
+    let [a, b] = ordered(a, b).map(widen);
+    let from_a = corners.map(|corner| Vector3::from(widen(corner) - a));
+    let from_b = corners.map(|corner| Vector3::from(widen(corner) - b));
+    nearest_to_segment(from_a, from_b, (b - a).into()).into()
+}
+
+/// The lexicographically smaller end first.
+pub(super) fn ordered(a: Vec3, b: Vec3) -> [Vec3; 2] {
+    if b.to_array() < a.to_array() {
+        [b, a]
+    } else {
+        [a, b]
+    }
+}
+
+/// The point nearest to a segment from the origin to `axis`, given the corners relative to the
+/// segment's start and to its end.
+#[inline(always)]
+pub(super) fn nearest_to_segment<L: Lanes>(
+    from_start: [Vector3<L>; 3],
+    from_end: [Vector3<L>; 3],
+    axis: Vector3<L>,
+) -> Candidate<L> {
+    let [ab, bc, ca] = edges(from_start);
+    let [ab, bc, ca] = [
+        edge_to_segment(ab, axis),
+        edge_to_segment(bc, axis),
+        edge_to_segment(ca, axis),
+    ];
+    on_edges([ab, bc, ca])
+        .or_nearer(foot(from_start))
+        .or_nearer(on_face(from_start, from_end, axis))
+}
+
+/// The point of an edge nearest to the segment.
+///
+/// Three steps, each clamped: the edge's point nearest to the segment's line, the segment's point
+/// nearest to that, the edge's point nearest to that. For all but parallel lines the first is the
+/// answer already; where they are nearly parallel it may be far off *along* both, which the
+/// other two steps forgive.
+#[inline(always)]
+fn edge_to_segment<L: Lanes>(edge: Edge<L>, axis: Vector3<L>) -> OnEdge<L> {
+    let [low, high] = edge.ends;
+    // By the cross product: a difference of squares would keep half the digits.
+    let across = (high - low).cross(axis);
+    let t = fraction(-low.cross(axis).dot(across), across.length_squared());
+    let near = point_of_axis(axis, nearest_on_axis(axis, between(edge.ends, t)));
+    Edge {
+        ends: [low - near, high - near],
+        swapped: edge.swapped,
+    }
+    .nearest()
+}
+
+/// The point where the segment's line passes through the face's plane, clamped to both: the crossing
+/// or, at a clamped end, the foot of that end. Only a segment parallel to the plane has none; all its
+/// points are as far, and the foot of its start stands for them.
+///
+/// The normal of a sliver of height h and length 1 is off by 2^-53 / h, and with it the first
+/// guess. One step of Newton's method from that guess squares the error.
+#[inline(always)]
+fn on_face<L: Lanes>(
+    corners: [Vector3<L>; 3],
+    from_end: [Vector3<L>; 3],
+    axis: Vector3<L>,
+) -> Candidate<L> {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a);
+    let start = normal.dot(a);
+    let apart = start - normal.dot(from_end[0]);
+    let zero = apart.splat(0.0);
+    let slanted = apart.less(zero) | zero.less(apart);
+
+    let s = (start / apart).clamp_to_unit();
+    let guess = point_of_axis(axis, s);
+    let [x, y, z] = to_face(volumes([a - guess, b - guess, c - guess], normal));
+    let met = weighted(corners, [x, y, z]);
+
+    let s = (s - normal.dot(guess - met) / apart).clamp_to_unit();
+    let near = point_of_axis(axis, s);
+    let off = near - met;
+    let normal_sq = normal.length_squared();
+    let weights = to_face([
+        x + normal.dot(off.cross(b - c)) / normal_sq,
+        y + normal.dot(off.cross(c - a)) / normal_sq,
+        z + normal.dot(off.cross(a - b)) / normal_sq,
+    ]);
+    let distance = (weighted(corners, weights) - near).length();
+
+    let reach_sq = a.length_squared() + (b - a).length_squared() + axis.length_squared();
+    let touching = (distance * distance).at_most(reach_sq * zero.splat(TOUCHING * TOUCHING));
+    Candidate {
+        weights,
+        distance: L::select(touching, zero, distance),
+    }
+    .only_where(slanted)
+}
+
+/// Weights of a point of the face: none negative, sum 1.
+#[inline(always)]
+fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
+    let zero = x.splat(0.0);
+    let x = L::select(zero.less(x), x, zero);
+    let y = L::select(zero.less(y), y, zero);
+    let z = L::select(zero.less(z), z, zero);
+    let sum = x + y + z;
+    [x / sum, y / sum, z / sum]
+}
+
+/// Where on the segment from the origin to `axis` its point nearest to `p` lies, 0..1.
+#[inline(always)]
+fn nearest_on_axis<L: Lanes>(axis: Vector3<L>, p: Vector3<L>) -> L {
+    fraction(p.dot(axis), axis.length_squared())
+}
+
+#[inline(always)]
+fn point_of_axis<L: Lanes>(axis: Vector3<L>, s: L) -> Vector3<L> {
+    let zero = s.splat(0.0);
+    let origin = Vector3 {
+        x: zero,
+        y: zero,
+        z: zero,
+    };
+    between([origin, axis], s)
+}

@@ -1,0 +1,38 @@
+//! From a mesh to clusters and the hierarchy over them.
+
+use super::super::ColliderMesh;
+use super::super::hierarchy::Hierarchy;
+use super::cost::Meter;
+use super::refine::{Fans, refine};
+use super::split::Splitter;
+use super::tree::Tree;
+use super::{Clusters, MAX_SLOTS};
+use crate::geometry::Affine;
+
+/// Vertices that a leaf may have before its borders are straightened: few have more than
+/// [`MAX_SLOTS`] after that, and cutting all that do at first would leave many half empty.
+const RAGGED_SLOTS: usize = 72;
+
+/// Clusters all triangles that have a part. `poses`, palettes, are what bounds should be small in;
+/// without any, small weight spreads and small sizes are sought.
+pub(crate) fn build(mesh: &ColliderMesh, poses: &[Vec<Affine>]) -> (Clusters, Hierarchy) {
+    let tree = cut(mesh, poses);
+    let clusters = Clusters::pack(mesh, &tree);
+    let hierarchy = Hierarchy::over(&clusters, &tree);
+    (clusters, hierarchy)
+}
+
+/// The tree of all parts.
+pub(super) fn cut(mesh: &ColliderMesh, poses: &[Vec<Affine>]) -> Tree {
+    let mut splitter = Splitter::new(Meter::new(mesh, poses));
+    splitter.max_slots = RAGGED_SLOTS;
+    splitter.mesh();
+    // What has too many vertices still when its borders are straight is cut once more.
+    let mut ragged = core::mem::take(&mut splitter.tree);
+    let fans = Fans::new(mesh);
+    refine(&mut splitter.meter, &fans, &mut ragged);
+    splitter.max_slots = MAX_SLOTS;
+    splitter.tree.root = ragged.root.map(|root| splitter.recut(&ragged, root));
+    refine(&mut splitter.meter, &fans, &mut splitter.tree);
+    splitter.tree
+}

@@ -1,0 +1,142 @@
+//! Clusters: up to 64 vertices and 96 triangles of one part that are skinned together.
+//!
+//! Laid out for the skinning kernel: per cluster a list of joints of its own, structure of arrays, one
+//! row of weights per joint, no gathers. A vertex on the border of several clusters stands in each of
+//! them; the first one owns it.
+
+mod build;
+mod cost;
+mod pack;
+mod parts;
+mod refine;
+mod split;
+pub(crate) mod tree;
+
+pub(crate) use build::build;
+
+use super::{PartId, TriangleId, VertexId};
+
+/// Most vertices of a cluster.
+pub(crate) const MAX_SLOTS: usize = 64;
+
+/// Most triangles of a cluster.
+pub(crate) const MAX_TRIANGLES: usize = 96;
+
+/// Slots of a row. A multiple of every SIMD width.
+pub(crate) const ROW: usize = 16;
+
+/// Triangles of a block.
+pub(crate) const BLOCK: usize = 32;
+
+/// A number for each of [`ROW`] slots.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Row(pub(crate) [f32; ROW]);
+
+/// The corners of [`BLOCK`] triangles, as slots of their cluster. What is beyond the cluster's last
+/// triangle has the corners 0, 0, 0.
+#[repr(C, align(32))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CornerBlock(pub(crate) [[u8; BLOCK]; 3]);
+
+/// Where one cluster's data stand in the arrays of [`Clusters`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Cluster {
+    pub(crate) part: PartId,
+    /// Its first row of slots.
+    pub(crate) first_row: u32,
+    /// The first of its `(3 + joints) * rows` rows of rest data: x of all its slots, y, z, then the
+    /// weights of its first joint, of its second, and so on. Slots beyond the last
+    /// repeat the first.
+    pub(crate) first_rest: u32,
+    pub(crate) first_joint: u32,
+    pub(crate) first_block: u32,
+    pub(crate) joints: u32,
+    /// Vertices.
+    pub(crate) slots: u8,
+    /// So many of them, the first ones, are this cluster's own; the others are copies.
+    pub(crate) owned: u8,
+    pub(crate) triangles: u8,
+}
+
+/// All clusters of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Clusters {
+    pub(crate) clusters: Vec<Cluster>,
+    pub(crate) rest: Vec<Row>,
+    /// Joint ids, ascending in each cluster.
+    pub(crate) joints: Vec<u32>,
+    pub(crate) corners: Vec<CornerBlock>,
+    /// [`BLOCK`] per block; what is beyond a cluster's last triangle is `TriangleId(u32::MAX)`.
+    pub(crate) triangles: Vec<TriangleId>,
+    /// [`ROW`] per row; what is beyond a cluster's last slot is `VertexId(u32::MAX)`.
+    pub(crate) vertices: Vec<VertexId>,
+    /// Vertices without triangles, which no cluster holds, ascending.
+    pub(crate) loose: Vec<VertexId>,
+}
+
+impl Cluster {
+    /// Without vertices.
+    pub(crate) const NONE: Self = Self {
+        part: PartId(0),
+        first_row: 0,
+        first_rest: 0,
+        first_joint: 0,
+        first_block: 0,
+        joints: 0,
+        slots: 0,
+        owned: 0,
+        triangles: 0,
+    };
+
+    /// How many rows its slots take.
+    pub(crate) fn rows(&self) -> usize {
+        usize::from(self.slots).div_ceil(ROW)
+    }
+
+    /// Its rows of rest data.
+    pub(crate) fn rest<'a>(&self, clusters: &'a Clusters) -> &'a [Row] {
+        let first = self.first_rest as usize;
+        &clusters.rest[first..first + (3 + self.joints as usize) * self.rows()]
+    }
+
+    /// Its joints, ascending.
+    pub(crate) fn joints<'a>(&self, clusters: &'a Clusters) -> &'a [u32] {
+        let first = self.first_joint as usize;
+        &clusters.joints[first..first + self.joints as usize]
+    }
+
+    /// Its vertices, slot by slot.
+    pub(crate) fn vertices<'a>(&self, clusters: &'a Clusters) -> &'a [VertexId] {
+        let first = self.first_row as usize * ROW;
+        &clusters.vertices[first..first + usize::from(self.slots)]
+    }
+
+    /// Its triangles.
+    pub(crate) fn triangles<'a>(&self, clusters: &'a Clusters) -> &'a [TriangleId] {
+        let first = self.first_block as usize * BLOCK;
+        &clusters.triangles[first..first + usize::from(self.triangles)]
+    }
+
+    /// The corners of its triangles.
+    pub(crate) fn corners<'a>(&self, clusters: &'a Clusters) -> &'a [CornerBlock] {
+        let first = self.first_block as usize;
+        &clusters.corners[first..first + usize::from(self.triangles).div_ceil(BLOCK)]
+    }
+}
+
+impl Clusters {
+    /// In bytes.
+    pub(crate) fn memory(&self) -> usize {
+        size_of_val(&self.clusters[..])
+            + size_of_val(&self.rest[..])
+            + size_of_val(&self.joints[..])
+            + size_of_val(&self.corners[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.vertices[..])
+            + size_of_val(&self.loose[..])
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,147 @@
+//! Lays clusters out for the skinning kernel.
+
+use super::super::{ColliderMesh, TriangleId, VertexId};
+use super::tree::{Leaf, Tree};
+use super::{BLOCK, Cluster, Clusters, CornerBlock, ROW, Row};
+
+/// Packs leaf after leaf; what is indexed by vertex or joint is kept between them.
+struct Packer<'a> {
+    mesh: &'a ColliderMesh,
+    packed: Clusters,
+    /// By vertex: whether a cluster holds it, and its slot in the last one that does.
+    held: Vec<bool>,
+    slot: Vec<u8>,
+    /// By joint: its place in the cluster being packed.
+    place: Vec<u32>,
+    vertices: Vec<VertexId>,
+    joints: Vec<u32>,
+}
+
+impl Clusters {
+    /// One cluster for each leaf, which has at most [`super::MAX_SLOTS`] vertices and
+    /// [`super::MAX_TRIANGLES`] triangles.
+    pub(super) fn pack(mesh: &ColliderMesh, tree: &Tree) -> Self {
+        let vertices = mesh.positions().len();
+        let mut packer = Packer {
+            mesh,
+            packed: Self::default(),
+            held: vec![false; vertices],
+            slot: vec![0; vertices],
+            place: vec![0; mesh.joint_count()],
+            vertices: Vec::new(),
+            joints: Vec::new(),
+        };
+        for leaf in &tree.leaves {
+            packer.push(leaf);
+        }
+        let held = packer.held.iter().enumerate();
+        let loose = held.filter(|(_, held)| !**held);
+        packer.packed.loose = loose.map(|(v, _)| VertexId(v as u32)).collect();
+        packer.packed
+    }
+}
+
+impl Packer<'_> {
+    fn push(&mut self, leaf: &Leaf) {
+        let owned = self.collect_vertices(leaf);
+        self.collect_joints();
+        let packed = &self.packed;
+        let cluster = Cluster {
+            part: leaf.part,
+            first_row: (packed.vertices.len() / ROW) as u32,
+            first_rest: packed.rest.len() as u32,
+            first_joint: packed.joints.len() as u32,
+            first_block: packed.corners.len() as u32,
+            joints: self.joints.len() as u32,
+            slots: self.vertices.len() as u8,
+            owned: owned as u8,
+            triangles: leaf.triangles.len() as u8,
+        };
+        self.push_rest(&cluster);
+        self.push_triangles(leaf);
+        self.packed.joints.extend(&self.joints);
+        self.packed.vertices.extend(&self.vertices);
+        let padded = self.packed.vertices.len().next_multiple_of(ROW);
+        self.packed.vertices.resize(padded, VertexId(u32::MAX));
+        self.packed.clusters.push(cluster);
+    }
+
+    /// Gives every vertex of the leaf its slot, and says how many are new.
+    fn collect_vertices(&mut self, leaf: &Leaf) -> usize {
+        let corners = leaf.triangles.iter();
+        let corners = corners.flat_map(|t| self.mesh.triangles()[t.index()]);
+        self.vertices.clear();
+        self.vertices.extend(corners);
+        let held = &mut self.held;
+        self.vertices
+            .sort_unstable_by_key(|v| (held[v.index()], *v));
+        self.vertices.dedup();
+        let owned = self.vertices.partition_point(|v| !held[v.index()]);
+        for (slot, vertex) in self.vertices.iter().enumerate() {
+            held[vertex.index()] = true;
+            self.slot[vertex.index()] = slot as u8;
+        }
+        owned
+    }
+
+    fn collect_joints(&mut self) {
+        self.joints.clear();
+        for vertex in &self.vertices {
+            let (joints, _) = self.mesh.influence_slices(vertex.index());
+            self.joints.extend(joints);
+        }
+        self.joints.sort_unstable();
+        self.joints.dedup();
+        for (place, joint) in self.joints.iter().enumerate() {
+            self.place[*joint as usize] = place as u32;
+        }
+    }
+
+    fn push_rest(&mut self, cluster: &Cluster) {
+        let rows = cluster.rows();
+        let rest = &mut self.packed.rest;
+        let first = rest.len();
+        rest.resize(first + (3 + self.joints.len()) * rows, Row::default());
+        let rest = &mut rest[first..];
+        for (slot, vertex) in self.vertices.iter().enumerate() {
+            let (row, lane) = (slot / ROW, slot % ROW);
+            let position = self.mesh.positions()[vertex.index()].to_array();
+            for (axis, coordinate) in position.into_iter().enumerate() {
+                rest[axis * rows + row].0[lane] = coordinate;
+            }
+            let (joints, weights) = self.mesh.influence_slices(vertex.index());
+            for (joint, weight) in joints.iter().zip(weights) {
+                let place = self.place[*joint as usize] as usize;
+                rest[(3 + place) * rows + row].0[lane] = *weight;
+            }
+        }
+        for row in rest.chunks_mut(rows) {
+            let first = row[0].0[0];
+            for slot in self.vertices.len()..rows * ROW {
+                row[slot / ROW].0[slot % ROW] = first;
+            }
+        }
+        for row in rest.chunks_mut(rows) {
+            let first = row[0].0[0];
+            for slot in self.vertices.len()..rows * ROW {
+                row[slot / ROW].0[slot % ROW] = first;
+            }
+        }
+    }
+
+    fn push_triangles(&mut self, leaf: &Leaf) {
+        for triangles in leaf.triangles.chunks(BLOCK) {
+            let mut block = CornerBlock([[0; BLOCK]; 3]);
+            for (lane, triangle) in triangles.iter().enumerate() {
+                let corners = self.mesh.triangles()[triangle.index()];
+                for (corner, vertex) in corners.into_iter().enumerate() {
+                    block.0[corner][lane] = self.slot[vertex.index()];
+                }
+            }
+            self.packed.corners.push(block);
+            self.packed.triangles.extend(triangles);
+        }
+        let padded = self.packed.triangles.len().next_multiple_of(BLOCK);
+        self.packed.triangles.resize(padded, TriangleId(u32::MAX));
+    }
+}

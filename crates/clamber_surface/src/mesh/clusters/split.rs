@@ -1,0 +1,264 @@
+//! Cuts a part's triangles in two, and these again, until every set makes a cluster.
+//!
+//! A set is cut across one of a few directions, or by the weight of a joint, so that either side
+//! makes a whole number of nearly full clusters: the candidate with the cheapest sides wins. A set
+//! that is not small is judged by a sample; cutting n triangles costs O(n log n).
+
+use core::ops::Range;
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::super::{PartId, TriangleId, VertexId};
+use super::cost::{Extent, Meter};
+use super::tree::{Branch, Fork, Leaf, Tree};
+use super::{MAX_SLOTS, MAX_TRIANGLES};
+use crate::geometry::widen;
+
+/// Triangles that a cluster should have after the cuts: below [`MAX_TRIANGLES`], so that there is
+/// room for those that straighten its border.
+const WANTED_TRIANGLES: usize = 92;
+
+/// Vertices that a cluster should have at most, for meshes whose triangles share few.
+const WANTED_SLOTS: usize = 63;
+
+/// So many triangles of a set at most are looked at to choose a direction. More gain little.
+const SAMPLE: usize = 512;
+
+/// So many of a set's joints, those of the widest spread of weights, are candidates.
+const JOINT_CANDIDATES: usize = 2;
+
+/// What triangles are ordered by.
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    Along(Vec3),
+    Joint(u32),
+}
+
+/// Cuts parts; see the module.
+pub(super) struct Splitter<'a> {
+    pub(super) meter: Meter<'a>,
+    pub(super) tree: Tree,
+    /// Sums of the three corners, by triangle.
+    centers: Vec<Vec3>,
+    /// The triangles being cut, permuted.
+    triangles: Vec<u32>,
+    /// Sort key and triangle; ties go to the smaller triangle.
+    keys: Vec<u64>,
+    extent: Extent,
+    /// Vertices of the sample, over which a cut is judged.
+    whole: usize,
+    /// Most vertices of a leaf.
+    pub(super) max_slots: usize,
+}
+
+/// A cut of a sample.
+struct Candidate {
+    order: Order,
+    cost: f32,
+    areas: [f32; 2],
+}
+
+impl<'a> Splitter<'a> {
+    pub(super) fn new(meter: Meter<'a>) -> Self {
+        let mesh = meter.mesh;
+        let positions = mesh.positions();
+        let center = |corners: &[VertexId; 3]| {
+            let [a, b, c] = corners.map(|v| positions[v.index()]);
+            a + b + c
+        };
+        Self {
+            centers: mesh.triangles().iter().map(center).collect(),
+            meter,
+            tree: Tree::default(),
+            triangles: Vec::new(),
+            keys: Vec::new(),
+            extent: Extent::default(),
+            whole: 1,
+            max_slots: MAX_SLOTS,
+        }
+    }
+
+    /// Cuts one part, which has triangles, and appends its leaves.
+    pub(super) fn part(&mut self, part: PartId) -> Branch {
+        let triangles = &self.meter.mesh.parts()[part.index()].triangles;
+        self.triangles.clear();
+        self.triangles.extend(triangles.iter().map(|t| t.0));
+        self.cut(0..triangles.len(), part)
+    }
+
+    /// Cuts the leaves that have too many vertices, in a tree that is otherwise that of `from`.
+    pub(super) fn recut(&mut self, from: &Tree, branch: Branch) -> Branch {
+        match branch {
+            Branch::Leaf(index) => {
+                let leaf = &from.leaves[index as usize];
+                self.triangles.clear();
+                self.triangles.extend(leaf.triangles.iter().map(|t| t.0));
+                self.cut(0..self.triangles.len(), leaf.part)
+            }
+            Branch::Fork(index) => {
+                let fork = from.forks[index as usize];
+                let sides = fork.sides.map(|side| self.recut(from, side));
+                self.tree.forks.push(Fork { sides, ..fork });
+                Branch::Fork(self.tree.forks.len() as u32 - 1)
+            }
+        }
+    }
+
+    fn cut(&mut self, range: Range<usize>, part: PartId) -> Branch {
+        let count = range.len();
+        let slots = self
+            .meter
+            .slots(self.triangles[range.clone()].iter().copied());
+        if count <= MAX_TRIANGLES && slots <= self.max_slots {
+            let triangles = self.triangles[range].iter().map(|t| TriangleId(*t));
+            self.tree.leaves.push(Leaf {
+                part,
+                triangles: triangles.collect(),
+            });
+            return Branch::Leaf(self.tree.leaves.len() as u32 - 1);
+        }
+        let by_count = count.div_ceil(WANTED_TRIANGLES);
+        let clusters = by_count.max(slots.div_ceil(WANTED_SLOTS)).clamp(2, count);
+        let left = count * (clusters / 2) / clusters;
+        let best = self.choose(range.clone(), left);
+        self.order(range.clone(), 1, best.order, left);
+        let chosen = self.keys.iter().map(|key| *key as u32);
+        for (place, triangle) in self.triangles[range.clone()].iter_mut().zip(chosen) {
+            *place = triangle;
+        }
+        let middle = range.start + left;
+        let sides = [
+            self.cut(range.start..middle, part),
+            self.cut(middle..range.end, part),
+        ];
+        self.tree.forks.push(Fork {
+            sides,
+            areas: best.areas,
+        });
+        Branch::Fork(self.tree.forks.len() as u32 - 1)
+    }
+
+    /// The cheapest order to cut in, after `left` triangles.
+    fn choose(&mut self, range: Range<usize>, left: usize) -> Candidate {
+        let count = range.len();
+        let stride = count.div_ceil(SAMPLE);
+        let sampled = count.div_ceil(stride);
+        let cut = (sampled * left / count).clamp(1, sampled - 1);
+        let mut best = Candidate {
+            order: Order::Along(Vec3::X),
+            cost: f32::INFINITY,
+            areas: [0.0; 2],
+        };
+        for order in self.candidates(range.clone(), stride) {
+            self.order(range.clone(), stride, order, cut);
+            let mut areas = [0.0; 2];
+            let (mut slots, mut cost) = (0, 0.0);
+            let sides = [&self.keys[..cut], &self.keys[cut..]];
+            for (keys, area) in sides.into_iter().zip(&mut areas) {
+                let triangles = keys.iter().map(|key| *key as u32);
+                self.meter.extent(triangles, &mut self.extent);
+                let radius = self.meter.radius(&self.extent);
+                *area = radius * radius;
+                cost += keys.len() as f32 * *area;
+                slots += self.extent.vertices;
+            }
+            cost *= copies_cost(slots as f32 / self.whole as f32);
+            if cost < best.cost {
+                best = Candidate { order, cost, areas };
+            }
+        }
+        best
+    }
+
+    fn candidates(&mut self, range: Range<usize>, stride: usize) -> Vec<Order> {
+        let triangles = self.triangles[range].iter().copied().step_by(stride);
+        let mut orders = vec![
+            Order::Along(Vec3::X),
+            Order::Along(Vec3::Y),
+            Order::Along(Vec3::Z),
+        ];
+        let centers = triangles.clone().map(|t| self.centers[t as usize]);
+        orders.extend(principal_axes(centers).map(Order::Along));
+        self.meter.extent(triangles, &mut self.extent);
+        let vertices = self.extent.vertices;
+        self.whole = vertices;
+        let spans = self.extent.weights.iter();
+        let mut spreads: Vec<_> = spans.map(|s| (s.spread(vertices), s.joint)).collect();
+        spreads.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let varying = spreads.iter().filter(|(spread, _)| *spread > 0.0);
+        orders.extend(varying.take(JOINT_CANDIDATES).map(|s| Order::Joint(s.1)));
+        orders
+    }
+
+    /// Puts every `stride`th triangle of a range into `keys`, the first `left` of the order first.
+    fn order(&mut self, range: Range<usize>, stride: usize, order: Order, left: usize) {
+        self.keys.clear();
+        let (mesh, centers) = (self.meter.mesh, &self.centers);
+        let triangles = self.triangles[range].iter().step_by(stride);
+        let key = |t: &u32| {
+            let value = match order {
+                Order::Along(axis) => centers[*t as usize].dot(axis),
+                Order::Joint(joint) => {
+                    let weight = |v: VertexId| {
+                        let (joints, weights) = mesh.influence_slices(v.index());
+                        joints.binary_search(&joint).map_or(0.0, |at| weights[at])
+                    };
+                    mesh.triangles()[*t as usize].into_iter().map(weight).sum()
+                }
+            };
+            u64::from(ascending_bits(value)) << 32 | u64::from(*t)
+        };
+        self.keys.extend(triangles.map(key));
+        self.keys.select_nth_unstable(left);
+    }
+}
+
+/// What the vertices that stand on both sides weigh: the tenth power of slots by vertices.
+/// Powers below 5 leave 5 to 15 of 100 more slots; those from 5 on differ little.
+fn copies_cost(ratio: f32) -> f32 {
+    let second = ratio * ratio;
+    let fourth = second * second;
+    fourth * fourth * second
+}
+
+/// Bits that compare as integers as `f32::total_cmp` compares numbers.
+pub(super) fn ascending_bits(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 0 {
+        bits | 1 << 31
+    } else {
+        !bits
+    }
+}
+
+/// The directions in which points spread most and second most, by power iteration on their
+/// covariance. Near enough to cut across: nothing depends on their exactness.
+pub(super) fn principal_axes(points: impl Iterator<Item = Vec3> + Clone) -> [Vec3; 2] {
+    let sums = points.clone().map(|p| (widen(p), 1.0));
+    let (sum, count) = sums.fold((DVec3::ZERO, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let mean = sum / f64::max(count, 1.0);
+    let mut covariance = DMat3::ZERO;
+    for p in points {
+        let d = widen(p) - mean;
+        covariance += DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+    }
+    let first = dominant_direction(&covariance);
+    let along = first.dot(covariance * first);
+    let rest =
+        covariance - DMat3::from_cols(first * first.x, first * first.y, first * first.z) * along;
+    [first.as_vec3(), dominant_direction(&rest).as_vec3()]
+}
+
+fn dominant_direction(matrix: &DMat3) -> DVec3 {
+    let mut direction = DVec3::new(1.0, 0.9, 0.8);
+    for _ in 0..12 {
+        let next = *matrix * direction;
+        let size = next.abs().max_element();
+        // Not so for NaN either.
+        if !(size > 0.0 && size < f64::INFINITY) {
+            return DVec3::X;
+        }
+        direction = next / size;
+    }
+    direction.normalize()
+}

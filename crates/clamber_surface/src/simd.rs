@@ -1,0 +1,96 @@
+//! The instruction set that the fast paths run on, chosen at run time.
+
+use std::fmt;
+
+use fearless_simd::Level;
+
+/// An instruction set that this machine has. All give the same bits; they differ in speed alone.
+///
+/// ```
+/// use clamber_surface::SimdLevel;
+///
+/// let levels = SimdLevel::available();
+/// assert_eq!(levels[0], SimdLevel::best());
+/// assert_eq!(levels.last().map(|level| level.name()), Some("scalar"));
+/// ```
+#[derive(Clone, Copy)]
+pub struct SimdLevel(Level);
+
+impl SimdLevel {
+    /// The widest one.
+    pub fn best() -> Self {
+        Self(Level::new())
+    }
+
+    /// All of them, the widest first, plain scalar code last.
+    pub fn available() -> Vec<Self> {
+        let best = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let mut levels: Vec<Level> = [
+            best.as_avx512().map(Level::Avx512),
+            best.as_avx2().map(Level::Avx2),
+            best.as_sse4_2().map(Level::Sse4_2),
+            best.as_sse2().map(Level::Sse2),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let mut levels: Vec<Level> = Some(best)
+            .filter(|level| !level.is_fallback())
+            .into_iter()
+            .collect();
+        levels.push(Level::fallback());
+        levels.into_iter().map(Self).collect()
+    }
+
+    /// As it is commonly called.
+    pub fn name(&self) -> &'static str {
+        match self.0 {
+            Level::Fallback(_) => "scalar",
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon(_) => "NEON",
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Level::WasmSimd128(_) => "WASM SIMD",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Sse2(_) => "SSE2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Sse4_2(_) => "SSE4.2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2(_) => "AVX2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx512(_) => "AVX-512",
+            _ => "unknown",
+        }
+    }
+
+    pub(crate) fn level(self) -> Level {
+        self.0
+    }
+}
+
+impl PartialEq for SimdLevel {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for SimdLevel {}
+
+impl Default for SimdLevel {
+    fn default() -> Self {
+        Self::best()
+    }
+}
+
+impl fmt::Debug for SimdLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl fmt::Display for SimdLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,123 @@
+//! The fast kernel: one cluster at a time, as many vertices at once as the machine is wide.
+
+use fearless_simd::{Simd, SimdBase, dispatch};
+
+use crate::geometry::Affine;
+use crate::mesh::clusters::{Cluster, Clusters, MAX_SLOTS, ROW, Row};
+use crate::simd::SimdLevel;
+
+/// Positions of a cluster's slots: all x, all y, all z. Slots beyond the cluster's rows hold
+/// whatever they held.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ClusterPositions(pub(crate) [[f32; MAX_SLOTS]; 3]);
+
+impl ClusterPositions {
+    pub(crate) const ZERO: Self = Self([[0.0; MAX_SLOTS]; 3]);
+}
+
+/// Skins all slots of a cluster; the bits are those of [`super::skin_vertex`]. The palette must have
+/// a matrix for every joint of the mesh.
+pub(crate) fn skin_cluster(
+    level: SimdLevel,
+    clusters: &Clusters,
+    cluster: &Cluster,
+    palette: &[Affine],
+    positions: &mut ClusterPositions,
+) {
+    let joints = cluster.joints(clusters);
+    let rest = cluster.rest(clusters);
+    let all = cluster.rows();
+    dispatch!(level.level(), simd => skin_rows(simd, rest, all, all, joints, palette, positions));
+}
+
+/// [`skin_cluster`] for the rows that hold vertices of the cluster's own.
+pub(crate) fn skin_owned(
+    level: SimdLevel,
+    clusters: &Clusters,
+    cluster: &Cluster,
+    palette: &[Affine],
+    positions: &mut ClusterPositions,
+) {
+    let joints = cluster.joints(clusters);
+    let rest = cluster.rest(clusters);
+    let (all, own) = (cluster.rows(), usize::from(cluster.owned).div_ceil(ROW));
+    dispatch!(level.level(), simd => skin_rows(simd, rest, all, own, joints, palette, positions));
+}
+
+/// The first `wanted` of a cluster's `rows`.
+#[inline(always)]
+fn skin_rows<S: Simd>(
+    simd: S,
+    rest: &[Row],
+    rows: usize,
+    wanted: usize,
+    joints: &[u32],
+    palette: &[Affine],
+    positions: &mut ClusterPositions,
+) {
+    let (x, rest) = rest.split_at(rows);
+    let (y, rest) = rest.split_at(rows);
+    let (z, weights) = rest.split_at(rows);
+    for row in 0..wanted {
+        let place = [&x[row], &y[row], &z[row]];
+        let weights = weights[row..].iter().step_by(rows);
+        let influences = joints.iter().zip(weights);
+        let from = row * ROW;
+        // Two vectors share the broadcast matrix elements where registers suffice for two.
+        if S::f32s::LEN == ROW {
+            skin_vectors::<S, 1>(simd, place, 0, influences, palette, from, positions);
+        } else {
+            for lane in (0..ROW).step_by(2 * S::f32s::LEN) {
+                let influences = influences.clone();
+                skin_vectors::<S, 2>(
+                    simd,
+                    place,
+                    lane,
+                    influences,
+                    palette,
+                    from + lane,
+                    positions,
+                );
+            }
+        }
+    }
+}
+
+/// `N` vectors of slots, from `lane` of a row on, to `positions` from slot `to` on.
+#[inline(always)]
+fn skin_vectors<'a, S: Simd, const N: usize>(
+    simd: S,
+    place: [&Row; 3],
+    lane: usize,
+    influences: impl Iterator<Item = (&'a u32, &'a Row)>,
+    palette: &[Affine],
+    to: usize,
+    positions: &mut ClusterPositions,
+) {
+    let vector = |row: &Row, n: usize| {
+        let start = lane + n * S::f32s::LEN;
+        S::f32s::from_slice(simd, &row.0[start..start + S::f32s::LEN])
+    };
+    let zero = S::f32s::splat(simd, 0.0);
+    let p: [[S::f32s; 3]; N] =
+        std::array::from_fn(|n| std::array::from_fn(|axis| vector(place[axis], n)));
+    let mut sum = [[zero; 3]; N];
+    for (joint, weights) in influences {
+        let rows = &palette[*joint as usize].rows;
+        let weight: [S::f32s; N] = std::array::from_fn(|n| vector(weights, n));
+        for (axis, row) in rows.iter().enumerate() {
+            let m = row.map(|element| S::f32s::splat(simd, element));
+            for ((sum, [x, y, z]), weight) in sum.iter_mut().zip(p).zip(weight) {
+                let moved = (m[0] * x + m[1] * y) + (m[2] * z + m[3]);
+                sum[axis] += weight * moved;
+            }
+        }
+    }
+    for (n, sum) in sum.into_iter().enumerate() {
+        let start = to + n * S::f32s::LEN;
+        for (vector, axis) in sum.into_iter().zip(&mut positions.0) {
+            vector.store_slice(&mut axis[start..start + S::f32s::LEN]);
+        }
+    }
+}

@@ -1,0 +1,20 @@
+use glam::Vec3;
+
+use crate::geometry::Affine;
+use crate::mesh::ColliderMesh;
+
+/// One vertex by the contract, plainly. The palette must have as many matrices as the mesh has
+/// joints.
+#[inline]
+pub(crate) fn skin_vertex(mesh: &ColliderMesh, palette: &[Affine], v: usize) -> Vec3 {
+    let p = mesh.positions()[v];
+    let (joints, weights) = mesh.influence_slices(v);
+    let mut sum = Vec3::ZERO;
+    for (joint, weight) in joints.iter().zip(weights) {
+        let moved = palette[*joint as usize].transform_point(p);
+        sum.x += weight * moved.x;
+        sum.y += weight * moved.y;
+        sum.z += weight * moved.z;
+    }
+    sum
+}

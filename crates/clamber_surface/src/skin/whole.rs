@@ -1,0 +1,78 @@
+use glam::Vec3;
+
+use super::cluster::{ClusterPositions, skin_owned};
+use super::scalar::skin_vertex;
+use crate::geometry::Affine;
+use crate::mesh::ColliderMesh;
+use crate::simd::SimdLevel;
+use crate::surface::SurfaceError;
+
+/// Skins every vertex of a mesh.
+///
+/// # Errors
+/// As [`skin_into`].
+pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, SurfaceError> {
+    let mut positions = Vec::new();
+    skin_into(mesh, palette, SimdLevel::best(), &mut positions)?;
+    Ok(positions)
+}
+
+/// [`skin`] into an existing vector, which keeps its memory, on the instruction set given. Positions
+/// come out in model space, in vertex order, each vertex once.
+///
+/// # Errors
+/// [`SurfaceError::JointCount`] if the palette has another number of matrices than the mesh has
+/// joints. Matrices that are not finite give positions that are not finite.
+pub fn skin_into(
+    mesh: &ColliderMesh,
+    palette: &[Affine],
+    level: SimdLevel,
+    positions: &mut Vec<Vec3>,
+) -> Result<(), SurfaceError> {
+    if palette.len() != mesh.joint_count() {
+        return Err(SurfaceError::JointCount {
+            expected: mesh.joint_count(),
+            found: palette.len(),
+        });
+    }
+    skin_checked(mesh, palette, level, positions);
+    Ok(())
+}
+
+/// [`skin_into`] with a palette of as many matrices as the mesh has joints.
+pub(crate) fn skin_checked(
+    mesh: &ColliderMesh,
+    palette: &[Affine],
+    level: SimdLevel,
+    positions: &mut Vec<Vec3>,
+) {
+    positions.resize(mesh.positions().len(), Vec3::ZERO);
+    let clusters = mesh.clusters();
+    let mut skinned = ClusterPositions::ZERO;
+    for cluster in &clusters.clusters {
+        skin_owned(level, clusters, cluster, palette, &mut skinned);
+        let own = &cluster.vertices(clusters)[..usize::from(cluster.owned)];
+        let [x, y, z] = &skinned.0;
+        for (((vertex, x), y), z) in own.iter().zip(x).zip(y).zip(z) {
+            positions[vertex.index()] = Vec3::new(*x, *y, *z);
+        }
+    }
+    for vertex in &clusters.loose {
+        positions[vertex.index()] = skin_vertex(mesh, palette, vertex.index());
+    }
+}
+
+/// [`skin`] vertex by vertex in plain scalar code: what the fast kernel is compared with, in bits.
+///
+/// # Errors
+/// As [`skin_into`].
+pub fn skin_scalar(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, SurfaceError> {
+    if palette.len() != mesh.joint_count() {
+        return Err(SurfaceError::JointCount {
+            expected: mesh.joint_count(),
+            found: palette.len(),
+        });
+    }
+    let vertices = 0..mesh.positions().len();
+    Ok(vertices.map(|v| skin_vertex(mesh, palette, v)).collect())
+}

@@ -1,0 +1,357 @@
+//! The eight-wide spheres against every vertex that they must hold, between instruction sets, and
+//! beside the f64 reference.
+
+use glam::{DAffine3, DVec3, Vec3};
+
+use super::super::tests::random::{JOINTS, MOTIONS, Motion, Spread, creature, palette};
+use super::super::{JointMaps, NodeBounds, push_node};
+use super::*;
+use crate::geometry::{Affine, Sphere, widen};
+use crate::mesh::hierarchy::{Child, Hierarchy};
+use crate::mesh::{ColliderMesh, VertexId};
+use crate::rig::Palette;
+use crate::skin::skin;
+use crate::testing::{bend, direction, tube};
+
+/// A node of random children of a random creature.
+struct Case {
+    mesh: ColliderMesh,
+    children: Vec<Vec<VertexId>>,
+    hierarchy: Hierarchy,
+    table: JointTable,
+}
+
+fn pack(bounds: &[NodeBounds]) -> Hierarchy {
+    let mut hierarchy = Hierarchy::default();
+    let children: Vec<(Child, &NodeBounds)> =
+        (0..).map(Child::Cluster).zip(bounds.iter()).collect();
+    assert_eq!(push_node(&mut hierarchy, &children), 0);
+    hierarchy
+}
+
+impl Case {
+    fn new(rng: &mut fastrand::Rng, case: usize) -> Self {
+        let spread = [
+            Spread::Random,
+            Spread::NearlyEqual,
+            Spread::Uneven,
+            Spread::Few,
+            Spread::Constant,
+        ][case / 16 % 5];
+        let (mesh, mut all) = creature(rng, 1 + case % 16, spread);
+        let children: Vec<Vec<VertexId>> = (0..rng.usize(1..=LANES))
+            .map(|_| {
+                rng.shuffle(&mut all);
+                let most = [1, 3, all.len()][rng.usize(0..3)].min(all.len());
+                all[..rng.usize(1..=most)].to_vec()
+            })
+            .collect();
+        let bounds: Vec<NodeBounds> = children
+            .iter()
+            .map(|vertices| NodeBounds::new(&mesh, vertices).unwrap())
+            .collect();
+        Self {
+            hierarchy: pack(&bounds),
+            mesh,
+            children,
+            table: JointTable::default(),
+        }
+    }
+
+    /// A palette of the given kind; every other one carries the creature a kilometre off.
+    fn pose(&mut self, rng: &mut fastrand::Rng, motion: Motion) -> Palette {
+        let mut posed = palette(rng, motion, self.mesh.radius());
+        if rng.bool() && !matches!(motion, Motion::Huge) {
+            let shift = DAffine3::from_translation(widen(direction(rng)) * 1e3);
+            let moved = posed.matrices().iter().map(|m| shift * m.to_f64());
+            posed = Palette::from_matrices(moved.map(|m| Affine::from_f64(&m)));
+        }
+        self.table.update(posed.matrices());
+        posed
+    }
+
+    fn spheres(&self, level: SimdLevel) -> Spheres {
+        node_spheres(level, &self.hierarchy, &self.table)
+    }
+
+    /// How many vertices stand outside, and how many were looked at.
+    fn outside(&self, palette: &Palette) -> (usize, usize) {
+        let found = self.spheres(SimdLevel::best());
+        let skinned = skin(&self.mesh, palette.matrices()).unwrap();
+        let (mut outside, mut checked) = (0, 0);
+        for (lane, vertices) in self.children.iter().enumerate() {
+            let sphere = Sphere {
+                center: Vec3::new(found.x[lane], found.y[lane], found.z[lane]),
+                radius: found.radius[lane],
+            };
+            let escaped = vertices
+                .iter()
+                .filter(|v| !sphere.contains(skinned[v.index()]));
+            outside += escaped.count();
+            checked += vertices.len();
+        }
+        (outside, checked)
+    }
+}
+
+fn node_spheres(level: SimdLevel, hierarchy: &Hierarchy, table: &JointTable) -> Spheres {
+    let node = &hierarchy.nodes[0];
+    spheres(level, node, &hierarchy.joints, &hierarchy.weights, table)
+}
+
+/// Looks for a vertex outside until so many were checked; gives how many.
+fn hunt(seed: u64, checks: usize) -> usize {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let (mut checked, mut case) = (0, 0);
+    while checked < checks {
+        let mut node = Case::new(&mut rng, case);
+        for motion in MOTIONS.into_iter().chain(MOTIONS) {
+            let palette = node.pose(&mut rng, motion);
+            let (outside, seen) = node.outside(&palette);
+            assert_eq!(outside, 0, "seed {seed}, case {case}, {motion:?}");
+            let found = node.spheres(SimdLevel::best());
+            assert!(found.radius.iter().all(|r| *r >= 0.0), "{found:?}");
+            let finite = found.radius.iter().all(|r| r.is_finite());
+            assert!(
+                finite || matches!(motion, Motion::Huge),
+                "{motion:?}: {found:?}"
+            );
+            checked += seen;
+        }
+        case += 1;
+    }
+    checked
+}
+
+#[test]
+fn no_vertex_lies_outside_its_lane() {
+    assert!(hunt(71, 1_500_000) >= 1_500_000);
+}
+
+#[test]
+#[ignore = "a thousand million checks: minutes, in release"]
+fn no_vertex_lies_outside_its_lane_however_long_one_looks() {
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let checked: usize = std::thread::scope(|scope| {
+        let hunts: Vec<_> = (0..threads as u64)
+            .map(|k| scope.spawn(move || hunt(1_000 + k, 1_000_000_000 / threads)))
+            .collect();
+        hunts.into_iter().map(|hunt| hunt.join().unwrap()).sum()
+    });
+    println!("{checked} vertices checked");
+}
+
+#[test]
+fn without_inflation_vertices_escape() {
+    let mut rng = fastrand::Rng::with_seed(72);
+    let (mut escaped, mut checked) = (0, 0);
+    for case in 0..300 {
+        let mut node = Case::new(&mut rng, case);
+        node.hierarchy.nodes[0].inflation = [0.0; LANES];
+        for motion in MOTIONS {
+            let palette = node.pose(&mut rng, motion);
+            let (outside, seen) = node.outside(&palette);
+            (escaped, checked) = (escaped + outside, checked + seen);
+        }
+    }
+    assert!(escaped * 100 > checked, "{escaped} of {checked}");
+}
+
+fn bits(spheres: &Spheres) -> [[u32; LANES]; 4] {
+    [spheres.x, spheres.y, spheres.z, spheres.radius].map(|row| row.map(f32::to_bits))
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let mut rng = fastrand::Rng::with_seed(73);
+    for case in 0..400 {
+        let mut node = Case::new(&mut rng, case);
+        for motion in MOTIONS {
+            node.pose(&mut rng, motion);
+            let scalar = node.spheres(SimdLevel::best());
+            for level in SimdLevel::available() {
+                let found = node.spheres(level);
+                assert_eq!(
+                    bits(&found),
+                    bits(&scalar),
+                    "case {case}, {motion:?}, {level}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_joint_that_moves_no_vertex_of_a_lane_does_not_widen_it() {
+    let mesh = tube(4, 8);
+    // One lane at each end of the tube: the first follows joint 0 alone.
+    let ends = [0.0, 3.0].map(|x| {
+        let vertices = (0..mesh.positions().len() as u32).map(VertexId);
+        let vertices: Vec<VertexId> = vertices
+            .filter(|v| mesh.positions()[v.index()].x == x)
+            .collect();
+        NodeBounds::new(&mesh, &vertices).unwrap()
+    });
+    let hierarchy = pack(&ends);
+    let mut table = JointTable::default();
+    let mut far = Affine::IDENTITY;
+    far.rows = far.rows.map(|row| row.map(|m| m * 100.0));
+    far.rows[0][3] = 1e6;
+    table.update(&[Affine::IDENTITY, Affine::IDENTITY, Affine::IDENTITY, far]);
+    let found = node_spheres(SimdLevel::best(), &hierarchy, &table);
+    assert!(
+        found.radius[0] < 0.500_01 && found.radius[1] >= 50.0,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn what_overflows_is_infinite_and_never_nan() {
+    let mesh = tube(2, 8);
+    let all: Vec<VertexId> = (0..mesh.positions().len() as u32).map(VertexId).collect();
+    let one = [VertexId(0)];
+    let bounds = [&all[..], &one].map(|v| NodeBounds::new(&mesh, v).unwrap());
+    let hierarchy = pack(&bounds);
+    let mut table = JointTable::default();
+    let at = |x: f32, scale: f32| Affine {
+        rows: [[scale, 0.0, 0.0, x], [0.0; 4], [0.0; 4]],
+    };
+    let far = 1e30;
+    for palette in [
+        [at(far, 1.0), at(-far, 1.0)],
+        [at(0.0, f32::MAX), at(0.0, f32::MAX)],
+        [
+            Affine {
+                rows: [[f32::MAX, f32::MAX, f32::MAX, 0.0]; 3],
+            },
+            Affine::IDENTITY,
+        ],
+    ] {
+        table.update(&palette);
+        for level in SimdLevel::available() {
+            let found = node_spheres(level, &hierarchy, &table);
+            assert!(
+                !found.radius.iter().any(|r| r.is_nan()),
+                "{level}: {found:?}"
+            );
+            assert_eq!(found.radius[0], f32::INFINITY, "{level}: {found:?}");
+        }
+    }
+}
+
+/// Ratios of the eight-wide radii to those of the f64 reference on a bent tube, ascending.
+fn ratios_on_a_bent_tube() -> Vec<f32> {
+    let mesh = tube(6, 24);
+    let bounds: Vec<NodeBounds> = mesh
+        .parts()
+        .iter()
+        .flat_map(|part| part.vertices.chunks(40))
+        .map(|vertices| NodeBounds::new(&mesh, vertices).unwrap())
+        .collect();
+    let mut ratios = Vec::new();
+    let mut table = JointTable::default();
+    for step in 0..40 {
+        let palette = bend(6, DVec3::new(0.0, 0.6, 0.8), f64::from(step) * 0.03 - 0.6);
+        let maps = JointMaps::new(&mesh, &palette).unwrap();
+        table.update(palette.matrices());
+        for children in bounds.chunks(LANES) {
+            let found = node_spheres(SimdLevel::best(), &pack(children), &table);
+            for (lane, reference) in children.iter().enumerate() {
+                ratios.push(found.radius[lane] / reference.sphere(&maps).radius);
+            }
+        }
+    }
+    ratios.sort_by(f32::total_cmp);
+    ratios
+}
+
+#[test]
+fn on_a_bent_tube_spheres_are_as_small_as_the_reference() {
+    let ratios = ratios_on_a_bent_tube();
+    let (median, worst) = (ratios[ratios.len() / 2], ratios[ratios.len() - 1]);
+    println!("median {median}, worst {worst} of {}", ratios.len());
+    assert!(
+        median < 1.001 && worst < 1.2,
+        "median {median}, worst {worst}"
+    );
+}
+
+#[test]
+fn a_node_lists_the_joints_of_its_children_once() {
+    let mut rng = fastrand::Rng::with_seed(74);
+    for case in 0..200 {
+        let node = Case::new(&mut rng, case);
+        let joints = &node.hierarchy.joints;
+        assert!(
+            joints.windows(2).all(|pair| pair[0] < pair[1]),
+            "{joints:?}"
+        );
+        assert!(joints.iter().all(|joint| *joint < JOINTS), "{joints:?}");
+        assert_eq!(joints.len(), node.hierarchy.weights.len());
+        for lane in 0..LANES {
+            let middles = node
+                .hierarchy
+                .weights
+                .iter()
+                .map(|w| f64::from(w.middle[lane]));
+            let child = f64::from(u8::from(lane < node.children.len()));
+            assert_eq!(middles.sum::<f64>(), child, "case {case}, lane {lane}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "a measurement"]
+fn measure() {
+    let mut rng = fastrand::Rng::with_seed(75);
+    for count in [4, 8, 20] {
+        let (mesh, all) = creature(&mut rng, count, Spread::Random);
+        let bounds = [0; LANES].map(|_| NodeBounds::new(&mesh, &all).unwrap());
+        let hierarchy = pack(&bounds);
+        let posed = palette(&mut rng, Motion::Bent, mesh.radius());
+        let mut table = JointTable::default();
+        table.update(posed.matrices());
+        for level in SimdLevel::available() {
+            let mut best = f64::INFINITY;
+            for _ in 0..50 {
+                let start = std::time::Instant::now();
+                for _ in 0..2_000 {
+                    let h = std::hint::black_box(&hierarchy);
+                    std::hint::black_box(node_spheres(level, h, &table));
+                }
+                best = best.min(start.elapsed().as_secs_f64() / 2_000.0);
+            }
+            println!(
+                "{} joints, {level}: {:.1} ns",
+                hierarchy.joints.len(),
+                best * 1e9
+            );
+        }
+    }
+    let mut posed = Vec::new();
+    while posed.len() < 44 {
+        posed.extend_from_slice(palette(&mut rng, Motion::Bent, 1.0).matrices());
+    }
+    posed.truncate(44);
+    let mut table = JointTable::default();
+    let mut best = f64::INFINITY;
+    for _ in 0..300 {
+        let start = std::time::Instant::now();
+        for _ in 0..100 {
+            table.update(std::hint::black_box(&posed));
+        }
+        best = best.min(start.elapsed().as_secs_f64() / 100.0);
+    }
+    println!("table of 44 joints: {:.0} ns", best * 1e9);
+    let mesh = tube(44, 8);
+    let root = crate::surface::bounds::RootBalls::new(&mesh);
+    let mut best = f64::INFINITY;
+    for _ in 0..300 {
+        let start = std::time::Instant::now();
+        for _ in 0..100 {
+            std::hint::black_box(root.bounds(std::hint::black_box(&table)));
+        }
+        best = best.min(start.elapsed().as_secs_f64() / 100.0);
+    }
+    println!("root box of 44 joints: {:.0} ns", best * 1e9);
+}

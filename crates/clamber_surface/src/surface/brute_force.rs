@@ -1,0 +1,185 @@
+//! What queries are compared with: every vertex skinned plainly, every triangle tested.
+
+use glam::Vec3;
+
+use super::query::{Best, Nearest, Region, check_length, check_point, sort_along};
+use super::{SkinnedSurface, SurfaceError, SurfaceHit};
+use crate::geometry::triangle::{ShearedRay, closest_point};
+use crate::geometry::{Capsule, Ray, Sphere};
+use crate::mesh::{PartId, TriangleId};
+use crate::skin::skin_vertex;
+
+/// The queries of a surface by brute force: slow and plain, for tests.
+///
+/// Skins every vertex in scalar code when it is made, knows no bounds, and tests all enabled
+/// triangles one by one. The surface must answer with the same bits.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+/// # use clamber_surface::rig::JointId;
+/// # use clamber_surface::surface::{BruteForce, SkinnedSurface};
+/// # use glam::Vec3;
+/// # let source = MeshSource {
+/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+/// #     triangles: &[[0, 1, 2]],
+/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
+/// #     joint_count: 1,
+/// #     ..MeshSource::default()
+/// # };
+/// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+/// let surface = SkinnedSurface::new(Arc::new(mesh));
+/// let brute_force = BruteForce::new(&surface);
+/// let point = Vec3::new(0.3, 0.2, 5.0);
+/// let found = surface.closest_point(point, f32::INFINITY)?;
+/// assert_eq!(found, brute_force.closest_point(point, f32::INFINITY)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BruteForce<'a> {
+    surface: &'a SkinnedSurface,
+    positions: Vec<Vec3>,
+}
+
+impl<'a> BruteForce<'a> {
+    /// Of the surface as it is posed now.
+    pub fn new(surface: &'a SkinnedSurface) -> Self {
+        let vertices = 0..surface.mesh.positions().len();
+        let palette = surface.current.palette();
+        Self {
+            surface,
+            positions: vertices
+                .map(|vertex| skin_vertex(&surface.mesh, palette, vertex))
+                .collect(),
+        }
+    }
+
+    /// Every vertex, skinned in scalar code, in model space.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// As [`SkinnedSurface::cast_ray`].
+    ///
+    /// # Errors
+    /// As that one; so do the others.
+    pub fn cast_ray(
+        &self,
+        ray: &Ray,
+        max_distance: f32,
+    ) -> Result<Option<SurfaceHit>, SurfaceError> {
+        let sheared = ShearedRay::new(ray);
+        let mut best = Best::within(check_length("the ray's maximum distance", max_distance)?);
+        for (triangle, _, corners) in self.triangles() {
+            if let Some(found) = sheared.intersect(corners, best.limit()) {
+                best.offer(Nearest { triangle, found });
+            }
+        }
+        Ok(best.hit(self.surface, ray.origin()))
+    }
+
+    /// As [`SkinnedSurface::intersects_ray`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn intersects_ray(&self, ray: &Ray, max_distance: f32) -> Result<bool, SurfaceError> {
+        Ok(self.cast_ray(ray, max_distance)?.is_some())
+    }
+
+    /// As [`SkinnedSurface::cast_ray_all`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn cast_ray_all(
+        &self,
+        ray: &Ray,
+        max_distance: f32,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        let limit = check_length("the ray's maximum distance", max_distance)?;
+        let sheared = ShearedRay::new(ray);
+        hits.clear();
+        for (triangle, part, corners) in self.triangles() {
+            if let Some(found) = sheared.intersect(corners, limit) {
+                let nearest = Nearest { triangle, found };
+                hits.push(self.surface.hit(nearest, part, corners, ray.origin()));
+            }
+        }
+        sort_along(hits);
+        Ok(())
+    }
+
+    /// As [`SkinnedSurface::closest_point`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn closest_point(
+        &self,
+        point: Vec3,
+        max_distance: f32,
+    ) -> Result<Option<SurfaceHit>, SurfaceError> {
+        check_point(point)?;
+        let mut best = Best::within(check_length("the distance of a query", max_distance)?);
+        for (triangle, _, corners) in self.triangles() {
+            best.offer(Nearest {
+                triangle,
+                found: closest_point(corners, point),
+            });
+        }
+        Ok(best.hit(self.surface, point))
+    }
+
+    /// As [`SkinnedSurface::overlap_sphere`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn overlap_sphere(
+        &self,
+        sphere: &Sphere,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        self.overlap(sphere, hits)
+    }
+
+    /// As [`SkinnedSurface::overlap_capsule`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn overlap_capsule(
+        &self,
+        capsule: &Capsule,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        self.overlap(capsule, hits)
+    }
+
+    fn overlap(
+        &self,
+        region: &impl Region,
+        hits: &mut Vec<SurfaceHit>,
+    ) -> Result<(), SurfaceError> {
+        let radius = region.check()?;
+        hits.clear();
+        for (triangle, part, corners) in self.triangles() {
+            let found = region.closest(corners);
+            if found.distance <= radius {
+                let nearest = Nearest { triangle, found };
+                hits.push(self.surface.hit(nearest, part, corners, region.middle()));
+            }
+        }
+        Ok(())
+    }
+
+    /// All enabled triangles, by ascending id, with their parts and posed corners.
+    fn triangles(&self) -> impl Iterator<Item = (TriangleId, PartId, [Vec3; 3])> {
+        let mesh = &self.surface.mesh;
+        let all = mesh.triangles().iter().enumerate();
+        all.filter_map(|(index, corners)| {
+            let triangle = TriangleId(index as u32);
+            let part = mesh.part_of(triangle)?;
+            self.surface
+                .is_enabled(triangle)
+                .then(|| (triangle, part, corners.map(|v| self.positions[v.index()])))
+        })
+    }
+}

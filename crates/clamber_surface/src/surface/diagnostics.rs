@@ -1,0 +1,59 @@
+use std::sync::atomic::Ordering;
+
+use super::SkinnedSurface;
+
+/// What this tick's queries touched. Counts what is distinct, so it does not depend on how threads
+/// interleave.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Diagnostics {
+    /// Bounds of nodes and clusters that were evaluated.
+    pub bounds_evaluated: usize,
+    /// Clusters that queries reached.
+    pub clusters_touched: usize,
+    /// Clusters that were skinned: those, or all, where the ticks before touched nearly everything.
+    pub clusters_skinned: usize,
+    /// Clusters of the mesh.
+    pub clusters: usize,
+    /// Vertices that were skinned with them. One on the border of clusters counts in each.
+    pub vertices_skinned: usize,
+    /// Vertices of all clusters, counted so.
+    pub vertices: usize,
+    /// Triangles that no box ruled out: tested exactly, each as often as queries met it.
+    pub triangles_tested: u64,
+}
+
+impl SkinnedSurface {
+    /// What was touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`].
+    /// Takes O(clusters).
+    pub fn diagnostics(&self) -> Diagnostics {
+        let (clusters, hierarchy) = (&self.mesh.clusters().clusters, self.mesh.hierarchy());
+        let slots = |cluster: usize| usize::from(clusters[cluster].slots);
+        let lanes = |node: usize| usize::from(hierarchy.nodes[node].lanes);
+        Diagnostics {
+            bounds_evaluated: self.current.asked_nodes().map(lanes).sum(),
+            clusters_touched: self.current.asked_clusters().count(),
+            clusters_skinned: self.current.skinned_clusters().count(),
+            clusters: clusters.len(),
+            vertices_skinned: self.current.skinned_clusters().map(slots).sum(),
+            vertices: (0..clusters.len()).map(slots).sum(),
+            triangles_tested: self.triangles_tested.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Bytes that the collider takes: the rest data that surfaces share, and this surface's caches.
+    pub fn memory(&self) -> usize {
+        self.mesh.memory()
+            + self.current.memory()
+            + self.previous.memory()
+            + self.part_enabled.len()
+            + self.triangle_enabled.len()
+    }
+
+    /// Counts exact triangle tests of a query.
+    pub(super) fn count_tested(&self, triangles: usize) {
+        if triangles > 0 {
+            let count = triangles as u64;
+            self.triangles_tested.fetch_add(count, Ordering::Relaxed);
+        }
+    }
+}

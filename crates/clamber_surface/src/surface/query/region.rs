@@ -1,0 +1,119 @@
+//! What an overlap query asks for: a ball or a capsule.
+
+use glam::Vec3;
+
+use super::broad::{self, Lanes};
+use crate::geometry::triangle::{
+    Corners8, Points8, TrianglePoint, closest_point, closest_points, closest_to_segment,
+    closest_to_segments,
+};
+use crate::geometry::{Capsule, Sphere};
+use crate::simd::SimdLevel;
+use crate::surface::SurfaceError;
+use crate::surface::bounds::Spheres;
+
+use super::check_length;
+
+/// All points within a radius of a core: a point, or a segment.
+pub(in crate::surface) trait Region {
+    /// Refuses what is not finite; gives the radius, which may be infinite.
+    fn check(&self) -> Result<f64, SurfaceError>;
+
+    /// Where a hit's normal points where its triangle has none.
+    fn middle(&self) -> Vec3;
+
+    /// Lowest and highest coordinates of the core.
+    fn core(&self) -> [Vec3; 2];
+
+    /// Lanes whose sphere may touch it.
+    fn near(&self, spheres: &Spheres) -> Lanes;
+
+    /// The point of a triangle closest to the core.
+    fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint;
+
+    /// [`Region::closest`] for eight triangles.
+    fn closest_of_eight(&self, level: SimdLevel, corners: &Corners8) -> Points8;
+}
+
+impl Region for Sphere {
+    fn check(&self) -> Result<f64, SurfaceError> {
+        check_point(self.center)?;
+        check_length("the radius of a query", self.radius)
+    }
+
+    fn middle(&self) -> Vec3 {
+        self.center
+    }
+
+    fn core(&self) -> [Vec3; 2] {
+        [self.center; 2]
+    }
+
+    fn near(&self, spheres: &Spheres) -> Lanes {
+        broad::near_point(spheres, self.center, self.radius)
+    }
+
+    fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint {
+        closest_point(corners, self.center)
+    }
+
+    fn closest_of_eight(&self, level: SimdLevel, corners: &Corners8) -> Points8 {
+        closest_points(level, corners, self.center)
+    }
+}
+
+impl Region for Capsule {
+    fn check(&self) -> Result<f64, SurfaceError> {
+        check_point(self.a)?;
+        check_point(self.b)?;
+        check_length("the radius of a query", self.radius)
+    }
+
+    fn middle(&self) -> Vec3 {
+        self.a * 0.5 + self.b * 0.5
+    }
+
+    fn core(&self) -> [Vec3; 2] {
+        [self.a.min(self.b), self.a.max(self.b)]
+    }
+
+    fn near(&self, spheres: &Spheres) -> Lanes {
+        broad::near_segment(spheres, self.a, self.b, self.radius)
+    }
+
+    fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint {
+        closest_to_segment(corners, self.a, self.b)
+    }
+
+    fn closest_of_eight(&self, level: SimdLevel, corners: &Corners8) -> Points8 {
+        closest_to_segments(level, corners, self.a, self.b)
+    }
+}
+
+pub(in crate::surface) fn check_point(point: Vec3) -> Result<(), SurfaceError> {
+    if point.is_finite() {
+        Ok(())
+    } else {
+        Err(SurfaceError::Point)
+    }
+}
+
+/// The box around the core of all that can be within `distance`, rounded outwards.
+pub(super) fn box_around(core: [Vec3; 2], distance: f64) -> [[f32; 3]; 2] {
+    // Some roundings of 2^-53 in the exact test.
+    let distance = distance * (1.0 + 1e-12);
+    let [low, high] = core;
+    [
+        low.to_array().map(|x| {
+            let bound = f64::from(x) - distance;
+            let rounded = bound as f32;
+            if f64::from(rounded) > bound {
+                rounded.next_down()
+            } else {
+                rounded
+            }
+        }),
+        high.to_array()
+            .map(|x| crate::geometry::round_up_to_f32(f64::from(x) + distance)),
+    ]
+}
