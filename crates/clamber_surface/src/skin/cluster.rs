@@ -27,8 +27,7 @@ pub(crate) fn skin_cluster(
 ) {
     let joints = cluster.joints(clusters);
     let rest = cluster.rest(clusters);
-    let all = cluster.rows();
-    dispatch!(level.level(), simd => skin_rows(simd, rest, all, all, joints, palette, positions));
+    dispatch!(level.level(), simd => skin_rows(simd, rest, joints, palette, positions));
 }
 
 /// [`skin_cluster`] for the rows that hold vertices of the cluster's own.
@@ -40,28 +39,21 @@ pub(crate) fn skin_owned(
     positions: &mut ClusterPositions,
 ) {
     let joints = cluster.joints(clusters);
-    let rest = cluster.rest(clusters);
-    let (all, own) = (cluster.rows(), usize::from(cluster.owned).div_ceil(ROW));
-    dispatch!(level.level(), simd => skin_rows(simd, rest, all, own, joints, palette, positions));
+    let rows = usize::from(cluster.owned).div_ceil(ROW);
+    let rest = &cluster.rest(clusters)[..rows * (3 + joints.len())];
+    dispatch!(level.level(), simd => skin_rows(simd, rest, joints, palette, positions));
 }
 
-/// The first `wanted` of a cluster's `rows`.
 #[inline(always)]
 fn skin_rows<S: Simd>(
     simd: S,
     rest: &[Row],
-    rows: usize,
-    wanted: usize,
     joints: &[u32],
     palette: &[Affine],
     positions: &mut ClusterPositions,
 ) {
-    let (x, rest) = rest.split_at(rows);
-    let (y, rest) = rest.split_at(rows);
-    let (z, weights) = rest.split_at(rows);
-    for row in 0..wanted {
-        let place = [&x[row], &y[row], &z[row]];
-        let weights = weights[row..].iter().step_by(rows);
+    for (row, rest) in rest.chunks_exact(3 + joints.len()).enumerate() {
+        let (place, weights) = rest.split_at(3);
         let influences = joints.iter().zip(weights);
         let from = row * ROW;
         // Two vectors share the broadcast matrix elements where registers suffice for two.
@@ -88,7 +80,7 @@ fn skin_rows<S: Simd>(
 #[inline(always)]
 fn skin_vectors<'a, S: Simd, const N: usize>(
     simd: S,
-    place: [&Row; 3],
+    place: &[Row],
     lane: usize,
     influences: impl Iterator<Item = (&'a u32, &'a Row)>,
     palette: &[Affine],
@@ -101,7 +93,7 @@ fn skin_vectors<'a, S: Simd, const N: usize>(
     };
     let zero = S::f32s::splat(simd, 0.0);
     let p: [[S::f32s; 3]; N] =
-        std::array::from_fn(|n| std::array::from_fn(|axis| vector(place[axis], n)));
+        std::array::from_fn(|n| std::array::from_fn(|axis| vector(&place[axis], n)));
     let mut sum = [[zero; 3]; N];
     for (joint, weights) in influences {
         let rows = &palette[*joint as usize].rows;

@@ -19,4 +19,4 @@ pub(crate) use cluster::{ClusterPositions, skin_cluster};
 pub use reference::{error_bound, skin_vertex_reference};
 pub(crate) use scalar::skin_vertex;
 pub(crate) use whole::skin_checked;
-pub use whole::{skin, skin_into, skin_scalar};
+pub use whole::{skin, skin_clusters, skin_into, skin_scalar};

@@ -1,9 +1,10 @@
 use glam::Vec3;
 
-use super::cluster::{ClusterPositions, skin_owned};
+use super::cluster::{ClusterPositions, skin_cluster, skin_owned};
 use super::scalar::skin_vertex;
 use crate::geometry::Affine;
 use crate::mesh::ColliderMesh;
+use crate::mesh::clusters::ROW;
 use crate::simd::SimdLevel;
 use crate::surface::SurfaceError;
 
@@ -60,6 +61,40 @@ pub(crate) fn skin_checked(
     for vertex in &clusters.loose {
         positions[vertex.index()] = skin_vertex(mesh, palette, vertex.index());
     }
+}
+
+/// Skins cluster by cluster, as the fast kernel does, and leaves positions where it puts them: x, y
+/// and z of sixteen vertices at a time, those on the borders of clusters in each of them, and some to
+/// fill up. What [`skin_into`] does before it puts them in order; for measuring. `numbers` keeps its
+/// memory.
+///
+/// # Errors
+/// As [`skin_into`].
+pub fn skin_clusters(
+    mesh: &ColliderMesh,
+    palette: &[Affine],
+    level: SimdLevel,
+    numbers: &mut Vec<f32>,
+) -> Result<(), SurfaceError> {
+    if palette.len() != mesh.joint_count() {
+        return Err(SurfaceError::JointCount {
+            expected: mesh.joint_count(),
+            found: palette.len(),
+        });
+    }
+    let clusters = mesh.clusters();
+    numbers.resize(clusters.vertices.len() * 3, 0.0);
+    let mut rest = &mut numbers[..];
+    let mut skinned = ClusterPositions::ZERO;
+    for cluster in &clusters.clusters {
+        skin_cluster(level, clusters, cluster, palette, &mut skinned);
+        for axis in &skinned.0 {
+            let (out, after) = rest.split_at_mut(cluster.rows() * ROW);
+            out.copy_from_slice(&axis[..out.len()]);
+            rest = after;
+        }
+    }
+    Ok(())
 }
 
 /// [`skin`] vertex by vertex in plain scalar code: what the fast kernel is compared with, in bits.

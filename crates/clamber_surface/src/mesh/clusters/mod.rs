@@ -45,8 +45,8 @@ pub(crate) struct Cluster {
     pub(crate) part: PartId,
     /// Its first row of slots.
     pub(crate) first_row: u32,
-    /// The first of its `(3 + joints) * rows` rows of rest data: x of all its slots, y, z, then the
-    /// weights of its first joint, of its second, and so on. Slots beyond the last
+    /// The first of its `rows * (3 + joints)` rows of rest data. For every sixteen slots: their x, y
+    /// and z, then the weights of its first joint, of its second, and so on. Slots beyond the last
     /// repeat the first.
     pub(crate) first_rest: u32,
     pub(crate) first_joint: u32,

@@ -103,28 +103,18 @@ impl Packer<'_> {
         let first = rest.len();
         rest.resize(first + (3 + self.joints.len()) * rows, Row::default());
         let rest = &mut rest[first..];
-        for (slot, vertex) in self.vertices.iter().enumerate() {
-            let (row, lane) = (slot / ROW, slot % ROW);
+        let of_row = 3 + self.joints.len();
+        for slot in 0..rows * ROW {
+            // What is to spare repeats the first, so that it needs no care.
+            let vertex = self.vertices.get(slot).unwrap_or(&self.vertices[0]);
+            let (rest, lane) = (&mut rest[slot / ROW * of_row..][..of_row], slot % ROW);
             let position = self.mesh.positions()[vertex.index()].to_array();
-            for (axis, coordinate) in position.into_iter().enumerate() {
-                rest[axis * rows + row].0[lane] = coordinate;
+            for (row, coordinate) in rest.iter_mut().zip(position) {
+                row.0[lane] = coordinate;
             }
             let (joints, weights) = self.mesh.influence_slices(vertex.index());
             for (joint, weight) in joints.iter().zip(weights) {
-                let place = self.place[*joint as usize] as usize;
-                rest[(3 + place) * rows + row].0[lane] = *weight;
-            }
-        }
-        for row in rest.chunks_mut(rows) {
-            let first = row[0].0[0];
-            for slot in self.vertices.len()..rows * ROW {
-                row[slot / ROW].0[slot % ROW] = first;
-            }
-        }
-        for row in rest.chunks_mut(rows) {
-            let first = row[0].0[0];
-            for slot in self.vertices.len()..rows * ROW {
-                row[slot / ROW].0[slot % ROW] = first;
+                rest[3 + self.place[*joint as usize] as usize].0[lane] = *weight;
             }
         }
     }

@@ -131,8 +131,8 @@ pub(in crate::mesh) fn meshes() -> Vec<(&'static str, ColliderMesh)> {
 
 /// The rest bits of a slot: position, then weight by joint without zeros.
 fn slot_data(clusters: &Clusters, cluster: &Cluster, slot: usize) -> (Vec3, Vec<(u32, f32)>) {
-    let (rows, first) = (cluster.rows(), cluster.first_rest as usize);
-    let value = |k: usize| clusters.rest[first + k * rows + slot / ROW].0[slot % ROW];
+    let first = cluster.first_rest as usize + slot / ROW * (3 + cluster.joints as usize);
+    let value = |k: usize| clusters.rest[first + k].0[slot % ROW];
     let joints = &clusters.joints[cluster.first_joint as usize..][..cluster.joints as usize];
     let weights = joints.iter().enumerate().map(|(k, j)| (*j, value(3 + k)));
     (

@@ -23,14 +23,13 @@ pub(super) struct Content {
 impl Content {
     /// Of the vertices of one cluster, which stand at `points`.
     pub(super) fn of_cluster(clusters: &Clusters, cluster: &Cluster, points: &[Vec3]) -> Self {
-        let rows = cluster.rows();
-        let first = cluster.first_rest as usize + 3 * rows;
+        let rest = cluster.rest(clusters).chunks(3 + cluster.joints as usize);
         let mut influences = vec![0; points.len()];
         let joints = cluster.first_joint as usize..;
         let joints = &clusters.joints[joints][..cluster.joints as usize];
         let range = |(place, joint): (usize, &u32)| {
-            let rows = &clusters.rest[first + place * rows..][..rows];
-            let weights = rows.iter().flat_map(|row| row.0).take(points.len());
+            let rows = rest.clone().map(|rows| rows[3 + place]);
+            let weights = rows.flat_map(|row| row.0).take(points.len());
             let (mut low, mut high) = (1.0f32, 0.0f32);
             for (count, weight) in influences.iter_mut().zip(weights) {
                 low = low.min(weight);
@@ -88,10 +87,9 @@ impl Points {
     pub(super) fn of(clusters: &Clusters) -> Self {
         let (mut positions, mut starts) = (Vec::new(), vec![0]);
         for cluster in &clusters.clusters {
-            let rows = cluster.rows();
-            let rest = &clusters.rest[cluster.first_rest as usize..][..3 * rows];
+            let (rest, of_row) = (cluster.rest(clusters), 3 + cluster.joints as usize);
             for slot in 0..usize::from(cluster.slots) {
-                let axis = |axis: usize| rest[axis * rows + slot / ROW].0[slot % ROW];
+                let axis = |axis: usize| rest[slot / ROW * of_row + axis].0[slot % ROW];
                 positions.push(Vec3::new(axis(0), axis(1), axis(2)));
             }
             starts.push(positions.len());

@@ -10,6 +10,7 @@ mod closest;
 mod hit;
 mod narrow;
 mod overlap;
+mod planes;
 mod posed_cluster;
 mod ray;
 mod region;

@@ -1,12 +1,13 @@
 //! Which triangles of a posed cluster are worth an exact test.
 //!
-//! Every vertex gets a code with a bit for each half-space that it lies in, outside the query's box
-//! or beside its ray; a triangle whose corners share a bit is outside as well (Cohen and Sutherland's
+//! Every vertex gets a code with a bit for each half-space that it lies in, beyond a plane that
+//! touches the query's region, or beside its ray; a triangle whose corners share a bit is outside as well (Cohen and Sutherland's
 //! line clipping; Foley, van Dam, Feiner, Hughes 1990, *Computer Graphics*, 3.12). Codes are computed
 //! for as many vertices at once as the machine is wide, and looked up for 32 triangles at once.
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, u8x32};
 
+use super::planes::{self, Planes};
 use crate::geometry::triangle::ShearedRay;
 use crate::mesh::clusters::{BLOCK, CornerBlock, MAX_SLOTS, MAX_TRIANGLES, ROW};
 use crate::simd::SimdLevel;
@@ -35,17 +36,16 @@ impl Survivors {
 /// A code per slot.
 type Codes = [u8; MAX_SLOTS];
 
-/// Triangles that the box from `low` to `high` does not rule out.
-pub(super) fn in_box(
+/// Triangles that no plane rules out.
+pub(super) fn within_planes(
     level: SimdLevel,
     positions: &ClusterPositions,
     rows: usize,
     corners: &[CornerBlock],
-    low: [f32; 3],
-    high: [f32; 3],
+    planes: &Planes,
 ) -> Survivors {
     dispatch!(level.level(), simd => {
-        let codes = box_codes(simd, positions, rows, low, high);
+        let codes = plane_codes(simd, positions, rows, planes);
         survivors(simd, corners, &codes)
     })
 }
@@ -113,26 +113,53 @@ fn vectors<S: Simd>(simd: S, positions: &ClusterPositions, slot: usize) -> [S::f
 }
 
 #[inline(always)]
-fn box_codes<S: Simd>(
+fn plane_codes<S: Simd>(
     simd: S,
     positions: &ClusterPositions,
     rows: usize,
-    low: [f32; 3],
-    high: [f32; 3],
+    planes: &Planes,
 ) -> Codes {
-    let low = low.map(|x| S::f32s::splat(simd, x));
-    let high = high.map(|x| S::f32s::splat(simd, x));
-    each_code(simd, rows, |slot| {
-        let p = vectors::<S>(simd, positions, slot);
-        [
-            p[0].simd_lt(low[0]),
-            p[1].simd_lt(low[1]),
-            p[2].simd_lt(low[2]),
-            p[0].simd_gt(high[0]),
-            p[1].simd_gt(high[1]),
-            p[2].simd_gt(high[2]),
-        ]
-    })
+    let origin = planes.origin.map(|x| S::f32s::splat(simd, x));
+    let slack = S::f32s::splat(simd, planes::SLACK);
+    each_code(
+        simd,
+        rows,
+        #[inline(always)]
+        |slot| {
+            let p = vectors::<S>(simd, positions, slot);
+            let p = [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]];
+            let lost = slack * (p[0].abs() + p[1].abs() + p[2].abs());
+            [
+                beyond(simd, planes, 0, p, lost),
+                beyond(simd, planes, 1, p, lost),
+                beyond(simd, planes, 2, p, lost),
+                beyond(simd, planes, 3, p, lost),
+                beyond(simd, planes, 4, p, lost),
+                beyond(simd, planes, 5, p, lost),
+                beyond(simd, planes, 6, p, lost),
+                beyond(simd, planes, 7, p, lost),
+            ]
+        },
+    )
+}
+
+/// Which of some points, relative to the planes' origin, lie beyond a plane for all that is lost.
+#[inline(always)]
+fn beyond<S: Simd>(
+    simd: S,
+    planes: &Planes,
+    plane: usize,
+    [x, y, z]: [S::f32s; 3],
+    lost: S::f32s,
+) -> S::mask32s {
+    let [nx, ny, nz] = &planes.normals;
+    let (nx, ny, nz) = (
+        S::f32s::splat(simd, nx[plane]),
+        S::f32s::splat(simd, ny[plane]),
+        S::f32s::splat(simd, nz[plane]),
+    );
+    let limit = S::f32s::splat(simd, planes.limits[plane]) + lost;
+    (nx * x + ny * y + nz * z).simd_gt(limit)
 }
 
 #[inline(always)]
@@ -150,34 +177,39 @@ fn ray_codes<S: Simd>(
     let origin = ray.origin.to_array();
     let origin = axes.map(|axis| S::f32s::splat(simd, origin[axis]));
     let shear = ray.shear.map(|x| S::f32s::splat(simd, x));
-    each_code(simd, rows, |slot| {
-        let p = vectors::<S>(simd, positions, slot);
-        let (x, y, z) = (
-            p[axes[0]] - origin[0],
-            p[axes[1]] - origin[1],
-            p[axes[2]] - origin[2],
-        );
-        let (x, y, z) = (x - shear[0] * z, y - shear[1] * z, z * shear[2]);
-        for (axis, vector) in [x, y, z].into_iter().enumerate() {
-            vector.store_slice(&mut sheared.0[axis][slot..slot + S::f32s::LEN]);
-        }
-        [
-            x.simd_lt(zero),
-            y.simd_lt(zero),
-            z.simd_lt(zero),
-            x.simd_gt(zero),
-            y.simd_gt(zero),
-            z.simd_gt(limit),
-        ]
-    })
+    each_code(
+        simd,
+        rows,
+        #[inline(always)]
+        |slot| {
+            let p = vectors::<S>(simd, positions, slot);
+            let (x, y, z) = (
+                p[axes[0]] - origin[0],
+                p[axes[1]] - origin[1],
+                p[axes[2]] - origin[2],
+            );
+            let (x, y, z) = (x - shear[0] * z, y - shear[1] * z, z * shear[2]);
+            for (axis, vector) in [x, y, z].into_iter().enumerate() {
+                vector.store_slice(&mut sheared.0[axis][slot..slot + S::f32s::LEN]);
+            }
+            [
+                x.simd_lt(zero),
+                y.simd_lt(zero),
+                z.simd_lt(zero),
+                x.simd_gt(zero),
+                y.simd_gt(zero),
+                z.simd_gt(limit),
+            ]
+        },
+    )
 }
 
-/// A code for every slot from what six half-spaces hold of each vector of slots.
+/// A code for every slot from what up to eight half-spaces hold of each vector of slots.
 #[inline(always)]
-fn each_code<S: Simd>(
+fn each_code<S: Simd, const N: usize>(
     simd: S,
     rows: usize,
-    mut outside: impl FnMut(usize) -> [S::mask32s; 6],
+    mut outside: impl FnMut(usize) -> [S::mask32s; N],
 ) -> Codes {
     let mut wide = [0u32; MAX_SLOTS];
     let none = S::u32s::splat(simd, 0);

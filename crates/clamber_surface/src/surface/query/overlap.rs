@@ -65,7 +65,7 @@ impl SkinnedSurface {
     }
 
     fn visit_region(&self, region: &impl Region, radius: f64, mut visit: impl FnMut(SurfaceHit)) {
-        let [low, high] = box_around(region.core(), radius);
+        let [low, high] = box_around(region.segment(), radius);
         if !root::overlaps(self.current.root(), low, high) {
             return;
         }
@@ -81,7 +81,7 @@ impl SkinnedSurface {
                     Child::Node(child) => stack.push(child),
                     Child::Cluster(cluster) => {
                         if posed.visit(cluster) {
-                            tested += test(&posed, region, radius, [low, high], &mut visit);
+                            tested += test(&posed, region, radius, &mut visit);
                         }
                     }
                 }
@@ -96,11 +96,11 @@ fn test(
     posed: &PosedCluster<'_>,
     region: &impl Region,
     radius: f64,
-    [low, high]: [[f32; 3]; 2],
     visit: &mut impl FnMut(SurfaceHit),
 ) -> usize {
     let mut tested = 0;
-    let mut survivors = posed.enabled(posed.in_box(low, high));
+    let [a, b] = region.segment();
+    let mut survivors = posed.enabled(posed.near(a, b, radius));
     let mut batch = [0; EIGHT];
     loop {
         let mut count = 0;

@@ -1,11 +1,15 @@
 use glam::Vec3;
 
 use super::narrow::{self, Survivors};
+use super::planes::Planes;
 use crate::geometry::triangle::{Corners8, EIGHT, ShearedRay};
 use crate::mesh::TriangleId;
 use crate::mesh::clusters::{BLOCK, Cluster, CornerBlock, MAX_SLOTS};
 use crate::skin::ClusterPositions;
 use crate::surface::SkinnedSurface;
+
+/// Vertices that tell about where a cluster is.
+const SAMPLES: usize = 8;
 
 /// A cluster as skinned this tick, copied out of the cache.
 pub(super) struct PosedCluster<'a> {
@@ -44,10 +48,21 @@ impl<'a> PosedCluster<'a> {
         true
     }
 
-    /// Triangles, by their number in the cluster, that a box does not rule out.
-    pub(super) fn in_box(&self, low: [f32; 3], high: [f32; 3]) -> Survivors {
+    /// Triangles, by their number in the cluster, that may be within `radius` of the segment from `a`
+    /// to `b`.
+    pub(super) fn near(&self, a: Vec3, b: Vec3, radius: f64) -> Survivors {
         let (level, rows) = (self.surface.simd_level, self.cluster.rows());
-        narrow::in_box(level, &self.positions, rows, self.corners, low, high)
+        let planes = Planes::facing(a, b, radius, self.somewhere());
+        narrow::within_planes(level, &self.positions, rows, self.corners, &planes)
+    }
+
+    /// A point near the middle: the mean of a few vertices.
+    fn somewhere(&self) -> Vec3 {
+        let slots = usize::from(self.cluster.slots);
+        let sum = (0..SAMPLES).fold(Vec3::ZERO, |sum, k| {
+            sum + position(&self.positions, k * slots / SAMPLES)
+        });
+        sum / SAMPLES as f32
     }
 
     /// Triangles that a ray as far as `limit` may meet, and the sheared positions.

@@ -22,8 +22,8 @@ pub(in crate::surface) trait Region {
     /// Where a hit's normal points where its triangle has none.
     fn middle(&self) -> Vec3;
 
-    /// Lowest and highest coordinates of the core.
-    fn core(&self) -> [Vec3; 2];
+    /// The ends of the core.
+    fn segment(&self) -> [Vec3; 2];
 
     /// Lanes whose sphere may touch it.
     fn near(&self, spheres: &Spheres) -> Lanes;
@@ -45,7 +45,7 @@ impl Region for Sphere {
         self.center
     }
 
-    fn core(&self) -> [Vec3; 2] {
+    fn segment(&self) -> [Vec3; 2] {
         [self.center; 2]
     }
 
@@ -73,8 +73,8 @@ impl Region for Capsule {
         self.a * 0.5 + self.b * 0.5
     }
 
-    fn core(&self) -> [Vec3; 2] {
-        [self.a.min(self.b), self.a.max(self.b)]
+    fn segment(&self) -> [Vec3; 2] {
+        [self.a, self.b]
     }
 
     fn near(&self, spheres: &Spheres) -> Lanes {
@@ -98,11 +98,12 @@ pub(in crate::surface) fn check_point(point: Vec3) -> Result<(), SurfaceError> {
     }
 }
 
-/// The box around the core of all that can be within `distance`, rounded outwards.
-pub(super) fn box_around(core: [Vec3; 2], distance: f64) -> [[f32; 3]; 2] {
+/// The box around all that can be within `distance` of the segment between two points, rounded
+/// outwards.
+pub(super) fn box_around([a, b]: [Vec3; 2], distance: f64) -> [[f32; 3]; 2] {
     // Some roundings of 2^-53 in the exact test.
     let distance = distance * (1.0 + 1e-12);
-    let [low, high] = core;
+    let (low, high) = (a.min(b), a.max(b));
     [
         low.to_array().map(|x| {
             let bound = f64::from(x) - distance;
