@@ -19,6 +19,10 @@ pub(crate) const RAY: f32 = 5.0;
 /// sphere of 0.5 m.
 const DEPTH: f32 = 0.02;
 
+/// Seats that a single rider chooses from, and how many triangles it wants to touch there.
+const CHOICES: usize = 64;
+const TOUCHED: usize = 30;
+
 /// One rider's queries of one tick, in model space.
 pub(crate) struct Rider {
     /// Ten mean edge lengths in radius.
@@ -42,8 +46,10 @@ pub(crate) struct Workload {
 }
 
 impl Workload {
-    /// The giant with so many vertices walks for so many ticks, ridden by so many riders, who stand
-    /// on seeded random points of the skin.
+    /// The giant walks for so many ticks, ridden by so many riders, who stand on seeded random points
+    /// of the skin where their spheres fit at rest. Of a single rider's points, the one of so many
+    /// where it touches a number of triangles nearest to `TOUCHED` is taken, so that riders on giants
+    /// of different resolution have as much to answer.
     pub(crate) fn new(
         creature: &Creature,
         riders: usize,
@@ -58,12 +64,23 @@ impl Workload {
         let rest = creature.skeleton.rest_pose();
         surface.place(&creature.skeleton.palette(&rest)?, Similarity::IDENTITY)?;
         let mut seats = Vec::with_capacity(riders);
-        while seats.len() < riders {
+        let wanted = if riders == 1 { CHOICES } else { riders };
+        while seats.len() < wanted {
             let triangle = TriangleId(rng.u32(0..mesh.triangles().len() as u32));
             let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
             if fits(&surface, &rider(&surface, &seat, edge)?.body)? {
                 seats.push(seat);
             }
+        }
+        if riders == 1 {
+            let mut hits = Vec::new();
+            let mut off = Vec::with_capacity(seats.len());
+            for seat in &seats {
+                surface.overlap_sphere(&rider(&surface, seat, edge)?.body, &mut hits)?;
+                off.push(hits.len().abs_diff(TOUCHED));
+            }
+            let best = (0..seats.len()).min_by_key(|seat| off[*seat]);
+            seats = best.map(|best| seats[best]).into_iter().collect();
         }
         let mut all = Vec::with_capacity(ticks);
         for tick in 0..ticks {

@@ -11,6 +11,8 @@
 //! products underflow: see [`error_bound`].
 
 mod cluster;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod reference;
 mod scalar;
 mod whole;
@@ -20,3 +22,6 @@ pub use reference::{error_bound, skin_vertex_reference};
 pub(crate) use scalar::skin_vertex;
 pub(crate) use whole::skin_checked;
 pub use whole::{skin, skin_clusters, skin_into, skin_scalar};
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@ use super::cluster::{ClusterPositions, skin_cluster, skin_owned};
 use super::scalar::skin_vertex;
 use crate::geometry::Affine;
 use crate::mesh::ColliderMesh;
-use crate::mesh::clusters::ROW;
+use crate::mesh::clusters::{Clusters, ROW};
 use crate::simd::SimdLevel;
 use crate::surface::SurfaceError;
 
@@ -49,6 +49,22 @@ pub(crate) fn skin_checked(
 ) {
     positions.resize(mesh.positions().len(), Vec3::ZERO);
     let clusters = mesh.clusters();
+    #[cfg(feature = "rayon")]
+    super::parallel::skin_owned_vertices(clusters, palette, level, positions);
+    #[cfg(not(feature = "rayon"))]
+    skin_owned_vertices(clusters, palette, level, positions);
+    for vertex in &clusters.loose {
+        positions[vertex.index()] = skin_vertex(mesh, palette, vertex.index());
+    }
+}
+
+/// Every vertex that a cluster owns.
+pub(super) fn skin_owned_vertices(
+    clusters: &Clusters,
+    palette: &[Affine],
+    level: SimdLevel,
+    positions: &mut [Vec3],
+) {
     let mut skinned = ClusterPositions::ZERO;
     for cluster in &clusters.clusters {
         skin_owned(level, clusters, cluster, palette, &mut skinned);
@@ -57,9 +73,6 @@ pub(crate) fn skin_checked(
         for (((vertex, x), y), z) in own.iter().zip(x).zip(y).zip(z) {
             positions[vertex.index()] = Vec3::new(*x, *y, *z);
         }
-    }
-    for vertex in &clusters.loose {
-        positions[vertex.index()] = skin_vertex(mesh, palette, vertex.index());
     }
 }
 

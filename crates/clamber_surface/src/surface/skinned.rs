@@ -237,9 +237,17 @@ impl SkinnedSurface {
 
     /// True if a matrix keeps every vertex within 2^100 of the origin; false for NaN.
     fn keeps(&self, matrix: &Affine) -> bool {
+        // As all creatures do: three by three products of such numbers, and three more, are less.
+        let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
+        if usual(&self.mesh.radius()) && matrix.rows.as_flattened().iter().all(usual) {
+            return true;
+        }
         matrix.reach(f64::from(self.mesh.radius())) <= MAX_COORDINATE
     }
 }
+
+/// 2^40: a size of matrix elements and creatures that needs no closer look.
+const USUAL_COORDINATE: f32 = (1u64 << 40) as f32;
 
 impl Clone for SkinnedSurface {
     /// Both poses and all flags; what queries computed is computed anew.

@@ -73,6 +73,9 @@ pub(crate) struct Clusters {
     pub(crate) vertices: Vec<VertexId>,
     /// Vertices without triangles, which no cluster holds, ascending.
     pub(crate) loose: Vec<VertexId>,
+    /// See [`Clusters::ranks`].
+    #[cfg(feature = "rayon")]
+    ranks: std::sync::OnceLock<Vec<u32>>,
 }
 
 impl Cluster {
@@ -126,6 +129,20 @@ impl Cluster {
 }
 
 impl Clusters {
+    /// By vertex, of `vertices`: its number among the owned ones, cluster by cluster; `u32::MAX` for
+    /// one that no cluster holds. Counted when first asked for.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn ranks(&self, vertices: usize) -> &[u32] {
+        self.ranks.get_or_init(|| {
+            let mut ranks = vec![u32::MAX; vertices];
+            let owned = |c: &Cluster| c.vertices(self)[..usize::from(c.owned)].to_vec();
+            for (rank, vertex) in (0..).zip(self.clusters.iter().flat_map(owned)) {
+                ranks[vertex.index()] = rank;
+            }
+            ranks
+        })
+    }
+
     /// In bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.clusters[..])

@@ -1,3 +1,5 @@
+use glam::DMat3;
+
 use super::joint_maps::StretchPower;
 use crate::geometry::Affine;
 
@@ -13,9 +15,23 @@ pub(crate) struct JointTable {
 /// What a joint's lengths are roots of.
 #[derive(Clone, Copy, Debug)]
 struct Squares {
-    stretch: StretchPower,
+    stretch: Stretch,
     shift: f64,
 }
+
+/// What bounds a joint's stretch, before its roots.
+#[derive(Clone, Copy, Debug)]
+enum Stretch {
+    /// Its square, of a matrix whose columns stand nearly at right angles: a joint that turns, and
+    /// scales along its axes.
+    Square(f64),
+    /// Of any other.
+    Power(StretchPower),
+}
+
+/// Columns stand nearly at right angles if the products of pairs of them are below this share of the
+/// longest one's square. The bound is then at most half as much too large.
+const NEARLY_RIGHT_ANGLES: f64 = 1e-3;
 
 /// One joint's matrix, and how much it stretches and moves at most.
 #[repr(C, align(64))]
@@ -30,7 +46,7 @@ pub(super) struct Joint {
 }
 
 /// Relative error of a length computed in f64, with room to spare.
-const LENGTH_SLACK: f64 = 1e-15;
+const LENGTH_SLACK: f64 = 2e-15;
 
 impl JointTable {
     /// Reads a palette that a surface accepts. Keeps its memory: a palette of the same length
@@ -58,9 +74,32 @@ impl Squares {
     fn new(matrix: &Affine) -> Self {
         let map = matrix.to_f64();
         Self {
-            stretch: StretchPower::new(&map.matrix3),
+            stretch: Stretch::new(&map.matrix3),
             // Squares of f32 numbers neither under- nor overflow in f64.
             shift: map.translation.length_squared(),
+        }
+    }
+}
+
+impl Stretch {
+    /// The largest singular value's square is at most any norm of `A^T A`; of the rows' sums here,
+    /// which for right angles is that square itself.
+    fn new(linear: &DMat3) -> Self {
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let (xx, yy, zz) = (x.dot(x), y.dot(y), z.dot(z));
+        let (xy, xz, yz) = (x.dot(y).abs(), x.dot(z).abs(), y.dot(z).abs());
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        if xy + xz + yz <= larger(larger(xx, yy), zz) * NEARLY_RIGHT_ANGLES {
+            Self::Square(larger(larger(xx + xy + xz, yy + xy + yz), zz + xz + yz))
+        } else {
+            Self::Power(StretchPower::new(linear))
+        }
+    }
+
+    fn root(self) -> f64 {
+        match self {
+            Self::Square(square) => square.sqrt() * (1.0 + LENGTH_SLACK),
+            Self::Power(power) => power.root(),
         }
     }
 }

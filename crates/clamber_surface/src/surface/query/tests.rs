@@ -215,3 +215,33 @@ fn only_what_is_touched_is_skinned() {
     assert_eq!(again.bounds_evaluated, touched.bounds_evaluated);
     assert_eq!(again.clusters_skinned, touched.clusters_skinned);
 }
+
+#[test]
+fn a_mesh_tuned_to_poses_answers_as_before() {
+    let mesh = crate::testing::tube(12, 48);
+    let poses: Vec<_> = (0..4)
+        .map(|k| crate::testing::bend(12, glam::DVec3::Y, 0.2 * f64::from(k)))
+        .collect();
+    let tuned = Arc::new(mesh.tuned(&poses).unwrap());
+    assert_ne!(tuned.clusters(), mesh.clusters(), "nothing was tuned");
+    let mut rng = fastrand::Rng::with_seed(74);
+    let (mut one, mut other) = (
+        SkinnedSurface::new(mesh.clone()),
+        SkinnedSurface::new(tuned),
+    );
+    for pose in &poses {
+        one.advance(pose, Similarity::IDENTITY).unwrap();
+        other.advance(pose, Similarity::IDENTITY).unwrap();
+        assert!(assert_queries_agree(&other, &mut rng, 20) > 100);
+        for _ in 0..40 {
+            let place = Vec3::new(5.0, 0.5, 0.0) + point(&mut rng, 5.0);
+            let towards = direction(&mut rng);
+            let wanted = answers(&one, place, towards, 1.0);
+            assert_eq!(answers(&other, place, towards, 1.0), wanted);
+        }
+    }
+    assert!(
+        mesh.tuned(&[crate::testing::bend(11, glam::DVec3::Y, 0.0)])
+            .is_err()
+    );
+}
