@@ -19,9 +19,11 @@ pub(crate) const RAY: f32 = 5.0;
 /// sphere of 0.5 m.
 const DEPTH: f32 = 0.02;
 
-/// Seats that a single rider chooses from, and how many triangles it wants to touch there.
+/// Seats that a single rider chooses from, how many triangles it wants to touch there, and at how many
+/// ticks of the walk it looks.
 const CHOICES: usize = 64;
 const TOUCHED: usize = 30;
+const LOOKS: usize = 8;
 
 /// One rider's queries of one tick, in model space.
 pub(crate) struct Rider {
@@ -47,9 +49,9 @@ pub(crate) struct Workload {
 
 impl Workload {
     /// The giant walks for so many ticks, ridden by so many riders, who stand on seeded random points
-    /// of the skin where their spheres fit at rest. Of a single rider's points, the one of so many
-    /// where it touches a number of triangles nearest to `TOUCHED` is taken, so that riders on giants
-    /// of different resolution have as much to answer.
+    /// of the skin where their spheres fit at rest. A single rider takes the one of [`CHOICES`] points
+    /// where it touches nearest to [`TOUCHED`] triangles in the mean over the walk, so that riders on
+    /// giants of different resolution have as much to answer.
     pub(crate) fn new(
         creature: &Creature,
         riders: usize,
@@ -72,20 +74,27 @@ impl Workload {
                 seats.push(seat);
             }
         }
+        let palette = |tick: usize| -> Result<Palette, Box<dyn Error>> {
+            let pose = walk.sample(&rest, tick as f64 / RATE, Playback::Loop)?;
+            Ok(creature.skeleton.palette(&pose)?)
+        };
         if riders == 1 {
             let mut hits = Vec::new();
-            let mut off = Vec::with_capacity(seats.len());
-            for seat in &seats {
-                surface.overlap_sphere(&rider(&surface, seat, edge)?.body, &mut hits)?;
-                off.push(hits.len().abs_diff(TOUCHED));
+            let mut touched = vec![0; seats.len()];
+            for part in 0..LOOKS {
+                surface.advance(&palette(part * ticks / LOOKS)?, Similarity::IDENTITY)?;
+                for (seat, touched) in seats.iter().zip(&mut touched) {
+                    surface.overlap_sphere(&rider(&surface, seat, edge)?.body, &mut hits)?;
+                    *touched += hits.len();
+                }
             }
-            let best = (0..seats.len()).min_by_key(|seat| off[*seat]);
+            let off = |seat: &usize| touched[*seat].abs_diff(TOUCHED * LOOKS);
+            let best = (0..seats.len()).min_by_key(off);
             seats = best.map(|best| seats[best]).into_iter().collect();
         }
         let mut all = Vec::with_capacity(ticks);
         for tick in 0..ticks {
-            let pose = walk.sample(&rest, tick as f64 / RATE, Playback::Loop)?;
-            let palette = creature.skeleton.palette(&pose)?;
+            let palette = palette(tick)?;
             surface.advance(&palette, Similarity::IDENTITY)?;
             let riders = seats
                 .iter()

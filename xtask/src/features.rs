@@ -1,5 +1,5 @@
-//! Every crate with no features, and with each of its features alone, without warnings. All together
-//! are linted in another step.
+//! Every crate with no features, and with each of its features alone, without warnings; all together
+//! are linted in another step. With each feature that is not on by default, the library's tests too.
 
 use cargo_metadata::Metadata;
 
@@ -18,6 +18,19 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
             let bare = ["clippy", "--quiet", "-p", &package.name, "--all-targets"];
             let strict = ["--", "-D", "warnings"];
             cargo(&[&bare[..], &selection, &strict].concat())?;
+        }
+        let default = package.features.get("default").cloned().unwrap_or_default();
+        let optional = |name: &&String| *name != "default" && !default.contains(name);
+        for feature in package.features.keys().filter(optional) {
+            let test = [
+                "test",
+                "--quiet",
+                "-p",
+                &package.name,
+                "--lib",
+                "--features",
+            ];
+            cargo(&[&test[..], &[feature]].concat())?;
         }
     }
     Ok(())
