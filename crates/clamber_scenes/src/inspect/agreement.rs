@@ -13,7 +13,9 @@ pub struct Agreement {
     pub mismatches: usize,
 }
 
-/// Compares every query with brute force at random places near the skin, in the surface's pose.
+/// Compares every query with brute force at random places near the skin, in the surface's pose: as the
+/// surface answers, skinning what it touches, and as it does with everything skinned ahead. Positions
+/// are compared as well.
 ///
 /// # Errors
 /// [`SurfaceError`] if a query refuses its input, which for a finite surface none does.
@@ -22,6 +24,8 @@ pub fn compare_queries(
     rng: &mut fastrand::Rng,
     places: usize,
 ) -> Result<Agreement, SurfaceError> {
+    let mut eager = surface.clone();
+    eager.skin_ahead();
     let brute_force = BruteForce::new(surface);
     let positions = brute_force.positions();
     let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
@@ -30,42 +34,47 @@ pub fn compare_queries(
         .copied()
         .fold(Vec3::NEG_INFINITY, Vec3::max);
     let size = (high - low).length();
-    let (mut hits, mut expected) = (Vec::new(), Vec::new());
+    let mut all = Vec::new();
+    surface.skin_all(&mut all);
     let mut agreement = Agreement::default();
+    agreement.count(0, all == positions);
+    let (mut hits, mut expected) = (Vec::new(), Vec::new());
     for _ in 0..places {
         let near = positions[rng.usize(0..positions.len())];
         let mut offset = || (rng.f32() - 0.5) * size * 0.2;
         let place = near + Vec3::new(offset(), offset(), offset());
         let target = positions[rng.usize(0..positions.len())];
-        if let Some(ray) = Ray::new(place, target - place) {
-            let hit = surface.cast_ray(&ray, size)?;
-            let reference = brute_force.cast_ray(&ray, size)?;
-            agreement.count(hit.is_some().into(), hit == reference);
-            let met = surface.intersects_ray(&ray, size)?;
-            agreement.count(0, met == reference.is_some());
-            surface.cast_ray_all(&ray, size, &mut hits)?;
-            brute_force.cast_ray_all(&ray, size, &mut expected)?;
-            agreement.count(hits.len(), hits == expected);
-        }
         let reach = size * rng.f32() * 0.2;
-        let closest = surface.closest_point(place, reach)?;
-        let reference = brute_force.closest_point(place, reach)?;
-        agreement.count(closest.is_some().into(), closest == reference);
         let sphere = Sphere {
             center: place,
             radius: reach,
         };
-        surface.overlap_sphere(&sphere, &mut hits)?;
-        brute_force.overlap_sphere(&sphere, &mut expected)?;
-        agreement.count(hits.len(), hits == expected);
         let capsule = Capsule {
             a: place,
             b: place + (target - place) * 0.2 * rng.f32(),
             radius: reach * 0.5,
         };
-        surface.overlap_capsule(&capsule, &mut hits)?;
-        brute_force.overlap_capsule(&capsule, &mut expected)?;
-        agreement.count(hits.len(), hits == expected);
+        for surface in [surface, &eager] {
+            if let Some(ray) = Ray::new(place, target - place) {
+                let hit = surface.cast_ray(&ray, size)?;
+                let reference = brute_force.cast_ray(&ray, size)?;
+                agreement.count(hit.is_some().into(), hit == reference);
+                let met = surface.intersects_ray(&ray, size)?;
+                agreement.count(0, met == reference.is_some());
+                surface.cast_ray_all(&ray, size, &mut hits)?;
+                brute_force.cast_ray_all(&ray, size, &mut expected)?;
+                agreement.count(hits.len(), hits == expected);
+            }
+            let closest = surface.closest_point(place, reach)?;
+            let reference = brute_force.closest_point(place, reach)?;
+            agreement.count(closest.is_some().into(), closest == reference);
+            surface.overlap_sphere(&sphere, &mut hits)?;
+            brute_force.overlap_sphere(&sphere, &mut expected)?;
+            agreement.count(hits.len(), hits == expected);
+            surface.overlap_capsule(&capsule, &mut hits)?;
+            brute_force.overlap_capsule(&capsule, &mut expected)?;
+            agreement.count(hits.len(), hits == expected);
+        }
     }
     Ok(agreement)
 }

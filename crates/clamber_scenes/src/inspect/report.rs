@@ -42,7 +42,7 @@ pub struct Inspection {
     pub poses: usize,
     /// Worst error of a skinned coordinate against f64, as a share of the stated bound.
     pub skinning_error_share: f64,
-    /// Hits of the queries that were compared with brute force.
+    /// Hits of the queries, lazy and skinned ahead, that were compared with brute force.
     pub query_hits: usize,
     /// Queries that differ from brute force in any bit.
     pub query_mismatches: usize,
