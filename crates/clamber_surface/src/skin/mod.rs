@@ -6,6 +6,11 @@
 //! weight zero would then add nothing, so any kernel that keeps to this order gives the same bits,
 //! whatever it pads or vectorises.
 //!
+//! The fast kernel skins a cluster of up to 64 vertices at a time, as many at once as the machine is wide
+//! ([`crate::SimdLevel`]): a list of the cluster's joints, and per joint a row of weights, zero where it
+//! does not move a vertex, so that nothing is gathered. [`skin_scalar`] is the plain loop that it is
+//! compared with.
+//!
 //! Against exact arithmetic on the same f32 palette each coordinate of a vertex with n influences
 //! is off by at most `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|)`, plus `(4 n + 4) 2^-149` where
 //! products underflow: see [`error_bound`].

@@ -1,6 +1,7 @@
 //! Every bound against every vertex that it must hold, and against the tightest.
 
 pub(crate) mod random;
+mod weak_spots;
 
 use glam::{DAffine3, DVec3, Vec3};
 

@@ -186,3 +186,6 @@ impl Pose {
 fn first_number(cluster: &Cluster) -> usize {
     cluster.first_row as usize * ROW_OF_POSITIONS
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! The eager way: everything at once, before anybody asks.
 
+use super::cache::Cache;
 use super::{LANES, NODE, Pose, ROW, UNASKED, first_number};
 use crate::mesh::ColliderMesh;
 use crate::mesh::hierarchy::Child;
@@ -9,7 +10,6 @@ use crate::surface::bounds::Spheres;
 impl Pose {
     /// Skins every cluster and refits every bound to what was skinned, children before parents.
     pub(in crate::surface) fn fill(&mut self, mesh: &ColliderMesh) {
-        let stamp = self.epoch | UNASKED;
         let nodes = &mesh.hierarchy().nodes;
         let mut positions = ClusterPositions::ZERO;
         for (index, node) in nodes.iter().enumerate().rev() {
@@ -33,7 +33,17 @@ impl Pose {
             for (k, numbers) in spheres.rows().into_iter().enumerate() {
                 self.nodes.set(index * NODE + k * LANES, numbers);
             }
+            let stamp = self.filled(&self.nodes, index);
             self.nodes.set_stamp(index, stamp);
+        }
+    }
+
+    /// The stamp of an entry that is filled now: what was asked for stays so.
+    fn filled(&self, cache: &Cache, entry: usize) -> u64 {
+        if cache.stamp(entry) == self.epoch {
+            self.epoch
+        } else {
+            self.epoch | UNASKED
         }
     }
 
@@ -45,7 +55,8 @@ impl Pose {
         for (axis, numbers) in out.0.iter().enumerate() {
             self.clusters.set(first + axis * count, &numbers[..count]);
         }
-        self.clusters.set_stamp(index, self.epoch | UNASKED);
+        let stamp = self.filled(&self.clusters, index);
+        self.clusters.set_stamp(index, stamp);
     }
 }
 
@@ -111,7 +122,9 @@ fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
         let (low, high) = ends.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), (x, r)| {
             (low.min(x - r), high.max(x + r))
         });
-        low * 0.5 + high * 0.5
+        let middle = low * 0.5 + high * 0.5;
+        // Any place will do for the middle of an infinite sphere, but none is NaN.
+        if middle.is_finite() { middle } else { 0.0 }
     });
     let reach = |lane: usize| {
         let dx = spheres.x[lane] - center[0];

@@ -17,6 +17,9 @@ const SLACK: f32 = 16.0 * f32::EPSILON;
 /// The length whose square f32 no longer holds, rounded down.
 const SQUARE_OVERFLOWS: f32 = 1.8e19;
 
+/// 2^60: products and sums of squares of lengths up to this are far from the end of f32.
+const LONG: f32 = (1u64 << 60) as f32;
+
 /// One bit a lane.
 pub(super) type Lanes = u8;
 
@@ -44,7 +47,8 @@ pub(super) fn near_point(spheres: &Spheres, center: Vec3, radius: f32) -> Lanes 
     lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
 }
 
-/// Lanes whose sphere is within `radius` of the segment from `a` to `b`.
+/// Lanes whose sphere is within `radius` of the segment from `a` to `b`; all that are [`LONG`] away or
+/// beside a segment that long, since where a product overflows, any place along it may come out.
 pub(super) fn near_segment(spheres: &Spheres, a: Vec3, b: Vec3, radius: f32) -> Lanes {
     let axis = b - a;
     let length_sq = axis.length_squared();
@@ -68,6 +72,7 @@ pub(super) fn near_segment(spheres: &Spheres, a: Vec3, b: Vec3, radius: f32) -> 
         let oz = dz - axis.z * along;
         distance_sq[lane] = ox * ox + oy * oy + oz * oz;
         let apart = dx.abs() + dy.abs() + dz.abs() + size;
+        let apart = if apart < LONG { apart } else { f32::INFINITY };
         let reach = spheres.radius[lane] + radius + SLACK * apart;
         reach_sq[lane] = reach * reach * (1.0 + SLACK);
     }

@@ -75,12 +75,8 @@ pub(super) fn farthest_first(
 
 /// Tests a cluster's triangles; gives how many had to be tested exactly.
 fn test(posed: &PosedCluster<'_>, point: Vec3, best: &mut Best) -> usize {
-    let mut limit = best.limit();
-    // No triangle farther than the nearest vertex matters; every vertex is one of some triangle, but
-    // that one may be hidden.
-    if posed.surface.hidden_triangles == 0 {
-        limit = limit.min(f64::from(posed.nearest_vertex(point)));
-    }
+    // No triangle farther than the nearest vertex matters.
+    let limit = best.limit().min(f64::from(posed.nearest_vertex(point)));
     let mut survivors = posed.enabled(posed.near(point, point, limit));
     let mut tested = 0;
     let mut batch = [0; EIGHT];

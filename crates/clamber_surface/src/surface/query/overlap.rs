@@ -65,7 +65,8 @@ impl SkinnedSurface {
     }
 
     fn visit_region(&self, region: &impl Region, radius: f64, mut visit: impl FnMut(SurfaceHit)) {
-        let [low, high] = box_around(region.segment(), radius);
+        let reach = radius + region.blur(root::size(self.current.root()));
+        let [low, high] = box_around(region.segment(), reach);
         if !root::overlaps(self.current.root(), low, high) {
             return;
         }
@@ -81,7 +82,7 @@ impl SkinnedSurface {
                     Child::Node(child) => stack.push(child),
                     Child::Cluster(cluster) => {
                         if posed.visit(cluster) {
-                            tested += test(&posed, region, radius, &mut visit);
+                            tested += test(&posed, region, radius, reach, &mut visit);
                         }
                     }
                 }
@@ -91,16 +92,17 @@ impl SkinnedSurface {
     }
 }
 
-/// Tests a cluster's triangles; gives how many had to be tested exactly.
+/// Tests a cluster's triangles, those within `reach` exactly; gives how many these were.
 fn test(
     posed: &PosedCluster<'_>,
     region: &impl Region,
     radius: f64,
+    reach: f64,
     visit: &mut impl FnMut(SurfaceHit),
 ) -> usize {
     let mut tested = 0;
     let [a, b] = region.segment();
-    let mut survivors = posed.enabled(posed.near(a, b, radius));
+    let mut survivors = posed.enabled(posed.near(a, b, reach));
     let mut batch = [0; EIGHT];
     loop {
         let mut count = 0;

@@ -84,8 +84,13 @@ impl<'a> PosedCluster<'a> {
         )
     }
 
-    /// At least the distance from a point to the nearest vertex.
+    /// At least the distance from a point to the nearest vertex; infinite where queries do not see
+    /// all triangles, since that vertex may be none of theirs.
     pub(super) fn nearest_vertex(&self, point: Vec3) -> f32 {
+        let surface = self.surface;
+        if surface.hidden_triangles > 0 && !self.triangles.iter().all(|id| surface.shows(*id)) {
+            return f32::INFINITY;
+        }
         let (level, rows) = (self.surface.simd_level, self.cluster.rows());
         narrow::nearest_vertex(level, &self.positions, rows, point.to_array())
     }

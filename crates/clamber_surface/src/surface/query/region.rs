@@ -7,12 +7,18 @@ use crate::geometry::triangle::{
     Corners8, Points8, TrianglePoint, closest_point, closest_points, closest_to_segment,
     closest_to_segments,
 };
-use crate::geometry::{Capsule, Sphere};
+use crate::geometry::{Capsule, Sphere, widen};
 use crate::simd::SimdLevel;
 use crate::surface::SurfaceError;
 use crate::surface::bounds::Spheres;
 
 use super::check_length;
+
+/// How far an exact test may be off, as a share of the lengths involved (segment, edges, distance):
+/// four times the 2^-48 by which a segment that all but touches a triangle counts as crossing it, and
+/// some thirty times what rounding takes. Less loses triangles that the exact test takes; more tests
+/// more.
+const BLUR: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// All points within a radius of a core: a point, or a segment.
 pub(in crate::surface) trait Region {
@@ -27,6 +33,10 @@ pub(in crate::surface) trait Region {
 
     /// Lanes whose sphere may touch it.
     fn near(&self, spheres: &Spheres) -> Lanes;
+
+    /// How far beyond its radius the exact test may take a triangle for a touching one, of a surface
+    /// that is `size` across.
+    fn blur(&self, size: f64) -> f64;
 
     /// The point of a triangle closest to the core.
     fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint;
@@ -51,6 +61,11 @@ impl Region for Sphere {
 
     fn near(&self, spheres: &Spheres) -> Lanes {
         broad::near_point(spheres, self.center, self.radius)
+    }
+
+    fn blur(&self, _size: f64) -> f64 {
+        // What a point's distance is off by is a share of itself: `box_around` pays for it.
+        0.0
     }
 
     fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint {
@@ -79,6 +94,11 @@ impl Region for Capsule {
 
     fn near(&self, spheres: &Spheres) -> Lanes {
         broad::near_segment(spheres, self.a, self.b, self.radius)
+    }
+
+    fn blur(&self, size: f64) -> f64 {
+        let axis = widen(self.b) - widen(self.a);
+        BLUR * (axis.length() + f64::from(self.radius) + size)
     }
 
     fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint {

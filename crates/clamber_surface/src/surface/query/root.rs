@@ -8,6 +8,11 @@ use crate::surface::bounds::RootBox;
 /// How far the f32 triangle test may be off, as a share of the distances involved.
 const SLACK: f64 = 16.0 * f32::EPSILON as f64;
 
+/// No edge of the surface is longer. May be infinite.
+pub(super) fn size(root: &RootBox) -> f64 {
+    (widen(root.max) - widen(root.min)).length()
+}
+
 /// False only if nothing on the surface lies in the box from `low` to `high`.
 pub(super) fn overlaps(root: &RootBox, low: [f32; 3], high: [f32; 3]) -> bool {
     let (min, max) = (root.min.to_array(), root.max.to_array());

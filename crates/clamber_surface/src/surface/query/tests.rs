@@ -1,5 +1,12 @@
 //! Lazy against eager, bit for bit: any creature, any palette, any instruction set, any threads.
 
+mod accuracy;
+mod best;
+mod extremes;
+mod hidden;
+mod places;
+mod watertight;
+
 use std::sync::Arc;
 
 use super::SurfaceHit;

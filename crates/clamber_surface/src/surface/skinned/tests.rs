@@ -153,6 +153,20 @@ fn previous_positions_are_last_ticks_when_the_root_rests() {
 }
 
 #[test]
+fn previous_positions_are_those_of_the_tick_before_tick_after_tick() {
+    let mut surface = surface();
+    for tick in 0..6 {
+        let before = positions_of(&surface);
+        let bent = bend(JOINTS, DVec3::Z, 0.1 * f64::from(tick + 1));
+        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        for (v, position) in before.iter().enumerate() {
+            let previous = surface.previous_position(VertexId(v as u32));
+            assert_eq!(previous, Some(*position), "tick {tick}, vertex {v}");
+        }
+    }
+}
+
+#[test]
 fn previous_positions_follow_a_moving_root_far_from_the_origin() {
     let mut surface = surface();
     let palette = bend(JOINTS, DVec3::Z, 0.1);

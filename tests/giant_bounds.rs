@@ -1,0 +1,83 @@
+//! The giant's bounds over all its clips, from outside: whatever stands above a vertex (root box, lanes
+//! of nodes, its cluster's lane and its boxes) must let a query through that asks at that very vertex.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber::mesh::PartId;
+use clamber::prelude::*;
+use clamber::surface::{JointMaps, PartBounds};
+use clamber_scenes::giant;
+use glam::Vec3;
+
+/// Asks at every `stride`th vertex in `poses` poses of each clip; gives how many there were.
+fn check(poses: u32, stride: usize) -> usize {
+    let creature = giant::giant().unwrap();
+    let mesh = &creature.collider;
+    let mut around = vec![Vec::new(); mesh.positions().len()];
+    for (id, corners) in mesh.triangles().iter().enumerate() {
+        for corner in corners {
+            around[corner.index()].push(TriangleId(id as u32));
+        }
+    }
+    let rest = creature.skeleton.rest_pose();
+    let bounds = PartBounds::new(mesh);
+    let mut surface = SkinnedSurface::new(mesh.clone());
+    let (mut positions, mut hits, mut maps) = (Vec::new(), Vec::new(), JointMaps::default());
+    let mut checked = 0;
+    for clip in &creature.clips {
+        for k in 0..poses {
+            let time = clip.duration() * f64::from(k) / f64::from(poses);
+            let pose = clip.sample(&rest, time, Playback::Loop).unwrap();
+            let palette = creature.skeleton.palette(&pose).unwrap();
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            if k % 2 == 1 {
+                surface.skin_ahead();
+            }
+            surface.skin_all(&mut positions);
+            maps.update(mesh, &palette).unwrap();
+            for (index, part) in mesh.parts().iter().enumerate() {
+                let volume = bounds.volume(PartId(index as u32), &maps).unwrap();
+                for vertex in &part.vertices {
+                    let p = positions[vertex.index()];
+                    assert!(volume.contains(p), "{}, {time} s: {p}", clip.name);
+                    checked += 1;
+                }
+            }
+            let first = k as usize % stride;
+            for (vertex, p) in positions.iter().enumerate().skip(first).step_by(stride) {
+                let touching = Sphere {
+                    center: *p,
+                    radius: 0.0,
+                };
+                surface.overlap_sphere(&touching, &mut hits).unwrap();
+                for triangle in &around[vertex] {
+                    let found = hits.iter().any(|hit| hit.triangle == *triangle);
+                    assert!(found, "{}, {time} s: {vertex}, {triangle}", clip.name);
+                }
+                let nearest = surface.closest_point(*p, 0.0).unwrap();
+                assert!(nearest.is_some(), "{}, {time} s: {vertex}", clip.name);
+                let above = Ray::new(*p + Vec3::Y * 100.0, -Vec3::Y).unwrap();
+                let met = surface.intersects_ray(&above, 100.5).unwrap();
+                assert!(met, "{}, {time} s: {vertex}", clip.name);
+                checked += 1;
+            }
+        }
+    }
+    checked
+}
+
+#[test]
+fn a_query_at_a_vertex_reaches_its_triangles_in_every_clip() {
+    let checked = check(20, 20);
+    println!("{checked} checks");
+    assert!(checked > 1_000_000, "{checked}");
+}
+
+#[test]
+#[ignore = "minutes: run it in release"]
+fn a_query_at_any_vertex_reaches_its_triangles_in_every_clip() {
+    println!("{} checks", check(60, 1));
+}

@@ -1,0 +1,144 @@
+//! A steady tick allocates nothing: pose, queries and motion work in what they took on the first ones.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use allocation_counter::measure;
+use clamber::geometry::Capsule;
+use clamber::prelude::*;
+use clamber_scenes::giant;
+use glam::{DQuat, DVec3, Vec3};
+
+/// What a tick keeps between ticks.
+struct Scene {
+    surface: SkinnedSurface,
+    palettes: Vec<Palette>,
+    anchors: Vec<Anchor>,
+    hits: Vec<SurfaceHit>,
+    positions: Vec<Vec3>,
+    found: usize,
+}
+
+/// Whether the creature's root moves, which makes the previous palette anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Root {
+    Still,
+    Moving,
+}
+
+/// Whether a tick asks for so much that the next one is skinned ahead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touch {
+    Little,
+    Everything,
+}
+
+/// Ticks before counting, and counted ones.
+const WARM: usize = 4;
+const COUNTED: usize = 12;
+
+impl Scene {
+    fn new() -> Self {
+        let creature = giant::giant().unwrap();
+        let walk = creature.clip_like(&["walk"]).unwrap();
+        let rest = creature.skeleton.rest_pose();
+        let palettes = (0..WARM + COUNTED).map(|tick| {
+            let time = tick as f64 / 60.0;
+            let pose = walk.sample(&rest, time, Playback::Loop).unwrap();
+            creature.skeleton.palette(&pose).unwrap()
+        });
+        let palettes = palettes.collect();
+        let surface = SkinnedSurface::new(creature.collider.clone());
+        let triangles = creature.collider.triangles().len() as u32;
+        let anchors = (0..triangles).step_by(4_000);
+        let anchors = anchors.map(|id| surface.anchor(TriangleId(id), [0.5, 0.25, 0.25]).unwrap());
+        Self {
+            palettes,
+            anchors: anchors.collect(),
+            surface,
+            hits: Vec::new(),
+            positions: Vec::new(),
+            found: 0,
+        }
+    }
+
+    fn tick(&mut self, tick: usize, root: Root, touch: Touch) {
+        let shift = match root {
+            Root::Still => 0.0,
+            Root::Moving => tick as f64 * 0.1,
+        };
+        let world = Similarity {
+            rotation: DQuat::IDENTITY,
+            scale: 1.0,
+            translation: DVec3::new(0.0, 0.0, shift),
+        };
+        self.surface.advance(&self.palettes[tick], world).unwrap();
+        for anchor in &self.anchors {
+            let motion = self.surface.motion(anchor, 1.0 / 60.0).unwrap();
+            let origin = motion.position + motion.normal * 0.5;
+            let ray = Ray::new(origin, -motion.normal).unwrap();
+            let hit = self.surface.cast_ray(&ray, 2.0).unwrap();
+            self.found += usize::from(hit.is_some());
+            self.found += usize::from(self.surface.intersects_ray(&ray, 2.0).unwrap());
+            let hits = &mut self.hits;
+            self.surface.cast_ray_all(&ray, 50.0, hits).unwrap();
+            self.found += hits.len();
+            let near = self.surface.closest_point(origin, 2.0).unwrap();
+            self.found += usize::from(near.is_some());
+            let body = Sphere {
+                center: origin,
+                radius: 1.0,
+            };
+            self.surface.overlap_sphere(&body, hits).unwrap();
+            self.found += hits.len();
+            let limb = Capsule {
+                a: origin,
+                b: motion.position,
+                radius: 0.5,
+            };
+            self.surface.overlap_capsule(&limb, hits).unwrap();
+            self.found += hits.len();
+        }
+        if touch == Touch::Everything {
+            let everything = Sphere {
+                center: Vec3::ZERO,
+                radius: f32::INFINITY,
+            };
+            let hits = &mut self.hits;
+            self.surface.overlap_sphere(&everything, hits).unwrap();
+        }
+        self.surface.skin_all(&mut self.positions);
+    }
+}
+
+#[test]
+fn a_steady_tick_allocates_nothing() {
+    for root in [Root::Still, Root::Moving] {
+        for touch in [Touch::Little, Touch::Everything] {
+            let mut scene = Scene::new();
+            // Room for whatever any tick may find.
+            scene.hits.reserve(scene.surface.mesh().triangles().len());
+            for tick in 0..WARM {
+                scene.tick(tick, root, touch);
+            }
+            let case = format!("root {root:?}, touching {touch:?}");
+            for tick in WARM..WARM + COUNTED {
+                let found = measure(|| scene.tick(tick, root, touch));
+                assert_eq!(found.count_total, 0, "{case}, tick {tick}: {found:?}");
+            }
+            let diagnostics = scene.surface.diagnostics();
+            let ahead = diagnostics.clusters_skinned == diagnostics.clusters;
+            assert_eq!(ahead, touch == Touch::Everything, "{case}: {diagnostics:?}");
+            assert!(scene.found > 500, "{case}: {}", scene.found);
+        }
+    }
+}
+
+#[test]
+fn the_counter_sees_an_allocation() {
+    let mut scene = Scene::new();
+    let found = measure(|| scene.tick(0, Root::Still, Touch::Little));
+    assert!(found.count_total > 0, "{found:?}");
+}
