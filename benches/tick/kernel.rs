@@ -73,10 +73,6 @@ impl Sheet {
         })
     }
 
-    fn vertices(&self) -> f64 {
-        self.mesh.positions().len() as f64
-    }
-
     /// Million slots a second of our kernel, every copy of a vertex counted as one.
     fn ours(&self, level: SimdLevel, budget: Duration) -> Result<f64, Box<dyn Error>> {
         let mut numbers = Vec::new();
