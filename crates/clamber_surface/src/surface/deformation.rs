@@ -102,7 +102,8 @@ pub(super) fn stretch(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
         // Collapsed into a segment or a point: the longest edge tells the stretch along it.
         let area = scaled_normal(now).length() / scaled_normal(before).length();
         let along = longest_edge(now) / longest_edge(before);
-        return (area, [along, if along > 0.0 { area / along } else { 0.0 }]);
+        let across = if along > 0.0 { area / along } else { 0.0 };
+        return (area, [along.max(across), along.min(across)]);
     };
     let (a, b, d) = flat_before.gradient(&flat_now);
     // Singular values of [[a, b], [0, d]] without cancellation (Blinn 1996).

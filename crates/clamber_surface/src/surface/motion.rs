@@ -93,10 +93,15 @@ impl SkinnedSurface {
             angular_velocity: round_to_f32(angular_velocity),
             normal: round_to_f32(normal),
             collapsed: current_frame.is_none(),
-            area_ratio: area_ratio as f32,
-            stretches: stretches.map(|s| s as f32),
+            area_ratio: finite(area_ratio),
+            stretches: stretches.map(finite),
         })
     }
+}
+
+/// Rounded; what is larger than any f32 is the largest.
+fn finite(ratio: f64) -> f32 {
+    (ratio as f32).min(f32::MAX)
 }
 
 /// The frame that an anchor remembers; no rotation if that is none.

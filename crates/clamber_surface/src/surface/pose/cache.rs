@@ -101,3 +101,6 @@ impl Cache<AtomicU64> {
         (self.stamps.len() + self.words.len()) * size_of::<AtomicU64>()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -124,7 +124,7 @@ impl SkinnedSurface {
             barycentric: round_to_f32(found.barycentric).to_array(),
             point: round_to_f32(point),
             normal: round_to_f32(normal),
-            distance: found.distance as f32,
+            distance: (found.distance as f32).min(f32::MAX),
             part,
             tag: self.mesh.tags()[triangle.index()],
         }

@@ -1,0 +1,74 @@
+//! Any file: refused with a reason, or a rig that can be used.
+
+use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_surface::geometry::{Similarity, Sphere};
+use clamber_surface::rig::Playback;
+use clamber_surface::surface::{BruteForce, SkinnedSurface};
+use glam::Vec3;
+
+use crate::seed::glb;
+
+/// Loads any bytes as a file; true if it loads. What is neither glTF nor GLB is taken for the two chunks
+/// of a GLB, JSON up to the first zero and binary from there, so that no length needs to be right.
+pub fn import(data: &[u8]) -> bool {
+    let end = data.iter().position(|byte| *byte == 0);
+    let wrapped = match end {
+        Some(end) if !data.starts_with(b"glTF") => Some(glb(&data[..end], &data[end + 1..])),
+        _ => None,
+    };
+    match load_slice(wrapped.as_deref().unwrap_or(data), &LoadOptions::default()) {
+        Ok(rig) => {
+            use_rig(&rig);
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+    }
+}
+
+/// Poses and queries a rig, as a user would.
+fn use_rig(rig: &Rig) {
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    let rest = rig.skeleton.rest_pose();
+    let mut poses = vec![rest.clone()];
+    for clip in rig.clips.iter().take(4) {
+        for (share, playback) in [(0.3, Playback::Loop), (1.5, Playback::Clamp)] {
+            poses.extend(clip.sample(&rest, clip.duration() * share, playback));
+        }
+    }
+    let mut positions = Vec::new();
+    for pose in &poses {
+        // Legal files may pose beyond all bounds; that is said here.
+        let Ok(palette) = rig.skeleton.palette(pose) else {
+            continue;
+        };
+        if surface.advance(&palette, Similarity::IDENTITY).is_err() {
+            continue;
+        }
+        surface.skin_all(&mut positions);
+        assert!(positions.iter().all(|p| p.is_finite()), "{positions:?}");
+    }
+    // Brute force takes long where a file is large.
+    if rig.collider.triangles().len() < 1_000 {
+        let sphere = Sphere {
+            center: surface
+                .mesh()
+                .positions()
+                .first()
+                .copied()
+                .unwrap_or(Vec3::ZERO),
+            radius: surface.mesh().radius() * 0.5,
+        };
+        let (mut found, mut wanted) = (Vec::new(), Vec::new());
+        let brute_force = BruteForce::new(&surface);
+        let a = surface.overlap_sphere(&sphere, &mut found);
+        let b = brute_force.overlap_sphere(&sphere, &mut wanted);
+        assert_eq!((a, found), (b, wanted), "{sphere:?}");
+    }
+    for weak_point in &rig.weak_points {
+        assert!((weak_point.joint.0 as usize) < rig.skeleton.joints().len());
+    }
+    let _ = rig.visual_collider();
+}

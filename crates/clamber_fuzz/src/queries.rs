@@ -1,0 +1,233 @@
+//! Any query of any surface, edited at will: the answer of brute force, bit for bit, or its refusal.
+
+use std::sync::Arc;
+
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::{Capsule, Ray, Sphere};
+use clamber_surface::mesh::{PartId, TriangleId, VertexId};
+use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError, SurfaceHit};
+use glam::Vec3;
+
+use crate::bytes::Bytes;
+use crate::mesh::{built, tag};
+use crate::poses::{palette, similarity};
+use crate::same::{bits, same_errors, same_hits};
+
+/// What there was to check.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Queries {
+    /// Hits, by both ways.
+    pub hits: usize,
+    /// Queries answered, with or without hits.
+    pub answered: usize,
+    /// Queries refused.
+    pub refused: usize,
+    /// Edits made.
+    pub edits: usize,
+}
+
+/// Asks a surface of any bytes for whatever the bytes say, and brute force for the same.
+pub fn queries(data: &[u8]) -> Queries {
+    let mut bytes = Bytes::new(data);
+    let mut seen = Queries::default();
+    let Some(mesh) = built(&mut bytes) else {
+        return seen;
+    };
+    let level = bytes.pick(&SimdLevel::available());
+    let mut surface = SkinnedSurface::with_simd_level(Arc::new(mesh), level);
+    for _ in 0..3 {
+        let mesh = surface.mesh();
+        let faults = bytes.one_in(8);
+        let palette = palette(&mut bytes, mesh.joint_count(), mesh.radius(), faults);
+        // What is refused leaves a surface that is asked all the same.
+        let _ = surface.advance(&palette, similarity(&mut bytes, faults));
+        for _ in 0..bytes.below(4) {
+            seen.edits += usize::from(edit(&mut surface, &mut bytes));
+        }
+        if bytes.one_in(8) {
+            surface.skin_ahead();
+        }
+        compare(&surface, &mut bytes, &mut seen);
+    }
+    seen
+}
+
+/// Changes something; false if that was refused, and then nothing has changed.
+fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
+    let mesh = surface.mesh().clone();
+    // One more than there are, at times.
+    let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
+    let part = PartId(bytes.below(mesh.parts().len() + 1) as u32);
+    let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
+    let corners = [vertex(), vertex(), vertex()];
+    let before = shown(surface);
+    let result = match bytes.byte() % 8 {
+        0 => surface.enable_part(part),
+        1 => surface.disable_part(part),
+        2 => surface.enable_triangle(triangle),
+        3 | 4 => surface.disable_triangle(triangle),
+        5 => surface.remove_triangle(triangle),
+        _ => surface.add_triangle(corners, tag(bytes)).map(|added| {
+            assert_eq!(added.index(), before.len());
+            assert!(
+                surface.is_enabled(added) || mesh.parts().len() == surface.mesh().parts().len()
+            );
+        }),
+    };
+    if let Err(error) = &result {
+        assert!(!error.to_string().is_empty());
+        assert_eq!(shown(surface), before, "{error}");
+        assert_eq!(*surface.mesh(), mesh, "{error}");
+    }
+    result.is_ok()
+}
+
+/// Which triangles queries see.
+fn shown(surface: &SkinnedSurface) -> Vec<bool> {
+    let ids = 0..surface.mesh().triangles().len() as u32;
+    ids.map(|id| surface.is_enabled(TriangleId(id))).collect()
+}
+
+fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) {
+    let brute_force = BruteForce::new(surface);
+    let positions = brute_force.positions();
+    let largest = |p: &Vec3| p.abs().max_element();
+    let size = positions.iter().map(largest).fold(0.0, f32::max);
+    let all = (0..).map(VertexId).zip(positions);
+    for (v, p) in all {
+        assert_eq!(surface.position(v).map(bits), Some(bits(*p)), "vertex {v}");
+    }
+    let (mut found, mut wanted) = (Vec::new(), Vec::new());
+    for _ in 0..4 {
+        let origin = place(bytes, positions, size);
+        let to = place(bytes, positions, size);
+        let reach = length(bytes, size);
+        let aim = if bytes.one_in(4) {
+            bytes.hostile_point()
+        } else {
+            to - origin
+        };
+        if let Some(ray) = ray(origin, aim) {
+            let hit = surface.cast_ray(&ray, reach);
+            let one = brute_force.cast_ray(&ray, reach);
+            let met = surface.intersects_ray(&ray, reach);
+            let any = one.as_ref().map(Option::is_some);
+            let agree = met.as_ref().ok().copied() == any.ok();
+            assert!(agree, "{ray:?}, {reach}: {met:?}, {any:?}");
+            seen.same(listed(hit), listed(one), || {
+                format!("cast {ray:?}, {reach}")
+            });
+            let all = surface.cast_ray_all(&ray, reach, &mut found);
+            let wanted_all = brute_force.cast_ray_all(&ray, reach, &mut wanted);
+            let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
+            seen.same(all, wanted_all, || format!("all along {ray:?}, {reach}"));
+        }
+        let hit = surface.closest_point(origin, reach);
+        let one = brute_force.closest_point(origin, reach);
+        seen.same(listed(hit), listed(one), || {
+            format!("closest to {origin}, {reach}")
+        });
+        let sphere = Sphere {
+            center: origin,
+            radius: reach,
+        };
+        let all = surface.overlap_sphere(&sphere, &mut found);
+        let wanted_all = brute_force.overlap_sphere(&sphere, &mut wanted);
+        let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
+        seen.same(all, wanted_all, || format!("{sphere:?}"));
+        let capsule = Capsule {
+            a: origin,
+            b: to,
+            radius: reach,
+        };
+        let all = surface.overlap_capsule(&capsule, &mut found);
+        let wanted_all = brute_force.overlap_capsule(&capsule, &mut wanted);
+        let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
+        seen.same(all, wanted_all, || format!("{capsule:?}"));
+    }
+}
+
+/// A ray of anything that may be one; `None`, rightly, of anything else.
+fn ray(origin: Vec3, aim: Vec3) -> Option<Ray> {
+    let ray = Ray::new(origin, aim);
+    let usable = origin.is_finite() && aim.is_finite() && aim != Vec3::ZERO;
+    assert_eq!(ray.is_some(), usable, "{origin}, {aim}");
+    if let Some(ray) = ray {
+        let length = ray.direction().as_dvec3().length();
+        assert!((length - 1.0).abs() < 1e-6, "{ray:?}");
+    }
+    ray
+}
+
+/// On the surface, near it, or anywhere.
+fn place(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32) -> Vec3 {
+    let vertex = positions[bytes.below(positions.len())];
+    let other = positions[bytes.below(positions.len())];
+    match bytes.byte() % 8 {
+        0 => vertex,
+        1 => vertex * 0.5 + other * 0.5,
+        2 if bytes.one_in(2) => bytes.hostile_point(),
+        3 => bytes.point(),
+        4 => vertex + bytes.point() * size,
+        _ => vertex + bytes.point() * size * 0.03,
+    }
+}
+
+fn length(bytes: &mut Bytes<'_>, size: f32) -> f32 {
+    match bytes.byte() % 8 {
+        0 => 0.0,
+        1 => f32::INFINITY,
+        2 if bytes.one_in(3) => bytes.hostile(),
+        3 => bytes.number().abs(),
+        4 => size,
+        _ => size * bytes.share(),
+    }
+}
+
+fn listed(hit: Result<Option<SurfaceHit>, SurfaceError>) -> Result<Vec<SurfaceHit>, SurfaceError> {
+    hit.map(|hit| hit.into_iter().collect())
+}
+
+impl Queries {
+    /// Compares two answers to one question, and sees that they are sound.
+    fn same<H: AsRef<[SurfaceHit]>>(
+        &mut self,
+        found: Result<H, SurfaceError>,
+        wanted: Result<H, SurfaceError>,
+        question: impl Fn() -> String,
+    ) {
+        match (found, wanted) {
+            (Ok(found), Ok(wanted)) => {
+                let (found, wanted) = (found.as_ref(), wanted.as_ref());
+                let same = same_hits(found, wanted);
+                assert!(same, "{}:\n{found:?}\n{wanted:?}", question());
+                for hit in found {
+                    check(hit, &question);
+                }
+                self.hits += found.len();
+                self.answered += 1;
+            }
+            (Err(found), Err(wanted)) => {
+                let same = same_errors(&found, &wanted);
+                assert!(same, "{}: {found:?} {wanted:?}", question());
+                self.refused += 1;
+            }
+            (found, wanted) => {
+                let found = found.map(|hits| hits.as_ref().len());
+                let wanted = wanted.map(|hits| hits.as_ref().len());
+                panic!("{}: {found:?} {wanted:?}", question());
+            }
+        }
+    }
+}
+
+fn check(hit: &SurfaceHit, question: &impl Fn() -> String) {
+    let say = || format!("{}: {hit:?}", question());
+    let [u, v, w] = hit.barycentric;
+    assert!(u >= 0.0 && v >= 0.0 && w >= 0.0, "{}", say());
+    assert!((u + v + w - 1.0).abs() < 1e-6, "{}", say());
+    assert!(hit.point.is_finite(), "{}", say());
+    let normal = hit.normal.as_dvec3().length();
+    assert!((normal - 1.0).abs() < 1e-6, "{}", say());
+    assert!(hit.distance >= 0.0 && hit.distance.is_finite(), "{}", say());
+}
