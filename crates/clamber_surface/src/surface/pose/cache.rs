@@ -37,6 +37,20 @@ impl Word for AtomicU64 {
     }
 }
 
+/// Marks the stamp of an entry that was filled before anybody asked for it.
+const UNASKED: u64 = 1 << 63;
+
+/// What [`Cache::recall`] found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Recall {
+    /// Nothing: compute the numbers, and [`Cache::keep`] them.
+    Nothing,
+    /// Numbers that were kept ahead, and that nobody has asked for before.
+    First,
+    /// Numbers that somebody asked for before.
+    Again,
+}
+
 impl<W: Word> Cache<W> {
     /// All entries empty. No epoch may be 0.
     pub(super) fn new(entries: usize, numbers: usize) -> Self {
@@ -46,39 +60,61 @@ impl<W: Word> Cache<W> {
         }
     }
 
-    /// The entry's stamp. If it is the epoch, [`Cache::load`] gives its numbers.
-    pub(super) fn stamp(&self, entry: usize) -> u64 {
-        self.stamps[entry].load(Ordering::Acquire)
-    }
-
-    /// Says that an entry is filled, after its numbers were stored.
-    pub(super) fn set_stamp(&self, entry: usize, stamp: u64) {
-        self.stamps[entry].store(stamp, Ordering::Release);
-    }
-
-    /// Copies numbers out, from an even one on, an even count of them.
-    pub(super) fn load(&self, first: usize, numbers: &mut [f32]) {
-        let words = &self.words[first / 2..][..numbers.len() / 2];
-        for (pair, word) in numbers.as_chunks_mut::<2>().0.iter_mut().zip(words) {
-            let bits = word.load(Ordering::Relaxed);
-            *pair = [
-                f32::from_bits(bits as u32),
-                f32::from_bits((bits >> 32) as u32),
-            ];
+    /// Copies an entry's numbers out, if they are of this epoch: part after part, of even lengths, from
+    /// the number `first` on, which is even.
+    pub(super) fn recall<const N: usize>(
+        &self,
+        entry: usize,
+        epoch: u64,
+        first: usize,
+        parts: [&mut [f32]; N],
+    ) -> Recall {
+        let stamp = self.stamps[entry].load(Ordering::Acquire);
+        if stamp & !UNASKED != epoch {
+            return Recall::Nothing;
         }
-    }
-
-    /// Copies numbers in, from an even one on, an even count of them.
-    pub(super) fn store(&self, first: usize, numbers: &[f32]) {
-        let words = &self.words[first / 2..][..numbers.len() / 2];
-        for (pair, word) in numbers.as_chunks::<2>().0.iter().zip(words) {
-            let [low, high] = pair.map(|x| u64::from(x.to_bits()));
-            word.store(low | high << 32, Ordering::Relaxed);
+        let mut words = self.words[first / 2..].iter();
+        for part in parts {
+            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(&mut words) {
+                let bits = word.load(Ordering::Relaxed);
+                *pair = unpacked(bits);
+            }
         }
+        if stamp & UNASKED == 0 {
+            return Recall::Again;
+        }
+        self.stamps[entry].store(epoch, Ordering::Release);
+        Recall::First
     }
 
-    /// How many entries `counts` says yes to, by stamp.
-    pub(super) fn entries_with(&self, counts: impl Fn(u64) -> bool) -> impl Iterator<Item = usize> {
+    /// Keeps an entry's numbers, as [`Cache::recall`] takes them.
+    pub(super) fn keep<const N: usize>(
+        &self,
+        entry: usize,
+        epoch: u64,
+        first: usize,
+        parts: [&[f32]; N],
+    ) {
+        let mut words = self.words[first / 2..].iter();
+        for part in parts {
+            for (pair, word) in part.as_chunks::<2>().0.iter().zip(&mut words) {
+                word.store(packed(pair), Ordering::Relaxed);
+            }
+        }
+        self.stamps[entry].store(epoch, Ordering::Release);
+    }
+
+    /// The entries that somebody asked for in this epoch.
+    pub(super) fn asked(&self, epoch: u64) -> impl Iterator<Item = usize> {
+        self.entries_with(move |stamp| stamp == epoch)
+    }
+
+    /// The entries that are filled in this epoch, asked for or not.
+    pub(super) fn filled(&self, epoch: u64) -> impl Iterator<Item = usize> {
+        self.entries_with(move |stamp| stamp & !UNASKED == epoch)
+    }
+
+    fn entries_with(&self, counts: impl Fn(u64) -> bool) -> impl Iterator<Item = usize> {
         let stamps = self.stamps.iter().enumerate();
         stamps
             .filter(move |(_, stamp)| counts(stamp.load(Ordering::Relaxed)))
@@ -87,12 +123,34 @@ impl<W: Word> Cache<W> {
 }
 
 impl Cache<AtomicU64> {
-    /// [`Cache::store`] by whoever has the cache alone: plain stores.
-    pub(super) fn set(&mut self, first: usize, numbers: &[f32]) {
-        let words = &mut self.words[first / 2..][..numbers.len() / 2];
-        for (pair, word) in numbers.as_chunks::<2>().0.iter().zip(words) {
-            let [low, high] = pair.map(|x| u64::from(x.to_bits()));
-            *word.get_mut() = low | high << 32;
+    /// [`Cache::keep`] by whoever has the cache alone, before anybody asks; what was asked for already
+    /// stays so.
+    pub(super) fn keep_ahead<const N: usize>(
+        &mut self,
+        entry: usize,
+        epoch: u64,
+        first: usize,
+        parts: [&[f32]; N],
+    ) {
+        let mut words = self.words[first / 2..].iter_mut();
+        for part in parts {
+            for (pair, word) in part.as_chunks::<2>().0.iter().zip(&mut words) {
+                *word.get_mut() = packed(pair);
+            }
+        }
+        let stamp = self.stamps[entry].get_mut();
+        if *stamp != epoch {
+            *stamp = epoch | UNASKED;
+        }
+    }
+
+    /// Copies numbers out, of whatever epoch, as whoever has the cache alone may.
+    pub(super) fn peek<const N: usize>(&mut self, first: usize, parts: [&mut [f32]; N]) {
+        let mut words = self.words[first / 2..].iter_mut();
+        for part in parts {
+            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(&mut words) {
+                *pair = unpacked(*word.get_mut());
+            }
         }
     }
 
@@ -100,6 +158,15 @@ impl Cache<AtomicU64> {
     pub(super) fn memory(&self) -> usize {
         (self.stamps.len() + self.words.len()) * size_of::<AtomicU64>()
     }
+}
+
+fn unpacked(word: u64) -> [f32; 2] {
+    [word as u32, (word >> 32) as u32].map(f32::from_bits)
+}
+
+fn packed(pair: &[f32; 2]) -> u64 {
+    let [low, high] = pair.map(|x| u64::from(x.to_bits()));
+    low | high << 32
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::Vec3;
 
-use self::cache::Cache;
+use self::cache::{Cache, Recall};
 use super::bounds::{JointTable, RootBox, Spheres, spheres};
 use crate::geometry::Affine;
 use crate::mesh::ColliderMesh;
@@ -21,9 +21,6 @@ const NODE: usize = 4 * LANES;
 
 /// Numbers of a row of slots: x, y, z.
 const ROW_OF_POSITIONS: usize = 3 * ROW;
-
-/// Marks the stamp of an entry that was filled before anybody asked for it.
-const UNASKED: u64 = 1 << 63;
 
 /// A palette, and bounds and positions under it as far as anybody asked for them.
 #[derive(Debug)]
@@ -103,29 +100,17 @@ impl Pose {
     /// Spheres that hold the children of a node.
     pub(super) fn spheres(&self, mesh: &ColliderMesh, node: u32) -> Spheres {
         let index = node as usize;
-        let stamp = self.nodes.stamp(index);
-        if stamp & !UNASKED == self.epoch {
-            if stamp & UNASKED != 0 {
-                self.nodes.set_stamp(index, self.epoch);
-            }
-            return self.load_spheres(index);
+        let mut found = Spheres::ZERO;
+        let parts = found.rows_mut().map(|row| &mut row[..]);
+        if self.nodes.recall(index, self.epoch, index * NODE, parts) != Recall::Nothing {
+            return found;
         }
         let hierarchy = mesh.hierarchy();
         let node = &hierarchy.nodes[index];
         let (joints, weights) = (node.joints(hierarchy), node.weights(hierarchy));
-        let found = spheres(self.level, node, joints, weights, &self.table);
-        for (k, numbers) in found.rows().into_iter().enumerate() {
-            self.nodes.store(index * NODE + k * LANES, numbers);
-        }
-        self.nodes.set_stamp(index, self.epoch);
-        found
-    }
-
-    fn load_spheres(&self, node: usize) -> Spheres {
-        let mut found = Spheres::ZERO;
-        for (k, numbers) in found.rows_mut().into_iter().enumerate() {
-            self.nodes.load(node * NODE + k * LANES, numbers);
-        }
+        found = spheres(self.level, node, joints, weights, &self.table);
+        let parts = found.rows().map(|row| &row[..]);
+        self.nodes.keep(index, self.epoch, index * NODE, parts);
         found
     }
 
@@ -134,24 +119,17 @@ impl Pose {
         let index = cluster as usize;
         let clusters = mesh.clusters();
         let cluster = &clusters.clusters[index];
-        let (count, first) = (cluster.rows() * ROW, first_number(cluster));
-        let stamp = self.clusters.stamp(index);
-        if stamp & !UNASKED == self.epoch {
-            for (axis, numbers) in out.0.iter_mut().enumerate() {
-                self.clusters
-                    .load(first + axis * count, &mut numbers[..count]);
-            }
-            if stamp & UNASKED != 0 {
-                self.clusters.set_stamp(index, self.epoch);
-                self.asked.fetch_add(1, Ordering::Relaxed);
-            }
+        let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
+        let parts = out.0.each_mut().map(|axis| &mut axis[..slots]);
+        let recall = self.clusters.recall(index, self.epoch, first, parts);
+        if recall == Recall::Again {
             return;
         }
-        skin_cluster(self.level, clusters, cluster, &self.palette, out);
-        for (axis, numbers) in out.0.iter().enumerate() {
-            self.clusters.store(first + axis * count, &numbers[..count]);
+        if recall == Recall::Nothing {
+            skin_cluster(self.level, clusters, cluster, &self.palette, out);
+            let parts = out.0.each_ref().map(|axis| &axis[..slots]);
+            self.clusters.keep(index, self.epoch, first, parts);
         }
-        self.clusters.set_stamp(index, self.epoch);
         self.asked.fetch_add(1, Ordering::Relaxed);
     }
 
@@ -162,18 +140,17 @@ impl Pose {
 
     /// Clusters that anybody asked for.
     pub(super) fn asked_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters.entries_with(|stamp| stamp == self.epoch)
+        self.clusters.asked(self.epoch)
     }
 
     /// Nodes whose bounds anybody asked for.
     pub(super) fn asked_nodes(&self) -> impl Iterator<Item = usize> {
-        self.nodes.entries_with(|stamp| stamp == self.epoch)
+        self.nodes.asked(self.epoch)
     }
 
     /// Clusters that were skinned, asked for or not.
     pub(super) fn skinned_clusters(&self) -> impl Iterator<Item = usize> {
-        self.clusters
-            .entries_with(|stamp| stamp & !UNASKED == self.epoch)
+        self.clusters.filled(self.epoch)
     }
 
     /// Bytes of palette and caches.

@@ -1,7 +1,6 @@
 //! The eager way: everything at once, before anybody asks.
 
-use super::cache::Cache;
-use super::{LANES, NODE, Pose, ROW, UNASKED, first_number};
+use super::{NODE, Pose, ROW, first_number};
 use crate::mesh::ColliderMesh;
 use crate::mesh::hierarchy::Child;
 use crate::skin::{ClusterPositions, skin_cluster};
@@ -22,7 +21,7 @@ impl Pose {
                         around_positions(&positions, rows * ROW)
                     }
                     Child::Node(child) => around_spheres(
-                        &self.load_spheres(child as usize),
+                        &self.refitted(child as usize),
                         usize::from(nodes[child as usize].lanes),
                     ),
                 };
@@ -30,33 +29,27 @@ impl Pose {
                     row[lane] = number;
                 }
             }
-            for (k, numbers) in spheres.rows().into_iter().enumerate() {
-                self.nodes.set(index * NODE + k * LANES, numbers);
-            }
-            let stamp = self.filled(&self.nodes, index);
-            self.nodes.set_stamp(index, stamp);
+            let parts = spheres.rows().map(|row| &row[..]);
+            self.nodes
+                .keep_ahead(index, self.epoch, index * NODE, parts);
         }
     }
 
-    /// The stamp of an entry that is filled now: what was asked for stays so.
-    fn filled(&self, cache: &Cache, entry: usize) -> u64 {
-        if cache.stamp(entry) == self.epoch {
-            self.epoch
-        } else {
-            self.epoch | UNASKED
-        }
+    /// Spheres of a node that were kept ahead.
+    fn refitted(&mut self, node: usize) -> Spheres {
+        let mut found = Spheres::ZERO;
+        let parts = found.rows_mut().map(|row| &mut row[..]);
+        self.nodes.peek(node * NODE, parts);
+        found
     }
 
     fn fill_cluster(&mut self, mesh: &ColliderMesh, index: usize, out: &mut ClusterPositions) {
         let clusters = mesh.clusters();
         let cluster = &clusters.clusters[index];
         skin_cluster(self.level, clusters, cluster, &self.palette, out);
-        let (count, first) = (cluster.rows() * ROW, first_number(cluster));
-        for (axis, numbers) in out.0.iter().enumerate() {
-            self.clusters.set(first + axis * count, &numbers[..count]);
-        }
-        let stamp = self.filled(&self.clusters, index);
-        self.clusters.set_stamp(index, stamp);
+        let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
+        let parts = out.0.each_ref().map(|axis| &axis[..slots]);
+        self.clusters.keep_ahead(index, self.epoch, first, parts);
     }
 }
 

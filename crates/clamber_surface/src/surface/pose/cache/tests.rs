@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicU64;
 
-use super::{Cache, Ordering, Word};
+use super::{Cache, Ordering, Recall, UNASKED, Word};
 
 impl Word for loom::sync::atomic::AtomicU64 {
     fn new(value: u64) -> Self {
@@ -19,31 +19,21 @@ impl Word for loom::sync::atomic::AtomicU64 {
     }
 }
 
-/// Marks entries as [`super::super::UNASKED`] does.
-const AHEAD: u64 = 1 << 63;
-
 /// What everybody computes for the entry in an epoch; never 0, which is what an empty one holds.
 fn computed(epoch: u64) -> [f32; 4] {
     [1.0, 2.0, 3.0, 4.0].map(|x| x * epoch as f32)
 }
 
-/// Asks for the entry as a pose does: out of the cache if the stamp says so, and computed and stored
-/// otherwise. True if it was in the cache.
-fn ask<W: Word>(cache: &Cache<W>, epoch: u64) -> bool {
-    let stamp = cache.stamp(0);
-    let filled = stamp & !AHEAD == epoch;
-    if filled {
-        let mut numbers = [0.0; 4];
-        cache.load(0, &mut numbers);
-        assert_eq!(numbers, computed(epoch), "stamp {stamp:#x}");
-        if stamp & AHEAD != 0 {
-            cache.set_stamp(0, epoch);
-        }
+/// Asks for the entry as a pose does.
+fn ask<W: Word>(cache: &Cache<W>, epoch: u64) -> Recall {
+    let mut numbers = [0.0; 4];
+    let recall = cache.recall(0, epoch, 0, [&mut numbers[..]]);
+    if recall == Recall::Nothing {
+        cache.keep(0, epoch, 0, [&computed(epoch)[..]]);
     } else {
-        cache.store(0, &computed(epoch));
-        cache.set_stamp(0, epoch);
+        assert_eq!(numbers, computed(epoch), "{recall:?}");
     }
-    filled
+    recall
 }
 
 type LoomCache = Cache<loom::sync::atomic::AtomicU64>;
@@ -68,8 +58,7 @@ fn meet(threads: usize, prepare: fn(&LoomCache), epoch: u64) {
             other.join().unwrap();
         }
         // Whoever comes later finds it filled.
-        assert!(ask(&cache, epoch));
-        assert_eq!(cache.stamp(0), epoch);
+        assert_eq!(ask(&cache, epoch), Recall::Again);
     });
 }
 
@@ -85,15 +74,14 @@ fn three_threads_that_meet_at_an_empty_entry_read_what_was_computed() {
 
 #[test]
 fn threads_that_meet_at_an_outdated_entry_read_what_was_computed_anew() {
-    let outdated = |cache: &LoomCache| assert!(!ask(cache, 1));
+    let outdated = |cache: &LoomCache| assert_eq!(ask(cache, 1), Recall::Nothing);
     meet(2, outdated, 2);
 }
 
 #[test]
 fn threads_that_meet_at_an_entry_filled_ahead_read_it() {
     let ahead = |cache: &LoomCache| {
-        cache.store(0, &computed(1));
-        cache.set_stamp(0, 1 | AHEAD);
+        cache.keep(0, 1 | UNASKED, 0, [&computed(1)[..]]);
     };
     meet(3, ahead, 1);
 }
@@ -101,36 +89,40 @@ fn threads_that_meet_at_an_entry_filled_ahead_read_it() {
 #[test]
 fn a_new_epoch_outdates_every_entry_and_stamps_tell_who_asked() {
     let mut cache = Cache::<AtomicU64>::new(3, 12);
-    let with = |cache: &Cache, stamp: u64| -> Vec<usize> {
-        cache.entries_with(|found| found == stamp).collect()
-    };
-    assert_eq!(with(&cache, 0), [0, 1, 2]);
-    assert!(!ask(&cache, 1));
-    assert!(ask(&cache, 1));
-    assert!(!ask(&cache, 2), "outdated");
-    assert!(ask(&cache, 2));
-    cache.set(4, &computed(2));
-    cache.set_stamp(1, 2 | AHEAD);
-    assert_eq!(with(&cache, 2), [0]);
-    assert_eq!(with(&cache, 2 | AHEAD), [1]);
-    assert_eq!(with(&cache, 0), [2]);
+    let asked = |cache: &Cache, epoch: u64| cache.asked(epoch).collect::<Vec<_>>();
+    let filled = |cache: &Cache, epoch: u64| cache.filled(epoch).collect::<Vec<_>>();
+    assert_eq!(ask(&cache, 1), Recall::Nothing);
+    assert_eq!(ask(&cache, 1), Recall::Again);
+    assert_eq!(ask(&cache, 2), Recall::Nothing, "outdated");
+    assert_eq!(ask(&cache, 2), Recall::Again);
+    cache.keep_ahead(1, 2, 4, [&computed(2)[..]]);
+    cache.keep_ahead(0, 2, 0, [&computed(2)[..]]);
+    assert_eq!((asked(&cache, 2), filled(&cache, 2)), (vec![0], vec![0, 1]));
     let mut numbers = [0.0; 4];
-    cache.load(4, &mut numbers);
+    assert_eq!(cache.recall(1, 2, 4, [&mut numbers[..]]), Recall::First);
     assert_eq!(numbers, computed(2));
+    assert_eq!(cache.recall(1, 2, 4, [&mut numbers[..]]), Recall::Again);
+    assert_eq!(
+        (asked(&cache, 2), filled(&cache, 2)),
+        (vec![0, 1], vec![0, 1])
+    );
+    assert_eq!((asked(&cache, 3), filled(&cache, 3)), (vec![], vec![]));
 }
 
 #[test]
 fn numbers_keep_their_bits_and_their_neighbours() {
     let mut cache = Cache::<AtomicU64>::new(1, 8);
     let odd = [f32::NAN, -0.0, f32::from_bits(1), f32::INFINITY];
-    cache.store(2, &odd);
+    let (start, end) = odd.split_at(2);
+    cache.keep(0, 1, 2, [start, end]);
     let mut all = [1.0; 8];
-    cache.load(0, &mut all);
+    cache.peek(0, [&mut all[..]]);
     let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&all), bits(&[&[0.0; 2], &odd[..], &[0.0; 2]].concat()));
-    cache.set(6, &[5.0, -6.0]);
-    cache.set(0, &[f32::MAX, 7.0]);
-    cache.load(0, &mut all);
+    cache.keep_ahead(0, 1, 6, [&[5.0, -6.0][..]]);
+    cache.keep_ahead(0, 1, 0, [&[f32::MAX, 7.0][..]]);
+    let (start, end) = all.split_at_mut(4);
+    assert_eq!(cache.recall(0, 1, 0, [start, end]), Recall::Again);
     assert_eq!(
         bits(&all),
         bits(&[&[f32::MAX, 7.0], &odd[..], &[5.0, -6.0]].concat())
