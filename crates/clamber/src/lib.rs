@@ -22,7 +22,7 @@ pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
     };
-    pub use clamber_surface::geometry::{Affine, Ray, Similarity, Sphere};
+    pub use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
     pub use clamber_surface::mesh::{
         BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
     };

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::hit::{Best, Nearest};
 use super::posed_cluster::PosedCluster;
-use super::region::{box_around, check_point};
+use super::region::{BLUR, box_around, check_point};
 use super::stack::Stack;
 use super::{broad, check_length, root};
 use crate::geometry::triangle::{EIGHT, closest_points};
@@ -35,6 +35,8 @@ impl SkinnedSurface {
         let hierarchy = self.mesh.hierarchy();
         let mut posed = PosedCluster::new(self);
         let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        // A triangle may measure so much farther than its nearest vertex.
+        let blur = BLUR * root::size(self.current.root());
         let mut tested = 0;
         while let Some((distance, child)) = stack.pop() {
             // What is as far as the best one stays: it may have a smaller id.
@@ -44,7 +46,7 @@ impl SkinnedSurface {
             match child {
                 Child::Cluster(cluster) => {
                     if posed.visit(cluster) {
-                        tested += test(&posed, point, best);
+                        tested += test(&posed, point, blur, best);
                     }
                 }
                 Child::Node(index) => {
@@ -74,9 +76,11 @@ pub(super) fn farthest_first(
 }
 
 /// Tests a cluster's triangles; gives how many had to be tested exactly.
-fn test(posed: &PosedCluster<'_>, point: Vec3, best: &mut Best) -> usize {
+fn test(posed: &PosedCluster<'_>, point: Vec3, blur: f64, best: &mut Best) -> usize {
     // No triangle farther than the nearest vertex matters.
-    let limit = best.limit().min(f64::from(posed.nearest_vertex(point)));
+    let limit = best
+        .limit()
+        .min(f64::from(posed.nearest_vertex(point)) + blur);
     let mut survivors = posed.enabled(posed.near(point, point, limit));
     let mut tested = 0;
     let mut batch = [0; EIGHT];

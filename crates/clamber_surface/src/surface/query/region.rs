@@ -18,7 +18,7 @@ use super::check_length;
 /// four times the 2^-48 by which a segment that all but touches a triangle counts as crossing it, and
 /// some thirty times what rounding takes. Less loses triangles that the exact test takes; more tests
 /// more.
-const BLUR: f64 = 1.0 / (1u64 << 46) as f64;
+pub(super) const BLUR: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// All points within a radius of a core: a point, or a segment.
 pub(in crate::surface) trait Region {
