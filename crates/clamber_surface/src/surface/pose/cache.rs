@@ -73,12 +73,13 @@ impl<W: Word> Cache<W> {
         if stamp & !UNASKED != epoch {
             return Recall::Nothing;
         }
-        let mut words = self.words[first / 2..].iter();
+        let mut words = &self.words[first / 2..];
         for part in parts {
-            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(&mut words) {
-                let bits = word.load(Ordering::Relaxed);
-                *pair = unpacked(bits);
+            let (of_part, after) = words.split_at(part.len() / 2);
+            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(of_part) {
+                *pair = unpacked(word.load(Ordering::Relaxed));
             }
+            words = after;
         }
         if stamp & UNASKED == 0 {
             return Recall::Again;
@@ -95,11 +96,13 @@ impl<W: Word> Cache<W> {
         first: usize,
         parts: [&[f32]; N],
     ) {
-        let mut words = self.words[first / 2..].iter();
+        let mut words = &self.words[first / 2..];
         for part in parts {
-            for (pair, word) in part.as_chunks::<2>().0.iter().zip(&mut words) {
+            let (of_part, after) = words.split_at(part.len() / 2);
+            for (pair, word) in part.as_chunks::<2>().0.iter().zip(of_part) {
                 word.store(packed(pair), Ordering::Relaxed);
             }
+            words = after;
         }
         self.stamps[entry].store(epoch, Ordering::Release);
     }
@@ -132,11 +135,13 @@ impl Cache<AtomicU64> {
         first: usize,
         parts: [&[f32]; N],
     ) {
-        let mut words = self.words[first / 2..].iter_mut();
+        let mut words = &mut self.words[first / 2..];
         for part in parts {
-            for (pair, word) in part.as_chunks::<2>().0.iter().zip(&mut words) {
+            let (of_part, after) = words.split_at_mut(part.len() / 2);
+            for (pair, word) in part.as_chunks::<2>().0.iter().zip(of_part) {
                 *word.get_mut() = packed(pair);
             }
+            words = after;
         }
         let stamp = self.stamps[entry].get_mut();
         if *stamp != epoch {
@@ -146,11 +151,13 @@ impl Cache<AtomicU64> {
 
     /// Copies numbers out, of whatever epoch, as whoever has the cache alone may.
     pub(super) fn peek<const N: usize>(&mut self, first: usize, parts: [&mut [f32]; N]) {
-        let mut words = self.words[first / 2..].iter_mut();
+        let mut words = &mut self.words[first / 2..];
         for part in parts {
-            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(&mut words) {
+            let (of_part, after) = words.split_at_mut(part.len() / 2);
+            for (pair, word) in part.as_chunks_mut::<2>().0.iter_mut().zip(of_part) {
                 *pair = unpacked(*word.get_mut());
             }
+            words = after;
         }
     }
 
