@@ -6,7 +6,10 @@ use cargo_metadata::{Metadata, TargetKind};
 use crate::run::{cargo, cargo_output};
 
 /// What an example cannot do without.
-const ARGUMENTS: [(&str, &[&str]); 1] = [("inspect", &["assets/colossus.glb", "--poses", "2"])];
+const ARGUMENTS: [(&str, &[&str]); 2] = [
+    ("inspect", &["assets/colossus.glb", "--poses", "2"]),
+    ("seeds", &["target/fuzz-seeds"]),
+];
 
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     for package in metadata.workspace_packages() {
