@@ -109,9 +109,10 @@ impl<'a> PosedCluster<'a> {
     }
 
     /// The corners of a triangle.
+    #[inline]
     pub(super) fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.slots(triangle)
-            .map(|slot| position(&self.positions, slot))
+        let [a, b, c] = self.slots(triangle);
+        [a, b, c].map(|slot| position(&self.positions, slot))
     }
 
     /// The corners of a triangle in other positions of the same slots.
@@ -136,12 +137,15 @@ impl<'a> PosedCluster<'a> {
         batch
     }
 
+    #[inline]
     fn slots(&self, triangle: usize) -> [usize; 3] {
-        let CornerBlock(slots) = &self.corners[triangle / BLOCK];
-        slots.map(|corner| usize::from(corner[triangle % BLOCK]) % MAX_SLOTS)
+        let CornerBlock([a, b, c]) = &self.corners[triangle / BLOCK];
+        let slot = |corners: &[u8; BLOCK]| usize::from(corners[triangle % BLOCK]) % MAX_SLOTS;
+        [slot(a), slot(b), slot(c)]
     }
 }
 
+#[inline]
 fn position(positions: &ClusterPositions, slot: usize) -> Vec3 {
     Vec3::new(
         positions.0[0][slot],
