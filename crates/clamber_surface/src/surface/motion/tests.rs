@@ -209,3 +209,32 @@ fn bad_anchors_and_ticks_are_refused() {
     };
     assert!(surface.motion(&nowhere, 1.0).is_err());
 }
+
+#[test]
+fn stretches_of_a_collapsed_triangle_come_larger_first() {
+    // Far out, where its corners are rounded so much that it has no frame.
+    let at = |corners: [Vec3; 3], offset: f32| corners.map(|p| p + Vec3::X * offset);
+    let before = [Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 0.5];
+    let now = at([Vec3::ZERO, Vec3::X, Vec3::Y], 1e7);
+    assert!(is_collapsed(now) && !is_collapsed(before));
+    let (area, [larger, smaller]) = stretch(before, now);
+    assert!((area - 1.0).abs() < 1e-6, "{area}");
+    assert!(
+        larger > 1.4 && smaller < 0.7 && smaller > 0.6,
+        "{larger} {smaller}"
+    );
+}
+
+#[test]
+fn ratios_beyond_f32_are_its_largest_number() {
+    let mut surface = surface();
+    let anchor = anchor(&surface);
+    for size in [1e-20, 1e20] {
+        surface
+            .advance(&scaled(size, size, size), Similarity::IDENTITY)
+            .unwrap();
+    }
+    let motion = surface.motion(&anchor, 1.0).unwrap();
+    assert_eq!(motion.area_ratio, f32::MAX);
+    assert_eq!(motion.stretches, [f32::MAX; 2]);
+}
