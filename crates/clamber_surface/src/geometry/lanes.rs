@@ -10,7 +10,7 @@
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 /// One f64, or as many as a SIMD register holds.
 pub(crate) trait Lanes:
@@ -32,6 +32,20 @@ pub(crate) trait Lanes:
     fn at_most(self, other: Self) -> Self::Mask;
     fn equals(self, other: Self) -> Self::Mask;
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+    /// True if the mask is in any lane.
+    fn any(mask: Self::Mask) -> bool;
+
+    /// By comparison; `self` where either is NaN.
+    #[inline(always)]
+    fn or_larger(self, other: Self) -> Self {
+        Self::select(self.less(other), other, self)
+    }
+
+    /// By comparison; `self` where either is NaN.
+    #[inline(always)]
+    fn or_smaller(self, other: Self) -> Self {
+        Self::select(other.less(self), other, self)
+    }
 
     /// As [`f64::clamp`]: keeps NaN and -0.
     #[inline(always)]
@@ -73,6 +87,11 @@ impl Lanes for f64 {
     #[inline(always)]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
+    }
+
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
     }
 }
 
@@ -156,5 +175,10 @@ impl<S: Simd> Lanes for Wide<S> {
     #[inline(always)]
     fn select(mask: S::mask64s, if_true: Self, if_false: Self) -> Self {
         Self(mask.select(if_true.0, if_false.0))
+    }
+
+    #[inline(always)]
+    fn any(mask: S::mask64s) -> bool {
+        mask.any_true()
     }
 }

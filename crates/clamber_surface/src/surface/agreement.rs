@@ -1,6 +1,6 @@
 //! For tests: every query of a surface against brute force, bit for bit.
 
-use super::{BruteForce, SkinnedSurface, SurfaceHit};
+use super::{BruteForce, SkinnedSurface, SurfaceHit, SweepHit};
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::testing::{direction, point};
 use glam::Vec3;
@@ -66,6 +66,69 @@ pub(super) fn assert_queries_agree(
             .unwrap();
         assert_eq!(hits, expected, "{capsule:?}");
         found += hits.len();
+        found += assert_sweeps_agree(&brute_force, surface, rng, &capsule);
     }
     found
+}
+
+/// Compares casts and sweeps of a capsule, and of the sphere about one of its ends.
+fn assert_sweeps_agree(
+    brute_force: &BruteForce<'_>,
+    surface: &SkinnedSurface,
+    rng: &mut fastrand::Rng,
+    capsule: &Capsule,
+) -> usize {
+    let positions = brute_force.positions();
+    let aim = positions[rng.usize(0..positions.len())] - capsule.a;
+    let aim = aim * [0.0, 0.5, 1.1, 3.0][rng.usize(0..4)];
+    let radius = if capsule.radius.is_finite() {
+        capsule.radius
+    } else {
+        aim.length() * 0.1
+    };
+    let tolerance = radius * [0.0, 1e-5, 1e-2, 1.0][rng.usize(0..4)];
+    let sphere = Sphere {
+        center: capsule.a,
+        radius,
+    };
+    let capsule = Capsule { radius, ..*capsule };
+    let turn = [0.0, 0.5][rng.usize(0..2)];
+    let turn = point(rng, aim.length() * turn);
+    let motions = [aim, aim + turn];
+    if !(motions[1].is_finite() && radius.is_finite() && capsule.b.is_finite()) {
+        return 0;
+    }
+    let case = format_args!("{capsule:?} {motions:?} {tolerance}");
+
+    let hit = surface.cast_sphere(&sphere, aim, tolerance).unwrap();
+    let wanted = brute_force.cast_sphere(&sphere, aim, tolerance).unwrap();
+    assert_eq!(hit, wanted, "cast sphere, {case}");
+    let hit = surface.cast_capsule(&capsule, motions, tolerance).unwrap();
+    let wanted = brute_force
+        .cast_capsule(&capsule, motions, tolerance)
+        .unwrap();
+    assert_eq!(hit, wanted, "cast capsule, {case}");
+
+    let (mut hits, mut expected): (Vec<SweepHit>, Vec<SweepHit>) = Default::default();
+    let mut found = 0;
+    let hit = surface.sweep_sphere(&sphere, aim, tolerance).unwrap();
+    surface
+        .sweep_sphere_all(&sphere, aim, tolerance, &mut hits)
+        .unwrap();
+    brute_force
+        .sweep_sphere_all(&sphere, aim, tolerance, &mut expected)
+        .unwrap();
+    assert_eq!(hits, expected, "sweep sphere, {case}");
+    assert_eq!(hit, hits.first().copied(), "sweep sphere, {case}");
+    found += hits.len();
+    let hit = surface.sweep_capsule(&capsule, motions, tolerance).unwrap();
+    surface
+        .sweep_capsule_all(&capsule, motions, tolerance, &mut hits)
+        .unwrap();
+    brute_force
+        .sweep_capsule_all(&capsule, motions, tolerance, &mut expected)
+        .unwrap();
+    assert_eq!(hits, expected, "sweep capsule, {case}");
+    assert_eq!(hit, hits.first().copied(), "sweep capsule, {case}");
+    found + hits.len()
 }

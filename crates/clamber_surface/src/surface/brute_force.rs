@@ -2,8 +2,12 @@
 
 use glam::Vec3;
 
-use super::query::{Best, Nearest, Region, check_length, check_point, sort_along};
-use super::{SkinnedSurface, SurfaceError, SurfaceHit};
+use super::pose::Pose;
+use super::query::{
+    Best, Earliest, First, Nearest, Region, Sweep, check_length, check_point, sort_along,
+    sort_by_time,
+};
+use super::{SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
 use crate::geometry::triangle::{ShearedRay, closest_point};
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::mesh::{PartId, TriangleId};
@@ -168,6 +172,138 @@ impl<'a> BruteForce<'a> {
             }
         }
         Ok(())
+    }
+
+    /// As [`SkinnedSurface::cast_sphere`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn cast_sphere(
+        &self,
+        sphere: &Sphere,
+        motion: Vec3,
+        tolerance: f32,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_sphere(sphere, motion, tolerance)?;
+        Ok(self.first_contact([&self.surface.current; 2], &sweep))
+    }
+
+    /// As [`SkinnedSurface::cast_capsule`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn cast_capsule(
+        &self,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+        tolerance: f32,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_capsule(capsule, motions, tolerance)?;
+        Ok(self.first_contact([&self.surface.current; 2], &sweep))
+    }
+
+    /// As [`SkinnedSurface::sweep_sphere`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn sweep_sphere(
+        &self,
+        sphere: &Sphere,
+        motion: Vec3,
+        tolerance: f32,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_sphere(sphere, motion, tolerance)?;
+        Ok(self.first_contact(self.motion(), &sweep))
+    }
+
+    /// As [`SkinnedSurface::sweep_capsule`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn sweep_capsule(
+        &self,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+        tolerance: f32,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_capsule(capsule, motions, tolerance)?;
+        Ok(self.first_contact(self.motion(), &sweep))
+    }
+
+    /// As [`SkinnedSurface::sweep_sphere_all`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn sweep_sphere_all(
+        &self,
+        sphere: &Sphere,
+        motion: Vec3,
+        tolerance: f32,
+        hits: &mut Vec<SweepHit>,
+    ) -> Result<(), SurfaceError> {
+        let sweep = Sweep::of_sphere(sphere, motion, tolerance)?;
+        self.all_contacts(self.motion(), &sweep, hits);
+        Ok(())
+    }
+
+    /// As [`SkinnedSurface::sweep_capsule_all`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn sweep_capsule_all(
+        &self,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+        tolerance: f32,
+        hits: &mut Vec<SweepHit>,
+    ) -> Result<(), SurfaceError> {
+        let sweep = Sweep::of_capsule(capsule, motions, tolerance)?;
+        self.all_contacts(self.motion(), &sweep, hits);
+        Ok(())
+    }
+
+    fn motion(&self) -> [&Pose; 2] {
+        [&self.surface.previous, &self.surface.current]
+    }
+
+    fn first_contact<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+    ) -> Option<SweepHit> {
+        let mut earliest = Earliest::NONE;
+        for first in self.contacts(poses, sweep) {
+            earliest.offer(first);
+        }
+        earliest.hit(self.surface, poses, sweep)
+    }
+
+    fn all_contacts<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+        hits: &mut Vec<SweepHit>,
+    ) {
+        hits.clear();
+        let contacts = self.contacts(poses, sweep);
+        hits.extend(contacts.filter_map(|first| self.surface.sweep_hit(poses, sweep, first)));
+        sort_by_time(hits);
+    }
+
+    /// The first contact of every triangle that has one.
+    fn contacts<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+    ) -> impl Iterator<Item = First> {
+        let mesh = &self.surface.mesh;
+        self.triangles().filter_map(move |(triangle, _, _)| {
+            let vertices = mesh.triangles()[triangle.index()];
+            let [start, end] =
+                poses.map(|pose| vertices.map(|vertex| pose.position(mesh, vertex.index())));
+            let contact = sweep.advance(start, end, 1.0)?;
+            Some(First { triangle, contact })
+        })
     }
 
     /// All enabled triangles, by ascending id, with their parts and posed corners.

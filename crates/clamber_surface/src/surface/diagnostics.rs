@@ -20,6 +20,8 @@ pub struct Diagnostics {
     pub vertices: usize,
     /// Triangles that no box ruled out: tested exactly, each as often as queries met it.
     pub triangles_tested: u64,
+    /// Most steps that the exact test of a cast or sweep took for a triangle.
+    pub most_sweep_steps: u32,
 }
 
 impl SkinnedSurface {
@@ -37,6 +39,7 @@ impl SkinnedSurface {
             vertices_skinned: self.current.skinned_clusters().map(slots).sum(),
             vertices: (0..clusters.len()).map(slots).sum(),
             triangles_tested: self.triangles_tested.load(Ordering::Relaxed),
+            most_sweep_steps: self.most_sweep_steps.load(Ordering::Relaxed),
         }
     }
 
@@ -55,5 +58,11 @@ impl SkinnedSurface {
             let count = triangles as u64;
             self.triangles_tested.fetch_add(count, Ordering::Relaxed);
         }
+    }
+
+    /// Counts exact triangle tests of a cast or sweep, which took so many steps at most.
+    pub(super) fn count_swept(&self, triangles: usize, steps: u32) {
+        self.count_tested(triangles);
+        self.most_sweep_steps.fetch_max(steps, Ordering::Relaxed);
     }
 }

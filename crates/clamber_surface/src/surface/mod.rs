@@ -28,6 +28,11 @@ pub use brute_force::BruteForce;
 pub use diagnostics::Diagnostics;
 pub use error::SurfaceError;
 pub use motion::Motion;
-pub use query::SurfaceHit;
+pub use query::{SurfaceHit, SweepHit};
 pub use refit::refit_part_spheres;
 pub use skinned::SkinnedSurface;
+
+/// How near a sweep comes before it counts as a contact, in metres, at human scale: a tenth of a
+/// millimetre. Larger takes fewer steps where something is grazed; smaller gains nothing that a
+/// character would notice.
+pub const TOLERANCE: f32 = 1e-4;

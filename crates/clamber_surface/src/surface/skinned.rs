@@ -1,5 +1,5 @@
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU32, AtomicU64};
 
 use glam::Vec3;
 
@@ -59,6 +59,7 @@ pub struct SkinnedSurface {
     /// How many triangles are not enabled.
     pub(super) hidden_triangles: usize,
     pub(super) triangles_tested: AtomicU64,
+    pub(super) most_sweep_steps: AtomicU32,
 }
 
 impl SkinnedSurface {
@@ -83,6 +84,7 @@ impl SkinnedSurface {
             hidden_triangles: triangle_enabled.iter().filter(|enabled| !**enabled).count(),
             triangle_enabled,
             triangles_tested: AtomicU64::new(0),
+            most_sweep_steps: AtomicU32::new(0),
             mesh,
         }
     }
@@ -209,6 +211,7 @@ impl SkinnedSurface {
             .set(&self.mesh, palette.matrices().iter().copied());
         self.world_from_model = world_from_model;
         *self.triangles_tested.get_mut() = 0;
+        *self.most_sweep_steps.get_mut() = 0;
         if ahead {
             self.current.fill(&self.mesh);
         }
@@ -262,6 +265,7 @@ impl Clone for SkinnedSurface {
             triangle_enabled: self.triangle_enabled.clone(),
             hidden_triangles: self.hidden_triangles,
             triangles_tested: AtomicU64::new(0),
+            most_sweep_steps: AtomicU32::new(0),
         }
     }
 }

@@ -102,7 +102,7 @@ fn closest_to_segments_simd<S: Simd>(simd: S, corners: &Corners8, a: Vec3, b: Ve
 
 /// [`Corners8`] in f64: the compiler makes vector conversions of plain loops over arrays, and
 /// registers of the arrays.
-struct Corners8Wide {
+pub(super) struct Corners8Wide {
     x: [[f64; EIGHT]; 3],
     y: [[f64; EIGHT]; 3],
     z: [[f64; EIGHT]; 3],
@@ -110,7 +110,7 @@ struct Corners8Wide {
 
 impl Corners8Wide {
     #[inline(always)]
-    fn new(corners: &Corners8) -> Self {
+    pub(super) fn new(corners: &Corners8) -> Self {
         Self {
             x: widen_rows(&corners.x),
             y: widen_rows(&corners.y),
@@ -120,7 +120,7 @@ impl Corners8Wide {
 
     /// The corners of the lanes from `first` on, minus `origin`.
     #[inline(always)]
-    fn relative_to<S: Simd>(
+    pub(super) fn relative_to<S: Simd>(
         &self,
         simd: S,
         first: usize,
@@ -156,7 +156,7 @@ fn widen_rows(rows: &[[f32; EIGHT]; 3]) -> [[f64; EIGHT]; 3] {
 }
 
 #[inline(always)]
-fn splat<S: Simd>(simd: S, v: DVec3) -> Vector3<Wide<S>> {
+pub(super) fn splat<S: Simd>(simd: S, v: DVec3) -> Vector3<Wide<S>> {
     Vector3 {
         x: Wide(S::f64s::splat(simd, v.x)),
         y: Wide(S::f64s::splat(simd, v.y)),

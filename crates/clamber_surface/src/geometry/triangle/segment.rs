@@ -137,12 +137,12 @@ fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
 
 /// Where on the segment from the origin to `axis` its point nearest to `p` lies, 0..1.
 #[inline(always)]
-fn nearest_on_axis<L: Lanes>(axis: Vector3<L>, p: Vector3<L>) -> L {
+pub(super) fn nearest_on_axis<L: Lanes>(axis: Vector3<L>, p: Vector3<L>) -> L {
     fraction(p.dot(axis), axis.length_squared())
 }
 
 #[inline(always)]
-fn point_of_axis<L: Lanes>(axis: Vector3<L>, s: L) -> Vector3<L> {
+pub(super) fn point_of_axis<L: Lanes>(axis: Vector3<L>, s: L) -> Vector3<L> {
     let zero = s.splat(0.0);
     let origin = Vector3 {
         x: zero,

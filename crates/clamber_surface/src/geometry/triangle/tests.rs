@@ -2,6 +2,7 @@ mod bits;
 mod cases;
 mod exact;
 mod leaks;
+mod moving;
 
 use super::*;
 use crate::geometry::{Ray, round_to_f32};

@@ -22,6 +22,16 @@ pub(crate) struct RootBox {
     pub(crate) max: Vec3,
 }
 
+impl RootBox {
+    /// Holds both.
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+}
+
 /// Rest data for [`RootBox`]: for each joint the ball of the vertices that it moves.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct RootBalls {

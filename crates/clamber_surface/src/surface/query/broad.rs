@@ -12,18 +12,18 @@ use crate::surface::bounds::Spheres;
 
 /// How far f32 arithmetic may be off, as a share of the lengths involved. Some ten roundings of
 /// 2^-24 are; less risks a missed triangle, more tests more.
-const SLACK: f32 = 16.0 * f32::EPSILON;
+pub(super) const SLACK: f32 = 16.0 * f32::EPSILON;
 
 /// The length whose square f32 no longer holds, rounded down.
 const SQUARE_OVERFLOWS: f32 = 1.8e19;
 
 /// 2^60: products and sums of squares of lengths up to this are far from the end of f32.
-const LONG: f32 = (1u64 << 60) as f32;
+pub(super) const LONG: f32 = (1u64 << 60) as f32;
 
 /// One bit a lane.
 pub(super) type Lanes = u8;
 
-fn lanes(test: impl Fn(usize) -> bool) -> Lanes {
+pub(super) fn lanes(test: impl Fn(usize) -> bool) -> Lanes {
     let mut found = 0;
     for lane in 0..LANES {
         found |= Lanes::from(test(lane)) << lane;

@@ -16,11 +16,14 @@ mod ray;
 mod region;
 mod root;
 mod stack;
+mod sweep;
 
 pub use hit::SurfaceHit;
 pub(super) use hit::{Best, Nearest};
 pub(super) use ray::sort_along;
 pub(super) use region::{Region, check_point};
+pub use sweep::SweepHit;
+pub(super) use sweep::{Earliest, First, Sweep, sort_by_time};
 
 use super::SurfaceError;
 

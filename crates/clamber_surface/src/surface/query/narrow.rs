@@ -34,7 +34,7 @@ impl Survivors {
 }
 
 /// A code per slot.
-type Codes = [u8; MAX_SLOTS];
+pub(super) type Codes = [u8; MAX_SLOTS];
 
 /// Triangles that no plane rules out.
 pub(super) fn within_planes(
@@ -102,7 +102,7 @@ fn nearest_square<S: Simd>(
 }
 
 #[inline(always)]
-fn vectors<S: Simd>(simd: S, positions: &ClusterPositions, slot: usize) -> [S::f32s; 3] {
+pub(super) fn vectors<S: Simd>(simd: S, positions: &ClusterPositions, slot: usize) -> [S::f32s; 3] {
     let vector =
         |axis: &[f32; MAX_SLOTS]| S::f32s::from_slice(simd, &axis[slot..slot + S::f32s::LEN]);
     [
@@ -206,7 +206,7 @@ fn ray_codes<S: Simd>(
 
 /// A code for every slot from what up to eight half-spaces hold of each vector of slots.
 #[inline(always)]
-fn each_code<S: Simd, const N: usize>(
+pub(super) fn each_code<S: Simd, const N: usize>(
     simd: S,
     rows: usize,
     mut outside: impl FnMut(usize) -> [S::mask32s; N],
@@ -226,7 +226,7 @@ fn each_code<S: Simd, const N: usize>(
 /// Triangles whose corners share no bit. What lies beyond a cluster's last triangle has thrice the
 /// same corner, and survives if that does: callers know where to stop.
 #[inline(always)]
-fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Survivors {
+pub(super) fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Survivors {
     let mut found = Survivors([0; MAX_TRIANGLES / BLOCK]);
     for (bits, CornerBlock(slots)) in found.0.iter_mut().zip(corners) {
         // Without a byte shuffle, looking codes up one by one is faster.

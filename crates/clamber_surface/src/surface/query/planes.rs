@@ -15,7 +15,7 @@ pub(super) const PLANES: usize = 8;
 pub(super) const SLACK: f32 = 16.0 * f32::EPSILON;
 
 /// Beyond this, products overflow, and nothing is ruled out.
-const LARGEST: f32 = 1e30;
+pub(super) const LARGEST: f32 = 1e30;
 
 /// Cosine and sine of the angles between the planes' normals and the direction of the cluster: 25
 /// degrees, where a sphere rests on flat skin, and 55, where it stands in a corner.
@@ -44,20 +44,7 @@ impl Planes {
         let facing = (aside - axis * along).try_normalize().map(round_to_f32);
         let facing = facing.unwrap_or(Vec3::Y);
         let axis = b - a;
-        let (across, up) = facing.any_orthonormal_pair();
-        let tilted = |[cos, sin]: [f32; 2], aside: Vec3| facing * cos + aside * sin;
-        let slanted = |x: f32, y: f32| across * x + up * y;
-        let half_root_3 = 0.866_025_4;
-        let normals = [
-            facing,
-            tilted(NEAR, across),
-            tilted(NEAR, -across),
-            tilted(NEAR, up),
-            tilted(NEAR, -up),
-            tilted(FAR, up),
-            tilted(FAR, slanted(half_root_3, -0.5)),
-            tilted(FAR, slanted(-half_root_3, -0.5)),
-        ];
+        let normals = about(facing);
         let size = a.abs().max_element() + axis.abs().max_element();
         let rounded = radius as f32 * (1.0 + SLACK);
         let usable = size < LARGEST && rounded < LARGEST;
@@ -72,4 +59,22 @@ impl Planes {
             limits: normals.map(|normal| if usable { limit(normal) } else { f32::INFINITY }),
         }
     }
+}
+
+/// Unit vectors about one: itself, and others that are tilted away from it.
+pub(super) fn about(facing: Vec3) -> [Vec3; PLANES] {
+    let (across, up) = facing.any_orthonormal_pair();
+    let tilted = |[cos, sin]: [f32; 2], aside: Vec3| facing * cos + aside * sin;
+    let slanted = |x: f32, y: f32| across * x + up * y;
+    let half_root_3 = 0.866_025_4;
+    [
+        facing,
+        tilted(NEAR, across),
+        tilted(NEAR, -across),
+        tilted(NEAR, up),
+        tilted(NEAR, -up),
+        tilted(FAR, up),
+        tilted(FAR, slanted(half_root_3, -0.5)),
+        tilted(FAR, slanted(-half_root_3, -0.5)),
+    ]
 }

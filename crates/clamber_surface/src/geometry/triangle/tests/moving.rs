@@ -1,0 +1,168 @@
+//! Moving triangles against moving spheres and capsules.
+
+use super::*;
+use crate::geometry::triangle::advance::STEPS;
+use crate::simd::SimdLevel;
+use crate::testing::point;
+
+fn bits(contact: &Option<Contact>) -> Option<[u64; 5]> {
+    contact.map(|c| {
+        let [x, y, z] = c.barycentric.to_array();
+        [x, y, z, c.time, c.distance].map(f64::to_bits)
+    })
+}
+
+/// A sphere on its way to a triangle that does not move.
+fn cast(corners: [Vec3; 3], center: Vec3, motion: Vec3, radius: f32) -> Option<Contact> {
+    let core = MovingCore::new([center], [motion], radius, 1e-4);
+    advance(corners, corners, &core, 1.0).0
+}
+
+const FLOOR: [Vec3; 3] = [
+    Vec3::new(-5.0, 0.0, -5.0),
+    Vec3::new(-5.0, 0.0, 10.0),
+    Vec3::new(10.0, 0.0, -5.0),
+];
+
+#[test]
+fn a_falling_sphere_meets_the_floor_when_its_height_is_the_radius() {
+    let contact = cast(FLOOR, Vec3::Y * 3.0, Vec3::NEG_Y * 4.0, 1.0).unwrap();
+    assert!((contact.time - 0.5).abs() < 1e-13, "{contact:?}");
+    assert!((contact.distance - 1.0).abs() < 1e-13, "{contact:?}");
+    assert!(!contact.undecided);
+    assert_eq!(cast(FLOOR, Vec3::Y * 3.0, Vec3::NEG_Y * 1.99, 1.0), None);
+    // Away from it, and beside it.
+    assert_eq!(cast(FLOOR, Vec3::Y * 1.00005, Vec3::Y, 1.0), None);
+    assert_eq!(cast(FLOOR, Vec3::Y * 1.00005, Vec3::X, 1.0), None);
+    let overlap = cast(FLOOR, Vec3::Y * 0.9, Vec3::Y, 1.0).unwrap();
+    assert_eq!((overlap.time, overlap.undecided), (0.0, false));
+}
+
+#[test]
+fn a_sphere_meets_an_edge_and_a_corner_when_a_quadratic_says_so() {
+    // Along x at height 1/2 towards the edge x = -5, and along the diagonal towards a corner.
+    let contact = cast(FLOOR, Vec3::new(-9.0, 0.5, 0.0), Vec3::X * 4.0, 1.0).unwrap();
+    let expected = (4.0 - 0.75f64.sqrt()) / 4.0;
+    assert!(
+        (0.0..1e-4).contains(&(expected - contact.time)),
+        "{contact:?}"
+    );
+    let contact = cast(
+        FLOOR,
+        Vec3::new(-9.0, 0.0, -9.0),
+        Vec3::new(4.0, 0.0, 4.0),
+        1.0,
+    )
+    .unwrap();
+    let expected = (32.0f64.sqrt() - 1.0) / 32.0f64.sqrt();
+    assert!(
+        (0.0..1e-4).contains(&(expected - contact.time)),
+        "{contact:?}"
+    );
+}
+
+#[test]
+fn a_limb_that_passes_through_a_resting_capsule_touches_it_first() {
+    let limb = [
+        Vec3::new(-3.0, -0.1, -1.0),
+        Vec3::new(-3.0, 0.1, 1.0),
+        Vec3::new(-3.0, 0.2, -1.0),
+    ];
+    let later = limb.map(|p| p + Vec3::X * 6.0);
+    let ends = [Vec3::NEG_Y, Vec3::Y];
+    let core = MovingCore::new(ends, [Vec3::ZERO; 2], 0.25, 1e-4);
+    let contact = advance(limb, later, &core, 1.0).0.unwrap();
+    let expected = (3.0 - 0.25) / 6.0;
+    assert!(
+        (0.0..1e-4).contains(&(expected - contact.time)),
+        "{contact:?}"
+    );
+}
+
+/// Motions of many kinds: slivers, spins, collapses, parallel slides, at many scales.
+fn pair(rng: &mut fastrand::Rng, size: f32) -> [[Vec3; 3]; 2] {
+    let far = [0.0, 0.0, 1e3][rng.usize(0..3)];
+    let offset = point(rng, size * far);
+    let mut start = [(); 3].map(|()| point(rng, size));
+    if rng.u32(0..4) == 0 {
+        start[2] = start[0] + (start[1] - start[0]) * rng.f32() + point(rng, size * 1e-7);
+    }
+    let way = [0.0, 0.1, 1.0, 10.0][rng.usize(0..4)];
+    let shift = point(rng, size * way);
+    let end = match rng.u32(0..4) {
+        0 => start.map(|p| p + shift),
+        1 => start.map(|p| shift - p),
+        2 => start.map(|p| shift + Vec3::new(p.y, -p.x, p.z)),
+        _ => start.map(|p| p + point(rng, size)),
+    };
+    [start, end].map(|corners| corners.map(|p| p + offset))
+}
+
+fn core<const N: usize>(rng: &mut fastrand::Rng, [start, end]: [[Vec3; 3]; 2]) -> MovingCore<N> {
+    let size = (start[0] - start[1]).length();
+    let ends = [(); N].map(|()| start[rng.usize(0..3)] + point(rng, size));
+    let mut motions = [Vec3::ZERO; N];
+    for (motion, from) in motions.iter_mut().zip(ends) {
+        let target = end[rng.usize(0..3)] + point(rng, size * 0.1);
+        *motion = (target - from) * [0.0, 1.0, 2.0][rng.usize(0..3)];
+    }
+    let radius = size * [0.0, 1e-3, 0.1, 1.0][rng.usize(0..4)] * rng.f32();
+    let tolerance = size * [0.0, 1e-6, 1e-4, 1e-2][rng.usize(0..4)];
+    MovingCore::new(ends, motions, radius, tolerance)
+}
+
+fn compare<const N: usize>(batches: u32, seed: u64) -> [u32; 3] {
+    let levels = SimdLevel::available();
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let (mut contacts, mut undecided, mut most) = (0, 0, 0);
+    for batch in 0..batches {
+        let size = [1.0, 1.0, 1e-3, 1e3, 1e-30, 1e20][rng.usize(0..6)];
+        let pairs = [(); EIGHT].map(|()| pair(&mut rng, size));
+        let core = core::<N>(&mut rng, pairs[0]);
+        let limit = [1.0, rng.f64()][rng.usize(0..2)];
+        let mut corners = [Corners8::default(); 2];
+        for (lane, [start, end]) in pairs.into_iter().enumerate() {
+            corners[0].set(lane, start);
+            corners[1].set(lane, end);
+        }
+        let found = levels
+            .iter()
+            .map(|level| advance_eight(*level, &corners[0], &corners[1], &core, limit));
+        let found: Vec<_> = found.collect();
+        for (lane, [start, end]) in pairs.into_iter().enumerate() {
+            let case = format_args!("batch {batch} {start:?} {end:?} {core:?} {limit}");
+            let (one, steps) = advance(start, end, &core, limit);
+            for (level, found) in levels.iter().zip(&found) {
+                assert_eq!(bits(&found.get(lane)), bits(&one), "{level} {case}");
+                assert!(
+                    found.steps >= steps && found.steps <= STEPS,
+                    "{level} {case}"
+                );
+            }
+            // What the limit leaves away changes nothing else.
+            let whole = advance(start, end, &core, 1.0).0;
+            let kept = whole.filter(|c| c.time <= limit);
+            assert_eq!(bits(&one), bits(&kept), "{case}");
+            if let Some(contact) = one {
+                contacts += 1;
+                undecided += u32::from(contact.undecided && core.tolerance > 0.0);
+                assert!(
+                    contact.distance.is_finite() && contact.barycentric.is_finite(),
+                    "{case}"
+                );
+            }
+            most = most.max(steps);
+        }
+    }
+    [contacts, undecided, most]
+}
+
+#[test]
+fn eight_moving_lanes_have_the_scalar_bits_at_every_level() {
+    let found = [compare::<1>(3_000, 50), compare::<2>(3_000, 51)];
+    println!("contacts, undecided with a tolerance, most steps: {found:?}");
+    assert!(
+        found.iter().all(|[contacts, ..]| *contacts > 1_500),
+        "{found:?}"
+    );
+}

@@ -1,0 +1,162 @@
+use super::super::broad::each_lane;
+use super::super::closest::farthest_first;
+use super::super::root;
+use super::super::stack::Stack;
+use super::cluster::MovingCluster;
+use super::{Earliest, First, Sweep, SweepHit, broad, sort_by_time};
+use crate::geometry::round_up_to_f32;
+use crate::geometry::triangle::{EIGHT, advance_eight};
+use crate::mesh::hierarchy::Child;
+use crate::surface::SkinnedSurface;
+use crate::surface::bounds::Spheres;
+use crate::surface::pose::Pose;
+
+impl SkinnedSurface {
+    /// Earliest bounds first.
+    pub(super) fn first_contact<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+    ) -> Option<SweepHit> {
+        let sweep = &self.near(poses, sweep)?;
+        let mut earliest = Earliest::NONE;
+        let hierarchy = self.mesh.hierarchy();
+        let mut cluster = MovingCluster::new(self, poses);
+        let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        let mut count = Count::default();
+        while let Some((begin, child)) = stack.pop() {
+            // What begins with the best one stays: it may be nearer, or have a smaller id.
+            if f64::from(begin) > earliest.limit() {
+                continue;
+            }
+            match child {
+                Child::Cluster(index) => {
+                    if cluster.visit(index) {
+                        let limit = earliest.limit().min(cluster.touched_by(sweep).into());
+                        count.add(contacts(&cluster, sweep, limit, |first| {
+                            earliest.offer(first);
+                            earliest.limit()
+                        }));
+                    }
+                }
+                Child::Node(index) => {
+                    let node = &hierarchy.nodes[index as usize];
+                    let spheres = self.moving_spheres(poses, index);
+                    let limit = round_up_to_f32(earliest.limit());
+                    let (near, begins) = broad::along(&spheres, sweep, limit);
+                    for lane in farthest_first(&begins, usize::from(node.lanes)) {
+                        if near & 1 << lane != 0 {
+                            stack.push((begins[lane], node.child(lane)));
+                        }
+                    }
+                }
+            }
+        }
+        self.count_swept(count.triangles, count.steps);
+        earliest.hit(self, poses, sweep)
+    }
+
+    pub(super) fn all_contacts<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+        hits: &mut Vec<SweepHit>,
+    ) {
+        hits.clear();
+        let Some(sweep) = &self.near(poses, sweep) else {
+            return;
+        };
+        let hierarchy = self.mesh.hierarchy();
+        let mut cluster = MovingCluster::new(self, poses);
+        let mut stack = Stack::new(0u32);
+        let mut count = Count::default();
+        while let Some(index) = stack.pop() {
+            let node = &hierarchy.nodes[index as usize];
+            let spheres = self.moving_spheres(poses, index);
+            let (near, _) = broad::along(&spheres, sweep, 1.0);
+            for lane in each_lane(near & node.lane_mask()) {
+                match node.child(lane) {
+                    Child::Node(child) => stack.push(child),
+                    Child::Cluster(index) => {
+                        if cluster.visit(index) {
+                            count.add(contacts(&cluster, sweep, 1.0, |first| {
+                                hits.extend(self.sweep_hit(poses, sweep, first));
+                                1.0
+                            }));
+                        }
+                    }
+                }
+            }
+        }
+        self.count_swept(count.triangles, count.steps);
+        sort_by_time(hits);
+    }
+
+    /// The sweep with the reach that it has here; `None` if that is nowhere near the surface.
+    fn near<const N: usize>(&self, [start, end]: [&Pose; 2], sweep: &Sweep<N>) -> Option<Sweep<N>> {
+        let bounds = start.root().union(end.root());
+        let sweep = sweep.among(root::size(&bounds) * 2.0 + sweep.length());
+        let [low, high] = sweep.bounds();
+        root::overlaps(&bounds, low, high).then_some(sweep)
+    }
+
+    fn moving_spheres(&self, [start, end]: [&Pose; 2], node: u32) -> [Spheres; 2] {
+        let first = start.spheres(&self.mesh, node);
+        if std::ptr::eq(start, end) {
+            [first; 2]
+        } else {
+            [first, end.spheres(&self.mesh, node)]
+        }
+    }
+}
+
+/// What a query tested.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    triangles: usize,
+    /// Most of any triangle.
+    steps: u32,
+}
+
+impl Count {
+    fn add(&mut self, other: Self) {
+        self.triangles += other.triangles;
+        self.steps = self.steps.max(other.steps);
+    }
+}
+
+/// Calls `visit` with the first contact of every triangle of a cluster that is touched up to `limit`;
+/// it gives the time that still matters.
+fn contacts<const N: usize>(
+    cluster: &MovingCluster<'_>,
+    sweep: &Sweep<N>,
+    mut limit: f64,
+    mut visit: impl FnMut(First) -> f64,
+) -> Count {
+    let mut count = Count::default();
+    let survivors = cluster.along(sweep, round_up_to_f32(limit));
+    let mut survivors = cluster.enabled(survivors);
+    let mut batch = [0; EIGHT];
+    loop {
+        let mut lanes = 0;
+        for (place, triangle) in batch.iter_mut().zip(&mut survivors) {
+            *place = triangle;
+            lanes += 1;
+        }
+        if lanes == 0 {
+            return count;
+        }
+        let [start, end] = cluster.batch(&batch[..lanes]);
+        let found = advance_eight(cluster.level(), &start, &end, &sweep.core, limit);
+        count.add(Count {
+            triangles: lanes,
+            steps: found.steps,
+        });
+        for (lane, triangle) in batch[..lanes].iter().enumerate() {
+            if let Some(contact) = found.get(lane) {
+                let triangle = cluster.id(*triangle);
+                limit = limit.min(visit(First { triangle, contact }));
+            }
+        }
+    }
+}
