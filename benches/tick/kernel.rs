@@ -11,7 +11,7 @@ use clamber::skin::skin_clusters;
 use clamber_scenes::measure::median_us;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
-use crate::table::{Bound, Cells};
+use clamber_scenes::measure::{Bound, Cells};
 
 /// Joints that move every vertex.
 const JOINTS: usize = 4;
@@ -94,11 +94,11 @@ fn in_cache(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Bo
         let ours = sheet.ours(level, budget)?;
         cells.value(&format!("kernel: {level}, Mslots/s"), ours);
         let bound = match level.name() {
-            "AVX2" => Bound::at_least(4.0),
-            "SSE2" => Bound::at_least(2.5),
-            _ => Bound::NONE,
+            "AVX2" => Bound::Least(4.0),
+            "SSE2" => Bound::Least(2.5),
+            _ => Bound::None,
         };
-        cells.ratio(
+        cells.push(
             &format!("kernel: {level} / fastest scalar loop"),
             ours / scalar,
             bound,
@@ -180,10 +180,10 @@ fn in_memory(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), B
     cells.value("1M vertices: Mslots/s", ours);
     cells.value("1M vertices: copying, GB/s", bytes / copy / 1e3);
     let share = ours * BYTES / (bytes / copy);
-    cells.ratio(
+    cells.push(
         "1M vertices: share of copy bandwidth",
         share,
-        Bound::at_least(0.6),
+        Bound::Least(0.6),
     );
     Ok(())
 }

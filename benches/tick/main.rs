@@ -9,7 +9,6 @@
 
 mod contender;
 mod kernel;
-mod table;
 mod timing;
 mod workload;
 
@@ -18,10 +17,9 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clamber::prelude::*;
-use clamber_scenes::measure::median_us;
+use clamber_scenes::measure::{Bound, Cells, median_us};
 use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
-use table::{Bound, Cells};
 use timing::{Caches, Lap, Stream, race};
 use workload::{Workload, giant, nowhere};
 
@@ -81,24 +79,28 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
         let mut field = Field::new(&workload)?;
         for caches in [Caches::Cold, Caches::Warm] {
             let laps = field.race(&workload, caches, &mut stream)?;
-            cells.race(&format!("one rider, {label}, {caches:?}"), &laps);
+            laps_of(
+                &mut cells,
+                &format!("one rider, {label}, {caches:?}"),
+                &laps,
+            );
             if caches == Caches::Warm {
                 lazy_warm.push(laps[0].median_us);
             }
             let (eager, parry) = (laps[1].over(&laps[0]), laps[2].over(&laps[0]));
             let bounds = if vertices == effort.large {
-                [Bound::at_least(40.0), Bound::at_least(500.0)]
+                [Bound::Least(40.0), Bound::Least(500.0)]
             } else if vertices == effort.small {
-                [Bound::at_least(1.5), Bound::at_least(10.0)]
+                [Bound::Least(1.5), Bound::Least(10.0)]
             } else {
-                [Bound::NONE; 2]
+                [Bound::None; 2]
             };
-            cells.ratio(
+            cells.push(
                 &format!("one rider, {label}, {caches:?}: eager / lazy"),
                 eager,
                 bounds[0],
             );
-            cells.ratio(
+            cells.push(
                 &format!("one rider, {label}, {caches:?}: parry / lazy"),
                 parry,
                 bounds[1],
@@ -112,13 +114,13 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
         }
     }
     let growth = lazy_warm[2] / lazy_warm[0];
-    cells.ratio(
+    cells.push(
         "growth of the lazy tick, small to large, warm",
         growth,
-        Bound::at_most(2.5),
+        Bound::Most(2.5),
     );
     kernel::measure(effort.brief, &mut cells)?;
-    cells.finish(effort.brief)
+    cells.finish("tick", effort.brief)
 }
 
 /// All ways to answer.
@@ -165,18 +167,10 @@ fn many_riders(
     for caches in [Caches::Cold, Caches::Warm] {
         let laps = field.race(&workload, caches, stream)?;
         let name = format!("{} riders, {caches:?}", effort.riders);
-        cells.race(&name, &laps);
+        laps_of(&mut cells, &name, &laps);
         let (eager, parry) = (laps[1].over(&laps[0]), laps[2].over(&laps[0]));
-        cells.ratio(
-            &format!("{name}: eager / lazy"),
-            eager,
-            Bound::at_least(1.0),
-        );
-        cells.ratio(
-            &format!("{name}: parry / lazy"),
-            parry,
-            Bound::at_least(15.0),
-        );
+        cells.push(&format!("{name}: eager / lazy"), eager, Bound::Least(1.0));
+        cells.push(&format!("{name}: parry / lazy"), parry, Bound::Least(15.0));
     }
     Ok(())
 }
@@ -196,13 +190,9 @@ fn everything(
     let touched = lazy.surface.diagnostics();
     let share = touched.clusters_touched as f64 / touched.clusters as f64;
     cells.value("everything touched: share of clusters", share);
-    cells.race("everything touched", &laps);
+    laps_of(&mut cells, "everything touched", &laps);
     let ratio = laps[0].over(&laps[1]);
-    cells.ratio(
-        "everything touched: lazy / eager",
-        ratio,
-        Bound::at_most(1.15),
-    );
+    cells.push("everything touched: lazy / eager", ratio, Bound::Most(1.15));
     Ok(())
 }
 
@@ -227,10 +217,10 @@ fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Er
             assert!(!refused && hits.is_empty() && met == Ok(None));
         }
     });
-    cells.microseconds(
+    cells.push(
         "nothing near: overlap and ray, beyond advance, us",
         far / f64::from(TIMES),
-        Bound::at_most(1.0),
+        Bound::Most(1.0),
     );
     let mut turn = workload.ticks.iter().cycle();
     let advance = median_us(Duration::from_millis(50), || {
@@ -242,10 +232,22 @@ fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Er
     Ok(())
 }
 
+/// Medians of a race.
+fn laps_of(cells: &mut Cells, name: &str, laps: &[Lap]) {
+    for (lap, who) in laps.iter().zip(["lazy", "eager", "parry"]) {
+        let [low, high] = lap.quartiles_us;
+        println!(
+            "{name}: {who}: quartiles {low:.1} to {high:.1} us, {} hits",
+            lap.hits
+        );
+        cells.value(&format!("{name}: {who}, us"), lap.median_us);
+    }
+}
+
 fn memory(field: &Field, cells: &mut Cells) {
     let ours = field.lazy.surface.memory() as f64;
     let theirs = field.parry.shape.total_memory_size() as f64;
     cells.value("memory of ours, MB", ours / 1e6);
     cells.value("memory of parry's, MB", theirs / 1e6);
-    cells.ratio("memory: ours / parry's", ours / theirs, Bound::at_most(1.0));
+    cells.push("memory: ours / parry's", ours / theirs, Bound::Most(1.0));
 }

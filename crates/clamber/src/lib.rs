@@ -27,7 +27,7 @@ pub mod prelude {
         BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
     };
     pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton, Transform};
-    pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit};
+    pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit, SweepHit};
     #[cfg(feature = "rapier")]
     pub use clamber_world::{BodyPoses, RapierTerrain};
     pub use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};

@@ -1,8 +1,10 @@
 //! What benches share: tables, quantiles, times, and the smallest ball as a yardstick.
 
+mod cells;
 mod smallest_ball;
 mod table;
 
+pub use cells::{Bound, Cells};
 pub use smallest_ball::{Ball, smallest_ball};
 pub use table::Table;
 

@@ -275,7 +275,7 @@ impl<'a> BruteForce<'a> {
         for first in self.contacts(poses, sweep) {
             earliest.offer(first);
         }
-        earliest.hit(self.surface, poses, sweep)
+        earliest.hit(self.surface, sweep)
     }
 
     fn all_contacts<const N: usize>(
@@ -286,7 +286,7 @@ impl<'a> BruteForce<'a> {
     ) {
         hits.clear();
         let contacts = self.contacts(poses, sweep);
-        hits.extend(contacts.filter_map(|first| self.surface.sweep_hit(poses, sweep, first)));
+        hits.extend(contacts.filter_map(|first| self.surface.sweep_hit(sweep, first)));
         sort_by_time(hits);
     }
 
@@ -299,10 +299,14 @@ impl<'a> BruteForce<'a> {
         let mesh = &self.surface.mesh;
         self.triangles().filter_map(move |(triangle, _, _)| {
             let vertices = mesh.triangles()[triangle.index()];
-            let [start, end] =
+            let corners =
                 poses.map(|pose| vertices.map(|vertex| pose.position(mesh, vertex.index())));
-            let contact = sweep.advance(start, end, 1.0)?;
-            Some(First { triangle, contact })
+            let contact = sweep.advance(corners, 1.0)?;
+            Some(First {
+                triangle,
+                corners,
+                contact,
+            })
         })
     }
 

@@ -33,6 +33,13 @@ impl Corners8 {
             self.z[corner][lane] = position.z;
         }
     }
+
+    pub(crate) fn get(&self, lane: usize) -> [Vec3; 3] {
+        [0, 1, 2].map(|corner| {
+            let axes = [&self.x, &self.y, &self.z];
+            Vec3::from(axes.map(|axis| axis[corner][lane]))
+        })
+    }
 }
 
 /// A [`TrianglePoint`] for each of eight triangles.

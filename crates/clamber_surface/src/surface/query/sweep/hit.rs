@@ -5,7 +5,6 @@ use crate::geometry::triangle::Contact;
 use crate::geometry::{round_to_f32, widen};
 use crate::mesh::{PartId, SurfaceTag, TriangleId};
 use crate::surface::SkinnedSurface;
-use crate::surface::pose::Pose;
 
 /// The first contact of a moving sphere or capsule with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +42,8 @@ const ALL_BUT_TOUCHING: f64 = 1.0 / (1u64 << 46) as f64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::surface) struct First {
     pub(in crate::surface) triangle: TriangleId,
+    /// Of the triangle, at the start and the end.
+    pub(in crate::surface) corners: [[Vec3; 3]; 2],
     pub(in crate::surface) contact: Contact,
 }
 
@@ -77,11 +78,9 @@ impl Earliest {
     pub(in crate::surface) fn hit<const N: usize>(
         &self,
         surface: &SkinnedSurface,
-        poses: [&Pose; 2],
         sweep: &Sweep<N>,
     ) -> Option<SweepHit> {
-        self.first
-            .and_then(|first| surface.sweep_hit(poses, sweep, first))
+        surface.sweep_hit(sweep, self.first?)
     }
 }
 
@@ -89,17 +88,17 @@ impl SkinnedSurface {
     /// Completes a contact.
     pub(in crate::surface) fn sweep_hit<const N: usize>(
         &self,
-        poses: [&Pose; 2],
         sweep: &Sweep<N>,
         first: First,
     ) -> Option<SweepHit> {
-        let First { triangle, contact } = first;
+        let First {
+            triangle,
+            corners: [start, end],
+            contact,
+        } = first;
         let part = self.mesh.part_of(triangle)?;
-        let vertices = self.mesh.triangles()[triangle.index()];
-        let [start, end] = poses
-            .map(|pose| vertices.map(|vertex| widen(pose.position(&self.mesh, vertex.index()))));
-        let mut corners = start;
-        for (corner, end) in corners.iter_mut().zip(end) {
+        let mut corners = start.map(widen);
+        for (corner, end) in corners.iter_mut().zip(end.map(widen)) {
             *corner += (end - *corner) * contact.time;
         }
         let [a, b, c] = corners;

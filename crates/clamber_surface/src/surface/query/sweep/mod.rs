@@ -113,8 +113,7 @@ impl<const N: usize> Sweep<N> {
     /// The first contact with one triangle.
     pub(in crate::surface) fn advance(
         &self,
-        start: [Vec3; 3],
-        end: [Vec3; 3],
+        [start, end]: [[Vec3; 3]; 2],
         limit: f64,
     ) -> Option<Contact> {
         advance(start, end, &self.core, limit).0

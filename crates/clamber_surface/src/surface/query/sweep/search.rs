@@ -53,7 +53,7 @@ impl SkinnedSurface {
             }
         }
         self.count_swept(count.triangles, count.steps);
-        earliest.hit(self, poses, sweep)
+        earliest.hit(self, sweep)
     }
 
     pub(super) fn all_contacts<const N: usize>(
@@ -80,7 +80,7 @@ impl SkinnedSurface {
                     Child::Cluster(index) => {
                         if cluster.visit(index) {
                             count.add(contacts(&cluster, sweep, 1.0, |first| {
-                                hits.extend(self.sweep_hit(poses, sweep, first));
+                                hits.extend(self.sweep_hit(sweep, first));
                                 1.0
                             }));
                         }
@@ -154,8 +154,12 @@ fn contacts<const N: usize>(
         });
         for (lane, triangle) in batch[..lanes].iter().enumerate() {
             if let Some(contact) = found.get(lane) {
-                let triangle = cluster.id(*triangle);
-                limit = limit.min(visit(First { triangle, contact }));
+                let first = First {
+                    triangle: cluster.id(*triangle),
+                    corners: [start.get(lane), end.get(lane)],
+                    contact,
+                };
+                limit = limit.min(visit(first));
             }
         }
     }

@@ -1,0 +1,201 @@
+//! Casts and sweeps against a whole creature.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
+
+use clamber::prelude::*;
+use clamber::surface::TOLERANCE;
+use clamber_scenes::giant::giant_of;
+use clamber_scenes::measure::{Bound, Cells, quantile};
+use glam::Vec3;
+
+use crate::parry::Parry;
+
+/// One moving sphere, in model space.
+pub(crate) struct Cast {
+    pub(crate) sphere: Sphere,
+    pub(crate) motion: Vec3,
+}
+
+/// A walking giant at two ticks.
+pub(crate) struct Field {
+    surface: SkinnedSurface,
+    /// The two palettes between which the sweeps are.
+    palettes: [Palette; 2],
+    parry: Parry,
+    edge: f32,
+}
+
+/// How many radii a sphere moves, and how many it starts above the skin.
+const WAY: f32 = 10.0;
+const ABOVE: f32 = 3.0;
+
+impl Field {
+    pub(crate) fn new(vertices: usize) -> Result<Self, Box<dyn Error>> {
+        let creature = giant_of(vertices)?;
+        let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+        let walk = walk.ok_or("the giant cannot walk")?;
+        let rest = creature.skeleton.rest_pose();
+        let palette = |seconds: f64| -> Result<Palette, Box<dyn Error>> {
+            let pose = walk.sample(&rest, seconds, Playback::Loop)?;
+            Ok(creature.skeleton.palette(&pose)?)
+        };
+        let palettes = [palette(0.5)?, palette(0.5 + 1.0 / 60.0)?];
+        let mut surface = SkinnedSurface::new(creature.collider.clone());
+        surface.place(&palettes[0], Similarity::IDENTITY)?;
+        surface.advance(&palettes[1], Similarity::IDENTITY)?;
+        Ok(Self {
+            parry: Parry::new(&surface)?,
+            edge: mean_edge(&surface),
+            surface,
+            palettes,
+        })
+    }
+
+    /// Casts of spheres so many edges in radius.
+    pub(crate) fn measure(
+        &mut self,
+        edges: f32,
+        count: usize,
+        bound: Bound,
+        cells: &mut Cells,
+    ) -> Result<(), Box<dyn Error>> {
+        let name = format!("radius {edges} edges");
+        let casts = self.casts(edges * self.edge, count)?;
+        self.compare(&casts, &name, cells)?;
+        let mut times: [Vec<f64>; 5] = Default::default();
+        for cast in &casts {
+            // Each after one of its own kind that does not count, so that what it needs is there.
+            times[0].push(time(|| self.cast(cast)));
+            times[1].push(time(|| self.sweep(cast)));
+            times[2].push(time(|| self.parry.cast(cast)));
+        }
+        for cast in &casts {
+            self.renew()?;
+            times[3].push(once(|| self.cast(cast)));
+            self.renew()?;
+            times[4].push(once(|| self.sweep(cast)));
+        }
+        let [cast, sweep, parry, first_cast, first_sweep] =
+            times.map(|mut times| quantile(&mut times, 0.5));
+        cells.value(&format!("{name}: cast, us"), cast);
+        cells.value(&format!("{name}: sweep, us"), sweep);
+        cells.value(&format!("{name}: parry's cast, us"), parry);
+        cells.push(&format!("{name}: parry / cast"), parry / cast, bound);
+        cells.push(
+            &format!("{name}: sweep / cast"),
+            sweep / cast,
+            Bound::Most(3.0),
+        );
+        cells.value(&format!("{name}: cast, first of its tick, us"), first_cast);
+        cells.value(
+            &format!("{name}: sweep, first of its tick, us"),
+            first_sweep,
+        );
+        let (name, ratio) = (
+            format!("{name}: parry / cast, first of its tick"),
+            parry / first_cast,
+        );
+        cells.value(&name, ratio);
+        Ok(())
+    }
+
+    /// A new tick, of which nothing is skinned or bounded.
+    fn renew(&mut self) -> Result<(), Box<dyn Error>> {
+        self.surface
+            .place(&self.palettes[0], Similarity::IDENTITY)?;
+        self.surface
+            .advance(&self.palettes[1], Similarity::IDENTITY)?;
+        Ok(())
+    }
+
+    fn cast(&self, cast: &Cast) -> Option<SweepHit> {
+        let found = self
+            .surface
+            .cast_sphere(&cast.sphere, cast.motion, TOLERANCE);
+        found.ok().flatten()
+    }
+
+    fn sweep(&self, cast: &Cast) -> Option<SweepHit> {
+        let found = self
+            .surface
+            .sweep_sphere(&cast.sphere, cast.motion, TOLERANCE);
+        found.ok().flatten()
+    }
+
+    /// Seeded: from above random points of the skin, where nothing is in the way yet, down to it at
+    /// random.
+    fn casts(&self, radius: f32, count: usize) -> Result<Vec<Cast>, Box<dyn Error>> {
+        let mut rng = fastrand::Rng::with_seed(5);
+        let mut casts = Vec::with_capacity(count);
+        while casts.len() < count {
+            let triangle = TriangleId(rng.u32(0..self.surface.mesh().triangles().len() as u32));
+            let seat = self.surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+            let skin = self.surface.motion(&seat, 1.0 / 60.0)?;
+            let sphere = Sphere {
+                center: skin.position + skin.normal * (ABOVE * radius),
+                radius,
+            };
+            let coordinate = |rng: &mut fastrand::Rng| rng.f32() * 2.0 - 1.0;
+            let aside = Vec3::from([(); 3].map(|()| coordinate(&mut rng))).normalize_or(Vec3::X);
+            let motion = (aside - skin.normal).normalize_or(-skin.normal) * (WAY * radius);
+            let nearest = self.surface.closest_point(sphere.center, radius * 1.01)?;
+            if nearest.is_none() {
+                casts.push(Cast { sphere, motion });
+            }
+        }
+        Ok(casts)
+    }
+
+    /// Counts what ours and parry find; where both do, the times are to be alike.
+    fn compare(&self, casts: &[Cast], name: &str, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+        let (mut hits, mut only_ours, mut only_theirs, mut worst) = (0, 0, 0, 0.0f64);
+        for cast in casts {
+            match (self.cast(cast), self.parry.cast(cast)) {
+                (Some(ours), Some(theirs)) => {
+                    hits += 1;
+                    // Along the way: where the skin is grazed, a little depth is a long way.
+                    let off = (ours.time - theirs).abs() * f64::from(cast.motion.length());
+                    worst = worst.max(off / f64::from(cast.sphere.radius));
+                }
+                (Some(_), None) => only_ours += 1,
+                (None, Some(_)) => only_theirs += 1,
+                (None, None) => {}
+            }
+        }
+        println!(
+            "{name}: {hits} hits of {}, worst difference {worst:.1e} radii",
+            casts.len()
+        );
+        cells.value(
+            &format!("{name}: hits that parry misses"),
+            f64::from(only_ours),
+        );
+        if only_theirs > 0 {
+            return Err(format!("{name}: {only_theirs} hits of parry's that ours missed").into());
+        }
+        Ok(())
+    }
+}
+
+/// Microseconds of the second of two runs.
+fn time<T>(mut run: impl FnMut() -> T) -> f64 {
+    black_box(run());
+    once(run)
+}
+
+fn once<T>(mut run: impl FnMut() -> T) -> f64 {
+    let start = Instant::now();
+    black_box(run());
+    start.elapsed().as_secs_f64() * 1e6
+}
+
+fn mean_edge(surface: &SkinnedSurface) -> f32 {
+    let (mesh, mut sum) = (surface.mesh(), 0.0);
+    for [a, b, c] in mesh.triangles() {
+        let [a, b, c] = [a, b, c].map(|v| mesh.positions()[v.index()]);
+        sum += f64::from(a.distance(b) + b.distance(c) + c.distance(a));
+    }
+    (sum / (3 * mesh.triangles().len()) as f64) as f32
+}

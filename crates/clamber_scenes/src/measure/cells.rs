@@ -1,0 +1,87 @@
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use super::Table;
+
+/// What a measured number is held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// It should be no less.
+    Least(f64),
+    /// It should be no more.
+    Most(f64),
+    /// Nothing: it is only reported.
+    None,
+}
+
+impl Bound {
+    fn holds(self, value: f64) -> &'static str {
+        match self {
+            Self::Least(bound) if value >= bound => "yes",
+            Self::Most(bound) if value <= bound => "yes",
+            Self::None => "",
+            _ => "NO",
+        }
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::Least(bound) => format!(">= {bound}"),
+            Self::Most(bound) => format!("<= {bound}"),
+            Self::None => String::new(),
+        }
+    }
+}
+
+/// Everything that a bench measured, a row each: name, value, bound, holds.
+#[derive(Clone, Debug)]
+pub struct Cells(Table);
+
+impl Default for Cells {
+    /// Without rows.
+    fn default() -> Self {
+        Self(Table::new(&["name", "value", "bound", "holds"]))
+    }
+}
+
+impl Cells {
+    /// Appends a row and prints it.
+    pub fn push(&mut self, name: &str, value: f64, bound: Bound) {
+        let digits = if value.abs() < 10.0 { 3 } else { 1 };
+        let row = [
+            name.to_owned(),
+            format!("{value:.digits$}"),
+            bound.text(),
+            bound.holds(value).to_owned(),
+        ];
+        println!("{}: {} {} {}", row[0], row[1], row[2], row[3]);
+        self.0.push(row.to_vec());
+    }
+
+    /// A row that is held against nothing.
+    pub fn value(&mut self, name: &str, value: f64) {
+        self.push(name, value, Bound::None);
+    }
+
+    /// Prints all rows, and writes them to `BENCH.csv` (`BENCH_brief.csv` of a brief run) in the folder
+    /// `measure` in cargo's target folder.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
+        println!("\n{}", self.0);
+        let brief = if brief { "_brief" } else { "" };
+        let path = measure_folder().join(format!("{bench}{brief}.csv"));
+        self.0.write_csv(&path)?;
+        println!("written to {}", path.display());
+        Ok(())
+    }
+}
+
+fn measure_folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"),
+        PathBuf::from,
+    );
+    target.join("measure")
+}
