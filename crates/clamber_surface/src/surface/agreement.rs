@@ -66,6 +66,9 @@ pub(super) fn assert_queries_agree(
             .unwrap();
         assert_eq!(hits, expected, "{capsule:?}");
         found += hits.len();
+        let closest = surface.closest_to_capsule(&capsule, reach).unwrap();
+        let wanted = brute_force.closest_to_capsule(&capsule, reach).unwrap();
+        assert_eq!(closest, wanted, "{capsule:?} {reach}");
         found += assert_sweeps_agree(&brute_force, surface, rng, &capsule);
     }
     found

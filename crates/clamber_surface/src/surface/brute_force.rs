@@ -4,11 +4,11 @@ use glam::Vec3;
 
 use super::pose::Pose;
 use super::query::{
-    Best, Earliest, First, Nearest, Region, Sweep, check_length, check_point, sort_along,
+    Best, Earliest, First, Nearest, Region, Sweep, capsule_hit, check_length, reach, sort_along,
     sort_by_time,
 };
-use super::{SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
-use crate::geometry::triangle::{ShearedRay, closest_point};
+use super::{CapsuleHit, SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
+use crate::geometry::triangle::ShearedRay;
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::mesh::{PartId, TriangleId};
 use crate::skin::skin_vertex;
@@ -122,15 +122,39 @@ impl<'a> BruteForce<'a> {
         point: Vec3,
         max_distance: f32,
     ) -> Result<Option<SurfaceHit>, SurfaceError> {
-        check_point(point)?;
-        let mut best = Best::within(check_length("the distance of a query", max_distance)?);
+        let point = Sphere {
+            center: point,
+            radius: 0.0,
+        };
+        self.closest(&point, max_distance)
+    }
+
+    /// As [`SkinnedSurface::closest_to_capsule`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn closest_to_capsule(
+        &self,
+        capsule: &Capsule,
+        max_distance: f32,
+    ) -> Result<Option<CapsuleHit>, SurfaceError> {
+        let surface = self.closest(capsule, max_distance)?;
+        Ok(surface.map(|surface| capsule_hit(capsule, surface)))
+    }
+
+    fn closest(
+        &self,
+        region: &impl Region,
+        max_distance: f32,
+    ) -> Result<Option<SurfaceHit>, SurfaceError> {
+        let mut best = Best::within(reach(region, max_distance)?);
         for (triangle, _, corners) in self.triangles() {
             best.offer(Nearest {
                 triangle,
-                found: closest_point(corners, point),
+                found: region.closest(corners),
             });
         }
-        Ok(best.hit(self.surface, point))
+        Ok(best.hit(self.surface, region.middle()))
     }
 
     /// As [`SkinnedSurface::overlap_sphere`].

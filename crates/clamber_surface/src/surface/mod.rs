@@ -28,7 +28,7 @@ pub use brute_force::BruteForce;
 pub use diagnostics::Diagnostics;
 pub use error::SurfaceError;
 pub use motion::Motion;
-pub use query::{SurfaceHit, SweepHit};
+pub use query::{CapsuleHit, SurfaceHit, SweepHit};
 pub use refit::refit_part_spheres;
 pub use skinned::SkinnedSurface;
 

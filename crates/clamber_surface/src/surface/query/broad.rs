@@ -50,6 +50,36 @@ pub(super) fn near_point(spheres: &Spheres, center: Vec3, radius: f32) -> Lanes 
 /// Lanes whose sphere is within `radius` of the segment from `a` to `b`; all that are [`LONG`] away or
 /// beside a segment that long, since where a product overflows, any place along it may come out.
 pub(super) fn near_segment(spheres: &Spheres, a: Vec3, b: Vec3, radius: f32) -> Lanes {
+    let (distance_sq, lost) = from_segment(spheres, a, b);
+    let mut reach_sq = [0.0; LANES];
+    for lane in 0..LANES {
+        let reach = spheres.radius[lane] + radius + lost[lane];
+        reach_sq[lane] = reach * reach * (1.0 + SLACK);
+    }
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
+    lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
+}
+
+/// Per lane at most the distance from the segment from `a` to `b` to what the sphere holds.
+pub(super) fn distances_to_segment(spheres: &Spheres, a: Vec3, b: Vec3) -> [f32; LANES] {
+    let (distance_sq, lost) = from_segment(spheres, a, b);
+    let mut found = [0.0; LANES];
+    for (lane, found) in found.iter_mut().enumerate() {
+        let apart = distance_sq[lane].sqrt();
+        let apart = if apart < SQUARE_OVERFLOWS {
+            apart
+        } else {
+            SQUARE_OVERFLOWS
+        };
+        let gap = apart * (1.0 - SLACK) - spheres.radius[lane] * (1.0 + SLACK) - lost[lane];
+        *found = if gap > 0.0 { gap } else { 0.0 };
+    }
+    found
+}
+
+/// Squares of the distances of centres from the segment from `a` to `b`, and what rounding may have
+/// added to the distances: infinity from [`LONG`] on.
+fn from_segment(spheres: &Spheres, a: Vec3, b: Vec3) -> ([f32; LANES], [f32; LANES]) {
     let axis = b - a;
     let length_sq = axis.length_squared();
     let inverse = if length_sq > 0.0 {
@@ -58,7 +88,7 @@ pub(super) fn near_segment(spheres: &Spheres, a: Vec3, b: Vec3, radius: f32) -> 
         0.0
     };
     let size = axis.x.abs() + axis.y.abs() + axis.z.abs();
-    let [mut distance_sq, mut reach_sq] = [[0.0; LANES]; 2];
+    let [mut distance_sq, mut lost] = [[0.0; LANES]; 2];
     for lane in 0..LANES {
         let dx = spheres.x[lane] - a.x;
         let dy = spheres.y[lane] - a.y;
@@ -72,12 +102,9 @@ pub(super) fn near_segment(spheres: &Spheres, a: Vec3, b: Vec3, radius: f32) -> 
         let oz = dz - axis.z * along;
         distance_sq[lane] = ox * ox + oy * oy + oz * oz;
         let apart = dx.abs() + dy.abs() + dz.abs() + size;
-        let apart = if apart < LONG { apart } else { f32::INFINITY };
-        let reach = spheres.radius[lane] + radius + SLACK * apart;
-        reach_sq[lane] = reach * reach * (1.0 + SLACK);
+        lost[lane] = SLACK * if apart < LONG { apart } else { f32::INFINITY };
     }
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
-    lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
+    (distance_sq, lost)
 }
 
 /// Per lane at most the distance from a point to what the sphere holds.

@@ -7,6 +7,7 @@
 
 mod broad;
 mod closest;
+mod cluster_view;
 mod hit;
 mod narrow;
 mod overlap;
@@ -18,6 +19,8 @@ mod root;
 mod stack;
 mod sweep;
 
+pub use closest::CapsuleHit;
+pub(super) use closest::{capsule_hit, reach};
 pub use hit::SurfaceHit;
 pub(super) use hit::{Best, Nearest};
 pub(super) use ray::sort_along;

@@ -1,9 +1,9 @@
+use super::cluster_view::by_eight;
 use super::hit::Nearest;
 use super::posed_cluster::PosedCluster;
 use super::region::{Region, box_around};
 use super::stack::Stack;
 use super::{broad, root};
-use crate::geometry::triangle::EIGHT;
 use crate::geometry::{Capsule, Sphere};
 use crate::mesh::hierarchy::Child;
 use crate::surface::{SkinnedSurface, SurfaceError, SurfaceHit};
@@ -101,36 +101,22 @@ fn test(
     visit: &mut impl FnMut(SurfaceHit),
 ) -> usize {
     let mut tested = 0;
+    let view = &posed.view;
     let [a, b] = region.segment();
-    let mut survivors = posed.enabled(posed.near(a, b, reach));
-    let mut batch = [0; EIGHT];
-    loop {
-        let mut count = 0;
-        for (place, triangle) in batch.iter_mut().zip(&mut survivors) {
-            *place = triangle;
-            count += 1;
-        }
-        if count == 0 {
-            return tested;
-        }
-        tested += count;
-        let corners = posed.batch(&batch[..count]);
-        let points = region.closest_of_eight(posed.surface.simd_level, &corners);
-        for (lane, triangle) in batch[..count].iter().enumerate() {
+    by_eight(view.enabled(posed.near(a, b, reach)), |batch| {
+        tested += batch.len();
+        let points = region.closest_of_eight(view.level(), &posed.batch(batch));
+        for (lane, triangle) in batch.iter().enumerate() {
             let found = points.get(lane);
             if found.distance <= radius {
-                let triangle_id = posed.id(*triangle);
                 let nearest = Nearest {
-                    triangle: triangle_id,
+                    triangle: view.id(*triangle),
                     found,
                 };
-                let corners = posed.corners(*triangle);
-                visit(
-                    posed
-                        .surface
-                        .hit(nearest, posed.cluster.part, corners, region.middle()),
-                );
+                let (part, corners) = (view.cluster.part, posed.corners(*triangle));
+                visit(view.surface.hit(nearest, part, corners, region.middle()));
             }
         }
-    }
+    });
+    tested
 }

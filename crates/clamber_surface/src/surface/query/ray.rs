@@ -25,7 +25,7 @@ impl SkinnedSurface {
         let mut best = Best::within(check(max_distance)?);
         self.visit_ray(ray, best.limit(), |posed, triangle, found| {
             best.offer(Nearest {
-                triangle: posed.id(triangle),
+                triangle: posed.view.id(triangle),
                 found,
             });
             Some(best.limit())
@@ -63,11 +63,11 @@ impl SkinnedSurface {
         hits.clear();
         self.visit_ray(ray, limit, |posed, triangle, found| {
             let nearest = Nearest {
-                triangle: posed.id(triangle),
+                triangle: posed.view.id(triangle),
                 found,
             };
             let corners = posed.corners(triangle);
-            hits.push(self.hit(nearest, posed.cluster.part, corners, ray.origin()));
+            hits.push(self.hit(nearest, posed.view.cluster.part, corners, ray.origin()));
             Some(limit)
         });
         sort_along(hits);
@@ -102,9 +102,10 @@ impl SkinnedSurface {
                     }
                     let reach = round_up_to_f32(limit);
                     let survivors = posed.along_ray(&sheared_ray, reach, &mut sheared);
-                    for triangle in posed.enabled(survivors) {
+                    for triangle in posed.view.enabled(survivors) {
                         tested += 1;
-                        let corners = posed.corners_in(&sheared, triangle);
+                        let corners = posed.view.corners_in(&sheared, triangle);
+                        let corners = corners.map(|corner| corner.to_array());
                         if let Some(found) = intersect_sheared(corners, limit) {
                             match visit(&posed, triangle, found) {
                                 Some(distance) => limit = distance,

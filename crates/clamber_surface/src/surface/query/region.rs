@@ -8,6 +8,7 @@ use crate::geometry::triangle::{
     closest_to_segments,
 };
 use crate::geometry::{Capsule, Sphere, widen};
+use crate::mesh::hierarchy::LANES;
 use crate::simd::SimdLevel;
 use crate::surface::SurfaceError;
 use crate::surface::bounds::Spheres;
@@ -33,6 +34,12 @@ pub(in crate::surface) trait Region {
 
     /// Lanes whose sphere may touch it.
     fn near(&self, spheres: &Spheres) -> Lanes;
+
+    /// Per lane at most the distance from its core to what the sphere holds.
+    fn distances(&self, spheres: &Spheres) -> [f32; LANES];
+
+    /// A point of its core, about the nearest to `target`.
+    fn facing(&self, target: Vec3) -> Vec3;
 
     /// How far beyond its radius the exact test may take a triangle for a touching one, of a surface
     /// that is `size` across.
@@ -61,6 +68,14 @@ impl Region for Sphere {
 
     fn near(&self, spheres: &Spheres) -> Lanes {
         broad::near_point(spheres, self.center, self.radius)
+    }
+
+    fn distances(&self, spheres: &Spheres) -> [f32; LANES] {
+        broad::distances(spheres, self.center)
+    }
+
+    fn facing(&self, _target: Vec3) -> Vec3 {
+        self.center
     }
 
     fn blur(&self, _size: f64) -> f64 {
@@ -94,6 +109,23 @@ impl Region for Capsule {
 
     fn near(&self, spheres: &Spheres) -> Lanes {
         broad::near_segment(spheres, self.a, self.b, self.radius)
+    }
+
+    fn distances(&self, spheres: &Spheres) -> [f32; LANES] {
+        broad::distances_to_segment(spheres, self.a, self.b)
+    }
+
+    fn facing(&self, target: Vec3) -> Vec3 {
+        let axis = self.b - self.a;
+        let along = (target - self.a).dot(axis) / axis.length_squared();
+        // One of the ends where that is no number.
+        if along >= 1.0 {
+            self.b
+        } else if along > 0.0 {
+            self.a + axis * along
+        } else {
+            self.a
+        }
     }
 
     fn blur(&self, size: f64) -> f64 {

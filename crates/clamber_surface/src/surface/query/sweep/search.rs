@@ -1,11 +1,12 @@
 use super::super::broad::each_lane;
 use super::super::closest::farthest_first;
+use super::super::cluster_view::by_eight;
 use super::super::root;
 use super::super::stack::Stack;
 use super::cluster::MovingCluster;
 use super::{Earliest, First, Sweep, SweepHit, broad, sort_by_time};
 use crate::geometry::round_up_to_f32;
-use crate::geometry::triangle::{EIGHT, advance_eight};
+use crate::geometry::triangle::advance_eight;
 use crate::mesh::hierarchy::Child;
 use crate::surface::SkinnedSurface;
 use crate::surface::bounds::Spheres;
@@ -134,33 +135,25 @@ fn contacts<const N: usize>(
     mut visit: impl FnMut(First) -> f64,
 ) -> Count {
     let mut count = Count::default();
+    let view = &cluster.view;
     let survivors = cluster.along(sweep, round_up_to_f32(limit));
-    let mut survivors = cluster.enabled(survivors);
-    let mut batch = [0; EIGHT];
-    loop {
-        let mut lanes = 0;
-        for (place, triangle) in batch.iter_mut().zip(&mut survivors) {
-            *place = triangle;
-            lanes += 1;
-        }
-        if lanes == 0 {
-            return count;
-        }
-        let [start, end] = cluster.batch(&batch[..lanes]);
-        let found = advance_eight(cluster.level(), &start, &end, &sweep.core, limit);
+    by_eight(view.enabled(survivors), |batch| {
+        let [start, end] = cluster.batch(batch);
+        let found = advance_eight(view.level(), &start, &end, &sweep.core, limit);
         count.add(Count {
-            triangles: lanes,
+            triangles: batch.len(),
             steps: found.steps,
         });
-        for (lane, triangle) in batch[..lanes].iter().enumerate() {
+        for (lane, triangle) in batch.iter().enumerate() {
             if let Some(contact) = found.get(lane) {
                 let first = First {
-                    triangle: cluster.id(*triangle),
+                    triangle: view.id(*triangle),
                     corners: [start.get(lane), end.get(lane)],
                     contact,
                 };
                 limit = limit.min(visit(first));
             }
         }
-    }
+    });
+    count
 }
