@@ -8,6 +8,7 @@
 use allocation_counter::measure;
 use clamber::geometry::Capsule;
 use clamber::prelude::*;
+use clamber::surface::TOLERANCE;
 use clamber_scenes::giant;
 use glam::{DQuat, DVec3, Vec3};
 
@@ -17,6 +18,7 @@ struct Scene {
     palettes: Vec<Palette>,
     anchors: Vec<Anchor>,
     hits: Vec<SurfaceHit>,
+    swept: Vec<SweepHit>,
     positions: Vec<Vec3>,
     found: usize,
 }
@@ -59,6 +61,7 @@ impl Scene {
             anchors: anchors.collect(),
             surface,
             hits: Vec::new(),
+            swept: Vec::new(),
             positions: Vec::new(),
             found: 0,
         }
@@ -100,6 +103,15 @@ impl Scene {
             };
             self.surface.overlap_capsule(&limb, hits).unwrap();
             self.found += hits.len();
+            let near = self.surface.closest_to_capsule(&limb, 1.0).unwrap();
+            self.found += usize::from(near.is_some());
+            let (way, swept) = (-motion.normal * 3.0, &mut self.swept);
+            let hit = self.surface.sweep_sphere(&body, way, TOLERANCE).unwrap();
+            self.found += usize::from(hit.is_some());
+            self.surface
+                .sweep_capsule_all(&limb, [way, Vec3::ZERO], TOLERANCE, swept)
+                .unwrap();
+            self.found += swept.len();
         }
         if touch == Touch::Everything {
             let everything = Sphere {
@@ -120,6 +132,7 @@ fn a_steady_tick_allocates_nothing() {
             let mut scene = Scene::new();
             // Room for whatever any tick may find.
             scene.hits.reserve(scene.surface.mesh().triangles().len());
+            scene.swept.reserve(scene.surface.mesh().triangles().len());
             for tick in 0..WARM {
                 scene.tick(tick, root, touch);
             }

@@ -16,6 +16,7 @@ mod poses;
 mod queries;
 mod same;
 mod seed;
+mod sweeps;
 
 pub use builder::builder;
 pub use import::import;

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Capsule, Ray, Sphere};
 use clamber_surface::mesh::{PartId, TriangleId, VertexId};
-use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError, SurfaceHit};
+use clamber_surface::surface::{BruteForce, CapsuleHit, SkinnedSurface, SurfaceError, SurfaceHit};
 use glam::Vec3;
 
 use crate::bytes::Bytes;
 use crate::mesh::{built, tag};
 use crate::poses::{palette, similarity};
 use crate::same::{bits, same_errors, same_hits};
+use crate::sweeps;
 
 /// What there was to check.
 #[derive(Clone, Copy, Debug, Default)]
@@ -144,6 +145,17 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
         let wanted_all = brute_force.overlap_capsule(&capsule, &mut wanted);
         let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
         seen.same(all, wanted_all, || format!("{capsule:?}"));
+        let closest = surface.closest_to_capsule(&capsule, reach);
+        let wanted = brute_force.closest_to_capsule(&capsule, reach);
+        let part = |hit: CapsuleHit| hit.surface;
+        let (closest, wanted) = (closest.map(|h| h.map(part)), wanted.map(|h| h.map(part)));
+        seen.same(listed(closest), listed(wanted), || {
+            format!("closest to {capsule:?}, {reach}")
+        });
+        let swept = sweeps::compare(surface, &brute_force, &capsule, bytes);
+        seen.answered += swept.answered;
+        seen.refused += swept.refused;
+        seen.hits += swept.hits;
     }
 }
 

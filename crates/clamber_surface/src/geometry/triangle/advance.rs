@@ -6,10 +6,16 @@
 //! `s(t) = min n.(p_j(t) - a_i(t))` over ends p_j and corners a_i is at most the distance at t, and it
 //! is a minimum of linear functions: that two values of a line are not below the radius certifies all
 //! times between them, however poor n is. Each step takes n from the closest points at the time
-//! reached and goes on to where the first line meets the radius. (Conservative advancement: Mirtich
-//! 1996, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 2.3; with a direction and linear
-//! vertex paths in place of a bound on the speed it neither creeps beside what it slides along nor
-//! slows down where vertices are fast.)
+//! reached and goes on to where the first line meets the radius, or as far as the distance lasts at the
+//! largest relative speed, if that is farther: as it may be where n is poor. (Conservative advancement:
+//! Mirtich 1996, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 2.3. With a direction and
+//! linear paths in place of the speed alone it neither creeps beside what it slides along nor slows down
+//! where vertices are fast.)
+//!
+//! A corner that turns about a slow one, or the far end of a capsule that swings, is fast where nothing
+//! happens: along n of now, its line falls long before the gap closes. Along n of later it is still high
+//! now. So what takes more than a few steps looks ahead, to shortly before the gap would close at the
+//! rate seen: if the gap along n of then is large enough from now until then, it is so until later still.
 //!
 //! In f64, relative to the start of the core. Let u = 2^-53 and M the largest sum of absolute
 //! coordinates of any point, plus the radius. Relative positions are off by 2 u M at most, the
@@ -36,9 +42,16 @@ use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
 
-/// Most steps for a triangle. What is not flat on the path takes two or three, a near miss that turns
-/// some twenty; where more are needed, progress is by rounding.
+/// Most steps for a triangle. Most take two or three; where so many are not enough, progress is by
+/// rounding.
 pub(crate) const STEPS: u32 = 64;
+
+/// From this step on, directions are taken from ahead as well.
+const SLOW: u32 = 4;
+
+/// How far ahead such a direction is sought at most, as a share of the way to where the gap would close.
+/// Nearer to 1 leaves less of the gap, and fails more often.
+const FARTHEST_AHEAD: f64 = 0.875;
 
 /// What arithmetic may take off a gap, as a share of the lengths involved. See above.
 const LOST: f64 = 1.0 / (1u64 << 48) as f64;
@@ -175,10 +188,12 @@ impl<L: Lanes, const N: usize> Path<L, N> {
     #[inline(always)]
     fn advance(&self, limit: L) -> (Found<L>, u32) {
         let zero = limit.splat(0.0);
+        let one = zero.splat(1.0);
         let (going, miss) = (zero.splat(GOING), zero.splat(MISS));
         let (contact, undecided) = (zero.splat(CONTACT), zero.splat(UNDECIDED));
         let lost = self.size() * zero.splat(LOST);
         let floor = self.radius + lost;
+        let speed = self.speed() * zero.splat(ROUNDED_UP) + lost;
         let near = self.radius + (self.tolerance - lost).or_larger(lost * zero.splat(4.0));
         let mut found = Found {
             verdict: going,
@@ -186,27 +201,32 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             weights: [zero; 3],
             distance: zero,
         };
+        let mut ahead = zero.splat(FARTHEST_AHEAD);
+        let (mut last_time, mut last_distance) = (zero, zero);
         let mut steps = 0;
         loop {
             steps += 1;
             let is_going = found.verdict.equals(going);
             let (weights, apart) = self.separation(found.time);
             let distance = apart.length();
+            // What crosses the triangle shows a distance of rounding.
+            let distance = L::select(lost.less(distance), distance, zero);
             found.distance = L::select(is_going, distance, found.distance);
             for (kept, weight) in found.weights.iter_mut().zip(weights) {
                 *kept = L::select(is_going, weight, *kept);
             }
 
-            // Shorter than 1 for all rounding; no direction at all where they touch.
-            let shrink = zero.splat(ROUNDED_DOWN) / distance;
-            let n = Vector3::select(zero.less(distance), apart * shrink, apart);
-            let gaps = self.gaps(n, floor, found.time);
-            let stuck = gaps.until.at_most(found.time);
+            let gaps = self.gaps(direction(apart, distance), floor, found.time);
+            let until = L::select(gaps.from.at_most(found.time), gaps.until, zero);
+            let slowest = (distance - floor - lost) / speed * zero.splat(ROUNDED_DOWN);
+            let slowest = (found.time + slowest) * zero.splat(ROUNDED_DOWN);
+            let until = until.or_larger(slowest);
+            let stuck = until.at_most(found.time);
             let is_near = distance.at_most(near);
             let touches = (is_near & (gaps.approaching | stuck)) | distance.at_most(self.radius);
-            let misses = zero.splat(NEVER).at_most(gaps.until) & self.radius.less(distance);
+            let misses = one.less(until) & self.radius.less(distance);
             // Pruning comes last, so that it changes no contact that is found.
-            let verdict = L::select(limit.less(gaps.until), miss, going);
+            let verdict = L::select(limit.less(until), miss, going);
             let verdict = L::select(stuck, undecided, verdict);
             let verdict = if steps < STEPS { verdict } else { undecided };
             let verdict = L::select(touches, contact, verdict);
@@ -216,7 +236,31 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             if !L::any(is_going) {
                 return (found, steps);
             }
-            found.time = L::select(is_going, gaps.until, found.time);
+            let (before, time) = (found.time, until);
+            found.time = L::select(is_going, time, found.time);
+            if steps < SLOW {
+                (last_time, last_distance) = (before, distance);
+                continue;
+            }
+
+            // Where the gap would be closed if it went on as since the last step.
+            let rate = (last_distance - distance) / (before - last_time);
+            let closes = before + (distance - floor) / rate;
+            let closes = L::select(zero.less(rate) & closes.less(one), closes, one);
+            let probe = time + (closes - time) * ahead;
+            let probe = L::select(time.less(probe), probe, time);
+            let (_, apart) = self.separation(probe);
+            let gaps = self.gaps(direction(apart, apart.length()), floor, probe);
+            let holds = gaps.from.at_most(time) & time.less(gaps.until);
+            found.time = L::select(is_going & holds, gaps.until, found.time);
+            let passed = is_going & holds & (limit.less(gaps.until) | one.less(gaps.until));
+            found.verdict = L::select(passed, miss, found.verdict);
+            if !L::any(found.verdict.equals(going)) {
+                return (found, steps);
+            }
+            let (half, twice) = (ahead * zero.splat(0.5), ahead * zero.splat(2.0));
+            ahead = L::select(holds, twice.or_smaller(zero.splat(FARTHEST_AHEAD)), half);
+            (last_time, last_distance) = (before, distance);
         }
     }
 
@@ -233,6 +277,20 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             size = size.or_larger(taxicab(self.core_end[end]));
         }
         size + self.radius
+    }
+
+    /// The most by which a corner and an end of the core come nearer, of all pairs.
+    #[inline(always)]
+    fn speed(&self) -> L {
+        let mut squared = self.radius.splat(0.0);
+        for end in 0..N {
+            let of_core = self.core_end[end] - self.core_start[end];
+            for corner in 0..3 {
+                let way = of_core - (self.end[corner] - self.start[corner]);
+                squared = squared.or_larger(way.length_squared());
+            }
+        }
+        squared.sqrt()
     }
 
     /// Weights of the corners that give the triangle's point nearest to the core, and the vector from
@@ -266,11 +324,12 @@ impl<L: Lanes, const N: usize> Path<L, N> {
         (nearest.weights, near - met)
     }
 
-    /// How the gap along `n` goes on from `time`.
+    /// When the gap along `n` is not below `floor`, and whether it falls at `time`.
     #[inline(always)]
     fn gaps(&self, n: Vector3<L>, floor: L, time: L) -> Gaps<L> {
         let zero = time.splat(0.0);
-        let mut until = zero.splat(NEVER);
+        let never = zero.splat(NEVER);
+        let (mut from, mut until) = (zero, never);
         let (mut least, mut slope) = (zero.splat(f64::INFINITY), zero);
         for end in 0..N {
             let core_start = n.dot(self.core_start[end]) - floor;
@@ -278,7 +337,13 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             for corner in 0..3 {
                 let h0 = core_start - n.dot(self.start[corner]);
                 let h1 = core_end - n.dot(self.end[corner]);
-                until = until.or_smaller(until_negative(h0, h1, time));
+                // Where the line `h0 (1 - t) + h1 t` passes through 0, if it does.
+                let root = h0 / (h0 - h1);
+                let (low_first, low_last) = (h0.less(zero), h1.less(zero));
+                let begin = L::select(low_last, never, root * zero.splat(ROUNDED_UP));
+                from = from.or_larger(L::select(low_first, begin, zero));
+                let end = L::select(low_first, zero, root * zero.splat(ROUNDED_DOWN));
+                until = until.or_smaller(L::select(low_last, end, never));
                 let change = h1 - h0;
                 let now = h0 + change * time;
                 let less = now.less(least);
@@ -287,32 +352,29 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             }
         }
         Gaps {
+            from,
             until,
             approaching: slope.less(zero),
         }
     }
 }
 
+/// When the gap along a direction is large enough.
 struct Gaps<L: Lanes> {
-    /// No line is below its floor from the time asked for until this one; not later than the time
-    /// asked for if one is below it there already.
+    /// From here, ...
+    from: L,
+    /// ... until here, which may be [`NEVER`] for both.
     until: L,
-    /// The line that is lowest now falls.
+    /// The line that is lowest at the time asked for falls.
     approaching: L::Mask,
 }
 
-/// Until when `h0 (1 - t) + h1 t` is not negative, from `time` on; 0 if it is at `time`.
+/// Shorter than 1 for all rounding; zero where the distance is.
 #[inline(always)]
-fn until_negative<L: Lanes>(h0: L, h1: L, time: L) -> L {
-    let zero = h0.splat(0.0);
-    let root = h0 / (h0 - h1);
-    let (falls_through, starts_below) = (h1.less(zero), h0.less(zero));
-    let rising = (root * zero.splat(ROUNDED_UP)).at_most(time);
-    let of_rising = L::select(rising, zero.splat(NEVER), zero);
-    let of_falling = L::select(starts_below, zero, root * zero.splat(ROUNDED_DOWN));
-    let of_starting_below = L::select(falls_through, zero, of_rising);
-    let not_falling = L::select(starts_below, of_starting_below, zero.splat(NEVER));
-    L::select(falls_through, of_falling, not_falling)
+fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> {
+    let zero = distance.splat(0.0);
+    let shrink = zero.splat(ROUNDED_DOWN) / distance;
+    Vector3::select(zero.less(distance), apart * shrink, apart * zero)
 }
 
 #[inline(always)]

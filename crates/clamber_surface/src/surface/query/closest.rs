@@ -143,7 +143,8 @@ fn test(posed: &PosedCluster<'_>, region: &impl Region, blur: f64, best: &mut Be
     let (mut tested, view) = (0, &posed.view);
     let [a, b] = region.segment();
     // No triangle farther than the nearest vertex matters, or so little farther as it may measure.
-    let vertex = f64::from(posed.nearest_vertex(region.facing(posed.somewhere())));
+    let (point, lost) = region.facing(posed.somewhere());
+    let vertex = f64::from(posed.nearest_vertex(point)) + lost;
     let size = root::size(view.surface.current.root());
     let limit = best.limit().min(vertex + BLUR * size);
     by_eight(view.enabled(posed.near(a, b, limit + blur)), |batch| {

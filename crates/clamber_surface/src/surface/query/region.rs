@@ -7,7 +7,7 @@ use crate::geometry::triangle::{
     Corners8, Points8, TrianglePoint, closest_point, closest_points, closest_to_segment,
     closest_to_segments,
 };
-use crate::geometry::{Capsule, Sphere, widen};
+use crate::geometry::{Capsule, Sphere, round_to_f32, widen};
 use crate::mesh::hierarchy::LANES;
 use crate::simd::SimdLevel;
 use crate::surface::SurfaceError;
@@ -38,8 +38,8 @@ pub(in crate::surface) trait Region {
     /// Per lane at most the distance from its core to what the sphere holds.
     fn distances(&self, spheres: &Spheres) -> [f32; LANES];
 
-    /// A point of its core, about the nearest to `target`.
-    fn facing(&self, target: Vec3) -> Vec3;
+    /// A point of its core, about the nearest to `target`, and how far rounding may have taken it off.
+    fn facing(&self, target: Vec3) -> (Vec3, f64);
 
     /// How far beyond its radius the exact test may take a triangle for a touching one, of a surface
     /// that is `size` across.
@@ -74,8 +74,8 @@ impl Region for Sphere {
         broad::distances(spheres, self.center)
     }
 
-    fn facing(&self, _target: Vec3) -> Vec3 {
-        self.center
+    fn facing(&self, _target: Vec3) -> (Vec3, f64) {
+        (self.center, 0.0)
     }
 
     fn blur(&self, _size: f64) -> f64 {
@@ -115,17 +115,16 @@ impl Region for Capsule {
         broad::distances_to_segment(spheres, self.a, self.b)
     }
 
-    fn facing(&self, target: Vec3) -> Vec3 {
-        let axis = self.b - self.a;
-        let along = (target - self.a).dot(axis) / axis.length_squared();
-        // One of the ends where that is no number.
-        if along >= 1.0 {
-            self.b
-        } else if along > 0.0 {
-            self.a + axis * along
-        } else {
-            self.a
-        }
+    fn facing(&self, target: Vec3) -> (Vec3, f64) {
+        let a = widen(self.a);
+        let axis = widen(self.b) - a;
+        let along = (widen(target) - a).dot(axis) / axis.length_squared();
+        // An end where that is no number.
+        let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
+        let exact = a + axis * along;
+        let rounded = round_to_f32(exact);
+        let size = a.length() + axis.length();
+        (rounded, (widen(rounded) - exact).length() + size * BLUR)
     }
 
     fn blur(&self, size: f64) -> f64 {

@@ -5,6 +5,7 @@ mod best;
 mod extremes;
 mod hidden;
 mod places;
+mod sweeps;
 mod watertight;
 
 use std::sync::Arc;

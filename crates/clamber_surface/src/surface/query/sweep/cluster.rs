@@ -1,5 +1,6 @@
 use super::super::cluster_view::ClusterView;
 use super::super::narrow::Survivors;
+use super::super::planes::SLACK;
 use super::Sweep;
 use super::narrow::{self, MovingBall};
 use super::planes::MovingPlanes;
@@ -83,10 +84,13 @@ impl<'a> MovingCluster<'a> {
         let share = (start - sweep.ends[0]).dot(axis) / axis.length_squared();
         let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
         let turn = sweep.motions[N - 1] - sweep.motions[0];
+        let lengths = [sweep.ends[0], axis, sweep.motions[0], turn];
+        let size: f32 = lengths.map(|v| v.abs().element_sum()).iter().sum();
         MovingBall {
             center: (sweep.ends[0] + axis * share).to_array(),
             motion: (sweep.motions[0] + turn * share).to_array(),
             radius: sweep.radius,
+            lost: if N == 1 { 0.0 } else { size * SLACK },
         }
     }
 

@@ -17,12 +17,11 @@ mod search;
 pub use hit::SweepHit;
 pub(in crate::surface) use hit::{Earliest, First, sort_by_time};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::region::box_around;
 use super::{check_length, check_point};
 use crate::geometry::triangle::{Contact, MovingCore, advance};
-use crate::geometry::{Capsule, Sphere, round_up_to_f32};
+use crate::geometry::{Capsule, Sphere, round_up_to_f32, widen};
 use crate::surface::{SkinnedSurface, SurfaceError};
 
 /// By how much rounding may widen a tolerance, as a share of the lengths involved: eight times the 2^-46
@@ -97,17 +96,18 @@ impl<const N: usize> Sweep<N> {
         ends.map(|end| end.length()).sum()
     }
 
-    /// The box around all that it reaches on its way.
+    /// The box around all that it reaches on its way, rounded outwards.
     fn bounds(&self) -> [[f32; 3]; 2] {
-        let (mut low, mut high) = (self.ends[0], self.ends[0]);
-        for (end, motion) in self.ends.into_iter().zip(self.motions) {
-            // The sum is off by a rounding of itself.
-            let last = end + motion;
-            let lost = (end.abs() + motion.abs()) * f32::EPSILON;
-            low = low.min(end).min(last - lost);
-            high = high.max(end).max(last + lost);
-        }
-        box_around([low, high], self.reach.into())
+        let origin = widen(self.core.origin);
+        let ends = self.core.start.iter().chain(&self.core.end);
+        let (low, high) = ends.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), end| (low.min(origin + *end), high.max(origin + *end)),
+        );
+        // A step of f32 is more than the sums are off by.
+        let reach = f64::from(self.reach);
+        let up = |x: f64| round_up_to_f32(x + reach).next_up();
+        [(-low).to_array().map(|x| -up(x)), high.to_array().map(up)]
     }
 
     /// The first contact with one triangle.

@@ -102,6 +102,8 @@ pub(super) struct MovingBall {
     pub(super) center: [f32; 3],
     pub(super) motion: [f32; 3],
     pub(super) radius: f32,
+    /// How far its centre may be from where it should be.
+    pub(super) lost: f32,
 }
 
 /// A time by which a ball has touched one of a cluster's vertices, or infinity: about the earliest.
@@ -149,7 +151,7 @@ fn earliest<S: Simd>(
             way[axis] = (q[axis] - p[axis]) - number(ball.motion[axis]);
         }
         let size = taxicab::<S>(from) + taxicab::<S>(way);
-        let lost = slack * size;
+        let lost = slack * size + number(ball.lost);
         let reach = number(ball.radius * (1.0 - SMALLER)) - lost;
         let length = dot::<S>(way, way);
         let along = zero - dot::<S>(from, way);
