@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::SimdLevel;
-use crate::geometry::{Affine, Capsule, Similarity, Sphere};
+use crate::geometry::{Affine, Capsule, Similarity, Sphere, rotation_from_axis_angle};
 use crate::mesh::{ColliderMesh, PartId, TriangleId};
 use crate::rig::Palette;
 use crate::surface::agreement::assert_queries_agree;
@@ -114,7 +114,13 @@ fn a_swinging_limb_does_not_pass_a_sphere_by() {
             }
             swings += 1;
             let mut surface = SkinnedSurface::new(tube(4, 12));
-            let turned = |angle: f64| rigid(4, DQuat::from_rotation_y(-angle), DVec3::ZERO);
+            let turned = |angle: f64| {
+                rigid(
+                    4,
+                    rotation_from_axis_angle(DVec3::NEG_Y, angle),
+                    DVec3::ZERO,
+                )
+            };
             let mut at = -0.5 - angle * 0.3;
             step(&mut surface, &turned(at), DVec3::ZERO, true);
             let touched = loop {
@@ -343,7 +349,7 @@ fn sweeps_of_a_bent_tube_agree_at_every_level_lazily_and_ahead() {
             let axis = DVec3::new(1.0, f64::from(tick), 0.3).normalize();
             let palette = bend(12, axis, 0.15 * f64::from(tick));
             let root = Similarity {
-                rotation: DQuat::from_rotation_z(0.1 * f64::from(tick / 2)),
+                rotation: rotation_from_axis_angle(DVec3::Z, 0.1 * f64::from(tick / 2)),
                 ..Similarity::IDENTITY
             };
             surface.advance(&palette, root).unwrap();
