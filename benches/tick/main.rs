@@ -167,7 +167,7 @@ fn many_riders(
     for caches in [Caches::Cold, Caches::Warm] {
         let laps = field.race(&workload, caches, stream)?;
         let name = format!("{} riders, {caches:?}", effort.riders);
-        laps_of(&mut cells, &name, &laps);
+        laps_of(cells, &name, &laps);
         let (eager, parry) = (laps[1].over(&laps[0]), laps[2].over(&laps[0]));
         cells.push(&format!("{name}: eager / lazy"), eager, Bound::Least(1.0));
         cells.push(&format!("{name}: parry / lazy"), parry, Bound::Least(15.0));
@@ -190,7 +190,7 @@ fn everything(
     let touched = lazy.surface.diagnostics();
     let share = touched.clusters_touched as f64 / touched.clusters as f64;
     cells.value("everything touched: share of clusters", share);
-    laps_of(&mut cells, "everything touched", &laps);
+    laps_of(cells, "everything touched", &laps);
     let ratio = laps[0].over(&laps[1]);
     cells.push("everything touched: lazy / eager", ratio, Bound::Most(1.15));
     Ok(())
