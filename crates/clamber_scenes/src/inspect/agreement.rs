@@ -39,7 +39,7 @@ pub fn compare_queries(
     let mut agreement = Agreement::default();
     agreement.count(0, all == positions);
     let (mut hits, mut expected) = (Vec::new(), Vec::new());
-    for _ in 0..places {
+    for number in 0..places {
         let near = positions[rng.usize(0..positions.len())];
         let mut offset = || (rng.f32() - 0.5) * size * 0.2;
         let place = near + Vec3::new(offset(), offset(), offset());
@@ -74,12 +74,54 @@ pub fn compare_queries(
             surface.overlap_capsule(&capsule, &mut hits)?;
             brute_force.overlap_capsule(&capsule, &mut expected)?;
             agreement.count(hits.len(), hits == expected);
+            let closest = surface.closest_to_capsule(&capsule, reach)?;
+            let reference = brute_force.closest_to_capsule(&capsule, reach)?;
+            agreement.count(closest.is_some().into(), closest == reference);
+        }
+        if number % SWEEP_EVERY == 0 {
+            let motions = [target - place, (target - place) * (1.0 + rng.f32())];
+            for surface in [surface, &eager] {
+                agreement.compare_sweeps(surface, &brute_force, &capsule, motions)?;
+            }
         }
     }
     Ok(agreement)
 }
 
+/// Sweeps are compared at every so many places: by brute force they take by far the longest.
+const SWEEP_EVERY: usize = 4;
+
 impl Agreement {
+    /// Of the capsule, and of the sphere about its first end.
+    fn compare_sweeps(
+        &mut self,
+        surface: &SkinnedSurface,
+        brute_force: &BruteForce<'_>,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+    ) -> Result<(), SurfaceError> {
+        let sphere = Sphere {
+            center: capsule.a,
+            radius: capsule.radius,
+        };
+        let tolerance = capsule.radius * 1e-3;
+        let hit = surface.cast_sphere(&sphere, motions[0], tolerance)?;
+        let reference = brute_force.cast_sphere(&sphere, motions[0], tolerance)?;
+        self.count(hit.is_some().into(), hit == reference);
+        let (mut hits, mut expected) = (Vec::new(), Vec::new());
+        surface.sweep_sphere_all(&sphere, motions[0], tolerance, &mut hits)?;
+        brute_force.sweep_sphere_all(&sphere, motions[0], tolerance, &mut expected)?;
+        self.count(hits.len(), hits == expected);
+        let first = surface.sweep_sphere(&sphere, motions[0], tolerance)?;
+        self.count(0, first.as_ref() == expected.first());
+        surface.sweep_capsule_all(capsule, motions, tolerance, &mut hits)?;
+        brute_force.sweep_capsule_all(capsule, motions, tolerance, &mut expected)?;
+        self.count(hits.len(), hits == expected);
+        let first = surface.sweep_capsule(capsule, motions, tolerance)?;
+        self.count(0, first.as_ref() == expected.first());
+        Ok(())
+    }
+
     fn count(&mut self, hits: usize, equal: bool) {
         self.hits += hits;
         self.mismatches += usize::from(!equal);
