@@ -16,7 +16,9 @@ use crate::skin::skin_vertex;
 /// The queries of a surface by brute force: slow and plain, for tests.
 ///
 /// Skins every vertex in scalar code when it is made, knows no bounds, and tests all enabled
-/// triangles one by one. The surface must answer with the same bits.
+/// triangles one by one. The surface must answer with the same bits; but for sweeps among coordinates that
+/// differ by some 2^50 in size, where bounds may rule out what the exact test leaves
+/// [`undecided`](SweepHit::undecided).
 ///
 /// ```
 /// # use std::sync::Arc;

@@ -4,6 +4,9 @@
 //! the palette alone, and skins the clusters of vertices that it reaches, once a tick; its answer is
 //! that of skinning everything and testing every triangle, bit for bit: [`BruteForce`].
 //!
+//! Casts and sweeps ([`SkinnedSurface::sweep_sphere`]) meet the skin on its way from the previous pose to
+//! the current one, and promise what they report: never late, never farther than a tolerance.
+//!
 //! [`PartBounds`] bounds parts in any pose without skinning a vertex.
 
 #[cfg(test)]

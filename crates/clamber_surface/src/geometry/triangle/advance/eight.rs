@@ -5,7 +5,8 @@ use glam::DVec3;
 
 use super::super::eight::{Corners8Wide, splat};
 use super::super::{Corners8, EIGHT};
-use super::{Contact, MISS, MovingCore, Path, UNDECIDED};
+use super::path::Path;
+use super::{Contact, MISS, MovingCore, UNDECIDED};
 use crate::geometry::lanes::Wide;
 use crate::geometry::widen;
 use crate::simd::SimdLevel;
