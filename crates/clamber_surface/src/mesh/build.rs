@@ -246,10 +246,7 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
             found: source.tags.len(),
         });
     }
-    // Written so that NaN is refused.
-    // Half of what may be skinned: even the identity, by its Frobenius norm, stays within that.
-    let within = |p: &Vec3| widen(*p).length() <= MAX_COORDINATE * 0.5;
-    if let Some(vertex) = source.positions.iter().position(|p| !within(p)) {
+    if let Some(vertex) = source.positions.iter().position(|p| !is_usable(*p)) {
         return Err(MeshError::Position { vertex });
     }
     for (triangle, corners) in source.triangles.iter().enumerate() {
@@ -272,6 +269,13 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
         }
     }
     Ok(())
+}
+
+/// False for a position that is not finite, or larger than 2^99: half of what may be skinned, since
+/// even the identity, by its Frobenius norm, stays within that then.
+pub(super) fn is_usable(position: Vec3) -> bool {
+    // Written so that NaN is refused.
+    widen(position).length() <= MAX_COORDINATE * 0.5
 }
 
 impl<'a> MeshSource<'a> {
@@ -363,7 +367,9 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         tags: Vec::new(),
         part_of: Vec::new(),
         parts: Vec::new(),
+        vertex_removed: Vec::new(),
         radius: 0.0,
+        poses: Vec::new(),
         clusters: Clusters::default(),
         hierarchy: Hierarchy::default(),
         root_balls: RootBalls::default(),

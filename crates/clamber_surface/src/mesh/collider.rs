@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::clusters::{self, Clusters};
 use super::hierarchy::Hierarchy;
-use super::{MeshError, SurfaceTag, WEIGHT_ONE};
+use super::{SurfaceTag, WEIGHT_ONE};
 use crate::geometry::triangle::scaled_normal;
-use crate::geometry::{round_up_to_f32, widen};
+use crate::geometry::{Affine, round_up_to_f32, widen};
 use crate::rig::{JointId, Palette};
 use crate::surface::{JointMaps, RootBalls, SurfaceError};
 
@@ -32,7 +32,7 @@ macro_rules! id {
 }
 
 id! {
-    /// Index of a vertex of a collider mesh.
+    /// Index of a vertex of a collider mesh. Never reused, as those of triangles.
     VertexId
 }
 id! {
@@ -55,8 +55,8 @@ pub struct Part {
     pub vertices: Vec<VertexId>,
 }
 
-/// The rest data of a surface: positions, influences, triangles, tags, parts. Immutable once
-/// built, shared by any number of surfaces through an `Arc`.
+/// The rest data of a surface: positions, influences, triangles, tags, parts. Shared by any number of
+/// surfaces through an `Arc`; one that is edited has its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderMesh {
     pub(super) joint_count: usize,
@@ -71,7 +71,12 @@ pub struct ColliderMesh {
     /// `None` for a removed triangle.
     pub(super) part_of: Vec<Option<PartId>>,
     pub(super) parts: Vec<Part>,
+    /// By vertex, as far as the last one that was removed.
+    pub(super) vertex_removed: Vec<bool>,
+    /// At least that of every vertex there is or was.
     pub(super) radius: f32,
+    /// Palettes that clusters are made for; see [`ColliderMesh::tuned`].
+    pub(super) poses: Vec<Vec<Affine>>,
     pub(super) clusters: Clusters,
     pub(super) hierarchy: Hierarchy,
     pub(super) root_balls: RootBalls,
@@ -83,7 +88,7 @@ impl ColliderMesh {
         self.joint_count
     }
 
-    /// Rest positions, in mesh space.
+    /// Rest positions, in mesh space, those of removed vertices included.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
@@ -108,6 +113,12 @@ impl ColliderMesh {
         self.part_of.get(triangle.index()).copied().flatten()
     }
 
+    /// True if there is such a vertex: false for one that was removed or never was.
+    pub fn has_vertex(&self, vertex: VertexId) -> bool {
+        let removed = self.vertex_removed.get(vertex.index());
+        vertex.index() < self.positions.len() && !removed.is_some_and(|removed| *removed)
+    }
+
     /// Joints and weights of a vertex, by ascending joint. Weights are positive multiples of 2^-24
     /// and add up to exactly 1. Empty for a vertex out of range.
     pub fn influences(&self, vertex: VertexId) -> impl ExactSizeIterator<Item = (JointId, f32)> {
@@ -120,7 +131,8 @@ impl ColliderMesh {
         pairs.map(|(joint, weight)| (JointId(*joint), *weight))
     }
 
-    /// The largest distance of a rest position from the mesh's origin, rounded up.
+    /// The largest distance of a rest position from the mesh's origin, rounded up; those of removed
+    /// vertices count.
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -149,7 +161,7 @@ impl ColliderMesh {
     /// The same mesh, its clusters and hierarchy made for these poses: cut so that bounds are small in
     /// them, where a build without poses takes weights that differ and sizes at rest for a sign of what
     /// they will be. For creatures whose clips are known, a few poses of each; more than some ten in all
-    /// change little. Queries give the same answers. (Bittner and Meister 2015, "T-SAH: Animation
+    /// change little. Queries give the same answers, and edits keep to the poses. (Bittner and Meister 2015, "T-SAH: Animation
     /// Optimized Bounding Volume Hierarchies", for one tree over all frames.)
     ///
     /// # Errors
@@ -160,15 +172,15 @@ impl ColliderMesh {
         for pose in poses {
             maps.update(self, pose)?;
         }
-        let poses: Vec<_> = poses.iter().map(|pose| pose.matrices().to_vec()).collect();
         let mut tuned = self.clone();
-        (tuned.clusters, tuned.hierarchy) = clusters::build(self, &poses);
+        tuned.poses = poses.iter().map(|pose| pose.matrices().to_vec()).collect();
+        (tuned.clusters, tuned.hierarchy) = clusters::build(self, &tuned.poses);
         Ok(tuned)
     }
 
     /// Makes clusters and hierarchy anew.
-    pub(super) fn cluster(&mut self) {
-        (self.clusters, self.hierarchy) = clusters::build(self, &[]);
+    pub(crate) fn cluster(&mut self) {
+        (self.clusters, self.hierarchy) = clusters::build(self, &self.poses);
         self.root_balls = RootBalls::new(self);
     }
 
@@ -183,6 +195,12 @@ impl ColliderMesh {
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.tags[..])
             + size_of_val(&self.part_of[..])
+            + size_of_val(&self.vertex_removed[..])
+            + self
+                .poses
+                .iter()
+                .map(|p| size_of_val(&p[..]))
+                .sum::<usize>()
             + parts.sum::<usize>()
             + self.clusters.memory()
             + self.hierarchy.memory()
@@ -218,62 +236,6 @@ impl ColliderMesh {
         sums.iter()
             .max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)))
             .map_or(JointId(0), |(joint, _)| *joint)
-    }
-
-    /// Whether [`ColliderMesh::add_triangle`] may be called with these corners.
-    pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), MeshError> {
-        let id = self.triangles.len();
-        if id >= u32::MAX as usize {
-            return Err(MeshError::TooLarge {
-                what: "triangles",
-                found: id + 1,
-            });
-        }
-        if let Some(bad) = corners.iter().find(|v| v.index() >= self.positions.len()) {
-            return Err(MeshError::VertexOutOfRange {
-                triangle: id,
-                vertex: bad.0,
-                vertices: self.positions.len(),
-            });
-        }
-        if !has_area(corners.map(|v| self.positions[v.index()])) {
-            return Err(MeshError::DegenerateTriangle {
-                vertices: corners.map(|v| v.0),
-            });
-        }
-        Ok(())
-    }
-
-    /// Appends a triangle that was checked and puts it into the part of its dominant joint.
-    pub(crate) fn add_triangle(&mut self, corners: [VertexId; 3], tag: SurfaceTag) -> TriangleId {
-        let id = TriangleId(self.triangles.len() as u32);
-        let joint = self.dominant_joint(corners);
-        let part = match self.parts.iter().position(|part| part.joint == joint) {
-            Some(part) => part,
-            None => {
-                self.parts.push(Part {
-                    joint,
-                    triangles: Vec::new(),
-                    vertices: Vec::new(),
-                });
-                self.parts.len() - 1
-            }
-        };
-        self.triangles.push(corners);
-        self.tags.push(tag);
-        self.part_of.push(Some(PartId(part as u32)));
-        self.parts[part].triangles.push(id);
-        self.collect_vertices(part);
-        self.cluster();
-        id
-    }
-
-    /// Takes a triangle out of the part that it belongs to.
-    pub(crate) fn remove_triangle(&mut self, triangle: TriangleId, part: PartId) {
-        self.part_of[triangle.index()] = None;
-        let part = part.index();
-        self.parts[part].triangles.retain(|t| *t != triangle);
-        self.collect_vertices(part);
     }
 
     /// Fills a part's vertices from its triangles.

@@ -6,6 +6,7 @@
 mod build;
 pub(crate) mod clusters;
 mod collider;
+mod edit;
 mod error;
 pub(crate) mod hierarchy;
 mod tag;
@@ -13,6 +14,7 @@ mod weights;
 
 pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
 pub use collider::{ColliderMesh, Part, PartId, TriangleId, VertexId};
+pub(crate) use edit::Reclustered;
 pub use error::MeshError;
 pub use tag::{SurfaceKind, SurfaceTag};
 pub use weights::{Influence, normalize_influences};

@@ -96,7 +96,8 @@ pub fn skin_clusters(
         });
     }
     let clusters = mesh.clusters();
-    numbers.resize(clusters.vertices.len() * 3, 0.0);
+    let rows: usize = clusters.clusters.iter().map(|c| c.rows()).sum();
+    numbers.resize(rows * ROW * 3, 0.0);
     let mut rest = &mut numbers[..];
     let mut skinned = ClusterPositions::ZERO;
     for cluster in &clusters.clusters {

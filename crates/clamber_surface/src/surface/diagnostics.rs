@@ -26,7 +26,7 @@ pub struct Diagnostics {
 
 impl SkinnedSurface {
     /// What was touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`].
-    /// Takes O(clusters).
+    /// Clusters that an edit has replaced since then count no more. Takes O(clusters).
     pub fn diagnostics(&self) -> Diagnostics {
         let (clusters, hierarchy) = (&self.mesh.clusters().clusters, self.mesh.hierarchy());
         let slots = |cluster: usize| usize::from(clusters[cluster].slots);
@@ -35,7 +35,7 @@ impl SkinnedSurface {
             bounds_evaluated: self.current.asked_nodes().map(lanes).sum(),
             clusters_touched: self.current.asked_clusters().count(),
             clusters_skinned: self.current.skinned_clusters().count(),
-            clusters: clusters.len(),
+            clusters: self.mesh.clusters().living(),
             vertices_skinned: self.current.skinned_clusters().map(slots).sum(),
             vertices: (0..clusters.len()).map(slots).sum(),
             triangles_tested: self.triangles_tested.load(Ordering::Relaxed),

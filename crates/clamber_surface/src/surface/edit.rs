@@ -1,9 +1,11 @@
 //! Changing a surface while it lives: a broken plate, a hole, a scab.
 
-use std::sync::Arc;
+mod batch;
+
+pub use batch::SurfaceEdit;
 
 use super::{SkinnedSurface, SurfaceError};
-use crate::mesh::{PartId, SurfaceTag, TriangleId, VertexId};
+use crate::mesh::{PartId, TriangleId};
 
 impl SkinnedSurface {
     /// Queries see the part's triangles again, but for those disabled one by one.
@@ -45,41 +47,42 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Adds a triangle between existing vertices, counter-clockwise seen from outside. It joins
-    /// the part of the joint that moves it most; if that part is new, it comes last and enabled.
+    /// Changes triangles, vertices and tags: as many changes as the closure makes. Gives what the closure
+    /// gives. What is refused changes nothing; what was changed before it stays.
     ///
-    /// A surface that shares its mesh gets a copy of its own with the first such edit. All clusters
-    /// are made anew, which takes as long as building the mesh.
+    /// When the closure returns, the clusters of the parts whose triangles changed are made anew, once
+    /// each; what queries have computed of other parts stays. That takes as long as building a mesh of
+    /// those parts, and at times, when edits have replaced more than half of all clusters, as long as
+    /// building the whole. The first change of a surface that shares its mesh gives it a copy of its own.
     ///
-    /// # Errors
-    /// [`SurfaceError::Mesh`] if a vertex does not exist or the triangle has no area at rest.
-    pub fn add_triangle(
-        &mut self,
-        corners: [VertexId; 3],
-        tag: SurfaceTag,
-    ) -> Result<TriangleId, SurfaceError> {
-        self.mesh.check_triangle(corners)?;
-        let triangle = Arc::make_mut(&mut self.mesh).add_triangle(corners, tag);
-        self.triangle_enabled.push(true);
-        self.part_enabled.resize(self.mesh.parts().len(), true);
-        self.current = self.current.renewed(&self.mesh);
-        self.previous = self.previous.renewed(&self.mesh);
-        Ok(triangle)
-    }
-
-    /// Removes a triangle for good. Its id is never used again; anchors on it report
-    /// [`SurfaceError::Triangle`].
-    ///
-    /// A surface that shares its mesh gets a copy of its own with the first such edit.
-    ///
-    /// # Errors
-    /// [`SurfaceError::Triangle`] if it does not exist or was removed before.
-    pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        let part = self.mesh.part_of(triangle);
-        let part = part.ok_or(SurfaceError::Triangle(triangle))?;
-        self.disable_triangle(triangle)?;
-        Arc::make_mut(&mut self.mesh).remove_triangle(triangle, part);
-        Ok(())
+    /// ```
+    /// # use std::sync::Arc;
+    /// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceTag};
+    /// # use clamber_surface::mesh::{TriangleId, VertexId};
+    /// # use clamber_surface::rig::JointId;
+    /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+    /// # use glam::Vec3;
+    /// # let bone = Influence { joint: JointId(0), weight: 1.0 };
+    /// # let source = MeshSource {
+    /// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+    /// #     triangles: &[[0, 1, 2]],
+    /// #     influences: &[bone; 3],
+    /// #     joint_count: 1,
+    /// #     ..MeshSource::default()
+    /// # };
+    /// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+    /// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
+    /// let scab = surface.edit(|edit| {
+    ///     let tip = edit.add_vertex(Vec3::Z, &[bone])?;
+    ///     edit.remove_triangle(TriangleId(0))?;
+    ///     edit.add_triangle([VertexId(0), VertexId(1), tip], SurfaceTag::default())
+    /// })?;
+    /// assert!(surface.is_enabled(scab) && !surface.is_enabled(TriangleId(0)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn edit<R>(&mut self, edits: impl FnOnce(&mut SurfaceEdit<'_>) -> R) -> R {
+        let mut edit = SurfaceEdit::new(self);
+        edits(&mut edit)
     }
 
     /// True if queries see the triangle: it exists, and neither it nor its part is disabled.
@@ -109,3 +112,6 @@ impl SkinnedSurface {
             .ok_or(SurfaceError::Triangle(triangle))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use crate::mesh::{PartId, TriangleId};
+use crate::mesh::{PartId, TriangleId, VertexId};
 use crate::rig::JointId;
 
 /// Why a surface refused a palette, a query or an edit. Nothing was changed.
@@ -15,7 +15,8 @@ pub enum SurfaceError {
         /// As the palette has.
         found: usize,
     },
-    /// A matrix is not finite, or could move a vertex farther than 2^100 from the origin.
+    /// A matrix is not finite, or could move a vertex, one to be added among them, farther than 2^100
+    /// from the origin.
     #[error("matrix {0} of the palette is not finite, or moves vertices beyond 2^100")]
     Palette(JointId),
     /// `world_from_model` is not finite, has no positive scale, or its rotation is not of unit
@@ -39,13 +40,16 @@ pub enum SurfaceError {
     /// No such triangle, or it was removed.
     #[error("triangle {0} does not exist, or was removed")]
     Triangle(TriangleId),
+    /// No such vertex, or it was removed.
+    #[error("vertex {0} does not exist, or was removed")]
+    Vertex(VertexId),
     /// No such part.
     #[error("part {0} does not exist")]
     Part(PartId),
     /// Barycentric coordinates must be finite, not negative, and add up to 1.
     #[error("barycentric coordinates must not be negative and add up to 1, found {0:?}")]
     Barycentric([f32; 3]),
-    /// A triangle could not be added.
+    /// A vertex or a triangle could not be added.
     #[error(transparent)]
     Mesh(#[from] crate::mesh::MeshError),
 }

@@ -29,6 +29,7 @@ pub use bounds::{JointMaps, NodeBounds, PartBounds, WeightInterval};
 pub(crate) use bounds::{RootBalls, inflation};
 pub use brute_force::BruteForce;
 pub use diagnostics::Diagnostics;
+pub use edit::SurfaceEdit;
 pub use error::SurfaceError;
 pub use motion::Motion;
 pub use query::{CapsuleHit, SurfaceHit, SweepHit};

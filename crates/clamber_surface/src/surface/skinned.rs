@@ -55,6 +55,7 @@ pub struct SkinnedSurface {
     world_from_model: Similarity,
     pub(super) simd_level: SimdLevel,
     pub(super) part_enabled: Vec<bool>,
+    /// True for removed triangles.
     pub(super) triangle_enabled: Vec<bool>,
     /// How many triangles are not enabled.
     pub(super) hidden_triangles: usize,
@@ -71,18 +72,14 @@ impl SkinnedSurface {
     /// [`SkinnedSurface::new`] on a given instruction set: for measurements and tests, since the
     /// results are the same.
     pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
-        let ids = 0..mesh.triangles().len() as u32;
-        let triangle_enabled: Vec<bool> = ids
-            .map(|id| mesh.part_of(TriangleId(id)).is_some())
-            .collect();
         Self {
             current: Pose::at_rest(&mesh, simd_level),
             previous: Pose::at_rest(&mesh, simd_level),
             world_from_model: Similarity::IDENTITY,
             simd_level,
             part_enabled: vec![true; mesh.parts().len()],
-            hidden_triangles: triangle_enabled.iter().filter(|enabled| !**enabled).count(),
-            triangle_enabled,
+            triangle_enabled: vec![true; mesh.triangles().len()],
+            hidden_triangles: 0,
             triangles_tested: AtomicU64::new(0),
             most_sweep_steps: AtomicU32::new(0),
             mesh,
@@ -110,7 +107,8 @@ impl SkinnedSurface {
             let now_from_before = world_from_model.relative(&self.world_from_model);
             let moved = |before: &Affine| Affine::from_f64(&(now_from_before * before.to_f64()));
             let before = self.current.palette();
-            if let Some(joint) = before.iter().position(|m| !self.keeps(&moved(m))) {
+            let radius = self.mesh.radius();
+            if let Some(joint) = before.iter().position(|m| !keeps(&moved(m), radius)) {
                 return Err(SurfaceError::Palette(JointId(joint as u32)));
             }
             self.previous.set(&self.mesh, before.iter().map(moved));
@@ -158,8 +156,8 @@ impl SkinnedSurface {
         self.simd_level
     }
 
-    /// Skins every vertex, each once, in model space, by vertex id: for renderers, and whoever wants
-    /// everything. `positions` keeps its memory. Queries neither need it nor profit from it.
+    /// Skins every vertex, removed ones included, each once, in model space, by vertex id: for renderers,
+    /// and whoever wants everything. `positions` keeps its memory. Queries neither need it nor profit from it.
     pub fn skin_all(&self, positions: &mut Vec<Vec3>) {
         skin_checked(
             &self.mesh,
@@ -169,18 +167,20 @@ impl SkinnedSurface {
         );
     }
 
-    /// Where a vertex stands now, in model space; `None` if it is out of range.
+    /// Where a vertex stands now, in model space; `None` if it does not exist or was removed.
     pub fn position(&self, vertex: VertexId) -> Option<Vec3> {
         self.position_in(&self.current, vertex)
     }
 
-    /// Where a vertex stood a tick ago, in the current model frame; `None` if it is out of range.
+    /// Where a vertex stood a tick ago, in the current model frame; `None` if it does not exist or was
+    /// removed. One that was added since stood where the palette of a tick ago would have had it.
     pub fn previous_position(&self, vertex: VertexId) -> Option<Vec3> {
         self.position_in(&self.previous, vertex)
     }
 
     fn position_in(&self, pose: &Pose, vertex: VertexId) -> Option<Vec3> {
-        (vertex.index() < self.mesh.positions().len())
+        self.mesh
+            .has_vertex(vertex)
             .then(|| pose.position(&self.mesh, vertex.index()))
     }
 
@@ -198,10 +198,8 @@ impl SkinnedSurface {
 
     /// True if this tick touched so much that skinning the next one ahead costs less than finding out.
     fn touched_nearly_everything(&self) -> bool {
-        let (asked, all) = (
-            self.current.clusters_asked(),
-            self.mesh.clusters().clusters.len(),
-        );
+        let asked = self.current.clusters_asked();
+        let all = self.mesh.clusters().living();
         asked * 4 >= all * 3
     }
 
@@ -229,7 +227,8 @@ impl SkinnedSurface {
                 found: matrices.len(),
             });
         }
-        if let Some(joint) = matrices.iter().position(|m| !self.keeps(m)) {
+        let radius = self.mesh.radius();
+        if let Some(joint) = matrices.iter().position(|m| !keeps(m, radius)) {
             return Err(SurfaceError::Palette(JointId(joint as u32)));
         }
         if !world_from_model.is_valid() {
@@ -237,16 +236,17 @@ impl SkinnedSurface {
         }
         Ok(())
     }
+}
 
-    /// True if a matrix keeps every vertex within 2^100 of the origin; false for NaN.
-    fn keeps(&self, matrix: &Affine) -> bool {
-        // As all creatures do: three by three products of such numbers, and three more, are less.
-        let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
-        if usual(&self.mesh.radius()) && matrix.rows.as_flattened().iter().all(usual) {
-            return true;
-        }
-        matrix.reach(f64::from(self.mesh.radius())) <= MAX_COORDINATE
+/// True if a matrix keeps everything within `radius` of the mesh's origin within 2^100 of the model's;
+/// false for NaN.
+pub(super) fn keeps(matrix: &Affine, radius: f32) -> bool {
+    // As all creatures do: three by three products of such numbers, and three more, are less.
+    let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
+    if usual(&radius) && matrix.rows.as_flattened().iter().all(usual) {
+        return true;
     }
+    matrix.reach(f64::from(radius)) <= MAX_COORDINATE
 }
 
 /// 2^40: a size of matrix elements and creatures that needs no closer look.

@@ -133,6 +133,6 @@ fn what_is_not_finite_or_gone_finds_nothing() {
     assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
     surface.enable_triangle(triangle).unwrap();
     assert!(Obstacle::motion(&surface, &material, 0.1).is_some());
-    surface.remove_triangle(triangle).unwrap();
+    surface.edit(|edit| edit.remove_triangle(triangle)).unwrap();
     assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
 }

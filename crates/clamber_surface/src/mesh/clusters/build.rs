@@ -16,8 +16,17 @@ const RAGGED_SLOTS: usize = 72;
 /// Clusters all triangles that have a part. `poses`, palettes, are what bounds should be small in;
 /// without any, small weight spreads and small sizes are sought.
 pub(crate) fn build(mesh: &ColliderMesh, poses: &[Vec<Affine>]) -> (Clusters, Hierarchy) {
+    build_beside(mesh, poses, vec![false; mesh.positions().len()])
+}
+
+/// [`build`] beside other clusters: `held` says of each vertex whether one of them owns it.
+pub(crate) fn build_beside(
+    mesh: &ColliderMesh,
+    poses: &[Vec<Affine>],
+    held: Vec<bool>,
+) -> (Clusters, Hierarchy) {
     let tree = cut(mesh, poses);
-    let clusters = Clusters::pack(mesh, &tree);
+    let clusters = Clusters::pack(mesh, &tree, held);
     let hierarchy = Hierarchy::over(&clusters, &tree);
     (clusters, hierarchy)
 }

@@ -3,7 +3,11 @@
 //! Laid out for the skinning kernel: per cluster a list of joints of its own, structure of arrays, one
 //! row of weights per joint, no gathers. A vertex on the border of several clusters stands in each of
 //! them; the first one owns it.
+//!
+//! When triangles of a part change, its clusters die, and new ones are appended: the others stay the
+//! same entries.
 
+mod append;
 mod build;
 mod cost;
 mod pack;
@@ -12,7 +16,7 @@ mod refine;
 mod split;
 pub(crate) mod tree;
 
-pub(crate) use build::build;
+pub(crate) use build::{build, build_beside};
 
 use super::{PartId, TriangleId, VertexId};
 
@@ -59,7 +63,7 @@ pub(crate) struct Cluster {
     pub(crate) triangles: u8,
 }
 
-/// All clusters of a mesh.
+/// All clusters of a mesh, dead ones among them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Clusters {
     pub(crate) clusters: Vec<Cluster>,
@@ -71,8 +75,13 @@ pub(crate) struct Clusters {
     pub(crate) triangles: Vec<TriangleId>,
     /// [`ROW`] per row; what is beyond a cluster's last slot is `VertexId(u32::MAX)`.
     pub(crate) vertices: Vec<VertexId>,
-    /// Vertices without triangles, which no cluster holds, ascending.
+    /// Vertices that no cluster owns, ascending: those without triangles, and those that an edit took
+    /// out of the part that owned them.
     pub(crate) loose: Vec<VertexId>,
+    /// How many clusters are dead.
+    pub(crate) dead: usize,
+    /// By vertex: the part whose cluster owns it. Empty before the first edit.
+    owners: Vec<PartId>,
     /// See [`Clusters::ranks`].
     #[cfg(feature = "rayon")]
     ranks: std::sync::OnceLock<Vec<u32>>,
@@ -91,6 +100,11 @@ impl Cluster {
         owned: 0,
         triangles: 0,
     };
+
+    /// True if an edit has taken its triangles and vertices away.
+    pub(crate) fn is_dead(&self) -> bool {
+        self.triangles == 0
+    }
 
     /// How many rows its slots take.
     pub(crate) fn rows(&self) -> usize {
@@ -143,6 +157,11 @@ impl Clusters {
         })
     }
 
+    /// How many clusters are not dead.
+    pub(crate) fn living(&self) -> usize {
+        self.clusters.len() - self.dead
+    }
+
     /// In bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.clusters[..])
@@ -152,6 +171,7 @@ impl Clusters {
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.vertices[..])
             + size_of_val(&self.loose[..])
+            + size_of_val(&self.owners[..])
     }
 }
 

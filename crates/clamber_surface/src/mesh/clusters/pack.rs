@@ -19,13 +19,13 @@ struct Packer<'a> {
 
 impl Clusters {
     /// One cluster for each leaf, which has at most [`super::MAX_SLOTS`] vertices and
-    /// [`super::MAX_TRIANGLES`] triangles.
-    pub(super) fn pack(mesh: &ColliderMesh, tree: &Tree) -> Self {
+    /// [`super::MAX_TRIANGLES`] triangles. `held` says of each vertex whether it has an owner already.
+    pub(super) fn pack(mesh: &ColliderMesh, tree: &Tree, held: Vec<bool>) -> Self {
         let vertices = mesh.positions().len();
         let mut packer = Packer {
             mesh,
             packed: Self::default(),
-            held: vec![false; vertices],
+            held,
             slot: vec![0; vertices],
             place: vec![0; mesh.joint_count()],
             vertices: Vec::new(),

@@ -1,12 +1,17 @@
 //! The bounding volume hierarchy over clusters: eight children a node, rest data only.
 //!
+//! A part that was edited has a tree of its own beside that of the whole; there its old clusters are
+//! dead, and bounds hold more than they need.
+//!
 //! What bounds a child in a pose is computed from this and the palette, see `surface::bounds`.
 
+mod append;
 mod build;
 mod collapse;
 mod content;
 mod intervals;
 
+use append::PartRoot;
 pub use intervals::WeightInterval;
 pub(crate) use intervals::intervals;
 
@@ -52,13 +57,15 @@ pub(crate) struct JointWeights {
     pub(crate) deviation: [f32; LANES],
 }
 
-/// All nodes, the root first, every parent before its children.
+/// All nodes, the first root first, every parent before its children.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Hierarchy {
     pub(crate) nodes: Vec<Node>,
     /// Joint ids, ascending in each node.
     pub(crate) joints: Vec<u32>,
     pub(crate) weights: Vec<JointWeights>,
+    /// By part edited, in the order of the edits; beside node 0, which is a root always.
+    further_roots: Vec<PartRoot>,
 }
 
 const CLUSTER: u32 = 1 << 31;
@@ -119,6 +126,7 @@ impl Hierarchy {
         size_of_val(&self.nodes[..])
             + size_of_val(&self.joints[..])
             + size_of_val(&self.weights[..])
+            + size_of_val(&self.further_roots[..])
     }
 }
 

@@ -14,6 +14,7 @@ use super::JointTable;
 use super::joint_table::Joint;
 use crate::geometry::{Sphere, round_up_to_f32, widen};
 use crate::mesh::{ColliderMesh, VertexId};
+use crate::rig::JointId;
 
 /// Axis-aligned, in model space. Empty, `min` above `max`, for a mesh without vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -35,7 +36,10 @@ impl RootBox {
 /// Rest data for [`RootBox`]: for each joint the ball of the vertices that it moves.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct RootBalls {
+    /// By ascending joint.
     balls: Vec<RestBall>,
+    /// The most that one vertex has.
+    influences: usize,
     /// Per coordinate, what skinning may lose as a share of what it adds up.
     relative: f64,
     /// Per coordinate, what it may lose by underflow.
@@ -71,13 +75,47 @@ impl RootBalls {
                 reach: reach_sq.fold(0.0, f64::max).sqrt() * (1.0 + 1e-15),
             })
         });
-        let influences = mesh.max_influences() as f64;
-        let roundings = (influences + 5.0) * f64::from(f32::EPSILON) * 0.5;
-        Self {
+        let mut found = Self {
             balls: balls.collect(),
-            relative: roundings / (1.0 - roundings),
-            underflow: (4.0 * influences + 4.0) * f64::from(f32::from_bits(1)),
+            ..Self::default()
+        };
+        found.allow_for(mesh.max_influences());
+        found
+    }
+
+    /// Grows so as to hold one more vertex, which these joints move. The balls stay where they are.
+    pub(crate) fn hold(&mut self, position: Vec3, joints: impl ExactSizeIterator<Item = JointId>) {
+        let position = widen(position);
+        let reach = position.length() * (1.0 + 1e-15);
+        self.allow_for(joints.len().max(self.influences));
+        for JointId(joint) in joints {
+            match self.balls.binary_search_by_key(&joint, |ball| ball.joint) {
+                Ok(place) => {
+                    let ball = &mut self.balls[place];
+                    let distance = (position - ball.center).length() * (1.0 + 1e-15);
+                    ball.radius = ball.radius.max(distance);
+                    ball.reach = ball.reach.max(reach);
+                }
+                Err(place) => {
+                    let ball = RestBall {
+                        joint,
+                        center: position,
+                        radius: 0.0,
+                        reach,
+                    };
+                    self.balls.insert(place, ball);
+                }
+            }
         }
+    }
+
+    /// Sets what skinning may lose for vertices of at most so many influences.
+    fn allow_for(&mut self, influences: usize) {
+        self.influences = influences;
+        let influences = influences as f64;
+        let roundings = (influences + 5.0) * f64::from(f32::EPSILON) * 0.5;
+        self.relative = roundings / (1.0 - roundings);
+        self.underflow = (4.0 * influences + 4.0) * f64::from(f32::from_bits(1));
     }
 
     /// A box that holds every vertex as f32 skinning yields it. O(joints).

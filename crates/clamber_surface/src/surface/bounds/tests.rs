@@ -297,7 +297,9 @@ fn parts_without_triangles_and_bad_input() {
     let mesh = tube(3, 8);
     let mut surface = SkinnedSurface::new(mesh.clone());
     for triangle in &mesh.parts()[0].triangles {
-        surface.remove_triangle(*triangle).unwrap();
+        surface
+            .edit(|edit| edit.remove_triangle(*triangle))
+            .unwrap();
     }
     let bounds = PartBounds::new(surface.mesh());
     let palette = Palette::from_matrices([Affine::IDENTITY; 3]);
@@ -309,7 +311,7 @@ fn parts_without_triangles_and_bad_input() {
     // A part that an edit appended is bounded as well.
     let corners = mesh.triangles()[mesh.parts()[0].triangles[0].index()];
     surface
-        .add_triangle(corners, SurfaceTag::default())
+        .edit(|edit| edit.add_triangle(corners, SurfaceTag::default()))
         .unwrap();
     assert!(PartBounds::new(surface.mesh()).node(PartId(0)).is_some());
 

@@ -11,9 +11,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// reads those numbers. A new epoch needs `&mut`, so no thread sees two.
 #[derive(Debug)]
 pub(super) struct Cache<W = AtomicU64> {
-    stamps: Box<[W]>,
+    stamps: Vec<W>,
     /// Two numbers each.
-    words: Box<[W]>,
+    words: Vec<W>,
 }
 
 /// An atomic u64: std's, or a checker's.
@@ -54,10 +54,18 @@ pub(super) enum Recall {
 impl<W: Word> Cache<W> {
     /// All entries empty. No epoch may be 0.
     pub(super) fn new(entries: usize, numbers: usize) -> Self {
-        Self {
-            stamps: (0..entries).map(|_| W::new(0)).collect(),
-            words: (0..numbers.div_ceil(2)).map(|_| W::new(0)).collect(),
-        }
+        let mut cache = Self {
+            stamps: Vec::new(),
+            words: Vec::new(),
+        };
+        cache.grow(entries, numbers);
+        cache
+    }
+
+    /// Appends empty entries, up to so many in all.
+    pub(super) fn grow(&mut self, entries: usize, numbers: usize) {
+        self.stamps.resize_with(entries, || W::new(0));
+        self.words.resize_with(numbers.div_ceil(2), || W::new(0));
     }
 
     /// Copies an entry's numbers out, if they are of this epoch: part after part, of even lengths, from
@@ -147,6 +155,11 @@ impl Cache<AtomicU64> {
         if *stamp != epoch {
             *stamp = epoch | UNASKED;
         }
+    }
+
+    /// Empties an entry; true if somebody had asked for it in this epoch.
+    pub(super) fn forget(&mut self, entry: usize, epoch: u64) -> bool {
+        std::mem::take(self.stamps[entry].get_mut()) == epoch
     }
 
     /// Copies numbers out, of whatever epoch, as whoever has the cache alone may.

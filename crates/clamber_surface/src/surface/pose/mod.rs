@@ -49,22 +49,41 @@ impl Pose {
     }
 
     fn new(mesh: &ColliderMesh, level: SimdLevel, palette: Vec<Affine>) -> Self {
-        let (nodes, clusters) = (&mesh.hierarchy().nodes, mesh.clusters());
         let mut pose = Self {
             palette,
             table: JointTable::default(),
             root: RootBox::default(),
             level,
             epoch: 0,
-            nodes: Cache::new(nodes.len(), nodes.len() * NODE),
-            clusters: Cache::new(
-                clusters.clusters.len(),
-                clusters.vertices.len() / ROW * ROW_OF_POSITIONS,
-            ),
+            nodes: Cache::new(0, 0),
+            clusters: Cache::new(0, 0),
             asked: AtomicUsize::new(0),
         };
+        pose.grow(mesh);
         pose.renew(mesh);
         pose
+    }
+
+    /// Makes room for what computes of the mesh's nodes and clusters.
+    fn grow(&mut self, mesh: &ColliderMesh) {
+        let (nodes, clusters) = (mesh.hierarchy().nodes.len(), mesh.clusters());
+        let rows = clusters.vertices.len() / ROW;
+        self.nodes.grow(nodes, nodes * NODE);
+        self.clusters
+            .grow(clusters.clusters.len(), rows * ROW_OF_POSITIONS);
+    }
+
+    /// Follows an edit of the mesh in which some clusters died and others were appended: what was
+    /// computed of the rest stays. O(joints and clusters edited).
+    pub(super) fn follow(&mut self, mesh: &ColliderMesh, dead: &[u32]) {
+        let asked = dead
+            .iter()
+            .filter(|cluster| self.clusters.forget(**cluster as usize, self.epoch));
+        let asked = asked.count();
+        let count = self.asked.get_mut();
+        *count = count.saturating_sub(asked);
+        self.grow(mesh);
+        self.root = mesh.root_balls().bounds(&self.table);
     }
 
     /// Takes another palette; O(joints).

@@ -15,6 +15,11 @@ impl Pose {
             let mut spheres = Spheres::ZERO;
             for lane in 0..usize::from(node.lanes) {
                 let sphere = match node.child(lane) {
+                    Child::Cluster(cluster)
+                        if mesh.clusters().clusters[cluster as usize].is_dead() =>
+                    {
+                        EMPTY
+                    }
                     Child::Cluster(cluster) => {
                         self.fill_cluster(mesh, cluster as usize, &mut positions);
                         let rows = mesh.clusters().clusters[cluster as usize].rows();
@@ -52,6 +57,9 @@ impl Pose {
         self.clusters.keep_ahead(index, self.epoch, first, parts);
     }
 }
+
+/// A sphere that holds nothing, of a child that is dead with all below it: it makes no other larger.
+const EMPTY: [f32; 4] = [0.0, 0.0, 0.0, f32::NEG_INFINITY];
 
 /// What rounding in f32 may take off a radius: some eight roundings of 2^-24, and squares that
 /// underflow.
@@ -108,7 +116,7 @@ fn around_positions(positions: &ClusterPositions, count: usize) -> [f32; 4] {
     [center[0], center[1], center[2], rounded_up(farthest)]
 }
 
-/// A sphere about the middle of the box of some spheres.
+/// A sphere about the middle of the box of some spheres; [`EMPTY`] if all are.
 fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
     let center = [&spheres.x, &spheres.y, &spheres.z].map(|numbers| {
         let ends = numbers.iter().zip(&spheres.radius).take(count);
@@ -116,7 +124,7 @@ fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
             (low.min(x - r), high.max(x + r))
         });
         let middle = low * 0.5 + high * 0.5;
-        // Any place will do for the middle of an infinite sphere, but none is NaN.
+        // Any place will do for the middle of an infinite or an empty sphere, but none is NaN.
         if middle.is_finite() { middle } else { 0.0 }
     });
     let reach = |lane: usize| {
@@ -125,6 +133,6 @@ fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
         let dz = spheres.z[lane] - center[2];
         (dx * dx + dy * dy + dz * dz).sqrt() + spheres.radius[lane]
     };
-    let farthest = (0..count).map(reach).fold(0.0, f32::max);
+    let farthest = (0..count).map(reach).fold(f32::NEG_INFINITY, f32::max);
     [center[0], center[1], center[2], rounded_up(farthest)]
 }

@@ -73,7 +73,8 @@ impl SkinnedSurface {
     fn search_closest(&self, region: &impl Region, blur: f64, best: &mut Best) {
         let hierarchy = self.mesh.hierarchy();
         let mut posed = PosedCluster::new(self);
-        let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        let root = |node| (0.0f32, Child::Node(node));
+        let mut stack = Stack::new(root(0), hierarchy.further_roots().map(root));
         let mut tested = 0;
         while let Some((distance, child)) = stack.pop() {
             // What is as far as the best one stays: it may have a smaller id.

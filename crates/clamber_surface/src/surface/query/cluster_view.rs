@@ -30,11 +30,11 @@ impl<'a> ClusterView<'a> {
         }
     }
 
-    /// Goes to a cluster; false if its part is disabled.
+    /// Goes to a cluster; false if it is dead or its part is disabled.
     pub(super) fn visit(&mut self, cluster: u32) -> bool {
         let clusters = self.surface.mesh.clusters();
         self.cluster = &clusters.clusters[cluster as usize];
-        if !self.surface.part_enabled[self.cluster.part.index()] {
+        if self.cluster.is_dead() || !self.surface.part_enabled[self.cluster.part.index()] {
             return false;
         }
         self.corners = self.cluster.corners(clusters);

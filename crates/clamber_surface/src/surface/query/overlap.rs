@@ -72,7 +72,7 @@ impl SkinnedSurface {
         }
         let hierarchy = self.mesh.hierarchy();
         let mut posed = PosedCluster::new(self);
-        let mut stack = Stack::new(0u32);
+        let mut stack = Stack::new(0, hierarchy.further_roots());
         let mut tested = 0;
         while let Some(index) = stack.pop() {
             let node = &hierarchy.nodes[index as usize];

@@ -89,7 +89,8 @@ impl SkinnedSurface {
         let sheared_ray = ShearedRay::new(ray);
         let mut posed = PosedCluster::new(self);
         let mut sheared = ClusterPositions::ZERO;
-        let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        let root = |node| (0.0f32, Child::Node(node));
+        let mut stack = Stack::new(root(0), hierarchy.further_roots().map(root));
         let (mut limit, mut tested) = (limit, 0);
         'search: while let Some((distance, child)) = stack.pop() {
             if f64::from(distance) > limit {

@@ -80,13 +80,13 @@ fn queries_agree_with_brute_force_after_edits() {
             0 => drop(surface.disable_triangle(triangle)),
             1 => drop(surface.enable_triangle(triangle)),
             2 => {
-                if surface.remove_triangle(triangle).is_ok() {
+                if surface.edit(|edit| edit.remove_triangle(triangle)).is_ok() {
                     removed.push(triangle);
                 }
             }
             3 => {
                 let corners = [0, 3, 17].map(|k| VertexId(k + rng.u32(0..200)));
-                drop(surface.add_triangle(corners, SurfaceTag::default()));
+                drop(surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default())));
             }
             4 => surface.disable_part(PartId(rng.u32(0..JOINTS))).unwrap(),
             _ => surface.enable_part(PartId(rng.u32(0..JOINTS))).unwrap(),
@@ -104,7 +104,8 @@ fn queries_agree_with_brute_force_after_edits() {
             Err(SurfaceError::Triangle(triangle))
         );
         assert!(surface.enable_triangle(triangle).is_err());
-        assert!(surface.remove_triangle(triangle).is_err());
+        let again = surface.edit(|edit| edit.remove_triangle(triangle));
+        assert_eq!(again, Err(SurfaceError::Triangle(triangle)));
     }
 }
 
@@ -112,7 +113,8 @@ fn queries_agree_with_brute_force_after_edits() {
 fn edits_of_one_surface_do_not_show_in_another() {
     let mut one = surface();
     let other = one.clone();
-    one.remove_triangle(TriangleId(0)).unwrap();
+    one.edit(|edit| edit.remove_triangle(TriangleId(0)))
+        .unwrap();
     assert_eq!(one.mesh().part_of(TriangleId(0)), None);
     assert!(other.mesh().part_of(TriangleId(0)).is_some());
 }

@@ -29,7 +29,7 @@ impl<'a> MovingCluster<'a> {
         }
     }
 
-    /// Goes to a cluster; false if its part is disabled.
+    /// Goes to a cluster; false if it is dead or its part is disabled.
     pub(super) fn visit(&mut self, cluster: u32) -> bool {
         let seen = self.view.visit(cluster);
         if seen {

@@ -23,7 +23,8 @@ impl SkinnedSurface {
         let mut earliest = Earliest::NONE;
         let hierarchy = self.mesh.hierarchy();
         let mut cluster = MovingCluster::new(self, poses);
-        let mut stack = Stack::new((0.0f32, Child::Node(0)));
+        let root = |node| (0.0f32, Child::Node(node));
+        let mut stack = Stack::new(root(0), hierarchy.further_roots().map(root));
         let mut count = Count::default();
         while let Some((begin, child)) = stack.pop() {
             // What begins with the best one stays: it may be nearer, or have a smaller id.
@@ -69,7 +70,7 @@ impl SkinnedSurface {
         };
         let hierarchy = self.mesh.hierarchy();
         let mut cluster = MovingCluster::new(self, poses);
-        let mut stack = Stack::new(0u32);
+        let mut stack = Stack::new(0, hierarchy.further_roots());
         let mut count = Count::default();
         while let Some(index) = stack.pop() {
             let node = &hierarchy.nodes[index as usize];

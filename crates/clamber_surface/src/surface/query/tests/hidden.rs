@@ -43,7 +43,9 @@ fn the_vertex_of_disabled_triangles_alone_hides_none_that_is_enabled() {
 
 #[test]
 fn the_vertex_of_removed_triangles_alone_hides_none_that_is_left() {
-    check(|surface, triangle| surface.remove_triangle(triangle).unwrap());
+    check(|surface, triangle| {
+        surface.edit(|edit| edit.remove_triangle(triangle)).unwrap();
+    });
 }
 
 #[test]

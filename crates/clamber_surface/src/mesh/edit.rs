@@ -1,0 +1,235 @@
+//! Changing a mesh that was built: rest data at once, parts and clusters when an edit ends.
+//!
+//! The clusters of a part that was touched die, and new ones are appended, cut from the part's triangles
+//! alone; those of other parts stay as they are. When more clusters are dead than living, all are made
+//! anew, so that the memory of any number of edits is bounded and an edit costs what it touches, on
+//! average.
+
+use std::collections::BTreeSet;
+
+use glam::Vec3;
+
+use super::build::is_usable;
+use super::clusters::{Clusters, build_beside};
+use super::collider::has_area;
+use super::hierarchy::Hierarchy;
+use super::weights::{normalize, weight_of};
+use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
+use crate::rig::JointId;
+use crate::surface::{RootBalls, SurfaceError};
+
+/// A vertex that may be added.
+pub(crate) struct NewVertex {
+    position: Vec3,
+    influences: Vec<(JointId, u32)>,
+    /// The mesh's with it.
+    pub(crate) radius: f32,
+}
+
+/// Which clusters were made anew.
+pub(crate) enum Reclustered {
+    /// All.
+    All,
+    /// Those of the parts touched: these ones died, others were appended.
+    Parts(Vec<u32>),
+}
+
+impl ColliderMesh {
+    /// Checks a vertex to be added, as a build checks its vertices.
+    pub(crate) fn check_vertex(
+        &self,
+        position: Vec3,
+        influences: &[Influence],
+    ) -> Result<NewVertex, MeshError> {
+        let vertex = self.positions.len();
+        let counts = [
+            ("vertices", vertex + 1),
+            ("influences", self.joints.len() + influences.len()),
+        ];
+        for (what, found) in counts {
+            if found >= u32::MAX as usize {
+                return Err(MeshError::TooLarge { what, found });
+            }
+        }
+        if !is_usable(position) {
+            return Err(MeshError::Position { vertex });
+        }
+        let beyond = |i: &&Influence| i.joint.0 as usize >= self.joint_count;
+        if let Some(influence) = influences.iter().find(beyond) {
+            return Err(MeshError::JointOutOfRange {
+                vertex,
+                joint: influence.joint,
+                joints: self.joint_count,
+            });
+        }
+        let influences = normalize(influences).ok_or_else(|| MeshError::Weights {
+            vertex,
+            weights: influences.iter().map(|i| i.weight).collect(),
+        })?;
+        Ok(NewVertex {
+            position: position + Vec3::ZERO,
+            influences,
+            radius: self.radius.max(Self::radius_of(&[position])),
+        })
+    }
+
+    /// Appends a vertex that was checked.
+    pub(crate) fn add_vertex(&mut self, vertex: NewVertex) -> VertexId {
+        let id = VertexId(self.positions.len() as u32);
+        self.positions.push(vertex.position);
+        for (joint, units) in &vertex.influences {
+            self.joints.push(joint.0);
+            self.weights.push(weight_of(*units));
+        }
+        self.influence_start.push(self.joints.len() as u32);
+        self.radius = vertex.radius;
+        let joints = vertex.influences.iter().map(|(joint, _)| *joint);
+        self.root_balls.hold(vertex.position, joints);
+        self.clusters.loose.push(id);
+        id
+    }
+
+    /// Checks a triangle to be added.
+    pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), SurfaceError> {
+        let found = self.triangles.len() + 1;
+        if found >= u32::MAX as usize {
+            let what = "triangles";
+            return Err(MeshError::TooLarge { what, found }.into());
+        }
+        if let Some(bad) = corners.iter().find(|v| !self.has_vertex(**v)) {
+            return Err(SurfaceError::Vertex(*bad));
+        }
+        if !has_area(corners.map(|v| self.positions[v.index()])) {
+            let vertices = corners.map(|v| v.0);
+            return Err(MeshError::DegenerateTriangle { vertices }.into());
+        }
+        Ok(())
+    }
+
+    /// Appends a triangle that was checked to the part of its dominant joint.
+    pub(crate) fn add_triangle(
+        &mut self,
+        corners: [VertexId; 3],
+        tag: SurfaceTag,
+    ) -> (TriangleId, PartId) {
+        let id = TriangleId(self.triangles.len() as u32);
+        let joint = self.dominant_joint(corners);
+        let known = self.parts.iter().position(|part| part.joint == joint);
+        let part = known.unwrap_or_else(|| {
+            self.parts.push(Part {
+                joint,
+                triangles: Vec::new(),
+                vertices: Vec::new(),
+            });
+            self.parts.len() - 1
+        });
+        self.triangles.push(corners);
+        self.tags.push(tag);
+        self.parts[part].triangles.push(id);
+        let part = PartId(part as u32);
+        self.part_of.push(Some(part));
+        (id, part)
+    }
+
+    /// Marks a triangle as removed; its part lists it until [`ColliderMesh::recluster`].
+    pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) {
+        self.part_of[triangle.index()] = None;
+    }
+
+    /// Marks a vertex as removed, which no triangle has as a corner any more.
+    pub(crate) fn remove_vertex(&mut self, vertex: VertexId) {
+        let count = self.vertex_removed.len().max(vertex.index() + 1);
+        self.vertex_removed.resize(count, false);
+        self.vertex_removed[vertex.index()] = true;
+    }
+
+    pub(crate) fn set_tag(&mut self, triangle: TriangleId, tag: SurfaceTag) {
+        self.tags[triangle.index()] = tag;
+    }
+
+    /// The triangles around a vertex. Of the parts in `touched`, all triangles are looked at.
+    pub(crate) fn triangles_around(
+        &self,
+        vertex: VertexId,
+        touched: &BTreeSet<PartId>,
+    ) -> Vec<TriangleId> {
+        let parts = (0..).map(PartId).zip(&self.parts);
+        let parts = parts.filter(|(id, part)| {
+            touched.contains(id) || part.vertices.binary_search(&vertex).is_ok()
+        });
+        let triangles = parts.flat_map(|(_, part)| &part.triangles).copied();
+        let around = triangles
+            .filter(|t| self.part_of(*t).is_some() && self.triangles[t.index()].contains(&vertex));
+        around.collect()
+    }
+
+    /// Brings parts whose triangles changed, and their clusters, up to date.
+    pub(crate) fn recluster(&mut self, touched: &BTreeSet<PartId>) -> Reclustered {
+        for part in touched {
+            let part_of = &self.part_of;
+            let triangles = &mut self.parts[part.index()].triangles;
+            triangles.retain(|t| part_of[t.index()] == Some(*part));
+            self.collect_vertices(part.index());
+        }
+        let killed = self.clusters.kill(touched, self.positions.len());
+        self.hierarchy.cut_off(touched);
+        for part in touched {
+            self.append_clusters(*part);
+        }
+        self.clusters.settle(&killed);
+        if self.clusters.dead > self.clusters.living() {
+            self.cluster();
+            return Reclustered::All;
+        }
+        Reclustered::Parts(killed.clusters)
+    }
+
+    fn append_clusters(&mut self, id: PartId) {
+        let part = &self.parts[id.index()];
+        if part.triangles.is_empty() {
+            return;
+        }
+        let held = self.clusters.held(&part.vertices);
+        let (clusters, hierarchy) = build_beside(&self.alone(part), &self.poses, held);
+        let first = self.clusters.clusters.len() as u32;
+        self.hierarchy.append(hierarchy, id, first);
+        self.clusters
+            .append(clusters, id, &part.vertices, &part.triangles);
+    }
+
+    /// One part as a mesh of its own, as far as clusters need one. Its vertices and triangles are
+    /// numbered as the part lists them.
+    fn alone(&self, part: &Part) -> Self {
+        let number = |v: VertexId| part.vertices.partition_point(|other| *other < v) as u32;
+        let corners = part.triangles.iter().map(|t| self.triangles[t.index()]);
+        let mut alone = Self {
+            joint_count: self.joint_count,
+            positions: Vec::with_capacity(part.vertices.len()),
+            influence_start: vec![0],
+            joints: Vec::new(),
+            weights: Vec::new(),
+            triangles: corners.map(|c| c.map(|v| VertexId(number(v)))).collect(),
+            tags: Vec::new(),
+            part_of: vec![Some(PartId(0)); part.triangles.len()],
+            parts: vec![Part {
+                joint: part.joint,
+                triangles: (0..part.triangles.len() as u32).map(TriangleId).collect(),
+                vertices: Vec::new(),
+            }],
+            vertex_removed: Vec::new(),
+            radius: self.radius,
+            poses: Vec::new(),
+            clusters: Clusters::default(),
+            hierarchy: Hierarchy::default(),
+            root_balls: RootBalls::default(),
+        };
+        for vertex in &part.vertices {
+            let (joints, weights) = self.influence_slices(vertex.index());
+            alone.positions.push(self.positions[vertex.index()]);
+            alone.joints.extend(joints);
+            alone.weights.extend(weights);
+            alone.influence_start.push(alone.joints.len() as u32);
+        }
+        alone
+    }
+}

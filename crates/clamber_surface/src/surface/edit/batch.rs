@@ -1,0 +1,141 @@
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::mesh::{ColliderMesh, Influence, PartId, Reclustered, SurfaceTag, TriangleId, VertexId};
+use crate::rig::JointId;
+use crate::surface::skinned::keeps;
+use crate::surface::{SkinnedSurface, SurfaceError};
+
+/// Changes of triangles, vertices and tags that belong together; see [`SkinnedSurface::edit`].
+///
+/// Ids of what was removed are never used again, so endless edits take some 40 bytes for each vertex
+/// and some 20 for each triangle that there ever was.
+#[derive(Debug)]
+pub struct SurfaceEdit<'a> {
+    surface: &'a mut SkinnedSurface,
+    /// Parts whose triangles have changed.
+    touched: BTreeSet<PartId>,
+}
+
+impl<'a> SurfaceEdit<'a> {
+    pub(super) fn new(surface: &'a mut SkinnedSurface) -> Self {
+        Self {
+            surface,
+            touched: BTreeSet::new(),
+        }
+    }
+
+    /// Adds a vertex at a rest position in mesh space, which any number of joints move; weights are
+    /// normalised as those of a mesh that is built. Nothing is welded to it. Until it has a triangle,
+    /// queries do not see it. A tick ago it stood where the palette of that tick would have had it.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Mesh`] for a position, a joint or weights that a build would refuse, and
+    /// [`SurfaceError::Palette`] if a matrix of now or of a tick ago could move something so far from
+    /// the mesh's origin beyond 2^100.
+    pub fn add_vertex(
+        &mut self,
+        position: Vec3,
+        influences: &[Influence],
+    ) -> Result<VertexId, SurfaceError> {
+        let surface = &*self.surface;
+        let vertex = surface.mesh.check_vertex(position, influences)?;
+        if vertex.radius > surface.mesh.radius() {
+            for pose in [&surface.current, &surface.previous] {
+                let kept = |matrix| keeps(matrix, vertex.radius);
+                if let Some(joint) = pose.palette().iter().position(|m| !kept(m)) {
+                    return Err(SurfaceError::Palette(JointId(joint as u32)));
+                }
+            }
+        }
+        Ok(self.mesh_mut().add_vertex(vertex))
+    }
+
+    /// Adds a triangle, counter-clockwise seen from outside. It joins the part of the joint that moves
+    /// it most; if that part is new, it comes last and enabled.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Vertex`] if a vertex does not exist or was removed, [`SurfaceError::Mesh`] if the
+    /// triangle has no area at rest.
+    pub fn add_triangle(
+        &mut self,
+        corners: [VertexId; 3],
+        tag: SurfaceTag,
+    ) -> Result<TriangleId, SurfaceError> {
+        self.surface.mesh.check_triangle(corners)?;
+        let (triangle, part) = self.mesh_mut().add_triangle(corners, tag);
+        self.touched.insert(part);
+        let parts = self.surface.mesh.parts().len();
+        self.surface.part_enabled.resize(parts, true);
+        self.surface.triangle_enabled.push(true);
+        Ok(triangle)
+    }
+
+    /// Removes a triangle for good: queries no longer see it, and anchors on it report
+    /// [`SurfaceError::Triangle`]. Its vertices stay.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Triangle`] if it does not exist or was removed before.
+    pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
+        let part = self.surface.mesh.part_of(triangle);
+        let part = part.ok_or(SurfaceError::Triangle(triangle))?;
+        // It no longer counts as hidden.
+        self.surface.enable_triangle(triangle)?;
+        self.mesh_mut().remove_triangle(triangle);
+        self.touched.insert(part);
+        Ok(())
+    }
+
+    /// Removes a vertex for good, and all triangles of which it is a corner.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Vertex`] if it does not exist or was removed before.
+    pub fn remove_vertex(&mut self, vertex: VertexId) -> Result<(), SurfaceError> {
+        if !self.surface.mesh.has_vertex(vertex) {
+            return Err(SurfaceError::Vertex(vertex));
+        }
+        let around = self.surface.mesh.triangles_around(vertex, &self.touched);
+        for triangle in around {
+            self.remove_triangle(triangle)?;
+        }
+        self.mesh_mut().remove_vertex(vertex);
+        Ok(())
+    }
+
+    /// Gives a triangle another tag.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Triangle`] if it does not exist or was removed.
+    pub fn set_tag(&mut self, triangle: TriangleId, tag: SurfaceTag) -> Result<(), SurfaceError> {
+        if self.surface.mesh.part_of(triangle).is_none() {
+            return Err(SurfaceError::Triangle(triangle));
+        }
+        self.mesh_mut().set_tag(triangle, tag);
+        Ok(())
+    }
+
+    /// The mesh, for this surface alone.
+    fn mesh_mut(&mut self) -> &mut ColliderMesh {
+        Arc::make_mut(&mut self.surface.mesh)
+    }
+}
+
+impl Drop for SurfaceEdit<'_> {
+    /// Brings clusters and caches up to date, even if the closure panicked.
+    fn drop(&mut self) {
+        let reclustered = if self.touched.is_empty() {
+            Reclustered::Parts(Vec::new())
+        } else {
+            Arc::make_mut(&mut self.surface.mesh).recluster(&self.touched)
+        };
+        let surface = &mut *self.surface;
+        for pose in [&mut surface.current, &mut surface.previous] {
+            match &reclustered {
+                Reclustered::All => *pose = pose.renewed(&surface.mesh),
+                Reclustered::Parts(dead) => pose.follow(&surface.mesh, dead),
+            }
+        }
+    }
+}
