@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Capsule, Ray, Sphere};
-use clamber_surface::mesh::{PartId, TriangleId, VertexId};
-use clamber_surface::surface::{BruteForce, CapsuleHit, SkinnedSurface, SurfaceError, SurfaceHit};
+use clamber_surface::mesh::{ColliderMesh, Influence, PartId, TriangleId, VertexId};
+use clamber_surface::rig::JointId;
+use clamber_surface::surface::{BruteForce, CapsuleHit, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit};
 use glam::Vec3;
 
 use crate::bytes::Bytes;
@@ -59,21 +60,13 @@ fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     // One more than there are, at times.
     let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
     let part = PartId(bytes.below(mesh.parts().len() + 1) as u32);
-    let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
-    let corners = [vertex(), vertex(), vertex()];
     let before = shown(surface);
     let result = match bytes.byte() % 8 {
         0 => surface.enable_part(part),
         1 => surface.disable_part(part),
         2 => surface.enable_triangle(triangle),
         3 | 4 => surface.disable_triangle(triangle),
-        5 => surface.remove_triangle(triangle),
-        _ => surface.add_triangle(corners, tag(bytes)).map(|added| {
-            assert_eq!(added.index(), before.len());
-            assert!(
-                surface.is_enabled(added) || mesh.parts().len() == surface.mesh().parts().len()
-            );
-        }),
+        _ => surface.edit(|edit| change(edit, &mesh, bytes)),
     };
     if let Err(error) = &result {
         assert!(!error.to_string().is_empty());
@@ -81,6 +74,59 @@ fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
         assert_eq!(*surface.mesh(), mesh, "{error}");
     }
     result.is_ok()
+}
+
+/// Adds, removes or tags something: the first of some changes that is not refused.
+fn change(
+    edit: &mut SurfaceEdit<'_>,
+    mesh: &ColliderMesh,
+    bytes: &mut Bytes<'_>,
+) -> Result<(), SurfaceError> {
+    let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
+    let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
+    let [mut a, b, c] = [vertex(), vertex(), vertex()];
+    match bytes.byte() % 8 {
+        0 | 1 => edit.remove_triangle(triangle),
+        2 => edit.remove_vertex(a),
+        3 => edit.set_tag(triangle, tag(bytes)),
+        kind => {
+            if kind == 4 {
+                let (position, influences) = vertex_of(bytes, mesh);
+                let added = edit.add_vertex(position, &influences)?;
+                assert_eq!(added.index(), mesh.positions().len());
+                a = added;
+            }
+            let added = edit.add_triangle([a, b, c], tag(bytes));
+            if let Ok(added) = added {
+                assert_eq!(added.index(), mesh.triangles().len());
+            } else if kind == 4 {
+                // The vertex stays.
+                return Ok(());
+            }
+            added.map(drop)
+        }
+    }
+}
+
+/// A vertex between two of the mesh, or anywhere; often one that is refused.
+fn vertex_of(bytes: &mut Bytes<'_>, mesh: &ColliderMesh) -> (Vec3, Vec<Influence>) {
+    let mut known = || mesh.positions()[bytes.below(mesh.positions().len())] * 0.5;
+    let between = known() + known();
+    let position = match bytes.below(8) {
+        0 => bytes.hostile_point(),
+        1 => between + bytes.point() * mesh.radius(),
+        _ => between,
+    };
+    let beyond = usize::from(bytes.one_in(16));
+    let influences = (0..1 + bytes.below(4)).map(|_| Influence {
+        joint: JointId(bytes.below(mesh.joint_count() + beyond) as u32),
+        weight: if bytes.one_in(16) {
+            bytes.hostile()
+        } else {
+            bytes.share()
+        },
+    });
+    (position, influences.collect())
 }
 
 /// Which triangles queries see.
@@ -96,7 +142,8 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
     let size = positions.iter().map(largest).fold(0.0, f32::max);
     let all = (0..).map(VertexId).zip(positions);
     for (v, p) in all {
-        assert_eq!(surface.position(v).map(bits), Some(bits(*p)), "vertex {v}");
+        let wanted = surface.mesh().has_vertex(v).then(|| bits(*p));
+        assert_eq!(surface.position(v).map(bits), wanted, "vertex {v}");
     }
     let (mut found, mut wanted) = (Vec::new(), Vec::new());
     for _ in 0..4 {

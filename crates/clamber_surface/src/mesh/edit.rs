@@ -233,3 +233,26 @@ impl ColliderMesh {
         alone
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{bend, tube};
+
+    #[test]
+    fn edits_keep_to_the_poses_that_a_mesh_was_tuned_for() {
+        let poses = [0.9, -1.3].map(|angle| bend(5, glam::DVec3::Z, angle));
+        let tuned = tube(5, 60).tuned(&poses).unwrap();
+        let mut forgetful = tuned.clone();
+        forgetful.poses.clear();
+        let part = [PartId(2)].into();
+        let [mut one, mut other] = [tuned.clone(), forgetful.clone()];
+        one.recluster(&part);
+        other.recluster(&part);
+        assert_ne!(one.clusters, other.clusters);
+        one.cluster();
+        forgetful.cluster();
+        assert_eq!(one.clusters, tuned.clusters);
+        assert_ne!(forgetful.clusters, tuned.clusters);
+    }
+}

@@ -135,3 +135,34 @@ fn assert_sweeps_agree(
     assert_eq!(hit, hits.first().copied(), "sweep capsule, {case}");
     found + hits.len()
 }
+
+/// All answers at one place.
+pub(super) fn answers(
+    surface: &SkinnedSurface,
+    place: Vec3,
+    towards: Vec3,
+    reach: f32,
+) -> Vec<SurfaceHit> {
+    let mut all = Vec::new();
+    let mut hits = Vec::new();
+    if let Some(ray) = Ray::new(place, towards) {
+        all.extend(surface.cast_ray(&ray, reach).unwrap());
+        surface.cast_ray_all(&ray, reach, &mut hits).unwrap();
+        all.append(&mut hits);
+    }
+    all.extend(surface.closest_point(place, reach).unwrap());
+    let sphere = Sphere {
+        center: place,
+        radius: reach,
+    };
+    surface.overlap_sphere(&sphere, &mut hits).unwrap();
+    all.append(&mut hits);
+    let capsule = Capsule {
+        a: place,
+        b: place + towards,
+        radius: reach * 0.5,
+    };
+    surface.overlap_capsule(&capsule, &mut hits).unwrap();
+    all.append(&mut hits);
+    all
+}

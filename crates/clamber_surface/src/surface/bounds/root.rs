@@ -164,8 +164,9 @@ mod tests {
     use super::super::tests::random::{MOTIONS, Spread, creature, palette};
     use super::*;
     use crate::geometry::Affine;
+    use crate::mesh::Influence;
     use crate::skin::skin;
-    use crate::testing::{bend, tube};
+    use crate::testing::{bend, direction, tube};
 
     fn bounds(mesh: &ColliderMesh, palette: &[Affine]) -> RootBox {
         let mut table = JointTable::default();
@@ -201,6 +202,36 @@ mod tests {
             }
         }
         assert!(checked > 1_000_000, "{checked}");
+    }
+
+    #[test]
+    fn no_vertex_that_was_added_lies_outside_the_root_box() {
+        let mut rng = fastrand::Rng::with_seed(63);
+        for case in 0..400 {
+            let (mut mesh, _) = creature(&mut rng, 1 + case % 4, Spread::Random);
+            let balls = mesh.root_balls().clone();
+            let joints = mesh.joint_count() as u32;
+            for _ in 0..6 {
+                let far = mesh.radius() * [0.0, 1.0, 3.0][rng.usize(0..3)];
+                let position = direction(&mut rng) * far;
+                let influence = |_| Influence {
+                    joint: JointId(rng.u32(0..joints)),
+                    weight: 1.0,
+                };
+                let influences: Vec<_> = (0..1 + case % 7).map(influence).collect();
+                let vertex = mesh.check_vertex(position, &influences).unwrap();
+                mesh.add_vertex(vertex);
+            }
+            assert_ne!(*mesh.root_balls(), balls, "case {case}");
+            let mut table = JointTable::default();
+            for motion in MOTIONS {
+                let palette = palette(&mut rng, motion, mesh.radius());
+                table.update(palette.matrices());
+                let found = mesh.root_balls().bounds(&table);
+                let case = format!("case {case}, {motion:?}");
+                check(&mesh, palette.matrices(), &found, &case);
+            }
+        }
     }
 
     #[test]

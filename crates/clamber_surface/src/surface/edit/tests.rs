@@ -1,1 +1,207 @@
+mod agreement;
+mod locality;
+mod model;
+mod refusals;
+mod sound;
 
+use std::sync::Arc;
+
+use self::model::Model;
+use self::sound::{assert_poses_hold, assert_sound, bits};
+use super::*;
+use crate::SimdLevel;
+use crate::geometry::Similarity;
+use crate::mesh::{Influence, SurfaceTag, VertexId};
+use crate::rig::JointId;
+use crate::surface::agreement::answers;
+use crate::testing::{bend, direction, point, tube};
+use glam::{DVec3, Vec3};
+
+/// What moves a vertex as one joint does.
+fn rigid(joint: u32) -> [Influence; 1] {
+    [Influence {
+        joint: JointId(joint),
+        weight: 1.0,
+    }]
+}
+
+/// A tube that bent a moment ago, so that its two poses differ.
+fn bent(joints: u32, sides: u32) -> SkinnedSurface {
+    let mut surface = SkinnedSurface::new(tube(joints, sides));
+    for angle in [0.2, 0.3] {
+        let palette = bend(joints, DVec3::Z, angle);
+        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    }
+    surface
+}
+
+/// A surface of every instruction set, all edited alike.
+fn on_every_level() -> Vec<(SkinnedSurface, Model, fastrand::Rng)> {
+    let edited = |level: SimdLevel| {
+        let mut surface = SkinnedSurface::with_simd_level(tube(5, 16), level);
+        let palette = bend(5, DVec3::Z, 0.3);
+        surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        let model = Model::of(&surface);
+        (surface, model, fastrand::Rng::with_seed(94))
+    };
+    SimdLevel::available().into_iter().map(edited).collect()
+}
+
+#[test]
+fn all_instruction_sets_and_skinning_ahead_agree_after_edits() {
+    let (mut lazy, mut eager) = (on_every_level(), on_every_level());
+    let mut queries = fastrand::Rng::with_seed(95);
+    let mut found = 0;
+    for round in 0..60 {
+        let case = format!("round {round}");
+        for (surface, model, rng) in lazy.iter_mut().chain(&mut eager) {
+            surface.edit(|edit| {
+                for _ in 0..6 {
+                    model.change(edit, rng);
+                }
+            });
+        }
+        for (surface, ..) in &mut eager {
+            surface.skin_ahead();
+        }
+        let towards = direction(&mut queries);
+        let place = point(&mut queries, 3.0) + Vec3::X * 2.0;
+        let mut all = Vec::new();
+        for (surface, ..) in lazy.iter().chain(&eager) {
+            assert_sound(surface.mesh(), &case);
+            assert_poses_hold(surface, &case);
+            let mut hits = answers(surface, place, towards, 1.0);
+            hits.extend(answers(surface, place, towards, f32::INFINITY));
+            // Written out, since equal zeros may differ in sign.
+            all.push(format!("{hits:?}"));
+            found += hits.len();
+        }
+        assert!(all.iter().all(|one| *one == all[0]), "{case}");
+    }
+    assert!(found > 1_000, "{found}");
+}
+
+#[test]
+fn an_added_vertex_moves_from_where_the_old_palette_has_it() {
+    let mut surface = bent(4, 8);
+    let influences = [0, 2, 3].map(|joint| rigid(joint)[0]);
+    let position = Vec3::new(1.3, 4.0, -0.2);
+    let vertex = surface.edit(|edit| edit.add_vertex(position, &influences));
+    let vertex = vertex.unwrap();
+    let weights: Vec<_> = surface.mesh().influences(vertex).collect();
+    assert_eq!(weights.iter().map(|(_, w)| w).sum::<f32>(), 1.0);
+    let at = |palette: &[crate::geometry::Affine]| {
+        let sum = weights.iter().fold(Vec3::ZERO, |sum, (joint, weight)| {
+            sum + *weight * palette[joint.0 as usize].transform_point(position)
+        });
+        bits(&[sum])
+    };
+    let now = surface.position(vertex).unwrap();
+    let before = surface.previous_position(vertex).unwrap();
+    assert_eq!(bits(&[now]), at(surface.current.palette()));
+    assert_eq!(bits(&[before]), at(surface.previous.palette()));
+    assert_ne!(now, before);
+    // It sticks out of what the surface was, and is found there.
+    let corners = [VertexId(0), VertexId(1), vertex];
+    let added = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
+    let hit = surface.closest_point(now, 0.01).unwrap().unwrap();
+    assert_eq!(Ok(hit.triangle), added);
+    assert_poses_hold(&surface, "a vertex far out");
+}
+
+#[test]
+fn anchors_on_removed_triangles_report_it() {
+    let mut surface = bent(4, 8);
+    let corners = surface.mesh().triangles()[5];
+    let weights = [0.2, 0.3, 0.5];
+    let [gone, kept] = [5, 40].map(|t| surface.anchor(TriangleId(t), weights).unwrap());
+    let before = surface.motion(&kept, 0.1).unwrap();
+    assert!(surface.motion(&gone, 0.1).is_ok());
+    surface
+        .edit(|edit| edit.remove_triangle(TriangleId(5)))
+        .unwrap();
+    let refused = Err(SurfaceError::Triangle(TriangleId(5)));
+    assert_eq!(surface.motion(&gone, 0.1), refused);
+    assert_eq!(surface.motion(&kept, 0.1), Ok(before));
+    // The same triangle again is another one.
+    let again = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
+    assert_ne!(again, Ok(TriangleId(5)));
+    assert_eq!(surface.motion(&gone, 0.1), refused);
+    let anew = surface.anchor(again.unwrap(), weights).unwrap();
+    assert!(surface.motion(&anew, 0.1).is_ok());
+    // Removed with a vertex.
+    let corner = corners[0];
+    surface.edit(|edit| edit.remove_vertex(corner)).unwrap();
+    let refused = Err(SurfaceError::Triangle(anew.triangle));
+    assert_eq!(surface.motion(&anew, 0.1), refused);
+    assert_eq!(surface.position(corner), None);
+    assert_eq!(surface.previous_position(corner), None);
+}
+
+#[test]
+fn ids_are_never_used_again() {
+    let mut surface = bent(3, 6);
+    let mut seen = std::collections::BTreeSet::new();
+    let tag = SurfaceTag::default();
+    for round in 0..200 {
+        let (vertex, triangle) = surface.edit(|edit| {
+            let vertex = edit.add_vertex(Vec3::new(0.5, 2.0, 0.1), &rigid(round % 3));
+            let vertex = vertex.unwrap();
+            let corners = [VertexId(0), VertexId(1), vertex];
+            (vertex, edit.add_triangle(corners, tag).unwrap())
+        });
+        assert!(seen.insert((Some(vertex), None)), "{vertex}");
+        assert!(seen.insert((None, Some(triangle))), "{triangle}");
+        surface.edit(|edit| edit.remove_vertex(vertex)).unwrap();
+        assert_eq!(surface.mesh().part_of(triangle), None);
+    }
+}
+
+#[test]
+fn surfaces_that_share_a_mesh_are_edited_apart() {
+    let mut one = bent(4, 8);
+    let other = one.clone();
+    let before = other.mesh().clone();
+    assert!(Arc::ptr_eq(one.mesh(), other.mesh()));
+    // What changes nothing takes no copy.
+    one.disable_triangle(TriangleId(3)).unwrap();
+    let refused = one.edit(|edit| edit.remove_vertex(VertexId(u32::MAX)));
+    assert!(refused.is_err() && Arc::ptr_eq(one.mesh(), other.mesh()));
+    one.edit(|_| ());
+    assert!(Arc::ptr_eq(one.mesh(), other.mesh()));
+
+    let tag = SurfaceTag {
+        ledge: true,
+        ..SurfaceTag::default()
+    };
+    one.edit(|edit| edit.set_tag(TriangleId(0), tag)).unwrap();
+    assert!(!Arc::ptr_eq(one.mesh(), other.mesh()));
+    let own = Arc::as_ptr(one.mesh());
+    one.edit(|edit| edit.remove_vertex(VertexId(7))).unwrap();
+    assert_eq!(Arc::as_ptr(one.mesh()), own, "one copy is enough");
+    assert!(Arc::ptr_eq(other.mesh(), &before));
+    assert_eq!(
+        *other.mesh().tags(),
+        vec![SurfaceTag::default(); before.tags().len()]
+    );
+    assert!(other.mesh().has_vertex(VertexId(7)) && !one.mesh().has_vertex(VertexId(7)));
+    assert_sound(other.mesh(), "the other one");
+}
+
+#[test]
+fn a_closure_that_panics_leaves_a_surface_that_answers() {
+    let mut surface = bent(4, 8);
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let unwound = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        surface.edit(|edit| {
+            edit.remove_vertex(VertexId(9)).unwrap();
+            panic!("in the middle of an edit");
+        })
+    }));
+    std::panic::set_hook(hook);
+    assert!(unwound.is_err());
+    assert_sound(surface.mesh(), "after a panic");
+    let mut rng = fastrand::Rng::with_seed(96);
+    crate::surface::agreement::assert_queries_agree(&surface, &mut rng, 50);
+}

@@ -12,41 +12,15 @@ use std::sync::Arc;
 
 use super::SurfaceHit;
 use crate::SimdLevel;
-use crate::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
+use crate::geometry::{Affine, Ray, Similarity, Sphere};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, VertexId};
 use crate::rig::{JointId, Palette};
 use crate::skin::skin_scalar;
 use crate::surface::SkinnedSurface;
-use crate::surface::agreement::assert_queries_agree;
+use crate::surface::agreement::{answers, assert_queries_agree};
 use crate::surface::bounds::tests::random::{MOTIONS, Spread, creature, palette};
 use crate::testing::{direction, point};
 use glam::Vec3;
-
-/// All answers at one place.
-fn answers(surface: &SkinnedSurface, place: Vec3, towards: Vec3, reach: f32) -> Vec<SurfaceHit> {
-    let mut all = Vec::new();
-    let mut hits = Vec::new();
-    if let Some(ray) = Ray::new(place, towards) {
-        all.extend(surface.cast_ray(&ray, reach).unwrap());
-        surface.cast_ray_all(&ray, reach, &mut hits).unwrap();
-        all.append(&mut hits);
-    }
-    all.extend(surface.closest_point(place, reach).unwrap());
-    let sphere = Sphere {
-        center: place,
-        radius: reach,
-    };
-    surface.overlap_sphere(&sphere, &mut hits).unwrap();
-    all.append(&mut hits);
-    let capsule = Capsule {
-        a: place,
-        b: place + towards,
-        radius: reach * 0.5,
-    };
-    surface.overlap_capsule(&capsule, &mut hits).unwrap();
-    all.append(&mut hits);
-    all
-}
 
 fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &str) {
     let wanted = skin_scalar(mesh, surface.current.palette()).unwrap();

@@ -1,0 +1,127 @@
+//! Ten thousand edits in motion: the answers of brute force, and those of a mesh clustered from scratch.
+
+use std::sync::Arc;
+
+use super::model::{KINDS, Model};
+use super::sound::{assert_poses_hold, assert_sound};
+use crate::geometry::{Similarity, rotation_from_axis_angle};
+use crate::mesh::ColliderMesh;
+use crate::surface::SkinnedSurface;
+use crate::surface::agreement::{answers, assert_queries_agree};
+use crate::testing::{bend, direction, point, tube};
+use glam::{DVec3, Vec3};
+
+/// The same surface, its clusters and hierarchy made from scratch.
+fn rebuilt(surface: &SkinnedSurface) -> SkinnedSurface {
+    let mut fresh = surface.clone();
+    Arc::make_mut(&mut fresh.mesh).cluster();
+    fresh.current = surface.current.renewed(&fresh.mesh);
+    fresh.previous = surface.previous.renewed(&fresh.mesh);
+    fresh
+}
+
+/// Compares answers at a few places, in every bit, signs of zeros included.
+fn assert_same_answers(
+    surface: &SkinnedSurface,
+    fresh: &SkinnedSurface,
+    rng: &mut fastrand::Rng,
+    case: &str,
+) -> usize {
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    let mut found = 0;
+    for reach in [0.1, 1.0, f32::INFINITY] {
+        let near = positions[rng.usize(0..positions.len())];
+        let (place, towards) = (near + point(rng, 0.5), direction(rng));
+        let hits = answers(surface, place, towards, reach);
+        let wanted = answers(fresh, place, towards, reach);
+        assert_eq!(hits, wanted, "{case}: {place}, {towards}, {reach}");
+        let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+        for (a, b) in hits.iter().zip(&wanted) {
+            let of = |h: &crate::surface::SurfaceHit| {
+                (
+                    bits(h.point),
+                    bits(h.normal),
+                    h.barycentric.map(f32::to_bits),
+                )
+            };
+            assert_eq!(of(a), of(b), "{case}: {place}, {towards}, {reach}");
+        }
+        found += hits.len();
+    }
+    found
+}
+
+/// Edits a tube in motion until so many edits were made; gives how many of each kind.
+fn edit_at_random(mesh: Arc<ColliderMesh>, seed: u64, edits: usize) -> [usize; KINDS] {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let joints = mesh.joint_count() as u32;
+    let mut surface = SkinnedSurface::new(mesh);
+    let mut model = Model::of(&surface);
+    let mut found = 0;
+    for round in 0.. {
+        let made: usize = model.made.iter().sum();
+        if made >= edits {
+            break;
+        }
+        let case = format!("seed {seed}, round {round}");
+        match rng.u32(0..8) {
+            0 | 1 => {
+                let axis = DVec3::new(0.0, 0.6, 0.8);
+                let bent = bend(joints, axis, f64::from(rng.f32()) * 2.0 - 1.0);
+                let mut world = *surface.world_from_model();
+                if rng.bool() {
+                    world = Similarity {
+                        rotation: rotation_from_axis_angle(axis, f64::from(rng.f32())),
+                        scale: 1.0,
+                        translation: DVec3::splat(f64::from(rng.f32())),
+                    };
+                }
+                surface.advance(&bent, world).unwrap();
+            }
+            2 => surface.skin_ahead(),
+            _ => {}
+        }
+        for _ in 0..rng.usize(0..4) {
+            model.flag(&mut surface, &mut rng);
+        }
+        let size = [1, 2, 8][rng.usize(0..3)];
+        surface.edit(|edit| {
+            for _ in 0..size {
+                model.change(edit, &mut rng);
+            }
+        });
+        model.check(&surface, &case);
+        assert_sound(surface.mesh(), &case);
+        found += assert_queries_agree(&surface, &mut rng, 2);
+        let fresh = rebuilt(&surface);
+        found += assert_same_answers(&surface, &fresh, &mut rng, &case);
+        if round % 8 == 0 {
+            assert_poses_hold(&surface, &case);
+        }
+    }
+    assert!(found > edits, "seed {seed}: {found}");
+    model.made
+}
+
+fn all_kinds(made: &[usize; KINDS], edits: usize) {
+    assert!(made.iter().sum::<usize>() >= edits, "{made:?}");
+    assert!(made.iter().all(|count| *count * 60 > edits), "{made:?}");
+}
+
+#[test]
+fn six_thousand_edits_of_a_small_tube_agree_with_a_rebuild() {
+    all_kinds(&edit_at_random(tube(4, 6), 91, 6_000), 6_000);
+}
+
+#[test]
+fn three_thousand_edits_of_a_tube_tuned_for_poses_agree_with_a_rebuild() {
+    let poses = [0.3, -0.7].map(|angle| bend(6, DVec3::Z, angle));
+    let tuned = tube(6, 12).tuned(&poses).unwrap();
+    all_kinds(&edit_at_random(Arc::new(tuned), 92, 3_000), 3_000);
+}
+
+#[test]
+fn a_thousand_edits_of_parts_of_many_clusters_agree_with_a_rebuild() {
+    all_kinds(&edit_at_random(tube(3, 100), 93, 1_000), 1_000);
+}

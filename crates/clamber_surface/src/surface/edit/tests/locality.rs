@@ -1,0 +1,186 @@
+//! An edit costs what it touches, in clusters made, in what was computed, and in memory.
+
+use super::model::Model;
+use super::sound::assert_poses_hold;
+use super::{bent, rigid};
+use crate::geometry::Sphere;
+use crate::mesh::clusters::{Cluster, Clusters};
+use crate::mesh::{ColliderMesh, PartId, SurfaceTag, TriangleId, VertexId};
+use crate::surface::{Diagnostics, SkinnedSurface};
+use glam::Vec3;
+
+const PART: PartId = PartId(3);
+
+/// What is stored of a cluster: its entry, and all that it points to.
+fn stored(clusters: &Clusters, cluster: &Cluster) -> String {
+    let (rest, joints) = (cluster.rest(clusters), cluster.joints(clusters));
+    let (vertices, triangles) = (cluster.vertices(clusters), cluster.triangles(clusters));
+    let corners = cluster.corners(clusters);
+    format!("{cluster:?} {rest:?} {joints:?} {vertices:?} {triangles:?} {corners:?}")
+}
+
+/// Living clusters outside the part, by index.
+fn others(mesh: &ColliderMesh) -> Vec<(usize, String)> {
+    let clusters = mesh.clusters();
+    let all = clusters.clusters.iter().enumerate();
+    all.filter(|(_, c)| c.part != PART && !c.is_dead())
+        .map(|(index, c)| (index, stored(clusters, c)))
+        .collect()
+}
+
+fn of_part(mesh: &ColliderMesh) -> Vec<usize> {
+    let all = mesh.clusters().clusters.iter().enumerate();
+    all.filter(|(_, c)| c.part == PART && !c.is_dead())
+        .map(|(index, _)| index)
+        .collect()
+}
+
+fn touch_everything(surface: &SkinnedSurface) -> usize {
+    let everything = Sphere {
+        center: Vec3::ZERO,
+        radius: f32::INFINITY,
+    };
+    let mut hits = Vec::new();
+    surface.overlap_sphere(&everything, &mut hits).unwrap();
+    hits.len()
+}
+
+#[test]
+fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
+    let mut surface = bent(7, 24);
+    let triangle = surface.mesh().parts()[PART.index()].triangles[4];
+    let corners = surface.mesh().triangles()[triangle.index()];
+    let all = touch_everything(&surface);
+    let touched = surface.diagnostics();
+    assert_eq!(touched.clusters_skinned, touched.clusters);
+    let (before, old) = (others(surface.mesh()), of_part(surface.mesh()));
+    assert!(before.len() > 5 && !old.is_empty());
+
+    let edit = |surface: &mut SkinnedSurface| {
+        surface.edit(|edit| {
+            edit.remove_triangle(triangle).unwrap();
+            let tip = edit.add_vertex(Vec3::new(3.2, 0.9, 0.1), &rigid(3));
+            let corners = [corners[0], corners[1], tip.unwrap()];
+            edit.add_triangle(corners, SurfaceTag::default()).unwrap()
+        })
+    };
+    let mut ahead = surface.clone();
+    let added = edit(&mut surface);
+    assert_eq!(surface.mesh().part_of(added), Some(PART));
+    let new = of_part(surface.mesh());
+    assert_eq!(others(surface.mesh()), before);
+    assert!(new.iter().all(|index| !old.contains(index)), "{new:?}");
+    let after = surface.diagnostics();
+    let wanted = Diagnostics {
+        clusters: before.len() + new.len(),
+        clusters_touched: before.len(),
+        clusters_skinned: before.len(),
+        vertices: after.vertices,
+        vertices_skinned: after.vertices_skinned,
+        ..touched
+    };
+    assert_eq!(after, wanted);
+    assert!(after.vertices_skinned > 0 && after.vertices_skinned < after.vertices);
+    assert_eq!(surface.current.clusters_asked(), before.len());
+
+    // The rest is skinned when it is asked for, and nothing twice.
+    assert_eq!(touch_everything(&surface), all);
+    assert_eq!(surface.diagnostics().clusters_skinned, wanted.clusters);
+    assert_eq!(surface.current.clusters_asked(), wanted.clusters);
+    assert_poses_hold(&surface, "lazily");
+
+    // So it is with what was skinned ahead.
+    ahead.skin_ahead();
+    edit(&mut ahead);
+    let diagnostics = ahead.diagnostics();
+    assert_eq!(diagnostics.clusters_skinned, before.len());
+    assert_eq!(diagnostics.clusters_touched, 0);
+    assert_eq!(ahead.current.clusters_asked(), 0);
+    assert_poses_hold(&ahead, "ahead");
+}
+
+#[test]
+fn a_tag_touches_no_cluster() {
+    let mut surface = bent(5, 12);
+    touch_everything(&surface);
+    let (clusters, hierarchy) = (
+        surface.mesh().clusters().clone(),
+        surface.mesh().hierarchy().clone(),
+    );
+    let before = surface.diagnostics();
+    let tag = SurfaceTag {
+        ledge: true,
+        ..SurfaceTag::default()
+    };
+    surface
+        .edit(|edit| edit.set_tag(TriangleId(7), tag))
+        .unwrap();
+    assert_eq!(surface.mesh().tags()[7], tag);
+    assert_eq!(surface.diagnostics(), before);
+    assert_eq!(*surface.mesh().clusters(), clusters);
+    assert_eq!(*surface.mesh().hierarchy(), hierarchy);
+}
+
+#[test]
+fn ten_thousand_edits_take_at_most_three_times_the_memory_of_a_rebuild() {
+    let mut surface = bent(5, 10);
+    let (mut rng, mut most) = (fastrand::Rng::with_seed(97), 0.0f64);
+    let mut model = Model::of(&surface);
+    let mut made = 0;
+    while made < 10_000 {
+        surface.edit(|edit| {
+            for _ in 0..5 {
+                model.change(edit, &mut rng);
+            }
+        });
+        made = model.made.iter().sum();
+        if rng.u32(0..100) == 0 {
+            let mut fresh = surface.mesh().as_ref().clone();
+            fresh.cluster();
+            let fresh = SkinnedSurface::new(fresh.into());
+            let share = surface.memory() as f64 / fresh.memory() as f64;
+            most = most.max(share);
+        }
+    }
+    assert!(most > 1.0 && most < 3.0, "{most}");
+}
+
+#[test]
+fn what_is_removed_to_the_last_and_added_again_is_found() {
+    let mut surface = bent(4, 8);
+    let mesh = surface.mesh().clone();
+    let all = touch_everything(&surface);
+    for round in 0..3 {
+        surface.edit(|edit| {
+            for id in (0..).map(TriangleId).take(mesh.triangles().len()) {
+                assert_eq!(edit.remove_triangle(id).is_ok(), round == 0, "{id}");
+            }
+        });
+        if round > 0 {
+            let ids = (0..surface.mesh().triangles().len() as u32).map(TriangleId);
+            let left: Vec<_> = ids.filter(|t| surface.is_enabled(*t)).collect();
+            assert_eq!(left.len(), all);
+            surface.edit(|edit| {
+                for id in left {
+                    edit.remove_triangle(id).unwrap();
+                }
+            });
+        }
+        assert_eq!(touch_everything(&surface), 0);
+        assert_eq!(surface.diagnostics().clusters, 0);
+        surface.skin_ahead();
+        assert_eq!(touch_everything(&surface), 0);
+        assert_eq!(surface.closest_point(Vec3::ZERO, f32::INFINITY), Ok(None));
+        let vertices = mesh.positions().len();
+        assert_eq!(surface.mesh().clusters().loose.len(), vertices);
+        assert_poses_hold(&surface, "nothing left");
+        surface.edit(|edit| {
+            for corners in mesh.triangles() {
+                let [a, b, c]: [VertexId; 3] = *corners;
+                edit.add_triangle([b, c, a], SurfaceTag::default()).unwrap();
+            }
+        });
+        assert_eq!(touch_everything(&surface), all);
+        assert_poses_hold(&surface, "all again");
+    }
+}

@@ -1,0 +1,118 @@
+//! What must hold of clusters and hierarchy after any edits.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{Sphere, widen};
+use crate::mesh::hierarchy::Child;
+use crate::mesh::{ColliderMesh, TriangleId, VertexId};
+use crate::skin::{ClusterPositions, skin_scalar};
+use crate::surface::SkinnedSurface;
+use crate::surface::pose::Pose;
+use glam::Vec3;
+
+/// Living clusters by how often the hierarchy leads to them.
+fn reached(mesh: &ColliderMesh) -> BTreeMap<u32, usize> {
+    let hierarchy = mesh.hierarchy();
+    let mut found = BTreeMap::new();
+    for root in [0].into_iter().chain(hierarchy.further_roots()) {
+        let mut nodes = vec![root];
+        while let Some(index) = nodes.pop() {
+            let node = &hierarchy.nodes[index as usize];
+            for lane in 0..usize::from(node.lanes) {
+                match node.child(lane) {
+                    Child::Node(child) => nodes.push(child),
+                    Child::Cluster(cluster) => *found.entry(cluster).or_default() += 1,
+                }
+            }
+        }
+    }
+    assert!(hierarchy.further_roots().count() <= mesh.parts().len());
+    found.retain(|index, _| !mesh.clusters().clusters[*index as usize].is_dead());
+    found
+}
+
+/// Every triangle stands in one living cluster of its part, every vertex has one owner or none, and
+/// the hierarchy leads to every living cluster once.
+pub(super) fn assert_sound(mesh: &ColliderMesh, case: &str) {
+    let clusters = mesh.clusters();
+    let (mut holder, mut owner) = (BTreeMap::new(), BTreeMap::new());
+    let mut living = BTreeMap::new();
+    for (index, cluster) in (0..).zip(&clusters.clusters) {
+        if cluster.is_dead() {
+            assert_eq!((cluster.slots, cluster.owned), (0, 0), "{case}");
+            continue;
+        }
+        living.insert(index, 1);
+        for triangle in cluster.triangles(clusters) {
+            assert_eq!(mesh.part_of(*triangle), Some(cluster.part), "{case}");
+            let again = holder.insert(*triangle, index);
+            assert_eq!(again, None, "{case}: triangle {triangle}");
+        }
+        for vertex in &cluster.vertices(clusters)[..usize::from(cluster.owned)] {
+            let again = owner.insert(*vertex, index);
+            assert_eq!(again, None, "{case}: vertex {vertex}");
+        }
+    }
+    assert_eq!(clusters.living(), living.len(), "{case}");
+    let dead = clusters.clusters.len() - living.len();
+    assert!(dead <= living.len(), "{case}: {dead} of {}", living.len());
+    assert_eq!(reached(mesh), living, "{case}");
+    let all = (0..mesh.triangles().len() as u32).map(TriangleId);
+    let held = all.filter(|t| mesh.part_of(*t).is_some());
+    assert!(holder.keys().copied().eq(held), "{case}");
+    let all = (0..mesh.positions().len() as u32).map(VertexId);
+    let loose: Vec<_> = all.filter(|v| !owner.contains_key(v)).collect();
+    assert_eq!(clusters.loose, loose, "{case}");
+}
+
+/// Whatever both poses have computed, or compute now, is what plain skinning gives and within the
+/// bounds above it.
+pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
+    let mesh = surface.mesh();
+    let mut all = Vec::new();
+    surface.skin_all(&mut all);
+    let wanted = skin_scalar(mesh, surface.current.palette()).unwrap();
+    assert_eq!(bits(&all), bits(&wanted), "{case}: skin_all");
+    for pose in [&surface.current, &surface.previous] {
+        let skinned = skin_scalar(mesh, pose.palette()).unwrap();
+        check_clusters(mesh, pose, &skinned, case);
+        let root = pose.root();
+        for p in &skinned {
+            let inside = p.cmpge(root.min).all() && p.cmple(root.max).all();
+            assert!(inside, "{case}: {p} outside {root:?}");
+        }
+    }
+}
+
+fn check_clusters(mesh: &ColliderMesh, pose: &Pose, skinned: &[Vec3], case: &str) {
+    let (hierarchy, clusters) = (mesh.hierarchy(), mesh.clusters());
+    for index in 0..hierarchy.nodes.len() as u32 {
+        let (node, spheres) = (&hierarchy.nodes[index as usize], pose.spheres(mesh, index));
+        for lane in 0..usize::from(node.lanes) {
+            let Child::Cluster(cluster) = node.child(lane) else {
+                continue;
+            };
+            let entry = &clusters.clusters[cluster as usize];
+            if entry.is_dead() {
+                continue;
+            }
+            let mut positions = ClusterPositions::ZERO;
+            pose.positions(mesh, cluster, &mut positions);
+            let sphere = Sphere {
+                center: Vec3::new(spheres.x[lane], spheres.y[lane], spheres.z[lane]),
+                radius: spheres.radius[lane],
+            };
+            for (slot, v) in entry.vertices(clusters).iter().enumerate() {
+                let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));
+                assert_eq!(bits(&[found]), bits(&[skinned[v.index()]]), "{case}: {v}");
+                let distance = (widen(found) - widen(sphere.center)).length();
+                assert!(distance <= f64::from(sphere.radius), "{case}: {v}");
+            }
+        }
+    }
+}
+
+pub(super) fn bits(positions: &[Vec3]) -> Vec<[u32; 3]> {
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    positions.iter().map(bits).collect()
+}
