@@ -223,6 +223,9 @@ mod tests {
                 mesh.add_vertex(vertex);
             }
             assert_ne!(*mesh.root_balls(), balls, "case {case}");
+            let (grown, anew) = (mesh.root_balls(), RootBalls::new(&mesh));
+            let lost = |balls: &RootBalls| (balls.relative, balls.underflow);
+            assert_eq!(lost(grown), lost(&anew), "case {case}");
             let mut table = JointTable::default();
             for motion in MOTIONS {
                 let palette = palette(&mut rng, motion, mesh.radius());

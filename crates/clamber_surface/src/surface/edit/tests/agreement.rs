@@ -6,8 +6,9 @@ use super::model::{KINDS, Model};
 use super::sound::{assert_poses_hold, assert_sound};
 use crate::geometry::{Similarity, rotation_from_axis_angle};
 use crate::mesh::ColliderMesh;
-use crate::surface::SkinnedSurface;
 use crate::surface::agreement::{answers, assert_queries_agree};
+use crate::surface::bounds::tests::random::{Spread, creature};
+use crate::surface::{SkinnedSurface, SurfaceHit};
 use crate::testing::{bend, direction, point, tube};
 use glam::{DVec3, Vec3};
 
@@ -38,7 +39,7 @@ fn assert_same_answers(
         assert_eq!(hits, wanted, "{case}: {place}, {towards}, {reach}");
         let bits = |p: Vec3| p.to_array().map(f32::to_bits);
         for (a, b) in hits.iter().zip(&wanted) {
-            let of = |h: &crate::surface::SurfaceHit| {
+            let of = |h: &SurfaceHit| {
                 (
                     bits(h.point),
                     bits(h.normal),
@@ -52,10 +53,10 @@ fn assert_same_answers(
     found
 }
 
-/// Edits a tube in motion until so many edits were made; gives how many of each kind.
+/// Edits a creature in motion until so many edits were made; gives how many of each kind.
 fn edit_at_random(mesh: Arc<ColliderMesh>, seed: u64, edits: usize) -> [usize; KINDS] {
     let mut rng = fastrand::Rng::with_seed(seed);
-    let joints = mesh.joint_count() as u32;
+    let (joints, parts) = (mesh.joint_count() as u32, mesh.parts().len());
     let mut surface = SkinnedSurface::new(mesh);
     let mut model = Model::of(&surface);
     let mut found = 0;
@@ -101,6 +102,10 @@ fn edit_at_random(mesh: Arc<ColliderMesh>, seed: u64, edits: usize) -> [usize; K
         }
     }
     assert!(found > edits, "seed {seed}: {found}");
+    assert_eq!(
+        surface.mesh().parts().len() > parts,
+        parts < joints as usize
+    );
     model.made
 }
 
@@ -124,4 +129,12 @@ fn three_thousand_edits_of_a_tube_tuned_for_poses_agree_with_a_rebuild() {
 #[test]
 fn a_thousand_edits_of_parts_of_many_clusters_agree_with_a_rebuild() {
     all_kinds(&edit_at_random(tube(3, 100), 93, 1_000), 1_000);
+}
+
+#[test]
+fn a_thousand_edits_of_few_parts_for_many_joints_agree_with_a_rebuild() {
+    let mut rng = fastrand::Rng::with_seed(94);
+    let (mesh, _) = creature(&mut rng, 3, Spread::Few);
+    assert!(mesh.parts().len() < 15);
+    all_kinds(&edit_at_random(Arc::new(mesh), 94, 1_000), 1_000);
 }

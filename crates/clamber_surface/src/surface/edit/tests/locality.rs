@@ -3,11 +3,13 @@
 use super::model::Model;
 use super::sound::assert_poses_hold;
 use super::{bent, rigid};
-use crate::geometry::Sphere;
+use crate::geometry::{Similarity, Sphere};
 use crate::mesh::clusters::{Cluster, Clusters};
+use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::surface::{Diagnostics, SkinnedSurface};
-use glam::Vec3;
+use crate::testing::bend;
+use glam::{DVec3, Vec3};
 
 const PART: PartId = PartId(3);
 
@@ -69,6 +71,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     assert_eq!(surface.mesh().part_of(added), Some(PART));
     let new = of_part(surface.mesh());
     assert_eq!(others(surface.mesh()), before);
+    assert_eq!(surface.mesh().clusters().loose, []);
     assert!(new.iter().all(|index| !old.contains(index)), "{new:?}");
     let after = surface.diagnostics();
     let wanted = Diagnostics {
@@ -97,6 +100,58 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     assert_eq!(diagnostics.clusters_touched, 0);
     assert_eq!(ahead.current.clusters_asked(), 0);
     assert_poses_hold(&ahead, "ahead");
+    // Nothing dead is skinned, nor does it make a bound larger.
+    ahead.skin_ahead();
+    let diagnostics = ahead.diagnostics();
+    assert_eq!(diagnostics.clusters_skinned, diagnostics.clusters);
+    let mut empty = 0;
+    let mesh = ahead.mesh();
+    for (index, node) in (0..).zip(&mesh.hierarchy().nodes) {
+        let spheres = ahead.current.spheres(mesh, index);
+        for lane in 0..usize::from(node.lanes) {
+            let dead = is_dead(mesh, node.child(lane));
+            assert_eq!(
+                spheres.radius[lane] < 0.0,
+                dead,
+                "node {index}, lane {lane}"
+            );
+            empty += usize::from(dead);
+        }
+    }
+    assert!(empty >= old.len(), "{empty}");
+    assert_poses_hold(&ahead, "ahead again");
+}
+
+/// True if no cluster below lives.
+fn is_dead(mesh: &ColliderMesh, child: Child) -> bool {
+    match child {
+        Child::Cluster(index) => mesh.clusters().clusters[index as usize].is_dead(),
+        Child::Node(index) => {
+            let node = &mesh.hierarchy().nodes[index as usize];
+            (0..usize::from(node.lanes)).all(|lane| is_dead(mesh, node.child(lane)))
+        }
+    }
+}
+
+#[test]
+fn dead_clusters_do_not_keep_a_surface_from_being_skinned_ahead() {
+    let mut surface = bent(7, 24);
+    let corners = surface.mesh().parts()[..6].iter().map(|p| p.triangles[0]);
+    let corners: Vec<_> = corners
+        .map(|t| surface.mesh().triangles()[t.index()])
+        .collect();
+    surface.edit(|edit| {
+        for corners in corners {
+            edit.add_triangle(corners, SurfaceTag::default()).unwrap();
+        }
+    });
+    let clusters = surface.mesh().clusters();
+    assert!(clusters.dead * 3 > clusters.living(), "{}", clusters.dead);
+    touch_everything(&surface);
+    let bent = bend(7, DVec3::Z, 0.4);
+    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    let diagnostics = surface.diagnostics();
+    assert_eq!(diagnostics.clusters_skinned, diagnostics.clusters);
 }
 
 #[test]
