@@ -1,5 +1,7 @@
 //! An edit costs what it touches, in clusters made, in what was computed, and in memory.
 
+use std::ops::Range;
+
 use super::model::Model;
 use super::sound::assert_poses_hold;
 use super::{bent, rigid};
@@ -8,7 +10,7 @@ use crate::mesh::clusters::{Cluster, Clusters};
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::surface::{Diagnostics, SkinnedSurface};
-use crate::testing::bend;
+use crate::testing::{bend, tube};
 use glam::{DVec3, Vec3};
 
 const PART: PartId = PartId(3);
@@ -238,4 +240,52 @@ fn what_is_removed_to_the_last_and_added_again_is_found() {
         assert_eq!(touch_everything(&surface), all);
         assert_poses_hold(&surface, "all again");
     }
+}
+
+#[test]
+fn all_of_a_mesh_of_hundreds_of_clusters_is_skinned_after_an_edit() {
+    // More than one task skins, where tasks do.
+    let mut surface = SkinnedSurface::new(tube(20, 160));
+    assert_poses_hold(&surface, "built");
+    surface.edit(|edit| {
+        edit.remove_vertex(VertexId(5_000)).unwrap();
+        edit.add_vertex(Vec3::Y, &rigid(0)).unwrap();
+    });
+    assert!(surface.mesh().clusters().living() > 256);
+    assert_poses_hold(&surface, "edited");
+}
+
+#[test]
+#[ignore = "measures: run it in release"]
+fn what_an_edit_of_a_hundred_thousand_triangles_takes() {
+    let mut surface = SkinnedSurface::new(tube(50, 256));
+    touch_everything(&surface);
+    let time = |work: &mut dyn FnMut()| {
+        let start = std::time::Instant::now();
+        work();
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    let mut edit = |name: &str, parts: Range<usize>| {
+        let triangles = surface.mesh().parts()[parts].iter().map(|p| p.triangles[0]);
+        let triangles: Vec<_> = triangles.collect();
+        let ms = time(&mut || {
+            surface.edit(|edit| {
+                for triangle in &triangles {
+                    edit.remove_triangle(*triangle).unwrap();
+                }
+            });
+        });
+        println!("{name}: {ms:.2} ms");
+    };
+    edit("the first edit, of one part", 20..21);
+    for part in 30..35 {
+        edit("an edit of another part", part..part + 1);
+    }
+    edit("an edit of the same part", 30..31);
+    edit("an edit of ten parts", 10..20);
+    let before = surface.mesh().clusters().clusters.len();
+    let mut mesh = surface.mesh().as_ref().clone();
+    let (triangles, parts) = (mesh.triangles().len(), mesh.parts().len());
+    println!("{triangles} triangles, {parts} parts, {before} clusters");
+    println!("all anew: {:.2} ms", time(&mut || mesh.cluster()));
 }
