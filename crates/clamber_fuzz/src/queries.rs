@@ -60,13 +60,22 @@ fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     // One more than there are, at times.
     let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
     let part = PartId(bytes.below(mesh.parts().len() + 1) as u32);
+    let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
+    let corners = [vertex(), vertex(), vertex()];
     let before = shown(surface);
-    let result = match bytes.byte() % 8 {
+    let kind = bytes.byte();
+    let result = match kind % 8 {
         0 => surface.enable_part(part),
         1 => surface.disable_part(part),
         2 => surface.enable_triangle(triangle),
         3 | 4 => surface.disable_triangle(triangle),
-        _ => surface.edit(|edit| change(edit, &mesh, bytes)),
+        5 => surface.edit(|edit| edit.remove_triangle(triangle)),
+        _ => surface.edit(|edit| match kind / 32 {
+            0 => edit.remove_vertex(corners[0]),
+            1 => edit.set_tag(triangle, tag(bytes)),
+            2 | 3 => add_vertex(edit, &mesh, corners, bytes),
+            _ => add_triangle(edit, &mesh, corners, bytes),
+        }),
     };
     if let Err(error) = &result {
         assert!(!error.to_string().is_empty());
@@ -76,36 +85,30 @@ fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     result.is_ok()
 }
 
-/// Adds, removes or tags something: the first of some changes that is not refused.
-fn change(
+fn add_triangle(
     edit: &mut SurfaceEdit<'_>,
     mesh: &ColliderMesh,
+    corners: [VertexId; 3],
     bytes: &mut Bytes<'_>,
 ) -> Result<(), SurfaceError> {
-    let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
-    let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
-    let [mut a, b, c] = [vertex(), vertex(), vertex()];
-    match bytes.byte() % 8 {
-        0 | 1 => edit.remove_triangle(triangle),
-        2 => edit.remove_vertex(a),
-        3 => edit.set_tag(triangle, tag(bytes)),
-        kind => {
-            if kind == 4 {
-                let (position, influences) = vertex_of(bytes, mesh);
-                let added = edit.add_vertex(position, &influences)?;
-                assert_eq!(added.index(), mesh.positions().len());
-                a = added;
-            }
-            let added = edit.add_triangle([a, b, c], tag(bytes));
-            if let Ok(added) = added {
-                assert_eq!(added.index(), mesh.triangles().len());
-            } else if kind == 4 {
-                // The vertex stays.
-                return Ok(());
-            }
-            added.map(drop)
-        }
-    }
+    let added = edit.add_triangle(corners, tag(bytes))?;
+    assert_eq!(added.index(), mesh.triangles().len());
+    Ok(())
+}
+
+/// Adds a vertex and, if it has area, a triangle with it in place of the first corner.
+fn add_vertex(
+    edit: &mut SurfaceEdit<'_>,
+    mesh: &ColliderMesh,
+    [_, b, c]: [VertexId; 3],
+    bytes: &mut Bytes<'_>,
+) -> Result<(), SurfaceError> {
+    let (position, influences) = vertex_of(bytes, mesh);
+    let added = edit.add_vertex(position, &influences)?;
+    assert_eq!(added.index(), mesh.positions().len());
+    // The vertex stays, with or without it.
+    let _ = add_triangle(edit, mesh, [added, b, c], bytes);
+    Ok(())
 }
 
 /// A vertex between two of the mesh, or anywhere; often one that is refused.
