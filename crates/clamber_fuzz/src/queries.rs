@@ -6,7 +6,9 @@ use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Capsule, Ray, Sphere};
 use clamber_surface::mesh::{ColliderMesh, Influence, PartId, TriangleId, VertexId};
 use clamber_surface::rig::JointId;
-use clamber_surface::surface::{BruteForce, CapsuleHit, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit};
+use clamber_surface::surface::{
+    BruteForce, CapsuleHit, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit,
+};
 use glam::Vec3;
 
 use crate::bytes::Bytes;

@@ -164,5 +164,37 @@ pub(super) fn answers(
     };
     surface.overlap_capsule(&capsule, &mut hits).unwrap();
     all.append(&mut hits);
+    let closest = surface.closest_to_capsule(&capsule, reach).unwrap();
+    all.extend(closest.map(|hit| hit.surface));
+    if reach.is_finite() {
+        let mut swept = Vec::new();
+        let (sphere, tolerance) = (
+            Sphere {
+                radius: reach * 0.1,
+                ..sphere
+            },
+            reach * 1e-3,
+        );
+        surface
+            .sweep_sphere_all(&sphere, towards, tolerance, &mut swept)
+            .unwrap();
+        swept.extend(surface.sweep_sphere(&sphere, towards, tolerance).unwrap());
+        let motions = [towards, Vec3::ZERO];
+        swept.extend(surface.cast_capsule(&capsule, motions, tolerance).unwrap());
+        all.extend(swept.iter().map(as_surface_hit));
+    }
     all
+}
+
+/// With the time in place of the distance.
+fn as_surface_hit(hit: &SweepHit) -> SurfaceHit {
+    SurfaceHit {
+        triangle: hit.triangle,
+        barycentric: hit.barycentric,
+        point: hit.point,
+        normal: hit.normal,
+        distance: hit.time as f32,
+        part: hit.part,
+        tag: hit.tag,
+    }
 }
