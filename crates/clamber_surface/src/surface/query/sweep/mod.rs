@@ -137,7 +137,10 @@ impl SkinnedSurface {
     /// The first contact of a sphere that moves by `motion`, with the surface as posed now and
     /// standing still.
     ///
-    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance`, what is promised, and errors.
+    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance` and what is promised.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::sweep_sphere`].
     pub fn cast_sphere(
         &self,
         sphere: &Sphere,
@@ -151,7 +154,10 @@ impl SkinnedSurface {
     /// The first contact of a capsule whose ends each move by one of `motions`, with the surface as
     /// posed now and standing still.
     ///
-    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance`, what is promised, and errors.
+    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance` and what is promised.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::sweep_sphere`].
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -193,7 +199,10 @@ impl SkinnedSurface {
     /// The first contact of a capsule whose ends each move by one of `motions`, while the surface
     /// moves from its previous pose to the current one.
     ///
-    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance`, what is promised, and errors.
+    /// See [`SkinnedSurface::sweep_sphere`] for `tolerance` and what is promised.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::sweep_sphere`].
     pub fn sweep_capsule(
         &self,
         capsule: &Capsule,
