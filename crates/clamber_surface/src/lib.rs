@@ -2,6 +2,8 @@
 
 pub mod geometry;
 pub mod mesh;
+#[cfg(feature = "parry")]
+pub mod parry;
 pub mod rig;
 mod simd;
 pub mod skin;

@@ -1,6 +1,6 @@
 //! For tests: every query of a surface against brute force, bit for bit.
 
-use super::{BruteForce, SkinnedSurface, SurfaceHit, SweepHit};
+use super::{BruteForce, MovingTriangle, SkinnedSurface, SurfaceHit, SweepHit};
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::testing::{direction, point};
 use glam::Vec3;
@@ -70,8 +70,31 @@ pub(super) fn assert_queries_agree(
         let wanted = brute_force.closest_to_capsule(&capsule, reach).unwrap();
         assert_eq!(closest, wanted, "{capsule:?} {reach}");
         found += assert_sweeps_agree(&brute_force, surface, rng, &capsule);
+        found += assert_boxes_agree(&brute_force, surface, origin, point(rng, size * 0.2));
     }
     found
+}
+
+/// Compares what is in the box around a point; half of all boxes are inside out, and hold nothing.
+fn assert_boxes_agree(
+    brute_force: &BruteForce<'_>,
+    surface: &SkinnedSurface,
+    center: Vec3,
+    half: Vec3,
+) -> usize {
+    let half = half.with_y(half.y.abs()).with_z(half.z.abs());
+    let (low, high) = (center - half, center + half);
+    if !(low.is_finite() && high.is_finite()) {
+        return 0;
+    }
+    let (mut found, mut expected): (Vec<MovingTriangle>, Vec<MovingTriangle>) = Default::default();
+    surface.visit_box(low, high, |t| found.push(*t)).unwrap();
+    brute_force
+        .visit_box(low, high, |t| expected.push(*t))
+        .unwrap();
+    found.sort_unstable_by_key(|moving| moving.triangle);
+    assert_eq!(found, expected, "box {low} {high}");
+    found.len()
 }
 
 /// Compares casts and sweeps of a capsule, and of the sphere about one of its ends.

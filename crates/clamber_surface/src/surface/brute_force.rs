@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use super::pose::Pose;
 use super::query::{
-    Best, Earliest, First, Nearest, Region, Sweep, capsule_hit, check_length, reach, sort_along,
-    sort_by_time,
+    Best, Earliest, First, Nearest, Region, Sweep, capsule_hit, check_length, check_point, reach,
+    sort_along, sort_by_time,
 };
-use super::{CapsuleHit, SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
+use super::{CapsuleHit, MovingTriangle, SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
 use crate::geometry::triangle::ShearedRay;
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::mesh::{PartId, TriangleId};
@@ -285,6 +285,31 @@ impl<'a> BruteForce<'a> {
     ) -> Result<(), SurfaceError> {
         let sweep = Sweep::of_capsule(capsule, motions, tolerance)?;
         self.all_contacts(self.motion(), &sweep, hits);
+        Ok(())
+    }
+
+    /// As [`SkinnedSurface::visit_box`], by ascending id.
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn visit_box(
+        &self,
+        low: Vec3,
+        high: Vec3,
+        mut visit: impl FnMut(&MovingTriangle),
+    ) -> Result<(), SurfaceError> {
+        check_point(low)?;
+        check_point(high)?;
+        for (triangle, _, _) in self.triangles() {
+            let moving = MovingTriangle {
+                triangle,
+                previous: self.surface.previous_corners(triangle),
+                current: self.surface.corners(triangle),
+            };
+            if low.cmple(high).all() && moving.meets_box(low, high) {
+                visit(&moving);
+            }
+        }
         Ok(())
     }
 

@@ -19,6 +19,7 @@ mod diagnostics;
 mod edit;
 mod error;
 mod motion;
+mod patch;
 mod pose;
 mod query;
 mod refit;
@@ -32,7 +33,8 @@ pub use diagnostics::Diagnostics;
 pub use edit::SurfaceEdit;
 pub use error::SurfaceError;
 pub use motion::Motion;
-pub use query::{CapsuleHit, SurfaceHit, SweepHit};
+pub use patch::{Patch, PatchChange};
+pub use query::{CapsuleHit, MovingTriangle, SurfaceHit, SweepHit};
 pub use refit::refit_part_spheres;
 pub use skinned::SkinnedSurface;
 

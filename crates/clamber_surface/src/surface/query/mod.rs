@@ -25,8 +25,8 @@ pub use hit::SurfaceHit;
 pub(super) use hit::{Best, Nearest};
 pub(super) use ray::sort_along;
 pub(super) use region::{Region, check_point};
-pub use sweep::SweepHit;
 pub(super) use sweep::{Earliest, First, Sweep, sort_by_time};
+pub use sweep::{MovingTriangle, SweepHit};
 
 use super::SurfaceError;
 

@@ -2,6 +2,7 @@ use super::super::cluster_view::ClusterView;
 use super::super::narrow::Survivors;
 use super::super::planes::SLACK;
 use super::Sweep;
+use super::boxes::MovingTriangle;
 use super::narrow::{self, MovingBall};
 use super::planes::MovingPlanes;
 use crate::geometry::triangle::Corners8;
@@ -91,6 +92,24 @@ impl<'a> MovingCluster<'a> {
             motion: (sweep.motions[0] + turn * share).to_array(),
             radius: sweep.radius,
             lost: if N == 1 { 0.0 } else { size * SLACK },
+        }
+    }
+
+    /// Triangles, by their number in the cluster, whose own boxes over the motion meet a box.
+    pub(super) fn in_box(&self, sides: [[f32; 3]; 2]) -> Survivors {
+        let view = &self.view;
+        let rows = view.cluster.rows();
+        narrow::in_box(view.level(), self.positions(), rows, view.corners, sides)
+    }
+
+    /// A triangle with its corners at both ends.
+    pub(super) fn moving(&self, triangle: usize) -> MovingTriangle {
+        let corners = |positions| self.view.corners_in(positions, triangle);
+        let [previous, current] = self.positions().map(corners);
+        MovingTriangle {
+            triangle: self.view.id(triangle),
+            previous,
+            current,
         }
     }
 

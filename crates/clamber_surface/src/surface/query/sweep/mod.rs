@@ -7,6 +7,7 @@
 //! their first contact, eight at a time. Where only the first contact is asked for, all of it stops
 //! at the earliest one found so far.
 
+mod boxes;
 mod broad;
 mod cluster;
 mod hit;
@@ -14,6 +15,7 @@ mod narrow;
 mod planes;
 mod search;
 
+pub use boxes::MovingTriangle;
 pub use hit::SweepHit;
 pub(in crate::surface) use hit::{Earliest, First, sort_by_time};
 

@@ -26,6 +26,51 @@ pub(super) fn within_moving_planes(
     })
 }
 
+/// Triangles whose own boxes over the motion meet the box between two corners: exactly, since a code
+/// has a bit for each side of the box that a vertex is beyond all the time.
+pub(super) fn in_box(
+    level: SimdLevel,
+    positions: [&ClusterPositions; 2],
+    rows: usize,
+    corners: &[CornerBlock],
+    sides: [[f32; 3]; 2],
+) -> Survivors {
+    dispatch!(level.level(), simd => {
+        let codes = box_codes(simd, positions, rows, sides);
+        survivors(simd, corners, &codes)
+    })
+}
+
+#[inline(always)]
+fn box_codes<S: Simd>(
+    simd: S,
+    [start, end]: [&ClusterPositions; 2],
+    rows: usize,
+    [low, high]: [[f32; 3]; 2],
+) -> Codes {
+    let low = low.map(|x| S::f32s::splat(simd, x));
+    let high = high.map(|x| S::f32s::splat(simd, x));
+    each_code(
+        simd,
+        rows,
+        #[inline(always)]
+        |slot| {
+            let (p, q) = (
+                vectors::<S>(simd, start, slot),
+                vectors::<S>(simd, end, slot),
+            );
+            [
+                p[0].simd_lt(low[0]) & q[0].simd_lt(low[0]),
+                p[1].simd_lt(low[1]) & q[1].simd_lt(low[1]),
+                p[2].simd_lt(low[2]) & q[2].simd_lt(low[2]),
+                p[0].simd_gt(high[0]) & q[0].simd_gt(high[0]),
+                p[1].simd_gt(high[1]) & q[1].simd_gt(high[1]),
+                p[2].simd_gt(high[2]) & q[2].simd_gt(high[2]),
+            ]
+        },
+    )
+}
+
 #[inline(always)]
 fn plane_codes<S: Simd>(
     simd: S,

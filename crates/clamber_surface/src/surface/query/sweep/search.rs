@@ -102,7 +102,7 @@ impl SkinnedSurface {
         root::overlaps(&bounds, low, high).then_some(sweep)
     }
 
-    fn moving_spheres(&self, [start, end]: [&Pose; 2], node: u32) -> [Spheres; 2] {
+    pub(super) fn moving_spheres(&self, [start, end]: [&Pose; 2], node: u32) -> [Spheres; 2] {
         let first = start.spheres(&self.mesh, node);
         if std::ptr::eq(start, end) {
             [first; 2]

@@ -1,0 +1,207 @@
+//! A piece of the surface near a box, kept from tick to tick.
+
+use glam::Vec3;
+
+use super::{MovingTriangle, SkinnedSurface, SurfaceError};
+use crate::mesh::{TriangleId, VertexId};
+
+/// The triangles near a box, with where their vertices are and were, in memory that is used again each
+/// tick: what a physics engine needs of a creature near one body.
+///
+/// A patch is of one surface. It is a mesh of its own: [`Patch::indices`] count its vertices.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use clamber_surface::geometry::{Affine, Similarity};
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
+/// # use clamber_surface::rig::{JointId, Palette};
+/// # use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface};
+/// # use glam::Vec3;
+/// # let source = MeshSource {
+/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+/// #     triangles: &[[0, 1, 2]],
+/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
+/// #     joint_count: 1,
+/// #     ..MeshSource::default()
+/// # };
+/// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+/// let mut surface = SkinnedSurface::new(Arc::new(mesh));
+/// let mut patch = Patch::default();
+/// let (low, high) = (Vec3::splat(-0.1), Vec3::splat(0.1));
+/// assert_eq!(patch.update(&surface, low, high, 0.1)?, PatchChange::Rebuilt);
+/// assert_eq!(patch.triangles(), [TriangleId(0)]);
+///
+/// let mut lifted = Affine::IDENTITY;
+/// lifted.rows[2][3] = 0.05;
+/// surface.advance(&Palette::from_matrices([lifted]), Similarity::IDENTITY)?;
+/// assert_eq!(patch.update(&surface, low, high, 0.1)?, PatchChange::Moved);
+/// assert_eq!(patch.positions()[0] - patch.previous_positions()[0], Vec3::Z * 0.05);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Patch {
+    /// Ascending.
+    triangles: Vec<TriangleId>,
+    /// Ascending, each once.
+    vertices: Vec<VertexId>,
+    indices: Vec<[u32; 3]>,
+    positions: Vec<Vec3>,
+    previous_positions: Vec<Vec3>,
+    /// Memory for what a query finds.
+    found: Vec<MovingTriangle>,
+}
+
+/// What an update did to a [`Patch`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PatchChange {
+    /// The same triangles: only positions are new.
+    Moved,
+    /// Other triangles.
+    Rebuilt,
+}
+
+impl Patch {
+    /// Takes this tick's positions, and other triangles if need be: it holds every enabled triangle
+    /// that [moves within](SkinnedSurface::visit_box) the box from `low` to `high`, in model space.
+    ///
+    /// When it is rebuilt it takes in all within `margin` of the box, so that it need not be again
+    /// before the box has moved so far over the skin: with 0 it holds nothing more than it must, and
+    /// is rebuilt whenever something leaves or enters. A larger margin is rebuilt more seldom, and
+    /// costs more in each tick between.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::visit_box`], and [`SurfaceError::Query`] if `margin` is negative or not
+    /// finite; the patch is unchanged then.
+    pub fn update(
+        &mut self,
+        surface: &SkinnedSurface,
+        low: Vec3,
+        high: Vec3,
+        margin: f32,
+    ) -> Result<PatchChange, SurfaceError> {
+        if !(margin >= 0.0 && margin.is_finite()) {
+            return Err(SurfaceError::Query {
+                what: "the margin of a patch",
+                found: f64::from(margin),
+            });
+        }
+        let around = Vec3::splat(margin);
+        let (outer_low, outer_high) = (low - around, high + around);
+        if !(outer_low.is_finite() && outer_high.is_finite()) {
+            return Err(SurfaceError::Point);
+        }
+        self.found.clear();
+        surface.visit_box(low, high, |moving| self.found.push(*moving))?;
+        let same_count = margin > 0.0 || self.found.len() == self.triangles.len();
+        if same_count && self.holds_what_was_found() && self.is_of(surface) {
+            self.take_positions(surface);
+            return Ok(PatchChange::Moved);
+        }
+        // Where nothing is near, nothing is wanted of what is nearly near.
+        if margin > 0.0 && !self.found.is_empty() {
+            self.found.clear();
+            surface.visit_box(outer_low, outer_high, |moving| self.found.push(*moving))?;
+        }
+        self.rebuild(surface);
+        Ok(PatchChange::Rebuilt)
+    }
+
+    /// Empty, of no surface; keeps its memory.
+    pub fn clear(&mut self) {
+        self.triangles.clear();
+        self.vertices.clear();
+        self.indices.clear();
+        self.positions.clear();
+        self.previous_positions.clear();
+    }
+
+    /// True without triangles.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// Ids of its triangles in the surface, ascending; [`Patch::indices`] has the same order.
+    pub fn triangles(&self) -> &[TriangleId] {
+        &self.triangles
+    }
+
+    /// Ids of its vertices in the surface, ascending; the positions have the same order.
+    pub fn vertices(&self) -> &[VertexId] {
+        &self.vertices
+    }
+
+    /// Per triangle its corners, as places among the patch's own vertices.
+    pub fn indices(&self) -> &[[u32; 3]] {
+        &self.indices
+    }
+
+    /// Where its vertices are now, in model space.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Where its vertices were a tick ago, in the *current* model frame: a moving root is part of
+    /// their motion.
+    pub fn previous_positions(&self) -> &[Vec3] {
+        &self.previous_positions
+    }
+
+    /// Velocities of its vertices over the last tick of `dt` seconds, in the current model frame.
+    pub fn velocities(&self, dt: f64) -> impl ExactSizeIterator<Item = Vec3> {
+        let pairs = self.positions.iter().zip(&self.previous_positions);
+        pairs.map(move |(now, before)| ((now.as_dvec3() - before.as_dvec3()) / dt).as_vec3())
+    }
+
+    fn holds_what_was_found(&self) -> bool {
+        let holds =
+            |moving: &MovingTriangle| self.triangles.binary_search(&moving.triangle).is_ok();
+        (self.triangles.is_empty() == self.found.is_empty()) && self.found.iter().all(holds)
+    }
+
+    /// False once one of its triangles was edited away, or hidden.
+    fn is_of(&self, surface: &SkinnedSurface) -> bool {
+        let all = surface.mesh.triangles();
+        let mut own = self.triangles.iter().zip(&self.indices);
+        own.all(|(triangle, corners)| {
+            let corners = corners.map(|corner| self.vertices[corner as usize]);
+            surface.is_enabled(*triangle) && all.get(triangle.index()) == Some(&corners)
+        })
+    }
+
+    fn take_positions(&mut self, surface: &SkinnedSurface) {
+        let own = self.vertices.iter();
+        let places = self.positions.iter_mut().zip(&mut self.previous_positions);
+        for (vertex, (now, before)) in own.zip(places) {
+            *now = surface.current.position(&surface.mesh, vertex.index());
+            *before = surface.previous.position(&surface.mesh, vertex.index());
+        }
+    }
+
+    fn rebuild(&mut self, surface: &SkinnedSurface) {
+        self.clear();
+        self.found.sort_unstable_by_key(|moving| moving.triangle);
+        let all = surface.mesh.triangles();
+        for moving in &self.found {
+            self.triangles.push(moving.triangle);
+            self.vertices.extend(all[moving.triangle.index()]);
+        }
+        self.vertices.sort_unstable();
+        self.vertices.dedup();
+        self.positions.resize(self.vertices.len(), Vec3::ZERO);
+        self.previous_positions
+            .resize(self.vertices.len(), Vec3::ZERO);
+        for moving in &self.found {
+            let corners = all[moving.triangle.index()];
+            // All are there: they were put there just now.
+            let places = corners.map(|vertex| self.vertices.partition_point(|v| *v < vertex));
+            for (corner, place) in places.into_iter().enumerate() {
+                self.positions[place] = moving.current[corner];
+                self.previous_positions[place] = moving.previous[corner];
+            }
+            self.indices.push(places.map(|place| place as u32));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
