@@ -8,12 +8,14 @@
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`measure`]: tables, quantiles and yardsticks for benches.
+//! - [`ccd`]: continuous collision queries with exact answers, and proofs of what sweeps claim.
 //! - [`closed`]: is a mesh closed, and which side of it is inside?
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
 
 pub mod battle;
 pub mod beast;
+pub mod ccd;
 pub mod closed;
 mod creature;
 pub mod giant;

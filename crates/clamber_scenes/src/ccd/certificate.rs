@@ -1,0 +1,237 @@
+//! Proofs that a triangle and a core stay apart for a stretch of time.
+//!
+//! For any vector n the gap `min n.(p(t) - a(t))` over the core's ends p and the corners a is a
+//! minimum of linear functions of time, hence concave, and at most |n| times the distance: that it is
+//! above `radius |n|` at two times proves that the distance is above the radius at all times
+//! between. Where no n does for a stretch, the stretch is halved. The gap is first bounded in f64, with
+//! all roundings against the proof, and where that leaves it open, computed in rational numbers. So
+//! which n is tried decides only how soon a proof is found.
+
+use std::cell::LazyCell;
+
+use dashu::rational::Relaxed;
+use glam::DVec3;
+
+use super::exact::{dot, minus, number, rounded};
+use super::nearest::{Nearest, nearest};
+use super::pair::{ExactPair, MovingPair};
+
+/// Stretches that a proof may take; what has one takes far fewer.
+const STRETCHES: usize = 20_000;
+
+/// Twice the largest relative error of a gap's lines at a time: of each difference of points, its
+/// products, their sums and their mean, nine roundings of 2^-53.
+const LOST: f64 = 24.0 / (1u64 << 53) as f64;
+
+/// More than what products below the smallest f64 lose.
+const UNDERFLOW: f64 = 1e-300;
+
+/// What is shown of the time before another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Apart {
+    /// The distance is greater than the radius all the time.
+    Always,
+    /// It is not greater at this time.
+    Until(f64),
+    /// Neither could be shown near this time.
+    Unknown(f64),
+}
+
+/// The last time of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Last {
+    /// Belongs to it.
+    Included,
+    /// Does not: there the distance may be the radius.
+    Excluded,
+}
+
+/// A moving triangle and core, in f64 and, where that is asked for, in rational numbers.
+pub struct Motion<'a> {
+    /// From the corners to the ends, at both times; each coordinate is rounded once.
+    lines: [[[DVec3; 3]; 2]; 2],
+    exact: LazyCell<ExactPair, Box<dyn FnOnce() -> ExactPair + 'a>>,
+}
+
+impl Motion<'static> {
+    /// Of a pair in rational numbers.
+    pub fn of_exact(pair: ExactPair) -> Self {
+        Self {
+            lines: rounded_lines(&pair),
+            exact: LazyCell::new(Box::new(|| pair)),
+        }
+    }
+}
+
+impl<'a> Motion<'a> {
+    /// Of a pair in f32.
+    ///
+    /// # Panics
+    /// If a coordinate is not finite.
+    pub fn new(pair: &'a MovingPair) -> Self {
+        Self {
+            lines: lines(pair).unwrap_or_else(|| rounded_lines(&pair.into())),
+            exact: LazyCell::new(Box::new(|| pair.into())),
+        }
+    }
+
+    /// The pair in rational numbers.
+    pub fn exact(&self) -> &ExactPair {
+        &self.exact
+    }
+
+    /// What is shown of the times from 0 to `until`.
+    ///
+    /// # Panics
+    /// If the radius is not finite, or the time not in 0..=1.
+    pub fn apart(&self, radius: f64, until: f64, last: Last) -> Apart {
+        assert!((0.0..=1.0).contains(&until), "{until} is no time");
+        let exact_radius = number(radius);
+        let size = self.size();
+        let is_met = |time: f64| {
+            // By far most times are nowhere near, by more than the guess is off.
+            let about = self.nearest(time).distance;
+            about <= radius * (1.0 + 1e-6) + size * 1e-9
+                && self.exact.is_within(time, &exact_radius)
+        };
+        let ends = match last {
+            Last::Included => &[0.0, until][..],
+            Last::Excluded if until > 0.0 => &[0.0],
+            Last::Excluded => &[],
+        };
+        if let Some(time) = ends.iter().find(|time| is_met(**time)) {
+            return Apart::Until(*time);
+        }
+        let mut open = Vec::new();
+        if until > 0.0 {
+            open.push([0.0, until]);
+        }
+        for _ in 0..STRETCHES {
+            let Some([from, to]) = open.pop() else {
+                return Apart::Always;
+            };
+            let middle = from + (to - from) * 0.5;
+            if self.is_certified(radius, [from, middle, to]) {
+                continue;
+            }
+            if middle <= from || middle >= to {
+                return Apart::Unknown(from);
+            }
+            if is_met(middle) {
+                return Apart::Until(middle);
+            }
+            open.extend([[middle, to], [from, middle]]);
+        }
+        open.last()
+            .map_or(Apart::Always, |[from, _]| Apart::Unknown(*from))
+    }
+
+    /// One of three directions proves it for a stretch, given by its first, middle and last time. At
+    /// the last the gap may equal the radius.
+    fn is_certified(&self, radius: f64, [from, middle, to]: [f64; 3]) -> bool {
+        let mut open = Vec::new();
+        for time in [to, from, middle] {
+            let n = self.nearest(time).direction;
+            match self.separates(n, radius, [from, to]) {
+                Some(true) => return true,
+                Some(false) => {}
+                None => open.push(n),
+            }
+        }
+        open.iter()
+            .any(|n| self.separates_exactly(*n, radius, [from, to]))
+    }
+
+    /// `None` if rounding leaves it open.
+    fn separates(&self, n: DVec3, radius: f64, times: [f64; 2]) -> Option<bool> {
+        if n == DVec3::ZERO {
+            return Some(false);
+        }
+        let limit = radius * n.length();
+        let mut all = true;
+        for [start, end] in self.each_line() {
+            let (h0, h1) = (n.dot(start), n.dot(end));
+            let (size0, size1) = (n.abs().dot(start.abs()), n.abs().dot(end.abs()));
+            for time in times {
+                let gap = h0 * (1.0 - time) + h1 * time;
+                let size = size0 * (1.0 - time) + size1 * time;
+                let lost = LOST * (size + limit) + UNDERFLOW;
+                if gap + lost < limit {
+                    return Some(false);
+                }
+                all &= gap - lost > limit;
+            }
+        }
+        all.then_some(true)
+    }
+
+    fn separates_exactly(&self, n: DVec3, radius: f64, [from, to]: [f64; 2]) -> bool {
+        let n = n.to_array().map(number);
+        let radius = number(radius);
+        let limit_sq = &radius * &radius * dot(&n, &n);
+        let pair = &*self.exact;
+        let times = [number(from), number(to)];
+        let [[a0, b0], [a1, b1]] = &pair.ends;
+        [[a0, a1], [b0, b1]].into_iter().all(|[end, end_later]| {
+            (0..3).all(|corner| {
+                let [first, last] = &pair.corners;
+                let h0 = dot(&n, &minus(end, &first[corner]));
+                let h1 = dot(&n, &minus(end_later, &last[corner]));
+                let gaps = times.each_ref().map(|time| &h0 + (&h1 - &h0) * time);
+                // Above at the first time, not below at the last: above at all between.
+                let squares = gaps.each_ref().map(|gap| gap * gap);
+                gaps[0] > Relaxed::ZERO
+                    && squares[0] > limit_sq
+                    && gaps[1] >= Relaxed::ZERO
+                    && squares[1] >= limit_sq
+            })
+        })
+    }
+
+    fn each_line(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        let of = |end: &[[DVec3; 3]; 2]| [0, 1, 2].map(|k| [end[0][k], end[1][k]]);
+        self.lines.each_ref().map(of).into_iter().flatten()
+    }
+
+    fn nearest(&self, time: f64) -> Nearest {
+        let at = |end: &[[DVec3; 3]; 2], k: usize| end[0][k] * (1.0 - time) + end[1][k] * time;
+        let [first, second] = &self.lines;
+        // Relative to the first end, the corners are where they are as seen from it.
+        let corners = [0, 1, 2].map(|k| -at(first, k));
+        let axis = at(second, 0) - at(first, 0);
+        nearest(corners, [DVec3::ZERO, axis])
+    }
+
+    fn size(&self) -> f64 {
+        let lines = self.each_line().flatten();
+        lines.map(DVec3::length).fold(0.0, f64::max)
+    }
+}
+
+/// From the corners to the ends, each coordinate rounded once; `None` where f64 does not hold the last
+/// place of an end.
+fn lines(pair: &MovingPair) -> Option<[[[DVec3; 3]; 2]; 2]> {
+    let [ends, motions] = pair.ends().map(|points| points.map(|p| p.as_dvec3()));
+    let [first, last] = pair.corners.map(|corners| corners.map(|p| p.as_dvec3()));
+    let mut lines = [[[DVec3::ZERO; 3]; 2]; 2];
+    for ((line, end), motion) in lines.iter_mut().zip(ends).zip(motions) {
+        let later = end + motion;
+        if later - end != motion || later - motion != end {
+            return None;
+        }
+        *line = [first.map(|p| end - p), last.map(|p| later - p)];
+    }
+    Some(lines)
+}
+
+fn rounded_lines(pair: &ExactPair) -> [[[DVec3; 3]; 2]; 2] {
+    [0, 1].map(|end| {
+        [0, 1].map(|time| {
+            let corners = pair.corners[time].each_ref();
+            corners.map(|corner| rounded(&minus(&pair.ends[time][end], corner)))
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests;

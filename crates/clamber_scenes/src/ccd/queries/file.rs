@@ -1,0 +1,167 @@
+//! Query files as of the data sets of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo 2021, *A
+//! Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*: eight rows
+//! a query, each a vertex in rational numbers and whether the query's motion ever touches.
+
+use std::path::Path;
+
+use dashu::integer::IBig;
+use dashu::rational::Relaxed;
+
+use super::error::{CcdError, RowError};
+use super::query::{CcdQuery, QueryKind};
+use crate::ccd::exact::Exact;
+
+/// Rows of a query.
+const ROWS: usize = 8;
+
+/// The queries of a file, whose path holds `edge-edge` or `vertex-face`.
+///
+/// # Errors
+/// [`CcdError`] if the file cannot be read, the path holds neither, or a row is not as it should be.
+pub fn read_queries(file: &Path) -> Result<Vec<CcdQuery>, CcdError> {
+    let text = std::fs::read_to_string(file).map_err(|source| CcdError::Read {
+        file: file.to_owned(),
+        source,
+    })?;
+    parse_queries(file, &text)
+}
+
+/// The queries of a file's text.
+///
+/// # Errors
+/// As [`read_queries`].
+pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<CcdQuery>, CcdError> {
+    let kind = kind_of(file).ok_or_else(|| CcdError::Kind {
+        file: file.to_owned(),
+    })?;
+    let of_row = |line: usize, reason: RowError| CcdError::Row {
+        file: file.to_owned(),
+        line,
+        reason,
+    };
+    let mut rows = Vec::new();
+    for (index, row) in text.lines().enumerate() {
+        rows.push(parse_row(row).map_err(|reason| of_row(index + 1, reason))?);
+    }
+    let (whole, rest) = rows.as_chunks::<ROWS>();
+    if !rest.is_empty() {
+        return Err(CcdError::Rows {
+            file: file.to_owned(),
+            rows: rows.len(),
+        });
+    }
+    let mut queries = Vec::new();
+    for (index, rows) in whole.iter().enumerate() {
+        let line = index * ROWS + 1;
+        let touches = rows[0].1;
+        if let Some(other) = rows.iter().position(|(_, label)| *label != touches) {
+            return Err(of_row(line + other, RowError::LabelDiffers));
+        }
+        let points = rows.each_ref().map(|(point, _)| point.clone());
+        let query = CcdQuery::new(kind, points, touches, line);
+        queries.push(query.map_err(|reason| of_row(line, reason))?);
+    }
+    Ok(queries)
+}
+
+fn kind_of(file: &Path) -> Option<QueryKind> {
+    let path = file.to_string_lossy();
+    // The last one counts: folders above may have any name.
+    match (path.rfind("edge-edge"), path.rfind("vertex-face")) {
+        (None, None) => None,
+        (edge, vertex) if edge > vertex => Some(QueryKind::EdgeEdge),
+        _ => Some(QueryKind::VertexFace),
+    }
+}
+
+fn parse_row(row: &str) -> Result<(Exact, bool), RowError> {
+    let columns: Vec<&str> = row.split(',').map(str::trim).collect();
+    let [x, x_over, y, y_over, z, z_over, label] = columns[..] else {
+        return Err(RowError::Columns {
+            found: columns.len(),
+        });
+    };
+    let point = [
+        parse_number(1, x, x_over)?,
+        parse_number(3, y, y_over)?,
+        parse_number(5, z, z_over)?,
+    ];
+    let touches = match label {
+        "0" => false,
+        "1" => true,
+        _ => {
+            let found = label.to_owned();
+            return Err(RowError::Label { found });
+        }
+    };
+    Ok((point, touches))
+}
+
+fn parse_number(column: usize, over: &str, under: &str) -> Result<Relaxed, RowError> {
+    let [over, under] = [(column, over), (column + 1, under)].map(|(column, text)| {
+        text.parse::<IBig>().map_err(|_| RowError::Integer {
+            column,
+            found: text.to_owned(),
+        })
+    });
+    let (over, under) = (over?, under?);
+    if under == IBig::ZERO {
+        return Err(RowError::Denominator { column: column + 1 });
+    }
+    Ok(Relaxed::from_parts_signed(over, under))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ccd::exact::number;
+
+    const ROW: &str = "1,2,-3,4,162259276829213363391578010288128,1,1\n";
+
+    #[test]
+    fn rows_are_rational_numbers() {
+        let (point, touches) = parse_row(ROW.trim()).unwrap();
+        let large = number((1u128 << 107) as f64);
+        assert_eq!((point, touches), ([number(0.5), number(-0.75), large], true));
+    }
+
+    #[test]
+    fn the_last_folder_says_the_kind() {
+        let kind = |path: &str| kind_of(Path::new(path));
+        assert_eq!(kind("a/vertex-face/1.csv"), Some(QueryKind::VertexFace));
+        assert_eq!(kind("a/edge-edge/1.csv"), Some(QueryKind::EdgeEdge));
+        let both = "vertex-face/edge-edge/1.csv";
+        assert_eq!(kind(both), Some(QueryKind::EdgeEdge));
+        assert_eq!(kind("a/1.csv"), None);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_file_and_line() {
+        let good = ["0,1,0,1,0,1,0\n"; 8].concat();
+        let says = |file: &str, text: String| {
+            let read = parse_queries(Path::new(file), &text);
+            read.map(|queries| queries.len()).map_err(|e| e.to_string())
+        };
+        let error = |text: String| says("vertex-face.csv", text).unwrap_err();
+        assert_eq!(says("vertex-face.csv", good.repeat(2)), Ok(2));
+        assert_eq!(says("vertex-face.csv", String::new()), Ok(0));
+        let unnamed = says("a.csv", good.clone()).unwrap_err();
+        assert!(unnamed.contains("a.csv: expected `edge-edge`"), "{unnamed}");
+        let replaced = |row: &str| error(good.clone() + row + &good[14..]);
+        for (row, expected) in [
+            ("0,1,0,1,0,1\n", ":9: expected 7 columns, found 6"),
+            ("\n", ":9: expected 7 columns, found 1"),
+            ("0,1,0,1,x,1,0\n", ":9: column 5: expected an integer, found `x`"),
+            ("0,1,0,0,0,1,0\n", ":9: column 4: a denominator of 0"),
+            ("0,1,0,1,0,1,2\n", ":9: column 7: expected 0 or 1, found `2`"),
+            ("0,1,0,1,0,1,1\n", ":10: column 7 differs"),
+            ("1,9999999999999999999999999999999999999,0,1,0,1,0\n", ":9: a query of extent 1e-37"),
+        ] {
+            let found = replaced(row);
+            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        }
+        assert!(error(good + "0,1,0,1,0,1,0\n").contains("9 rows are no whole number"));
+        let missing = read_queries(Path::new("no/such/vertex-face.csv")).unwrap_err();
+        assert!(missing.to_string().starts_with("no/such/vertex-face.csv: "));
+    }
+}

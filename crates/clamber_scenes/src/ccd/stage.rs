@@ -1,0 +1,96 @@
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use clamber_surface::geometry::{Affine, Capsule, Similarity, Sphere};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::{SkinnedSurface, SurfaceError, SweepHit};
+use glam::Vec3;
+
+use super::pair::{Core, MovingPair};
+use super::verdict::Claim;
+
+/// A surface of one triangle, each corner on a joint of its own whose matrix puts it anywhere: so the
+/// library's sweeps meet any moving triangle, its corners exactly as given.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    surface: SkinnedSurface,
+}
+
+/// What a sweep answered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// The contact, if it found one.
+    pub hit: Option<SweepHit>,
+    /// Steps of the exact test.
+    pub steps: u32,
+    /// How long the query took, with all caches empty.
+    pub took: Duration,
+}
+
+impl Answer {
+    /// What it says.
+    pub fn claim(&self) -> Claim {
+        Claim {
+            time: self.hit.map(|hit| hit.time),
+            undecided: self.hit.is_some_and(|hit| hit.undecided),
+        }
+    }
+}
+
+impl Stage {
+    /// With the triangle at rest.
+    ///
+    /// # Errors
+    /// None that are known of.
+    pub fn new() -> Result<Self, MeshError> {
+        let whole = |joint| Influence {
+            joint: JointId(joint),
+            weight: 1.0,
+        };
+        let source = MeshSource {
+            positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+            triangles: &[[0, 1, 2]],
+            influences: &[whole(0), whole(1), whole(2)],
+            joint_count: 3,
+            ..MeshSource::default()
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+        Ok(Self {
+            surface: SkinnedSurface::new(Arc::new(mesh)),
+        })
+    }
+
+    /// Moves the triangle as the pair's does, and sweeps the pair's core against it.
+    ///
+    /// # Errors
+    /// [`SurfaceError`] if the pair is not finite, or larger than a surface may be.
+    pub fn sweep(&mut self, pair: &MovingPair, tolerance: f32) -> Result<Answer, SurfaceError> {
+        let [start, end] = pair.corners;
+        self.surface.place(&palette(start), Similarity::IDENTITY)?;
+        self.surface.advance(&palette(end), Similarity::IDENTITY)?;
+        let radius = pair.radius;
+        let begin = Instant::now();
+        let hit = match pair.core {
+            Core::Sphere { center, motion } => {
+                let sphere = Sphere { center, radius };
+                self.surface.sweep_sphere(&sphere, motion, tolerance)?
+            }
+            Core::Capsule { ends, motions } => {
+                let [a, b] = ends;
+                let capsule = Capsule { a, b, radius };
+                self.surface.sweep_capsule(&capsule, motions, tolerance)?
+            }
+        };
+        let took = begin.elapsed();
+        let steps = self.surface.diagnostics().most_sweep_steps;
+        Ok(Answer { hit, steps, took })
+    }
+}
+
+/// Takes every vertex to its joint's place, wherever it is at rest: `0 x + t` is exact.
+fn palette(corners: [Vec3; 3]) -> Palette {
+    Palette::from_matrices(corners.map(|corner| Affine {
+        rows: corner.to_array().map(|t| [0.0, 0.0, 0.0, t]),
+    }))
+}

@@ -1,0 +1,30 @@
+//! The sweeps against files of continuous collision queries whose exact answers are known.
+//!
+//! `ccd_queries FILE.csv...`; `--help` describes the files. How answers are judged is in
+//! `clamber_scenes::ccd::queries`.
+
+use std::process::ExitCode;
+
+use clamber_scenes::ccd::queries::{self, CcdOptions};
+
+fn main() -> ExitCode {
+    let options = CcdOptions::from_command_line();
+    let report = match queries::run(&options) {
+        Ok(report) => report,
+        Err(error) => {
+            eprintln!("ccd_queries: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    if options.json {
+        println!("{}", report.to_json());
+    } else {
+        print!("{report}");
+    }
+    if report.holds() {
+        ExitCode::SUCCESS
+    } else {
+        eprintln!("ccd_queries: an answer is false");
+        ExitCode::FAILURE
+    }
+}
