@@ -1,6 +1,8 @@
 //! Every example once, briefly, as built for tests; the main one also as released, with equal
 //! results.
 
+use std::path::PathBuf;
+
 use cargo_metadata::{Metadata, TargetKind};
 
 use crate::run::{cargo, cargo_output};
@@ -11,14 +13,22 @@ const ARGUMENTS: [(&str, &[&str]); 2] = [
     ("seeds", &["target/fuzz-seeds"]),
 ];
 
+/// A vertex that falls through a face, in the form of the query files.
+const QUERY: &str = "\
+    1,4,1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
+    1,4,-1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n";
+
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
+    let queries = query_files(metadata)?;
     for package in metadata.workspace_packages() {
         for target in &package.targets {
             if target.kind.contains(&TargetKind::Example) && target.name != "battle" {
                 let run = ["run", "--quiet", "-p", &package.name, "--example"];
                 let needed = ARGUMENTS.iter().find(|(name, _)| *name == target.name);
                 let arguments = needed.map_or(&[][..], |(_, arguments)| *arguments);
-                cargo(&[&run[..], &[&target.name, "--"], arguments].concat())?;
+                let files = queries.iter().map(String::as_str);
+                let files: Vec<&str> = files.filter(|_| target.name == "ccd_queries").collect();
+                cargo(&[&run[..], &[&target.name, "--"], arguments, &files].concat())?;
             }
         }
     }
@@ -31,6 +41,29 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     }
     println!("   battle: hash {fast} in both profiles");
     Ok(())
+}
+
+/// The query files of the test data, or where there is none a file of one query.
+fn query_files(metadata: &Metadata) -> Result<Vec<String>, String> {
+    let Some(data) = std::env::var_os("CLAMBER_TEST_DATA") else {
+        let file = metadata.target_directory.join("xtask-vertex-face.csv");
+        std::fs::write(&file, QUERY).map_err(|error| format!("{file}: {error}"))?;
+        return Ok(vec![file.into_string()]);
+    };
+    let (mut files, mut folders) = (Vec::new(), vec![PathBuf::from(data).join("ccd")]);
+    while let Some(folder) = folders.pop() {
+        let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
+        for entry in std::fs::read_dir(&folder).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "csv") {
+                files.push(path.to_string_lossy().into_owned());
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
 }
 
 /// A battle of some seconds; gives its hash.

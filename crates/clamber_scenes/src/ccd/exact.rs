@@ -169,7 +169,10 @@ mod tests {
         let above = at(1.0, 1.0, 3.0);
         assert_eq!(point_triangle_sq(&above, &floor), number(9.0));
         assert_eq!(point_triangle_sq(&at(4.0, 4.0, 0.0), &floor), number(8.0));
-        assert_eq!(point_triangle_sq(&at(-3.0, -4.0, 12.0), &floor), number(169.0));
+        assert_eq!(
+            point_triangle_sq(&at(-3.0, -4.0, 12.0), &floor),
+            number(169.0)
+        );
         // A face that has collapsed is its edges.
         let line = [at(0.0, 0.0, 0.0), at(4.0, 0.0, 0.0), at(2.0, 0.0, 0.0)];
         assert_eq!(point_triangle_sq(&above, &line), number(10.0));

@@ -5,8 +5,10 @@
 //!   library.
 //! - [`Motion`] proves for stretches of time that the two are apart; a [`Claim`] is what a sweep says,
 //!   and what is to be checked.
+//! - [`cases`]: pairs that are hard, or of which something is known, and counts of answers.
 //! - [`queries`]: queries from files, whose answers are known.
 
+pub mod cases;
 mod certificate;
 pub mod exact;
 mod nearest;

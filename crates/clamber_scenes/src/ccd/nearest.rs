@@ -8,20 +8,44 @@ use glam::DVec3;
 pub(super) struct Nearest {
     /// About.
     pub(super) distance: f64,
-    /// Unit vector from the triangle to the core; right-angled to the features that are nearest,
-    /// so that it stays a separating direction however near they come. Zero if there is none.
+    /// Unit vector from the triangle to the core; at right angles to the features that are nearest, so
+    /// that it stays a separating direction however near they come. Zero if there is none.
     pub(super) direction: DVec3,
+    features: Features,
 }
 
+/// What is nearest, by how much of it the direction is at right angles to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Features {
+    /// No direction is known.
+    None,
+    /// A corner and an end.
+    Points,
+    /// A point and the inside of an edge or of the core.
+    PointAndLine,
+    /// A face, or edge and core.
+    Plane,
+}
+
+/// What differs by less, as a share, is as near.
+const EQUAL: f64 = 1e-13;
+
 impl Nearest {
-    fn offer(&mut self, distance: f64, direction: DVec3) {
-        // What touches in a corner has no direction; one that has is better.
-        let is_better = distance < self.distance
-            || (distance == self.distance && self.direction == DVec3::ZERO);
-        if is_better && direction.is_finite() {
+    /// Of what is as near, the most features: where a point is all but above a line's end, only the line
+    /// gives a direction that separates all of it.
+    fn offer(&mut self, distance: f64, direction: DVec3, features: Features) {
+        let features = if direction == DVec3::ZERO {
+            Features::None
+        } else {
+            features
+        };
+        let is_nearer = distance < self.distance * (1.0 - EQUAL);
+        let is_as_near = distance <= self.distance * (1.0 + EQUAL) && features > self.features;
+        if (is_nearer || is_as_near) && direction.is_finite() {
             *self = Self {
                 distance,
                 direction,
+                features,
             };
         }
     }
@@ -32,6 +56,7 @@ pub(super) fn nearest(corners: [DVec3; 3], ends: [DVec3; 2]) -> Nearest {
     let mut best = Nearest {
         distance: f64::INFINITY,
         direction: DVec3::ZERO,
+        features: Features::None,
     };
     let [a, b, c] = corners;
     let edges = [[a, b], [b, c], [c, a]];
@@ -60,11 +85,13 @@ fn point_and_segment(best: &mut Nearest, [a, b]: [DVec3; 2], p: DVec3, sign: f64
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     let apart = p - (a + axis * share);
     let mut direction = apart.normalize_or_zero();
+    let mut features = Features::Points;
     if share > 0.0 && share < 1.0 {
         let axis = axis.normalize_or_zero();
         direction = (direction - axis * direction.dot(axis)).normalize_or_zero();
+        features = Features::PointAndLine;
     }
-    best.offer(apart.length(), direction * sign);
+    best.offer(apart.length(), direction * sign, features);
 }
 
 fn above_face(best: &mut Nearest, corners: [DVec3; 3], p: DVec3) {
@@ -72,7 +99,8 @@ fn above_face(best: &mut Nearest, corners: [DVec3; 3], p: DVec3) {
     let n = (b - a).cross(c - a).normalize_or_zero();
     if n != DVec3::ZERO && is_inside(corners, n, p) {
         let height = n.dot(p - a);
-        best.offer(height.abs(), if height < 0.0 { -n } else { n });
+        let outward = if height < 0.0 { -n } else { n };
+        best.offer(height.abs(), outward, Features::Plane);
     }
 }
 
@@ -90,7 +118,8 @@ fn lines(best: &mut Nearest, [a, b]: [DVec3; 2], [p, q]: [DVec3; 2]) {
     if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
         let n = n.normalize_or_zero();
         let height = n.dot(apart);
-        best.offer(height.abs(), if height < 0.0 { -n } else { n });
+        let outward = if height < 0.0 { -n } else { n };
+        best.offer(height.abs(), outward, Features::Plane);
     }
 }
 
@@ -99,6 +128,6 @@ fn through_face(best: &mut Nearest, corners: [DVec3; 3], [p, q]: [DVec3; 2]) {
     let n = (b - a).cross(c - a).normalize_or_zero();
     let (from, to) = (n.dot(p - a), n.dot(q - a));
     if from * to < 0.0 && is_inside(corners, n, p + (q - p) * (from / (from - to))) {
-        best.offer(0.0, n);
+        best.offer(0.0, n, Features::Plane);
     }
 }

@@ -32,9 +32,15 @@ fn a_fall_is_clear_until_contact_and_not_a_bit_longer() {
     }
     for until in [0.5f64.next_up(), 0.5 + 1e-9, 0.75, 1.0] {
         let shown = motion.apart(1.0, until, Last::Excluded);
-        assert!(matches!(shown, Apart::Until(t) if t >= 0.5), "{until} {shown:?}");
+        assert!(
+            matches!(shown, Apart::Until(t) if t >= 0.5),
+            "{until} {shown:?}"
+        );
     }
-    assert!(matches!(motion.apart(1.0, 0.5, Last::Included), Apart::Until(_)));
+    assert!(matches!(
+        motion.apart(1.0, 0.5, Last::Included),
+        Apart::Until(_)
+    ));
     let above = 0.5f64.next_down();
     assert_eq!(motion.apart(1.0, above, Last::Included), Apart::Always);
 }

@@ -122,7 +122,10 @@ mod tests {
     fn rows_are_rational_numbers() {
         let (point, touches) = parse_row(ROW.trim()).unwrap();
         let large = number((1u128 << 107) as f64);
-        assert_eq!((point, touches), ([number(0.5), number(-0.75), large], true));
+        assert_eq!(
+            (point, touches),
+            ([number(0.5), number(-0.75), large], true)
+        );
     }
 
     #[test]
@@ -151,11 +154,20 @@ mod tests {
         for (row, expected) in [
             ("0,1,0,1,0,1\n", ":9: expected 7 columns, found 6"),
             ("\n", ":9: expected 7 columns, found 1"),
-            ("0,1,0,1,x,1,0\n", ":9: column 5: expected an integer, found `x`"),
+            (
+                "0,1,0,1,x,1,0\n",
+                ":9: column 5: expected an integer, found `x`",
+            ),
             ("0,1,0,0,0,1,0\n", ":9: column 4: a denominator of 0"),
-            ("0,1,0,1,0,1,2\n", ":9: column 7: expected 0 or 1, found `2`"),
+            (
+                "0,1,0,1,0,1,2\n",
+                ":9: column 7: expected 0 or 1, found `2`",
+            ),
             ("0,1,0,1,0,1,1\n", ":10: column 7 differs"),
-            ("1,9999999999999999999999999999999999999,0,1,0,1,0\n", ":9: a query of extent 1e-37"),
+            (
+                "1,9999999999999999999999999999999999999,0,1,0,1,0\n",
+                ":9: a query of extent 1e-37",
+            ),
         ] {
             let found = replaced(row);
             assert!(found.contains(expected), "{found}\nexpected {expected}");

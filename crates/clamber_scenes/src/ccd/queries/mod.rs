@@ -37,7 +37,8 @@ pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
     }
     let all: usize = files.iter().map(|(_, queries)| queries.len()).sum();
     let bar = ProgressBar::new(all as u64);
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % of the queries  [{eta} left]");
+    let style =
+        ProgressStyle::with_template("{bar:40} {percent:>3} % of the queries  [{eta} left]");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let mut stage = Stage::new()?;
     let mut report = CcdReport::default();

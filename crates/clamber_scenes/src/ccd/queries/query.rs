@@ -130,7 +130,8 @@ fn extent(points: &[Exact]) -> f64 {
     let side = |axis: usize| {
         let coordinates = || points.iter().map(|p| &p[axis]);
         let (low, high) = (coordinates().min(), coordinates().max());
-        low.zip(high).map_or(Relaxed::ZERO, |(low, high)| high - low)
+        low.zip(high)
+            .map_or(Relaxed::ZERO, |(low, high)| high - low)
     };
     let largest = side(0).max(side(1)).max(side(2));
     largest.to_f64().value()

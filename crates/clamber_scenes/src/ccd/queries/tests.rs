@@ -62,7 +62,11 @@ fn false_answers_are_counted_as_what_they_are() {
         // Early, but of what touches: no false contact.
         assert!(count(&falls, Some(0.4)).holds());
         let invented = count(&stops, Some(1.0));
-        assert_eq!((invented.false_positives, invented.late), (1, 0), "{invented}");
+        assert_eq!(
+            (invented.false_positives, invented.late),
+            (1, 0),
+            "{invented}"
+        );
         assert!(!invented.holds());
         assert!(count(&stops, None).holds());
     }

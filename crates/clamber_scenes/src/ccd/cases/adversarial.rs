@@ -1,0 +1,303 @@
+//! Motions that sweeps find hard, at human scale.
+
+use core::f64::consts::TAU;
+
+use glam::{DVec3, Vec3};
+
+use super::Case;
+use super::place::{across, direction, point, turned};
+use crate::ccd::pair::{Core, MovingPair};
+
+/// What is hard about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing.
+    Random,
+    /// A triangle of height 1e-7.
+    Sliver,
+    /// The core passes a corner, an edge or a face about as far away as its radius.
+    Grazing,
+    /// The core slides along a face at radius and twice the tolerance.
+    Slide,
+    /// Corners go round by up to a full turn.
+    Spin,
+    /// At half of the way the triangle is a line or a point.
+    Collapse,
+    /// Nothing moves faster than the smallest numbers.
+    Denormal,
+    /// Triangle and core move as one.
+    Still,
+    /// A kilometre from the origin.
+    Far,
+    /// They overlap at the start.
+    Inside,
+    /// The core has no radius.
+    Thin,
+}
+
+/// All of them.
+pub const KINDS: [Kind; 11] = [
+    Kind::Random,
+    Kind::Sliver,
+    Kind::Grazing,
+    Kind::Slide,
+    Kind::Spin,
+    Kind::Collapse,
+    Kind::Denormal,
+    Kind::Still,
+    Kind::Far,
+    Kind::Inside,
+    Kind::Thin,
+];
+
+/// Before rounding.
+#[derive(Clone, Copy)]
+struct Draft {
+    corners: [[DVec3; 3]; 2],
+    ends: [DVec3; 2],
+    motions: [DVec3; 2],
+    radius: f64,
+    tolerance: f64,
+}
+
+/// A case of a kind, with a sphere or a capsule.
+pub fn adversarial(kind: Kind, rng: &mut fastrand::Rng) -> Case {
+    let mut draft = random(rng);
+    match kind {
+        Kind::Random => {}
+        Kind::Sliver => sliver(&mut draft, rng),
+        Kind::Grazing => grazing(&mut draft, rng),
+        Kind::Slide => return slide(&draft, rng),
+        Kind::Spin => spin(&mut draft, rng),
+        Kind::Collapse => collapse(&mut draft, rng),
+        Kind::Denormal => return denormal(&draft, rng),
+        Kind::Still => return still(&draft, rng),
+        Kind::Far => {
+            if rng.bool() {
+                grazing(&mut draft, rng);
+            }
+            let offset = direction(rng) * 1e3;
+            draft.corners = draft.corners.map(|corners| corners.map(|p| p + offset));
+            draft.ends = draft.ends.map(|end| end + offset);
+        }
+        Kind::Inside => {
+            // More than rounding takes off the overlap.
+            draft.radius = draft.radius.max(1e-3);
+            let weights = [rng.f64(), rng.f64(), rng.f64()];
+            let [a, b, c] = draft.corners[0];
+            let inside = a * weights[0] + b * weights[1] + c * weights[2];
+            let inside = inside / (weights[0] + weights[1] + weights[2]);
+            let within = direction(rng) * (draft.radius * 0.99 * rng.f64());
+            draft.ends = draft.ends.map(|end| end - draft.ends[0] + inside + within);
+        }
+        Kind::Thin => draft.radius = 0.0,
+    }
+    draft.rounded(rng.bool())
+}
+
+impl Draft {
+    fn rounded(&self, is_sphere: bool) -> Case {
+        let [ends, motions] = [self.ends, self.motions].map(|points| points.map(|p| p.as_vec3()));
+        Case {
+            pair: MovingPair {
+                corners: self.corners.map(|corners| corners.map(|p| p.as_vec3())),
+                core: core(ends, motions, is_sphere),
+                radius: self.radius as f32,
+            },
+            tolerance: self.tolerance as f32,
+        }
+    }
+}
+
+fn core(ends: [Vec3; 2], motions: [Vec3; 2], is_sphere: bool) -> Core {
+    if is_sphere {
+        Core::Sphere {
+            center: ends[0],
+            motion: motions[0],
+        }
+    } else {
+        Core::Capsule { ends, motions }
+    }
+}
+
+/// The core is on its way to where the triangle is going, about.
+fn random(rng: &mut fastrand::Rng) -> Draft {
+    let start = [(); 3].map(|()| point(rng));
+    let shift = point(rng) * [0.0, 0.1, 2.0][rng.usize(0..3)];
+    let own = [0.0, 0.3, 1.0][rng.usize(0..3)];
+    let end = start.map(|p| p + shift + point(rng) * own);
+    let first = point(rng) * 3.0;
+    let ends = [first, first + point(rng)];
+    let target = end[0] + (end[1] - end[0]) * rng.f64() + (end[2] - end[0]) * rng.f64();
+    let overshoot = [0.0, 0.8, 1.5][rng.usize(0..3)];
+    let turn = point(rng) * [0.0, 0.5][rng.usize(0..2)];
+    let motion = (target - first) * overshoot;
+    Draft {
+        corners: [start, end],
+        ends,
+        motions: [motion, motion + turn],
+        radius: [0.001, 0.03, 0.3, 1.0][rng.usize(0..4)] * rng.f64(),
+        tolerance: [0.0, 1e-6, 1e-4, 1e-4, 1e-2][rng.usize(0..5)],
+    }
+}
+
+fn sliver(draft: &mut Draft, rng: &mut fastrand::Rng) {
+    for corners in &mut draft.corners {
+        let [a, b, _] = *corners;
+        corners[2] = a + (b - a) * rng.f64() + across(rng, (b - a).normalize()) * 1e-7;
+    }
+    if rng.bool() {
+        let (axis, angle) = (direction(rng), rng.f64() * TAU);
+        draft.corners[1] = draft.corners[0].map(|p| turned(p, axis, angle));
+    }
+}
+
+/// At some time the core is beside a point of the triangle, by about the radius, and all of the triangle
+/// is on the other side.
+fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
+    let n = direction(rng);
+    let top = draft.corners[0][0];
+    let supports = rng.usize(1..=3);
+    for corners in &mut draft.corners {
+        let lift = corners[0] - top;
+        for (k, corner) in corners.iter_mut().enumerate() {
+            // Those that support the core stay in a plane, the others below it.
+            let height = n.dot(*corner - top - lift);
+            let below = if k < supports { 0.0 } else { -height.abs() };
+            *corner += n * (below - height);
+        }
+    }
+    let time = rng.f64();
+    let [start, end] = draft.corners;
+    let (b, c) = match supports {
+        1 => (0.0, 0.0),
+        2 => (rng.f64(), 0.0),
+        _ => (rng.f64() * 0.5, rng.f64() * 0.5),
+    };
+    let met = |[x, y, z]: [DVec3; 3]| x + (y - x) * b + (z - x) * c;
+    let passing = across(rng, n) * rng.f64() * 4.0;
+    let motion = met(end) - met(start) + passing;
+    let off = [0.0, 1e-9, -1e-9, 1e-7, -1e-7, 1e-5, -1e-3][rng.usize(0..7)];
+    let tolerances = [0.0, 0.0, 0.5, 1.0, 1.001, 2.0][rng.usize(0..6)];
+    let gap = draft.radius + off + draft.tolerance * tolerances;
+    let at = met(start) + (met(end) - met(start)) * time + n * gap;
+    let axis = across(rng, n) + n * [0.0, 0.0, rng.f64()][rng.usize(0..3)];
+    draft.ends = [at - motion * time, at - motion * time + axis];
+    draft.motions = [motion; 2];
+}
+
+/// In planes of two axes, so that no rounding tilts them.
+fn slide(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
+    let tolerance = [1e-4, 1e-3, 1e-6][rng.usize(0..3)];
+    let mut case = draft.rounded(rng.bool());
+    case.tolerance = tolerance;
+    let axis = rng.usize(0..3);
+    let gap = case.pair.radius + 2.0 * tolerance;
+    let (level, travel) = ([0.0, rng.f32()][rng.usize(0..2)], rng.f32());
+    for corner in case.pair.corners[0].iter_mut() {
+        corner[axis] = level;
+    }
+    for corner in case.pair.corners[1].iter_mut() {
+        corner[axis] = level + travel;
+    }
+    let [mut ends, mut motions] = case.pair.ends();
+    for (end, motion) in ends.iter_mut().zip(&mut motions) {
+        end[axis] = level + gap;
+        motion[axis] = travel;
+    }
+    case.pair.core = core(ends, motions, matches!(case.pair.core, Core::Sphere { .. }));
+    case
+}
+
+fn spin(draft: &mut Draft, rng: &mut fastrand::Rng) {
+    let (axis, angle) = (direction(rng), rng.f64() * TAU);
+    let hub = point(rng) * [0.0, 0.5, 2.0][rng.usize(0..3)];
+    let shift = point(rng) * [0.0, 0.5][rng.usize(0..2)];
+    let [start, end] = &mut draft.corners;
+    *end = start.map(|p| hub + shift + turned(p - hub, axis, angle));
+    if rng.bool() {
+        let ends = draft.ends;
+        let angle = rng.f64() * TAU;
+        draft.motions = ends.map(|p| turned(p - hub, axis, angle) - (p - hub));
+    }
+    if rng.bool() {
+        // Where it has to pass.
+        draft.ends = draft
+            .ends
+            .map(|p| p - draft.ends[0] + hub + point(rng) * 0.3);
+    }
+}
+
+fn collapse(draft: &mut Draft, rng: &mut fastrand::Rng) {
+    let start = draft.corners[0];
+    let center = point(rng);
+    let line = direction(rng);
+    let onto_line = rng.bool();
+    let middle = start.map(|p| {
+        let along = if onto_line { line.dot(p - center) } else { 0.0 };
+        center + line * along
+    });
+    for ((end, p), m) in draft.corners[1].iter_mut().zip(start).zip(middle) {
+        *end = m * 2.0 - p;
+    }
+    if rng.bool() {
+        // There when it happens.
+        let at = center + point(rng) * draft.radius;
+        let apart = draft.ends[1] - draft.ends[0];
+        draft.ends = [
+            at - draft.motions[0] * 0.5,
+            at - draft.motions[0] * 0.5 + apart,
+        ];
+    }
+}
+
+/// Side by side, with gaps of some steps of f32, at speeds that are denormal.
+fn denormal(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
+    let mut case = draft.rounded(rng.bool());
+    let size = [1.0, 1.0, 1e-20, 1e-38][rng.usize(0..4)];
+    let corners = case.pair.corners[0].map(|p| p * size);
+    // Close to the origin denormal speeds are speeds; elsewhere the sum is rounded away.
+    let later = corners.map(|p| p + slow(rng));
+    case.pair.corners = [corners, later];
+    case.pair.radius *= size;
+    let axis = rng.usize(0..3);
+    let top = corners
+        .map(|p| p[axis])
+        .into_iter()
+        .fold(f32::MIN, f32::max);
+    let mut ends = [corners[0], corners[0] + point(rng).as_vec3() * size];
+    for end in &mut ends {
+        end[axis] = top + case.pair.radius;
+        for _ in 0..rng.usize(0..4) {
+            end[axis] = end[axis].next_up();
+        }
+    }
+    let motions = [slow(rng), slow(rng)];
+    case.pair.core = core(ends, motions, matches!(case.pair.core, Core::Sphere { .. }));
+    case
+}
+
+/// Of coordinates below the smallest normal number, down to the smallest of all.
+fn slow(rng: &mut fastrand::Rng) -> Vec3 {
+    let mut part = || {
+        let places = rng.u32(1..=23);
+        let size = f32::from_bits(rng.u32(0..1 << places));
+        if rng.bool() { size } else { -size }
+    };
+    Vec3::new(part(), part(), part())
+}
+
+/// All in multiples of 2^-10, so that all of it moves by exactly the same.
+fn still(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
+    let coarse = |p: DVec3| ((p * 1024.0).round() / 1024.0).as_vec3();
+    let shift = coarse(point(rng) * [0.0, 1.0, 8.0][rng.usize(0..3)]);
+    let corners = draft.corners[0].map(coarse);
+    let near = draft.corners[0][0] + direction(rng) * (draft.radius + draft.tolerance * 2.0);
+    let first = coarse([near, draft.ends[0]][rng.usize(0..2)]);
+    let ends = [first, first + coarse(draft.ends[1] - draft.ends[0])];
+    let mut case = draft.rounded(rng.bool());
+    case.pair.corners = [corners, corners.map(|p| p + shift)];
+    let is_sphere = matches!(case.pair.core, Core::Sphere { .. });
+    case.pair.core = core(ends, [shift; 2], is_sphere);
+    case
+}

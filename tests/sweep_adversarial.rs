@@ -1,0 +1,63 @@
+//! The sweeps on motions that are hard, sphere and capsule: every answer proved.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber_scenes::ccd::cases::{Case, KINDS, Kind, Known, Tally, adversarial};
+use clamber_scenes::ccd::{Answer, Stage};
+
+fn each(kind: Kind, cases: u32, seed: u64, mut visit: impl FnMut(&Case, &Answer)) {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut stage = Stage::new().unwrap();
+    for _ in 0..cases {
+        let case = adversarial(kind, &mut rng);
+        let answer = stage.sweep(&case.pair, case.tolerance).unwrap();
+        visit(&case, &answer);
+    }
+}
+
+/// Of every kind so many.
+fn check(cases: u32, seed: u64) {
+    let mut capped = 0;
+    for kind in KINDS {
+        let mut tally = Tally::default();
+        each(kind, cases, seed, |case, answer| {
+            tally.count(case, Known::Nothing, answer);
+        });
+        println!("{kind:?}: {tally:?}");
+        assert!(tally.holds(), "{kind:?}: {tally:?}");
+        capped += tally.capped;
+    }
+    let all = cases as usize * KINDS.len();
+    println!("{capped} of {all} took all steps");
+    assert!(capped * 500 <= all, "{capped} of {all}");
+}
+
+#[test]
+fn no_answer_is_late_or_too_far() {
+    check(1_000, 80);
+}
+
+#[test]
+#[ignore = "a million: run it in release"]
+fn no_answer_of_a_million_is_late_or_too_far() {
+    check(91_000, 81);
+}
+
+#[test]
+fn what_slides_by_is_no_contact_and_what_begins_inside_is_one_at_once() {
+    each(Kind::Slide, 500, 82, |case, answer| {
+        assert!(
+            answer.hit.is_none_or(|hit| hit.undecided),
+            "{case:?} {answer:?}"
+        );
+    });
+    each(Kind::Inside, 500, 83, |case, answer| {
+        let hit = answer.hit.unwrap();
+        assert!(hit.time == 0.0 && hit.started_inside, "{case:?} {hit:?}");
+        let length = hit.normal.length();
+        assert!((length - 1.0).abs() < 1e-6, "{case:?} {hit:?}");
+    });
+}

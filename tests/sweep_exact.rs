@@ -1,0 +1,80 @@
+//! The sweeps on edges and on vertices and faces in exact numbers: contacts and near misses that are
+//! known by how they are made, and proofs of what is claimed of the others.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber_scenes::ccd::cases::{Known, Tally, constructed};
+use clamber_scenes::ccd::{Claim, Stage};
+
+fn answers(cases: u32, seed: u64) -> Tally {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut stage = Stage::new().unwrap();
+    let mut tally = Tally::default();
+    for _ in 0..cases {
+        let (case, known) = constructed(&mut rng);
+        let answer = stage.sweep(&case.pair, case.tolerance).unwrap();
+        tally.count(&case, known, &answer);
+    }
+    tally
+}
+
+#[test]
+fn no_contact_is_missed_or_late_and_none_is_invented() {
+    let tally = answers(10_000, 70);
+    println!("{tally:?}");
+    assert!(tally.holds(), "{tally:?}");
+    assert!(tally.hits > 4_000 && tally.hits < 9_000, "{tally:?}");
+}
+
+#[test]
+#[ignore = "a hundred thousand: run it in release"]
+fn no_contact_of_many_is_missed_or_late_and_none_is_invented() {
+    let tally = answers(100_000, 71);
+    println!("{tally:?}");
+    assert!(tally.holds(), "{tally:?}");
+}
+
+/// What is counted if all answers are changed.
+fn changed(change: impl Fn(f64) -> Option<f64>) -> Tally {
+    let mut rng = fastrand::Rng::with_seed(72);
+    let mut stage = Stage::new().unwrap();
+    let mut tally = Tally::default();
+    for _ in 0..1_000 {
+        let (case, known) = constructed(&mut rng);
+        let answer = stage.sweep(&case.pair, case.tolerance).unwrap();
+        let claim = Claim {
+            time: answer.claim().time.and_then(&change),
+            undecided: false,
+        };
+        tally.judge(&case, known, &claim);
+    }
+    tally
+}
+
+#[test]
+fn sweeps_that_are_late_or_miss_are_found_out() {
+    let late = changed(|time| Some((time + 1e-3).min(1.0)));
+    assert!(late.late > 300, "{late:?}");
+    let missing = changed(|_| None);
+    assert!(missing.late > 500, "{missing:?}");
+    let early = changed(|time| Some((time - 1e-2).max(0.0)));
+    assert!(early.late == 0 && early.too_far > 300, "{early:?}");
+}
+
+#[test]
+fn a_sweep_with_three_times_the_tolerance_is_found_out() {
+    let mut rng = fastrand::Rng::with_seed(73);
+    let mut stage = Stage::new().unwrap();
+    let (mut tally, mut invented) = (Tally::default(), 0);
+    for _ in 0..1_000 {
+        let (case, known) = constructed(&mut rng);
+        let answer = stage.sweep(&case.pair, case.tolerance * 3.0).unwrap();
+        invented += usize::from(known == Known::Misses && answer.hit.is_some());
+        tally.count(&case, known, &answer);
+    }
+    assert!(tally.late == 0 && tally.too_far > 300, "{tally:?}");
+    assert!(invented > 50, "{invented} {tally:?}");
+}
