@@ -22,19 +22,11 @@ fn answers(cases: u32, seed: u64) -> Tally {
 }
 
 #[test]
-fn no_contact_is_missed_or_late_and_none_is_invented() {
-    let tally = answers(10_000, 70);
+fn no_contact_of_a_hundred_thousand_is_missed_or_late_and_none_is_invented() {
+    let tally = answers(100_000, 70);
     println!("{tally:?}");
     assert!(tally.holds(), "{tally:?}");
-    assert!(tally.hits > 4_000 && tally.hits < 9_000, "{tally:?}");
-}
-
-#[test]
-#[ignore = "a hundred thousand: run it in release"]
-fn no_contact_of_many_is_missed_or_late_and_none_is_invented() {
-    let tally = answers(100_000, 71);
-    println!("{tally:?}");
-    assert!(tally.holds(), "{tally:?}");
+    assert!(tally.hits > 40_000 && tally.hits < 90_000, "{tally:?}");
 }
 
 /// What is counted if all answers are changed.
