@@ -69,7 +69,7 @@ impl CcdQuery {
         self.line
     }
 
-    /// Within which a sweep is to find the other: a ten-thousandth of a thousandth of the extent, which is
+    /// Within which a sweep is to find the other: a hundred-thousandth of the extent, which is
     /// the largest side of the box of all points.
     pub fn radius(&self) -> f32 {
         (self.extent * REACH) as f32
