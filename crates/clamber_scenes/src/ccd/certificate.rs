@@ -12,7 +12,7 @@ use std::cell::LazyCell;
 use dashu::rational::Relaxed;
 use glam::DVec3;
 
-use super::exact::{dot, minus, number, rounded};
+use super::exact::{Exact, dot, length_sq, minus, number, rounded};
 use super::nearest::{Nearest, nearest};
 use super::pair::{ExactPair, MovingPair};
 
@@ -22,6 +22,9 @@ const STRETCHES: usize = 20_000;
 /// Twice the largest relative error of a gap's lines at a time: of each difference of points, its
 /// products, their sums and their mean, nine roundings of 2^-53.
 const LOST: f64 = 24.0 / (1u64 << 53) as f64;
+
+/// For stretches shorter than this, directions are computed in rational numbers if those in f64 fail.
+const SHORT: f64 = 1e-9;
 
 /// More than what products below the smallest f64 lose.
 const UNDERFLOW: f64 = 1e-300;
@@ -138,8 +141,17 @@ impl<'a> Motion<'a> {
                 None => open.push(n),
             }
         }
-        open.iter()
-            .any(|n| self.separates_exactly(*n, radius, [from, to]))
+        let is_shown = |n: &Exact| {
+            n.iter().any(|x| *x != Relaxed::ZERO) && self.separates_exactly(n, radius, [from, to])
+        };
+        if open.iter().any(|n| is_shown(&n.to_array().map(number))) {
+            return true;
+        }
+        // Of a sliver rounding may choose the wrong edge. In rational numbers none is.
+        to - from < SHORT
+            && [to, from]
+                .iter()
+                .any(|time| is_shown(&self.exact.apart(&number(*time))))
     }
 
     /// `None` if rounding leaves it open.
@@ -165,18 +177,17 @@ impl<'a> Motion<'a> {
         all.then_some(true)
     }
 
-    fn separates_exactly(&self, n: DVec3, radius: f64, [from, to]: [f64; 2]) -> bool {
-        let n = n.to_array().map(number);
+    fn separates_exactly(&self, n: &Exact, radius: f64, [from, to]: [f64; 2]) -> bool {
         let radius = number(radius);
-        let limit_sq = &radius * &radius * dot(&n, &n);
+        let limit_sq = &radius * &radius * length_sq(n);
         let pair = &*self.exact;
         let times = [number(from), number(to)];
         let [[a0, b0], [a1, b1]] = &pair.ends;
         [[a0, a1], [b0, b1]].into_iter().all(|[end, end_later]| {
             (0..3).all(|corner| {
                 let [first, last] = &pair.corners;
-                let h0 = dot(&n, &minus(end, &first[corner]));
-                let h1 = dot(&n, &minus(end_later, &last[corner]));
+                let h0 = dot(n, &minus(end, &first[corner]));
+                let h1 = dot(n, &minus(end_later, &last[corner]));
                 let gaps = times.each_ref().map(|time| &h0 + (&h1 - &h0) * time);
                 // Above at the first time, not below at the last: above at all between.
                 let squares = gaps.each_ref().map(|gap| gap * gap);

@@ -58,33 +58,42 @@ fn cross(a: &Exact, b: &Exact) -> Exact {
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-fn length_sq(a: &Exact) -> Relaxed {
+/// The square of its length.
+pub fn length_sq(a: &Exact) -> Relaxed {
     dot(a, a)
+}
+
+fn scaled(a: &Exact, factor: &Relaxed) -> Exact {
+    a.each_ref().map(|x| x * factor)
 }
 
 fn within_unit(t: &Relaxed) -> bool {
     *t >= Relaxed::ZERO && *t <= Relaxed::ONE
 }
 
-/// The squared distance of a point from a segment, which may be a point.
-pub fn point_segment_sq(p: &Exact, [a, b]: [&Exact; 2]) -> Relaxed {
+/// The shorter one.
+fn shorter(a: Exact, b: Exact) -> Exact {
+    if length_sq(&b) < length_sq(&a) { b } else { a }
+}
+
+/// From the nearest point of a segment, which may be a point, to a point.
+fn from_segment(p: &Exact, [a, b]: [&Exact; 2]) -> Exact {
     let (along, from) = (minus(b, a), minus(p, a));
     let (share, whole) = (dot(&from, &along), length_sq(&along));
     if share <= Relaxed::ZERO {
-        length_sq(&from)
+        from
     } else if share >= whole {
-        length_sq(&minus(p, b))
+        minus(p, b)
     } else {
-        length_sq(&from) - &share * &share / whole
+        minus(&from, &scaled(&along, &(share / whole)))
     }
 }
 
-/// The squared distance of two segments, which may be points.
-pub fn segments_sq([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Relaxed {
-    let least = point_segment_sq(a, [c, d])
-        .min(point_segment_sq(b, [c, d]))
-        .min(point_segment_sq(c, [a, b]))
-        .min(point_segment_sq(d, [a, b]));
+/// From the nearest point of one segment to that of the other; each may be a point.
+fn between_segments([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Exact {
+    let to_ends = shorter(from_segment(c, [a, b]), from_segment(d, [a, b]));
+    let from_ends = shorter(from_segment(a, [c, d]), from_segment(b, [c, d]));
+    let least = shorter(to_ends, from_ends.map(|x| -x));
     let (u, v, apart) = (minus(b, a), minus(d, c), minus(c, a));
     let n = cross(&u, &v);
     let n_sq = length_sq(&n);
@@ -94,40 +103,45 @@ pub fn segments_sq([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Relaxed {
     let s = dot(&cross(&apart, &v), &n) / &n_sq;
     let t = dot(&cross(&apart, &u), &n) / &n_sq;
     if within_unit(&s) && within_unit(&t) {
-        let along = dot(&apart, &n);
-        least.min(&along * &along / n_sq)
+        shorter(least, scaled(&n, &(dot(&apart, &n) / &n_sq)))
     } else {
         least
     }
 }
 
-/// The squared distance of a point from a triangle, which may be a segment or a point.
-pub fn point_triangle_sq(p: &Exact, corners: &[Exact; 3]) -> Relaxed {
+/// From the nearest point of a triangle, which may be a segment or a point, to a point.
+pub fn from_triangle(p: &Exact, corners: &[Exact; 3]) -> Exact {
     let [a, b, c] = corners;
-    let edges = point_segment_sq(p, [a, b])
-        .min(point_segment_sq(p, [b, c]))
-        .min(point_segment_sq(p, [c, a]));
-    match face_sq(p, corners) {
-        Some(face) => face.min(edges),
+    let edges = shorter(
+        shorter(from_segment(p, [a, b]), from_segment(p, [b, c])),
+        from_segment(p, [c, a]),
+    );
+    match from_face(p, corners) {
+        Some(face) => shorter(face, edges),
         None => edges,
     }
 }
 
-/// The squared distance of a segment from a triangle; either may have collapsed.
-pub fn segment_triangle_sq([p, q]: [&Exact; 2], corners: &[Exact; 3]) -> Relaxed {
+/// From the nearest point of a triangle to that of a segment; either may have collapsed. Zero where
+/// they meet.
+pub fn between_triangle_and_segment(corners: &[Exact; 3], [p, q]: [&Exact; 2]) -> Exact {
     if crosses([p, q], corners) {
-        return Relaxed::ZERO;
+        return [Relaxed::ZERO, Relaxed::ZERO, Relaxed::ZERO];
     }
     let [a, b, c] = corners;
-    let edges = segments_sq([a, b], [p, q])
-        .min(segments_sq([b, c], [p, q]))
-        .min(segments_sq([c, a], [p, q]));
-    let ends = [p, q].map(|end| face_sq(end, corners));
-    ends.into_iter().flatten().fold(edges, Relaxed::min)
+    let edges = shorter(
+        shorter(
+            between_segments([a, b], [p, q]),
+            between_segments([b, c], [p, q]),
+        ),
+        between_segments([c, a], [p, q]),
+    );
+    let ends = [p, q].map(|end| from_face(end, corners));
+    ends.into_iter().flatten().fold(edges, shorter)
 }
 
-/// The squared distance to the foot on the face, if it falls inside.
-fn face_sq(p: &Exact, corners: &[Exact; 3]) -> Option<Relaxed> {
+/// From the foot on the face to a point, if the foot falls inside.
+fn from_face(p: &Exact, corners: &[Exact; 3]) -> Option<Exact> {
     let [a, b, c] = corners;
     let n = cross(&minus(b, a), &minus(c, a));
     let n_sq = length_sq(&n);
@@ -137,7 +151,7 @@ fn face_sq(p: &Exact, corners: &[Exact; 3]) -> Option<Relaxed> {
     let inside =
         |a: &Exact, b: &Exact| dot(&cross(&minus(b, a), &minus(p, a)), &n) >= Relaxed::ZERO;
     let height = dot(&minus(p, a), &n);
-    (inside(a, b) && inside(b, c) && inside(c, a)).then(|| &height * &height / n_sq)
+    (inside(a, b) && inside(b, c) && inside(c, a)).then(|| scaled(&n, &(height / n_sq)))
 }
 
 /// True if a segment meets the face from one side to the other.
@@ -152,7 +166,7 @@ fn crosses([p, q]: [&Exact; 2], corners: &[Exact; 3]) -> bool {
         return false;
     }
     let met = between(p, q, &(&from / (&from - &to)));
-    face_sq(&met, corners).is_some()
+    from_face(&met, corners).is_some()
 }
 
 #[cfg(test)]
@@ -161,6 +175,33 @@ mod tests {
 
     fn at(x: f32, y: f32, z: f32) -> Exact {
         exact(Vec3::new(x, y, z))
+    }
+
+    fn point_triangle_sq(p: &Exact, corners: &[Exact; 3]) -> Relaxed {
+        let apart = from_triangle(p, corners);
+        assert_separates(&apart, corners, [p, p]);
+        length_sq(&apart)
+    }
+
+    fn segment_triangle_sq(ends: [&Exact; 2], corners: &[Exact; 3]) -> Relaxed {
+        let apart = between_triangle_and_segment(corners, ends);
+        assert_separates(&apart, corners, ends);
+        length_sq(&apart)
+    }
+
+    fn segments_sq(of: [&Exact; 2], and: [&Exact; 2]) -> Relaxed {
+        let apart = between_segments(of, and);
+        let [a, b] = of.map(Clone::clone);
+        assert_separates(&apart, &[a, b.clone(), b], and);
+        length_sq(&apart)
+    }
+
+    /// No corner and end are nearer along the vector than it is long: so it is the shortest.
+    fn assert_separates(apart: &Exact, corners: &[Exact; 3], ends: [&Exact; 2]) {
+        for (corner, end) in corners.iter().flat_map(|c| ends.map(|end| (c, end))) {
+            let gap = dot(apart, &minus(end, corner));
+            assert!(gap >= length_sq(apart), "{apart:?} {corners:?} {ends:?}");
+        }
     }
 
     #[test]

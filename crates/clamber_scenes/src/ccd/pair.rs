@@ -1,6 +1,8 @@
 use glam::Vec3;
 
-use super::exact::{Exact, between, exact, number, plus, point_triangle_sq, segment_triangle_sq};
+use super::exact::{
+    Exact, between, between_triangle_and_segment, exact, from_triangle, length_sq, number, plus,
+};
 use dashu::rational::Relaxed;
 
 /// What moves against the triangle.
@@ -67,22 +69,22 @@ pub struct ExactPair {
 }
 
 impl ExactPair {
-    /// The squared distance of triangle and core at a time.
-    pub fn distance_sq(&self, time: &Relaxed) -> Relaxed {
+    /// From the triangle's nearest point to the core's, at a time.
+    pub fn apart(&self, time: &Relaxed) -> Exact {
         let [from, to] = &self.corners;
         let corners = [0, 1, 2].map(|k| between(&from[k], &to[k], time));
         let [from, to] = &self.ends;
         let ends = [0, 1].map(|k| between(&from[k], &to[k], time));
         if ends[0] == ends[1] {
-            point_triangle_sq(&ends[0], &corners)
+            from_triangle(&ends[0], &corners)
         } else {
-            segment_triangle_sq([&ends[0], &ends[1]], &corners)
+            between_triangle_and_segment(&corners, [&ends[0], &ends[1]])
         }
     }
 
     /// True if they are at most so far apart at a time.
     pub fn is_within(&self, time: f64, distance: &Relaxed) -> bool {
-        self.distance_sq(&number(time)) <= distance * distance
+        length_sq(&self.apart(&number(time))) <= distance * distance
     }
 }
 
