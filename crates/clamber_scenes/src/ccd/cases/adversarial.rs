@@ -15,6 +15,8 @@ pub enum Kind {
     Random,
     /// A triangle of height 1e-7.
     Sliver,
+    /// A triangle that is all but a line, of height 1e-20 to 1e-3, which the core is close to.
+    Needle,
     /// The core passes a corner, an edge or a face about as far away as its radius.
     Grazing,
     /// The core slides along a face at radius and twice the tolerance.
@@ -36,9 +38,10 @@ pub enum Kind {
 }
 
 /// All of them.
-pub const KINDS: [Kind; 11] = [
+pub const KINDS: [Kind; 12] = [
     Kind::Random,
     Kind::Sliver,
+    Kind::Needle,
     Kind::Grazing,
     Kind::Slide,
     Kind::Spin,
@@ -66,6 +69,7 @@ pub fn adversarial(kind: Kind, rng: &mut fastrand::Rng) -> Case {
     match kind {
         Kind::Random => {}
         Kind::Sliver => sliver(&mut draft, rng),
+        Kind::Needle => needle(&mut draft, rng),
         Kind::Grazing => grazing(&mut draft, rng),
         Kind::Slide => return slide(&draft, rng),
         Kind::Spin => spin(&mut draft, rng),
@@ -150,6 +154,42 @@ fn sliver(draft: &mut Draft, rng: &mut fastrand::Rng) {
         let (axis, angle) = (direction(rng), rng.f64() * TAU);
         draft.corners[1] = draft.corners[0].map(|p| turned(p, axis, angle));
     }
+}
+
+/// A length between two powers of ten.
+fn between_powers(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
+    libm::exp10(low + (high - low) * rng.f64())
+}
+
+/// Often with a corner at the origin and along an axis or in a plane of two, where f32 holds heights as
+/// small as these.
+fn needle(draft: &mut Draft, rng: &mut fastrand::Rng) {
+    let long = point(rng) * [DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE][rng.usize(0..3)];
+    let base = [DVec3::ZERO, point(rng)][rng.usize(0..2)];
+    let share = rng.f64() * 1.2 - 0.1;
+    let mut corners = |at: DVec3, share: f64| {
+        let aside = point(rng) * between_powers(rng, -20.0, -3.0);
+        [at, at + long, at + long * share + aside]
+    };
+    let start = corners(base, share);
+    let later = corners(base, share);
+    let shift = point(rng);
+    let end = match rng.usize(0..4) {
+        0 => later.map(|p| p + shift * between_powers(rng, -7.0, 0.0)),
+        // A quarter of a turn.
+        1 => later.map(|p| DVec3::new(p.y, -p.x, p.z) + shift * 0.1),
+        2 => [start[1], start[0], later[2]],
+        _ => start.map(|p| p + shift),
+    };
+    let gap = between_powers(rng, -9.0, 0.0);
+    let near = start[0] + long * rng.f64() + point(rng) * gap;
+    let along = end[1] - end[0];
+    let target = end[0] + along * rng.f64() + point(rng) * between_powers(rng, -9.0, 0.0);
+    draft.corners = [start, end];
+    draft.ends = [near, near + point(rng) * [1.0, 1e-6][rng.usize(0..2)]];
+    draft.motions = [target - near; 2];
+    draft.radius = [0.0, gap * 0.1 * rng.f64(), gap * rng.f64(), 1e-3][rng.usize(0..4)];
+    draft.tolerance = [0.0, 1e-9, 1e-6, 1e-4][rng.usize(0..4)];
 }
 
 /// At some time the core is beside a point of the triangle, by about the radius, and all of the triangle
