@@ -3,7 +3,7 @@ use crate::ccd::stage::Answer;
 use crate::ccd::verdict::Claim;
 
 /// Most steps that the library takes for a triangle; what has none to show by then is to be flagged.
-pub const CAP: u32 = 64;
+pub const CAP: u32 = 256;
 
 /// False answers that are kept to be shown.
 const SHOWN: usize = 3;

@@ -49,9 +49,9 @@ use self::path::Path;
 use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
 
-/// Most steps for a triangle. Most take two or three; where so many are not enough, progress is by
-/// rounding.
-pub(crate) const STEPS: u32 = 64;
+/// Most steps for a triangle. Most take two to five, fast turns up to some hundred; of a million motions
+/// made to be hard 0.02 % take all, nearly all of them with triangles that are all but lines.
+pub(crate) const STEPS: u32 = 256;
 
 /// From this step on, directions are taken from ahead as well.
 const SLOW: u32 = 4;
