@@ -1,10 +1,14 @@
 #![doc = include_str!("../README.md")]
 
+#[cfg(feature = "rapier")]
+mod debris;
 mod obstacle;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod surface;
 
+#[cfg(feature = "rapier")]
+pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
 pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, RapierTerrain};

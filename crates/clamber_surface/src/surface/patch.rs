@@ -42,13 +42,15 @@ use crate::mesh::{TriangleId, VertexId};
 pub struct Patch {
     /// Ascending.
     triangles: Vec<TriangleId>,
-    /// Ascending, each once.
+    /// In the order in which triangles use them.
     vertices: Vec<VertexId>,
     indices: Vec<[u32; 3]>,
     positions: Vec<Vec3>,
     previous_positions: Vec<Vec3>,
     /// Memory for what a query finds.
     found: Vec<MovingTriangle>,
+    /// Memory for vertices with their places, by id.
+    by_id: Vec<(VertexId, u32)>,
 }
 
 /// What an update did to a [`Patch`].
@@ -125,7 +127,8 @@ impl Patch {
         &self.triangles
     }
 
-    /// Ids of its vertices in the surface, ascending; the positions have the same order.
+    /// Ids of its vertices in the surface, in the order in which its triangles use them; the positions
+    /// have the same order.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
@@ -181,27 +184,36 @@ impl Patch {
         self.clear();
         self.found.sort_unstable_by_key(|moving| moving.triangle);
         let all = surface.mesh.triangles();
-        for moving in &self.found {
-            self.triangles.push(moving.triangle);
-            self.vertices.extend(all[moving.triangle.index()]);
-        }
-        self.vertices.sort_unstable();
-        self.vertices.dedup();
-        self.positions.resize(self.vertices.len(), Vec3::ZERO);
-        self.previous_positions
-            .resize(self.vertices.len(), Vec3::ZERO);
+        self.by_id.clear();
         for moving in &self.found {
             let corners = all[moving.triangle.index()];
-            // All are there: they were put there just now.
-            let places = corners.map(|vertex| self.vertices.partition_point(|v| *v < vertex));
-            for (corner, place) in places.into_iter().enumerate() {
-                self.positions[place] = moving.current[corner];
-                self.previous_positions[place] = moving.previous[corner];
+            self.by_id.extend(corners.map(|vertex| (vertex, NOWHERE)));
+        }
+        self.by_id.sort_unstable();
+        self.by_id.dedup();
+        for moving in &self.found {
+            self.triangles.push(moving.triangle);
+            let corners = all[moving.triangle.index()];
+            let mut places = [0; 3];
+            for (corner, vertex) in corners.into_iter().enumerate() {
+                // It is there: it was put there just now.
+                let index = self.by_id.partition_point(|(known, _)| *known < vertex);
+                let place = &mut self.by_id[index].1;
+                if *place == NOWHERE {
+                    *place = self.vertices.len() as u32;
+                    self.vertices.push(vertex);
+                    self.positions.push(moving.current[corner]);
+                    self.previous_positions.push(moving.previous[corner]);
+                }
+                places[corner] = *place;
             }
-            self.indices.push(places.map(|place| place as u32));
+            self.indices.push(places);
         }
     }
 }
+
+/// Of a vertex that has no place in the patch yet.
+const NOWHERE: u32 = u32::MAX;
 
 #[cfg(test)]
 mod tests;

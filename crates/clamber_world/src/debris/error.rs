@@ -1,0 +1,28 @@
+use clamber_surface::surface::SurfaceError;
+use rapier3d::dynamics::RigidBodyHandle;
+use thiserror::Error;
+
+/// Why a body cannot be debris, or a tick cannot be taken. Nothing was changed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum DebrisError {
+    /// No such body in the set, or one that no force moves.
+    #[error("body {0:?} does not exist, or is not dynamic")]
+    NotDynamic(RigidBodyHandle),
+    /// The body has no collider with an inside: none at all, or sensors, meshes and the like only.
+    #[error("body {0:?} has no solid collider")]
+    NotSolid(RigidBodyHandle),
+    /// A tick must have a length.
+    #[error("a tick must be longer than 0 s and finite, found {0} s")]
+    Tick(f64),
+    /// A surface refused a query; its body is too far away, or not finite.
+    #[error("body {body:?} cannot be held against surface {surface}: {source}")]
+    Surface {
+        /// Which body.
+        body: RigidBodyHandle,
+        /// Its number among the surfaces.
+        surface: usize,
+        /// Why.
+        source: SurfaceError,
+    },
+}

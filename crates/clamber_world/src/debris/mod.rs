@@ -1,0 +1,14 @@
+//! Rocks, tree trunks and walls on a moving creature: dynamic bodies of rapier's that collide with skin.
+
+mod core;
+mod error;
+mod fit;
+mod keep_out;
+mod pieces;
+mod skin_patch;
+
+pub use error::DebrisError;
+pub use pieces::{Debris, DebrisConfig, DebrisReport};
+
+#[cfg(test)]
+mod tests;

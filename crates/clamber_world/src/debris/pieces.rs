@@ -1,0 +1,409 @@
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
+use glam::DVec3;
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{Aabb, ColliderHandle, ColliderSet, InteractionGroups, SolverFlags};
+use rapier3d::math::{Pose, Vector};
+use rapier3d::parry::bounding_volume::BoundingVolume;
+use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
+
+use super::DebrisError;
+use super::core::Core;
+use super::keep_out::keep_out;
+use super::skin_patch::{Place, SkinPatch};
+
+/// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
+/// within a tick, and rapier's own prediction of 2 cm. More gives rapier more triangles.
+const REACH: f32 = 0.04;
+
+/// How far rapier looks ahead along the motion of body and skin, as a share of the body's inner radius:
+/// contacts between faces that are farther from each other than they are large come out askew.
+const LOOK_AHEAD: f64 = 0.5;
+
+/// What skin is to debris.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DebrisConfig {
+    /// Coefficient of friction, at least 0; rapier takes the mean of both sides'. Higher keeps rocks on
+    /// steeper backs.
+    pub friction: f32,
+    /// Coefficient of restitution, 0 to 1: higher lets rocks bounce.
+    pub restitution: f32,
+    /// Which of rapier's groups the skin belongs to. Whoever queries rapier's world can leave the skin
+    /// out by them; a body meets only its own piece of skin in any case.
+    pub groups: InteractionGroups,
+}
+
+impl Default for DebrisConfig {
+    /// Rough stone on hide; no bounce; all groups.
+    fn default() -> Self {
+        Self {
+            friction: 0.8,
+            restitution: 0.0,
+            groups: InteractionGroups::all(),
+        }
+    }
+}
+
+/// What a tick did to debris.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DebrisReport {
+    /// Bodies that had skin near them.
+    pub near: u32,
+    /// Bodies that rapier let skin into, and that were put back in front of it.
+    pub put_back: u32,
+    /// Bodies that skin passes through still: caught in a closing fold.
+    pub caught: u32,
+}
+
+/// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
+/// the stones of a wall.
+///
+/// Near each body, the skin becomes a kinematic body of rapier's, made of the few triangles that the
+/// body may reach in this tick; it meets that body only, stands where the skin was a tick ago, and moves
+/// to where it is. So rapier's own solver finds contacts and friction against skin that moves. Forces
+/// go one way: nothing ever pushes a creature. What is faster than rapier can tell, such as a limb that
+/// moves by a metre in a tick, is found by sweeping the inside of the body against the moving skin.
+///
+/// Each tick, in this order; the patches belong to the debris, so its hooks must be among those of the
+/// step, and the same surfaces must come in the same order:
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use clamber_surface::geometry::Similarity;
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+/// # use clamber_surface::rig::JointId;
+/// # use clamber_surface::surface::SkinnedSurface;
+/// # use glam::Vec3;
+/// use clamber_world::rapier3d::prelude::*;
+/// use clamber_world::{Debris, DebrisConfig};
+/// # let source = MeshSource {
+/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p * 9.0 - Vec3::new(3.0, 0.0, 3.0)),
+/// #     triangles: &[[0, 2, 1]],
+/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
+/// #     joint_count: 1,
+/// #     ..MeshSource::default()
+/// # };
+/// # let mesh = ColliderMesh::build(&source, &BuildOptions::default())?.0;
+/// # let mut surface = SkinnedSurface::new(Arc::new(mesh));
+/// # let palette = clamber_surface::rig::Palette::from_matrices([clamber_surface::geometry::Affine::IDENTITY]);
+///
+/// let mut world = PhysicsWorld::default();
+/// let (rock, _) = world.insert(
+///     RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0)),
+///     ColliderBuilder::ball(0.5),
+/// );
+/// let mut debris = Debris::new(DebrisConfig::default());
+/// debris.add(rock, &mut world.bodies, &world.colliders)?;
+///
+/// let dt = f64::from(world.integration_parameters.dt);
+/// for _ in 0..60 {
+///     surface.advance(&palette, Similarity::IDENTITY)?;
+///     debris.before_step(&[&surface], &mut world.bodies, &mut world.colliders, dt)?;
+///     world.step_with_events(&debris, &());
+///     debris.after_step(&[&surface], &mut world.bodies, dt)?;
+/// }
+/// assert!((world.bodies[rock].translation().y - 0.5).abs() < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Debris {
+    config: DebrisConfig,
+    origin: DVec3,
+    /// By ascending handle of the body.
+    pieces: Vec<Piece>,
+    /// Which body a patch is for, by ascending handle of the patch's collider.
+    owners: Vec<(ColliderHandle, RigidBodyHandle)>,
+    /// Of bodies that are gone.
+    spare: Vec<SkinPatch>,
+}
+
+/// One body, and the skin near it.
+#[derive(Clone, Debug)]
+struct Piece {
+    body: RigidBodyHandle,
+    core: Core,
+    /// Where it was before the step.
+    start: Pose,
+    /// One for each surface.
+    patches: Vec<SkinPatch>,
+}
+
+impl Debris {
+    /// None yet.
+    pub const fn new(config: DebrisConfig) -> Self {
+        Self {
+            config,
+            origin: DVec3::ZERO,
+            pieces: Vec::new(),
+            owners: Vec::new(),
+            spare: Vec::new(),
+        }
+    }
+
+    /// Where rapier's origin stands in the world, for scenes that are far larger than f32 can
+    /// resolve. Zero if not said.
+    #[must_use]
+    pub fn with_origin(mut self, origin: DVec3) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// Lets a dynamic body collide with skin from now on. Its colliders stay as they are: if they
+    /// change, add it again. Rapier's soft continuous collision detection is turned on for it.
+    ///
+    /// # Errors
+    /// [`DebrisError::NotDynamic`], [`DebrisError::NotSolid`].
+    pub fn add(
+        &mut self,
+        body: RigidBodyHandle,
+        bodies: &mut RigidBodySet,
+        colliders: &ColliderSet,
+    ) -> Result<(), DebrisError> {
+        let known = bodies.get_mut(body).filter(|known| known.is_dynamic());
+        let found = known.ok_or(DebrisError::NotDynamic(body))?;
+        let core = Core::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
+        found.set_soft_ccd_prediction(look_ahead(&core));
+        match self.place_of(body) {
+            Ok(index) => self.pieces[index].core = core,
+            Err(index) => self.pieces.insert(
+                index,
+                Piece {
+                    body,
+                    core,
+                    start: *found.position(),
+                    patches: Vec::new(),
+                },
+            ),
+        }
+        Ok(())
+    }
+
+    /// The body no longer collides with skin; true if it did. Bodies that rapier no longer has leave by
+    /// themselves.
+    pub fn remove(&mut self, body: RigidBodyHandle, colliders: &mut ColliderSet) -> bool {
+        let Ok(index) = self.place_of(body) else {
+            return false;
+        };
+        let piece = self.pieces.remove(index);
+        self.retire(piece, colliders);
+        true
+    }
+
+    /// Bodies that collide with skin, by ascending handle.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = RigidBodyHandle> {
+        self.pieces.iter().map(|piece| piece.body)
+    }
+
+    /// Which surface and which of its triangles a contact is with: `collider` and `subshape` are those
+    /// of a contact's side that is no piece of debris. `None` if it is no skin either.
+    pub fn triangle_at(
+        &self,
+        collider: ColliderHandle,
+        subshape: u32,
+    ) -> Option<(usize, TriangleId)> {
+        let owner = self.owner_of(collider)?;
+        let piece = &self.pieces[self.place_of(owner).ok()?];
+        let is_it = |patch: &SkinPatch| patch.handles().is_some_and(|(_, own)| own == collider);
+        let surface = piece.patches.iter().position(is_it)?;
+        let triangles = piece.patches[surface].patch().triangles();
+        Some((surface, *triangles.get(subshape as usize)?))
+    }
+
+    /// Puts the skin near each body into rapier's world: after the surfaces were advanced, before the
+    /// step of `dt` seconds.
+    ///
+    /// # Errors
+    /// [`DebrisError::Tick`], and then nothing is changed. [`DebrisError::Surface`] for a body that is
+    /// not finite, or too far away for a surface; the bodies before it have their skin then.
+    pub fn before_step(
+        &mut self,
+        surfaces: &[&SkinnedSurface],
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        dt: f64,
+    ) -> Result<(), DebrisError> {
+        check_tick(dt)?;
+        self.drop_lost(bodies, colliders);
+        let mut made = false;
+        for piece in &mut self.pieces {
+            let Some(body) = bodies.get(piece.body) else {
+                continue;
+            };
+            piece.start = *body.position();
+            let reach = reach(body, colliders, dt).filter(|_| body.is_enabled());
+            while piece.patches.len() < surfaces.len() {
+                piece.patches.push(self.spare.pop().unwrap_or_default());
+            }
+            for (index, patch) in piece.patches.iter_mut().enumerate() {
+                let (Some(surface), Some((reach, center))) = (surfaces.get(index), reach) else {
+                    patch.rest(colliders);
+                    continue;
+                };
+                let place = Place {
+                    origin: self.origin,
+                    reach,
+                    center,
+                    look_ahead: look_ahead(&piece.core),
+                    dt,
+                };
+                let had = patch.handles();
+                patch
+                    .update(surface, &place, &self.config, bodies, colliders)
+                    .map_err(|source| DebrisError::Surface {
+                        body: piece.body,
+                        surface: index,
+                        source,
+                    })?;
+                made |= had != patch.handles();
+            }
+        }
+        if made {
+            self.list_owners();
+        }
+        Ok(())
+    }
+
+    /// Puts bodies that skin went into during the step back in front of it, with at least its speed.
+    ///
+    /// # Errors
+    /// As [`Debris::before_step`].
+    pub fn after_step(
+        &mut self,
+        surfaces: &[&SkinnedSurface],
+        bodies: &mut RigidBodySet,
+        dt: f64,
+    ) -> Result<DebrisReport, DebrisError> {
+        check_tick(dt)?;
+        let mut report = DebrisReport::default();
+        for piece in &self.pieces {
+            let near = piece.patches.iter().any(|patch| !patch.is_empty());
+            report.near += u32::from(near);
+            for (index, surface) in surfaces.iter().enumerate() {
+                let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
+                    break;
+                };
+                let ends = [&piece.start, body.position()]
+                    .map(|pose| piece.core.ends_at(pose).map(|end| end + self.origin));
+                let kept = keep_out(surface, &piece.core, ends, dt).map_err(|source| {
+                    DebrisError::Surface {
+                        body: piece.body,
+                        surface: index,
+                        source,
+                    }
+                })?;
+                report.caught += u32::from(!kept.free);
+                if let Some((normal, skin)) = kept.pushed
+                    && let Some(body) = bodies.get_mut(piece.body)
+                {
+                    report.put_back += 1;
+                    let place = body.translation() + kept.shift.as_vec3();
+                    let velocity = body.linvel().as_dvec3();
+                    let short = (skin - velocity).dot(normal).max(0.0);
+                    body.set_translation(place, true);
+                    body.set_linvel((velocity + normal * short).as_vec3(), true);
+                }
+            }
+        }
+        Ok(report)
+    }
+
+    fn place_of(&self, body: RigidBodyHandle) -> Result<usize, usize> {
+        let key = |piece: &Piece| piece.body.into_raw_parts();
+        self.pieces
+            .binary_search_by_key(&body.into_raw_parts(), key)
+    }
+
+    /// The body that a collider is skin for; `None` if it is no skin.
+    pub(super) fn owner_of(&self, collider: ColliderHandle) -> Option<RigidBodyHandle> {
+        let key = |(skin, _): &(ColliderHandle, RigidBodyHandle)| skin.into_raw_parts();
+        let index = self
+            .owners
+            .binary_search_by_key(&collider.into_raw_parts(), key);
+        Some(self.owners[index.ok()?].1)
+    }
+
+    fn drop_lost(&mut self, bodies: &RigidBodySet, colliders: &mut ColliderSet) {
+        let mut index = 0;
+        while index < self.pieces.len() {
+            let body = bodies.get(self.pieces[index].body);
+            if body.is_some_and(RigidBody::is_dynamic) {
+                index += 1;
+            } else {
+                let piece = self.pieces.remove(index);
+                self.retire(piece, colliders);
+            }
+        }
+    }
+
+    fn retire(&mut self, piece: Piece, colliders: &mut ColliderSet) {
+        for mut patch in piece.patches {
+            patch.rest(colliders);
+            self.spare.push(patch);
+        }
+        self.list_owners();
+    }
+
+    fn list_owners(&mut self) {
+        self.owners.clear();
+        for piece in &self.pieces {
+            let patches = piece.patches.iter().filter_map(SkinPatch::handles);
+            self.owners
+                .extend(patches.map(|(_, collider)| (collider, piece.body)));
+        }
+        self.owners
+            .sort_unstable_by_key(|(collider, _)| collider.into_raw_parts());
+    }
+}
+
+impl PhysicsHooks for Debris {
+    /// A piece of skin meets the body that it is for, and nothing else.
+    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        let meets = |skin, body| self.owner_of(skin).is_none_or(|owner| Some(owner) == body);
+        let both = meets(context.collider1, context.rigid_body2)
+            && meets(context.collider2, context.rigid_body1);
+        both.then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
+    }
+}
+
+fn look_ahead(core: &Core) -> f32 {
+    (core.radius * LOOK_AHEAD) as f32
+}
+
+/// The box that a body may reach in a tick, and its middle now; `None` without colliders.
+fn reach(body: &RigidBody, colliders: &ColliderSet, dt: f64) -> Option<(Aabb, DVec3)> {
+    let (start, end) = (
+        *body.position(),
+        body.predict_position_using_velocity(dt as f32),
+    );
+    let mut now: Option<Aabb> = None;
+    let mut reach: Option<Aabb> = None;
+    for handle in body.colliders() {
+        let Some(collider) = colliders
+            .get(*handle)
+            .filter(|c| c.is_enabled() && !c.is_sensor())
+        else {
+            continue;
+        };
+        let on_body = collider
+            .position_wrt_parent()
+            .copied()
+            .unwrap_or(Pose::IDENTITY);
+        let first = collider.shape().compute_aabb(&(start * on_body));
+        let last = collider.shape().compute_aabb(&(end * on_body));
+        now = Some(now.map_or(first, |all| all.merged(&first)));
+        let both = first.merged(&last);
+        reach = Some(reach.map_or(both, |all| all.merged(&both)));
+    }
+    let reach = reach?;
+    let around = Vector::splat(REACH);
+    let reach = Aabb::new(reach.mins - around, reach.maxs + around);
+    Some((reach, now?.center().as_dvec3()))
+}
+
+fn check_tick(dt: f64) -> Result<(), DebrisError> {
+    if dt > 0.0 && dt.is_finite() {
+        Ok(())
+    } else {
+        Err(DebrisError::Tick(dt))
+    }
+}

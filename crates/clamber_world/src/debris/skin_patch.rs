@@ -1,0 +1,260 @@
+//! The skin near one body, as a kinematic body of rapier's.
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::parry::{move_trimesh, trimesh};
+use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface, SurfaceError};
+use glam::DVec3;
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{
+    Aabb, ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh,
+};
+use rapier3d::parry::shape::TriMeshFlags;
+use rapier3d::pipeline::ActiveHooks;
+
+use super::fit::RigidMotion;
+use super::pieces::DebrisConfig;
+
+/// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
+/// box. More makes it less often, and gives rapier more triangles in every tick.
+const MARGIN: f64 = 0.25;
+
+/// Without these, bodies that slide catch on edges between triangles. From both sides, since mirrored
+/// joints turn triangles inside out.
+const FLAGS: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+
+/// A piece of skin that collides with one body.
+///
+/// Its body stands where the piece of debris does and has no rotation of its own. The vertices are put
+/// where they were a tick ago, and the body moves as they do on the whole over the tick that rapier
+/// now steps, so rapier finds contacts where they begin and ends them where the skin is.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SkinPatch {
+    patch: Patch,
+    handles: Option<(RigidBodyHandle, ColliderHandle)>,
+    /// Vertices a tick ago and now, relative to the body, in rapier's space.
+    before: Vec<DVec3>,
+    now: Vec<DVec3>,
+    motion: RigidMotion,
+    /// Where the surface stands, if the skin shown stood still in it.
+    still_at: Option<Similarity>,
+}
+
+/// Where a patch is wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Rapier's origin in the world.
+    pub(super) origin: DVec3,
+    /// All that the body may reach in this tick, in rapier's space.
+    pub(super) reach: Aabb,
+    /// Its middle now.
+    pub(super) center: DVec3,
+    /// How far rapier is to look ahead along the skin's motion.
+    pub(super) look_ahead: f32,
+    pub(super) dt: f64,
+}
+
+impl SkinPatch {
+    /// The skin near a place, this tick.
+    pub(super) fn update(
+        &mut self,
+        surface: &SkinnedSurface,
+        place: &Place,
+        config: &DebrisConfig,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+    ) -> Result<(), SurfaceError> {
+        let world_from_model = surface.world_from_model();
+        let half = place.reach.half_extents().as_dvec3();
+        let center = place.origin + place.reach.center().as_dvec3();
+        let center = world_from_model.inverse_transform_point(center);
+        let inverse = world_from_model.rotation.conjugate();
+        let turned = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (inverse * axis).abs());
+        let half = turned[0] * half.x + turned[1] * half.y + turned[2] * half.z;
+        let half = half / world_from_model.scale;
+        let (low, high) = ((center - half).as_vec3(), (center + half).as_vec3());
+        let margin = (half.max_element() * MARGIN) as f32;
+        let change = self.patch.update(surface, low, high, margin)?;
+        if self.patch.is_empty() {
+            self.rest(colliders);
+            return Ok(());
+        }
+        let still = self.patch.positions() == self.patch.previous_positions();
+        if still && change == PatchChange::Moved && self.still_at == Some(*world_from_model) {
+            // Nothing is new. Left alone, rapier lets rocks fall asleep on it.
+            return Ok(());
+        }
+        self.still_at = still.then_some(*world_from_model);
+        self.place_vertices(surface, place);
+        self.fit(place);
+        self.show(change, place, config, bodies, colliders);
+        Ok(())
+    }
+
+    /// Takes part in nothing until the next update that finds skin.
+    pub(super) fn rest(&mut self, colliders: &mut ColliderSet) {
+        self.patch.clear();
+        self.still_at = None;
+        if let Some((_, collider)) = self.handles
+            && colliders.get(collider).is_some_and(|c| c.is_enabled())
+            && let Some(collider) = colliders.get_mut(collider)
+        {
+            collider.set_enabled(false);
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.patch.is_empty()
+    }
+
+    pub(super) fn patch(&self) -> &Patch {
+        &self.patch
+    }
+
+    pub(super) fn handles(&self) -> Option<(RigidBodyHandle, ColliderHandle)> {
+        self.handles
+    }
+
+    fn place_vertices(&mut self, surface: &SkinnedSurface, place: &Place) {
+        let world_from_model = surface.world_from_model();
+        let from = place.origin + place.center;
+        let local = |p: &glam::Vec3| world_from_model.transform_point_f32(*p) - from;
+        self.before.clear();
+        self.before
+            .extend(self.patch.previous_positions().iter().map(local));
+        self.now.clear();
+        self.now.extend(self.patch.positions().iter().map(local));
+    }
+
+    /// The nearer a vertex the more it counts, and the point nearest to the body counts alone for the
+    /// velocity there: what touches the body first moves as the skin does.
+    fn fit(&mut self, place: &Place) {
+        let reach = place.reach.half_extents().as_dvec3().length_squared();
+        let pairs = self.before.iter().zip(&self.now);
+        let pairs = pairs.map(|(before, now)| {
+            let apart = (*before + *now) * 0.5;
+            (1.0 / (reach + apart.length_squared()), *before, *now)
+        });
+        self.motion = RigidMotion::fit(pairs, place.dt);
+        if let Some((before, now)) = self.nearest() {
+            let wanted = now - before;
+            let off = wanted - self.motion.displacement(before, place.dt);
+            self.motion.linear += off / place.dt;
+        }
+    }
+
+    /// Where the material point nearest to the body was and is.
+    fn nearest(&self) -> Option<(DVec3, DVec3)> {
+        let mut nearest: Option<(f64, [DVec3; 2])> = None;
+        for corners in self.patch.indices() {
+            let before = corners.map(|corner| self.before[corner as usize]);
+            let weights = closest_to_origin(before);
+            let at = |corners: [DVec3; 3]| {
+                corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+            };
+            let distance = at(before).length_squared();
+            if nearest.is_none_or(|(least, _)| distance < least) {
+                let now = corners.map(|corner| self.now[corner as usize]);
+                nearest = Some((distance, [at(before), at(now)]));
+            }
+        }
+        nearest.map(|(_, [before, now])| (before, now))
+    }
+
+    fn show(
+        &mut self,
+        change: PatchChange,
+        place: &Place,
+        config: &DebrisConfig,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+    ) {
+        let vertex = |index: usize| self.before[index].as_vec3();
+        let known = self
+            .handles
+            .filter(|(body, collider)| bodies.contains(*body) && colliders.contains(*collider));
+        let (body, collider) = match known {
+            Some(known) => known,
+            None => {
+                let Some(mesh) = trimesh(&self.patch, FLAGS, vertex) else {
+                    return;
+                };
+                insert(mesh, config, bodies, colliders)
+            }
+        };
+        if let Some(shown) = colliders.get_mut(collider).filter(|_| known.is_some()) {
+            let moved = change == PatchChange::Moved && shown.is_enabled();
+            let mesh = moved.then(|| shown.shape_mut().as_trimesh_mut()).flatten();
+            if let Some(mesh) = mesh {
+                move_trimesh(mesh, vertex);
+            } else if let Some(mesh) = trimesh(&self.patch, FLAGS, vertex) {
+                shown.set_shape(SharedShape::new(mesh));
+            }
+            shown.set_enabled(true);
+        }
+        if let Some(body) = bodies.get_mut(body) {
+            body.set_translation(place.center.as_vec3(), false);
+            body.set_rotation(rapier3d::math::Rotation::IDENTITY, false);
+            body.set_soft_ccd_prediction(place.look_ahead);
+            body.set_linvel(self.motion.linear.as_vec3(), true);
+            body.set_angvel(self.motion.angular.as_vec3(), true);
+        }
+        self.handles = Some((body, collider));
+    }
+}
+
+fn insert(
+    mesh: TriMesh,
+    config: &DebrisConfig,
+    bodies: &mut RigidBodySet,
+    colliders: &mut ColliderSet,
+) -> (RigidBodyHandle, ColliderHandle) {
+    let body = bodies.insert(RigidBodyBuilder::kinematic_velocity_based());
+    let collider = ColliderBuilder::new(SharedShape::new(mesh))
+        // Kinematic bodies need no mass, and a mesh's takes long to find.
+        .density(0.0)
+        .friction(config.friction)
+        .restitution(config.restitution)
+        .collision_groups(config.groups)
+        .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
+    let collider = colliders.insert_with_parent(collider, body, bodies);
+    (body, collider)
+}
+
+/// Weights of the corners of a triangle's point closest to the origin (Ericson 2005, *Real-Time
+/// Collision Detection*, 5.1.5).
+fn closest_to_origin([a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let v = d1 / (d1 - d3);
+        return [1.0 - v, v, 0.0];
+    }
+    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let w = d2 / (d2 - d6);
+        return [1.0 - w, 0.0, w];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - w, w];
+    }
+    let sum = va + vb + vc;
+    if sum > 0.0 {
+        [va / sum, vb / sum, vc / sum]
+    } else {
+        [1.0, 0.0, 0.0]
+    }
+}
