@@ -32,6 +32,6 @@ pub mod prelude {
     pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton, Transform};
     pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit, SweepHit};
     #[cfg(feature = "rapier")]
-    pub use clamber_world::{BodyPoses, RapierTerrain};
+    pub use clamber_world::{BodyPoses, Debris, DebrisConfig, RapierTerrain};
     pub use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 }

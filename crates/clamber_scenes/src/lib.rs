@@ -4,6 +4,7 @@
 //! - [`giant`]: the project's own giant, from its file, at any number of vertices.
 //! - [`resample`]: any mesh at any number of vertices.
 //! - [`Creature`]: what a scene needs of a creature, from code or from a file.
+//! - [`rocks`]: rocks on a shaking giant.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
@@ -22,6 +23,7 @@ pub mod giant;
 pub mod inspect;
 pub mod measure;
 pub mod resample;
+pub mod rocks;
 pub mod solid_angle;
 pub mod test_data;
 pub mod valley;

@@ -1,0 +1,96 @@
+//! What does it cost that 200 rocks collide with the skin of a giant, beside the whole skin as one
+//! deformable mesh in rapier?
+//!
+//! Two worlds with the same rocks on the same giant, which shakes; they take turns. One has the debris's
+//! pieces of skin, the other one kinematic body with all triangles, skinned by the same kernel and set
+//! each tick. A tick is posing the skin, whatever takes it to rapier, the step, and what comes after.
+//! Prints a table and writes it to `target/measure/debris.csv`: name, value, bound, holds.
+//!
+//! `cargo bench --bench debris`; brief with `-- --test`.
+
+mod whole;
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clamber_scenes::giant::{giant, giant_of};
+use clamber_scenes::measure::{Bound, Cells, quantile};
+use clamber_scenes::rocks::{Rocks, TICK};
+
+use whole::Whole;
+
+const ROCKS: usize = 200;
+
+/// Ticks before counting, in which rocks fall on the giant, and counted ones.
+const FALL: u32 = 200;
+const COUNTED: u32 = 200;
+
+fn main() -> ExitCode {
+    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
+    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
+    let brief = !passed("--bench") || passed("--test");
+    match run(brief) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    let sizes: &[Option<usize>] = if brief {
+        &[None]
+    } else {
+        &[None, Some(50_000), Some(200_000)]
+    };
+    for size in sizes {
+        measure(*size, brief, &mut cells)?;
+    }
+    cells.finish("debris", brief)
+}
+
+/// With the giant as its file has it, or of so many vertices.
+fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+    let creature = size.map_or_else(giant, giant_of)?;
+    let name = format!("{} vertices", creature.collider.positions().len());
+    let mut ours = Rocks::new(&creature, ROCKS, 3)?;
+    let mut whole = Whole::new(Rocks::new(&creature, ROCKS, 3)?)?;
+    let (fall, counted) = if brief { (20, 10) } else { (FALL, COUNTED) };
+    let mut times: [Vec<f64>; 3] = Default::default();
+    let mut near = 0;
+    for tick in 0..fall + counted {
+        let clip = Some(if tick < fall / 2 { "idle" } else { "shake" });
+        ours.play(clip);
+        whole.play(clip);
+        let start = Instant::now();
+        ours.pose()?;
+        let report = ours.step()?;
+        let by_patches = start.elapsed().as_secs_f64() * 1e6;
+        let start = Instant::now();
+        let skin = whole.step()?;
+        let by_whole = start.elapsed().as_secs_f64() * 1e6;
+        if tick >= fall {
+            times[0].push(by_patches);
+            times[1].push(by_whole);
+            times[2].push(skin);
+            near += report.near;
+        }
+    }
+    println!("{name}: {} rocks near the skin", near / counted);
+    let [by_patches, by_whole, skin] = times.map(|mut times| quantile(&mut times, 0.5));
+    cells.value(
+        &format!("{name}: debris, us a tick of {TICK:.4} s"),
+        by_patches,
+    );
+    cells.value(&format!("{name}: whole mesh, us a tick"), by_whole);
+    cells.value(&format!("{name}: of that, taking the mesh to rapier"), skin);
+    cells.push(
+        &format!("{name}: debris / whole mesh"),
+        by_patches / by_whole,
+        Bound::Most(0.25),
+    );
+    Ok(())
+}

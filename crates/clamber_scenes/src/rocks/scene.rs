@@ -1,0 +1,178 @@
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::rapier3d::prelude::*;
+use clamber_world::{Debris, DebrisConfig, DebrisReport};
+use glam::DVec3;
+
+use super::RocksError;
+use crate::{Creature, CreatureError, valley};
+
+/// Seconds of a tick.
+pub const TICK: f64 = 1.0 / 60.0;
+
+/// Seconds over which one clip fades into the next.
+const FADE: f64 = 0.6;
+
+/// The running scene: a giant in the valley, and rocks that fall on it.
+pub struct Rocks<'a> {
+    creature: &'a Creature,
+    /// Now, and the one before that it fades in from.
+    clips: [Option<&'a Clip>; 2],
+    /// When it began.
+    began: f64,
+    rest: Pose,
+    pose: Pose,
+    fading: Pose,
+    palette: Palette,
+    /// Its skin.
+    pub surface: SkinnedSurface,
+    /// Valley and rocks.
+    pub world: PhysicsWorld,
+    debris: Debris,
+    rocks: Vec<RigidBodyHandle>,
+    root: Similarity,
+    time: f64,
+}
+
+impl<'a> Rocks<'a> {
+    /// The creature in the middle of the valley, and so many rocks, logs and stones above it; `seed`
+    /// says which and where.
+    ///
+    /// # Errors
+    /// [`RocksError`].
+    pub fn new(creature: &'a Creature, count: usize, seed: u64) -> Result<Self, RocksError> {
+        let rest = creature.skeleton.rest_pose();
+        let (low, high) = creature.bounds(&rest)?;
+        let ground = valley::height(0.0, 0.0) - f64::from(low.y);
+        let root = Similarity::from_translation(DVec3::new(0.0, ground, 0.0));
+        let mut world = valley::world();
+        let top = root.transform_point_f32(high).y + 1.0;
+        let rocks = scatter(&mut world, count, seed, top);
+        let mut debris = Debris::new(DebrisConfig::default());
+        for rock in &rocks {
+            debris.add(*rock, &mut world.bodies, &world.colliders)?;
+        }
+        let mut scene = Self {
+            creature,
+            clips: [None; 2],
+            began: -FADE,
+            pose: rest.clone(),
+            fading: rest.clone(),
+            rest,
+            palette: Palette::default(),
+            surface: SkinnedSurface::new(Arc::clone(&creature.collider)),
+            world,
+            debris,
+            rocks,
+            root,
+            time: 0.0,
+        };
+        scene.advance_pose()?;
+        scene
+            .surface
+            .place(&scene.palette, root)
+            .map_err(CreatureError::from)?;
+        Ok(scene)
+    }
+
+    /// What the creature does from now on: a clip whose name contains `word`, into which it fades, or
+    /// nothing.
+    pub fn play(&mut self, word: Option<&str>) {
+        let clip = word.and_then(|word| self.creature.clip_like(&[word]));
+        let name = |clip: Option<&'a Clip>| clip.map(|clip| clip.name.as_str());
+        if name(clip) != name(self.clips[0]) {
+            self.clips = [clip, self.clips[0]];
+            self.began = self.time;
+        }
+    }
+
+    /// Poses the creature for the next tick: the part of a tick that everything shares.
+    ///
+    /// # Errors
+    /// [`RocksError::Creature`].
+    pub fn pose(&mut self) -> Result<(), RocksError> {
+        self.time += TICK;
+        self.advance_pose()?;
+        let advanced = self.surface.advance(&self.palette, self.root);
+        Ok(advanced.map_err(CreatureError::from)?)
+    }
+
+    /// Puts the skin near the rocks into the world, steps it, and keeps the rocks out of the skin.
+    ///
+    /// # Errors
+    /// [`RocksError::Debris`].
+    pub fn step(&mut self) -> Result<DebrisReport, RocksError> {
+        let world = &mut self.world;
+        self.debris.before_step(
+            &[&self.surface],
+            &mut world.bodies,
+            &mut world.colliders,
+            TICK,
+        )?;
+        world.step_with_events(&self.debris, &());
+        let bodies = &mut world.bodies;
+        Ok(self.debris.after_step(&[&self.surface], bodies, TICK)?)
+    }
+
+    /// The rocks.
+    pub fn rocks(&self) -> &[RigidBodyHandle] {
+        &self.rocks
+    }
+
+    fn advance_pose(&mut self) -> Result<(), RocksError> {
+        let failed = |error: RigError| RocksError::Creature(error.into());
+        for (clip, pose) in [
+            (self.clips[1], &mut self.pose),
+            (self.clips[0], &mut self.fading),
+        ] {
+            pose.clone_from(&self.rest);
+            if let Some(clip) = clip {
+                clip.sample_into(self.time, Playback::Loop, pose)
+                    .map_err(failed)?;
+            }
+        }
+        // Smooth at both ends, so that nothing jerks.
+        let share = ((self.time - self.began) / FADE).clamp(0.0, 1.0);
+        let share = share * share * (3.0 - 2.0 * share);
+        self.pose.blend_in(&self.fading, share).map_err(failed)?;
+        let skeleton = &self.creature.skeleton;
+        skeleton
+            .palette_into(&self.pose, &mut self.palette)
+            .map_err(failed)
+    }
+}
+
+/// Rocks, stones and logs over the middle of the valley, from `bottom` metres up; a sixth of them logs.
+pub fn scatter(
+    world: &mut PhysicsWorld,
+    count: usize,
+    seed: u64,
+    bottom: f64,
+) -> Vec<RigidBodyHandle> {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut between = |low: f32, high: f32| low + (high - low) * rng.f32();
+    let mut rocks = Vec::with_capacity(count);
+    for index in 0..count {
+        let size = between(0.25, 0.7);
+        let shape = match index % 6 {
+            0 => ColliderBuilder::capsule_x(size * 2.0, size * 0.5),
+            1 | 3 => ColliderBuilder::cuboid(size, size * 0.7, size * 0.8),
+            _ => ColliderBuilder::ball(size),
+        };
+        // In layers, so that none begins inside another.
+        let layer = (index / 25) as f32 * 3.0;
+        let (row, column) = ((index % 25) / 5, index % 5);
+        let place = Vector::new(
+            (row as f32 - 2.0) * 2.6 + between(-0.3, 0.3),
+            bottom as f32 + layer,
+            (column as f32 - 2.0) * 2.6 + between(-0.3, 0.3),
+        );
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        let collider = shape.density(2500.0).friction(0.6);
+        rocks.push(world.insert(body, collider).0);
+    }
+    rocks
+}

@@ -1,0 +1,68 @@
+//! Rocks, stones and logs fall on the giant, ride on it, and roll off when it shakes.
+//!
+//! `cargo run --release --example rocks -- --help` lists the options. The scene and its checks are
+//! `clamber_scenes::rocks`.
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clamber_scenes::giant::giant;
+use clamber_scenes::rocks::{Outcome, Rocks, RocksOptions, TICK};
+
+/// Seconds in which rocks fall on the giant, and in which those that are left come to rest.
+const FALL: f64 = 8.0;
+const SETTLE: f64 = 8.0;
+
+/// Deepest that a rock may reach into the skin once it has settled, metres.
+const DEEPEST: f64 = 0.02;
+
+/// Ticks between two looks at whether a rock is inside the giant.
+const LOOK_EVERY: u32 = 10;
+
+fn main() -> ExitCode {
+    match run(&RocksOptions::from_command_line()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => {
+            eprintln!("rocks: a check failed");
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("rocks: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(options: &RocksOptions) -> Result<bool, Box<dyn Error>> {
+    let giant = giant()?;
+    let mut scene = Rocks::new(&giant, options.rocks, options.seed)?;
+    let mut outcome = Outcome::default();
+    let acts = [(None, FALL), (Some("shake"), options.shake), (None, SETTLE)];
+    let mut tick = 0u32;
+    for (clip, seconds) in acts {
+        scene.play(Some(clip));
+        for _ in 0..(seconds / TICK).round() as u32 {
+            scene.pose()?;
+            let report = scene.step()?;
+            outcome.put_back += report.put_back;
+            outcome.caught += report.caught;
+            tick += 1;
+            if tick.is_multiple_of(LOOK_EVERY) {
+                outcome.look(&scene);
+            }
+        }
+        if clip == "idle" {
+            outcome.settle(&scene);
+            println!(
+                "after {:.0} s: {} on the giant, {} in the valley",
+                f64::from(tick) * TICK,
+                outcome.on_giant,
+                outcome.on_ground
+            );
+        }
+    }
+    println!("{:.0} s of rocks on the giant", f64::from(tick) * TICK);
+    print!("{outcome}");
+    let all_somewhere = outcome.on_giant + outcome.on_ground == outcome.rocks;
+    Ok(outcome.tunnelled == 0 && outcome.deepest <= DEEPEST && all_somewhere)
+}
