@@ -37,7 +37,7 @@ fn run(options: &RocksOptions) -> Result<bool, Box<dyn Error>> {
     let giant = giant()?;
     let mut scene = Rocks::new(&giant, options.rocks, options.seed)?;
     let mut outcome = Outcome::default();
-    let acts = [(None, FALL), (Some("shake"), options.shake), (None, SETTLE)];
+    let acts = [("idle", FALL), ("shake", options.shake), ("idle", SETTLE)];
     let mut tick = 0u32;
     for (clip, seconds) in acts {
         scene.play(Some(clip));

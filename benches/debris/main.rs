@@ -59,16 +59,21 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
     let mut ours = Rocks::new(&creature, ROCKS, 3)?;
     let mut whole = Whole::new(Rocks::new(&creature, ROCKS, 3)?)?;
     let (fall, counted) = if brief { (20, 10) } else { (FALL, COUNTED) };
-    let mut times: [Vec<f64>; 3] = Default::default();
+    let mut times: [Vec<f64>; 6] = Default::default();
     let mut near = 0;
     for tick in 0..fall + counted {
         let clip = Some(if tick < fall / 2 { "idle" } else { "shake" });
         ours.play(clip);
         whole.play(clip);
         let start = Instant::now();
+        let since = |start: Instant| start.elapsed().as_secs_f64() * 1e6;
         ours.pose()?;
-        let report = ours.step()?;
-        let by_patches = start.elapsed().as_secs_f64() * 1e6;
+        ours.bring_skin()?;
+        let brought = since(start);
+        ours.step_world();
+        let stepped = since(start);
+        let report = ours.keep_out()?;
+        let by_patches = since(start);
         let start = Instant::now();
         let skin = whole.step()?;
         let by_whole = start.elapsed().as_secs_f64() * 1e6;
@@ -76,15 +81,22 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
             times[0].push(by_patches);
             times[1].push(by_whole);
             times[2].push(skin);
+            times[3].push(brought);
+            times[4].push(stepped - brought);
+            times[5].push(by_patches - stepped);
             near += report.near;
         }
     }
     println!("{name}: {} rocks near the skin", near / counted);
-    let [by_patches, by_whole, skin] = times.map(|mut times| quantile(&mut times, 0.5));
+    let [by_patches, by_whole, skin, brought, stepped, kept] =
+        times.map(|mut times| quantile(&mut times, 0.5));
     cells.value(
         &format!("{name}: debris, us a tick of {TICK:.4} s"),
         by_patches,
     );
+    cells.value(&format!("{name}: of that, taking skin to rapier"), brought);
+    cells.value(&format!("{name}: of that, rapier's step"), stepped);
+    cells.value(&format!("{name}: of that, keeping skin out"), kept);
     cells.value(&format!("{name}: whole mesh, us a tick"), by_whole);
     cells.value(&format!("{name}: of that, taking the mesh to rapier"), skin);
     cells.push(

@@ -105,16 +105,35 @@ impl<'a> Rocks<'a> {
     /// # Errors
     /// [`RocksError::Debris`].
     pub fn step(&mut self) -> Result<DebrisReport, RocksError> {
-        let world = &mut self.world;
-        self.debris.before_step(
-            &[&self.surface],
-            &mut world.bodies,
-            &mut world.colliders,
-            TICK,
-        )?;
-        world.step_with_events(&self.debris, &());
-        let bodies = &mut world.bodies;
+        self.bring_skin()?;
+        self.step_world();
+        self.keep_out()
+    }
+
+    /// The first part of [`Rocks::step`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn bring_skin(&mut self) -> Result<(), RocksError> {
+        let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
+        let surfaces = [&self.surface];
+        Ok(self
+            .debris
+            .before_step(&surfaces, bodies, colliders, TICK)?)
+    }
+
+    /// The last part of [`Rocks::step`].
+    ///
+    /// # Errors
+    /// As that one.
+    pub fn keep_out(&mut self) -> Result<DebrisReport, RocksError> {
+        let bodies = &mut self.world.bodies;
         Ok(self.debris.after_step(&[&self.surface], bodies, TICK)?)
+    }
+
+    /// The part of rapier in [`Rocks::step`].
+    pub fn step_world(&mut self) {
+        self.world.step_with_events(&self.debris, &());
     }
 
     /// The rocks.

@@ -8,7 +8,7 @@ use super::core::Core;
 
 /// How much of a body's inside is swept, as a share of its radius: skin that rapier pushes out by itself
 /// must not reach it, and skin that does has not yet passed the middle.
-const SWEPT: f64 = 0.5;
+pub(super) const SWEPT: f64 = 0.5;
 
 /// How near a sweep comes, as a share of the swept radius.
 const TOLERANCE: f64 = 1e-3;

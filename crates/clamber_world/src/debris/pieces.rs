@@ -9,7 +9,7 @@ use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
 use super::DebrisError;
 use super::core::Core;
-use super::keep_out::keep_out;
+use super::keep_out::{SWEPT, keep_out};
 use super::skin_patch::{Place, SkinPatch};
 
 /// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
@@ -124,6 +124,8 @@ struct Piece {
     core: Core,
     /// Where it was before the step.
     start: Pose,
+    /// Where skin was looked for, in rapier's space.
+    reach: Option<Aabb>,
     /// One for each surface.
     patches: Vec<SkinPatch>,
 }
@@ -171,6 +173,7 @@ impl Debris {
                     body,
                     core,
                     start: *found.position(),
+                    reach: None,
                     patches: Vec::new(),
                 },
             ),
@@ -231,6 +234,7 @@ impl Debris {
             };
             piece.start = *body.position();
             let reach = reach(body, colliders, dt).filter(|_| body.is_enabled());
+            piece.reach = reach.map(|(reach, _)| reach);
             while piece.patches.len() < surfaces.len() {
                 piece.patches.push(self.spare.pop().unwrap_or_default());
             }
@@ -282,8 +286,13 @@ impl Debris {
                 let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
                     break;
                 };
-                let ends = [&piece.start, body.position()]
-                    .map(|pose| piece.core.ends_at(pose).map(|end| end + self.origin));
+                let ends = [&piece.start, body.position()].map(|pose| piece.core.ends_at(pose));
+                if piece.patches.get(index).is_some_and(SkinPatch::is_empty)
+                    && piece.stayed_within_reach(&ends[1])
+                {
+                    continue;
+                }
+                let ends = ends.map(|pose| pose.map(|end| end + self.origin));
                 let kept = keep_out(surface, &piece.core, ends, dt).map_err(|source| {
                     DebrisError::Surface {
                         body: piece.body,
@@ -362,6 +371,20 @@ impl PhysicsHooks for Debris {
         let both = meets(context.collider1, context.rigid_body2)
             && meets(context.collider2, context.rigid_body1);
         both.then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
+    }
+}
+
+impl Piece {
+    /// True if its core, which began there, ended in the box where skin was looked for.
+    fn stayed_within_reach(&self, ends: &[DVec3; 2]) -> bool {
+        let Some(reach) = self.reach else {
+            return false;
+        };
+        let (low, high) = (reach.mins.as_dvec3(), reach.maxs.as_dvec3());
+        let radius = DVec3::splat(self.core.radius * SWEPT);
+        let inside =
+            |end: &DVec3| (end - radius).cmpge(low).all() && (end + radius).cmple(high).all();
+        ends.iter().all(inside)
     }
 }
 

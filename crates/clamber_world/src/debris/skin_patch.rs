@@ -16,7 +16,7 @@ use super::pieces::DebrisConfig;
 
 /// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
 /// box. More makes it less often, and gives rapier more triangles in every tick.
-const MARGIN: f64 = 0.25;
+const MARGIN: f64 = 0.1;
 
 /// Without these, bodies that slide catch on edges between triangles. From both sides, since mirrored
 /// joints turn triangles inside out.
