@@ -34,7 +34,11 @@ const ALLOWED: [(&str, &[&str]); 8] = [
 const ALLOWED_FOR_TESTS: [(&str, &str); 1] = [("clamber", "clamber_scenes")];
 
 /// Crates outside the workspace that only one crate of it may know.
-const KEPT_TO: [(&str, &str); 3] = [("rapier3d", "clamber_world"), ("gltf", "clamber_gltf")];
+const KEPT_TO: [(&str, &str); 3] = [
+    ("rapier3d", "clamber_world"),
+    ("parry3d", "clamber_surface"),
+    ("gltf", "clamber_gltf"),
+];
 
 /// All that the core may depend on outside the workspace.
 const CORE: (&str, &[&str]) = (
