@@ -13,6 +13,7 @@ use clamber::mesh::VertexId;
 use clamber::prelude::*;
 use clamber_scenes::Creature;
 use clamber_scenes::giant::{giant, giant_of};
+use clamber_scenes::measure::is_brief;
 use criterion::Criterion;
 use glam::Vec3;
 
@@ -20,9 +21,7 @@ use glam::Vec3;
 const LARGE: usize = 100_000;
 
 fn main() -> ExitCode {
-    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
-    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let brief = !passed("--bench") || passed("--test");
+    let brief = is_brief();
     match run(brief) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clamber_scenes::giant::{giant, giant_of};
-use clamber_scenes::measure::{Bound, Cells, quantile};
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::rocks::{Rocks, TICK};
 
 use whole::Whole;
@@ -27,9 +27,7 @@ const FALL: u32 = 200;
 const COUNTED: u32 = 200;
 
 fn main() -> ExitCode {
-    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
-    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let brief = !passed("--bench") || passed("--test");
+    let brief = is_brief();
     match run(brief) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

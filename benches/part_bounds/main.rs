@@ -19,6 +19,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clamber_scenes::giant::{giant, giant_of};
+use clamber_scenes::measure::is_brief;
 use clamber_scenes::{Creature, beast::beast, test_data};
 use criterion::Criterion;
 use method::{METHODS, Workspace};
@@ -55,13 +56,7 @@ const BRIEF: Effort = Effort {
 };
 
 fn main() -> ExitCode {
-    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
-    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let effort = if passed("--bench") && !passed("--test") {
-        FULL
-    } else {
-        BRIEF
-    };
+    let effort = if is_brief() { BRIEF } else { FULL };
     match run(&effort) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(escapes) => {

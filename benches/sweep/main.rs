@@ -16,7 +16,7 @@ mod parry;
 use std::error::Error;
 use std::process::ExitCode;
 
-use clamber_scenes::measure::{Bound, Cells};
+use clamber_scenes::measure::{Bound, Cells, is_brief};
 
 use casts::Field;
 
@@ -43,13 +43,7 @@ const BRIEF: Effort = Effort {
 };
 
 fn main() -> ExitCode {
-    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
-    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let effort = if passed("--bench") && !passed("--test") {
-        FULL
-    } else {
-        BRIEF
-    };
+    let effort = if is_brief() { BRIEF } else { FULL };
     match run(&effort) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clamber::prelude::*;
-use clamber_scenes::measure::{Bound, Cells, median_us};
+use clamber_scenes::measure::{Bound, Cells, is_brief, median_us};
 use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
 use timing::{Caches, Lap, Stream, race};
@@ -52,13 +52,7 @@ const BRIEF: Effort = Effort {
 };
 
 fn main() -> ExitCode {
-    // As criterion does: only `cargo bench` passes `--bench`, and `--test` overrules it.
-    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let effort = if passed("--bench") && !passed("--test") {
-        FULL
-    } else {
-        BRIEF
-    };
+    let effort = if is_brief() { BRIEF } else { FULL };
     match run(&effort) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -10,6 +10,13 @@ pub use table::Table;
 
 use std::time::{Duration, Instant};
 
+/// True if a bench is to run briefly. As criterion does: only `cargo bench` passes `--bench`, and `--test`
+/// overrules it.
+pub fn is_brief() -> bool {
+    let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
+    !passed("--bench") || passed("--test")
+}
+
 /// The value that the share `part` (0 to 1) of `values` does not exceed; NaN without values. Sorts
 /// them.
 pub fn quantile(values: &mut [f64], part: f64) -> f64 {

@@ -1,8 +1,10 @@
-//! What the scene holds against the library, by means that owe nothing to its queries.
+//! What the scene holds against the library, by means that owe nothing to its queries; but that a rock lies on
+//! the giant is asked of one.
 
 use std::fmt;
 
 use clamber_surface::surface::SkinnedSurface;
+use clamber_world::Obstacle;
 use clamber_world::rapier3d::prelude::*;
 use glam::DVec3;
 
@@ -14,7 +16,7 @@ use crate::{solid_angle, valley};
 pub struct Outcome {
     /// How many there are.
     pub rocks: usize,
-    /// How many touch the giant, or lie on one that does.
+    /// How many lie on the giant, or on others there.
     pub on_giant: usize,
     /// How many lie in the valley.
     pub on_ground: usize,
@@ -53,15 +55,16 @@ impl Outcome {
         for rock in scene.rocks() {
             let place = scene.world.bodies[*rock].translation().as_dvec3();
             let high = place.y - valley::height(place.x, place.z);
-            self.on_ground += usize::from(high < GROUND);
-            self.on_giant += usize::from(high >= GROUND);
+            let skin = Obstacle::closest_point(&scene.surface, place, PILE);
+            self.on_ground += usize::from(high < PILE);
+            self.on_giant += usize::from(high >= PILE && skin.is_some());
             self.deepest = self.deepest.max(depth(&scene.surface, &scene.world, *rock));
         }
     }
 }
 
-/// Height of a rock's middle above the ground below which it lies on it, or on others there.
-const GROUND: f64 = 2.5;
+/// How far a rock's middle may be from what it lies on, others between included, metres.
+const PILE: f64 = 2.5;
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -63,6 +63,34 @@ fn nothing_passes_through_an_arm_that_sweeps_at_up_to_60_metres_a_second() {
 }
 
 #[test]
+fn what_is_put_back_leaves_at_least_as_fast_as_the_skin_that_pushed_it() {
+    let mut put_back = 0;
+    for speed in [25.0, 40.0, 60.0] {
+        for (index, shape) in shapes().into_iter().enumerate() {
+            let mut scene = Scene::new(slab(ARM, 0.4, 1));
+            scene.world.gravity = Vector::ZERO;
+            let (body, _) = scene.drop(shape, Vector::new(2.0, 0.0, 0.2));
+            let palette = lifted(1, |_| 0.0);
+            let start = at(DVec3::new(-1.0, 0.0, 0.0), DVec3::Y, 0.0);
+            scene.surface.place(&palette, start).unwrap();
+            for tick in 1..20 {
+                let x = -1.0 + speed * DT * f64::from(tick);
+                let report = scene.tick(&palette, at(DVec3::new(x, 0.0, 0.0), DVec3::Y, 0.0));
+                if report.put_back > 0 {
+                    put_back += report.put_back;
+                    let moved = f64::from(scene.world.bodies[body].linvel().x);
+                    assert!(
+                        moved > speed * 0.99,
+                        "{speed} m/s, body {index}, tick {tick}: {moved}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(put_back > 0);
+}
+
+#[test]
 fn an_arm_that_swings_about_its_shoulder_lets_nothing_through() {
     // The end of 8 m moves at 60 m/s.
     let spin = 60.0 / 8.0;
