@@ -161,8 +161,8 @@ impl ColliderMesh {
     /// The same mesh, its clusters and hierarchy made for these poses: cut so that bounds are small in
     /// them, where a build without poses takes weights that differ and sizes at rest for a sign of what
     /// they will be. For creatures whose clips are known, a few poses of each; more than some ten in all
-    /// change little. Queries give the same answers, and edits keep to the poses. (Bittner and Meister 2015, "T-SAH: Animation
-    /// Optimized Bounding Volume Hierarchies", for one tree over all frames.)
+    /// change little. Queries give the same answers, and edits keep to the poses. (Bittner and Meister
+    /// 2015, "T-SAH: Animation Optimized Bounding Volume Hierarchies", for one tree over all frames.)
     ///
     /// # Errors
     /// [`SurfaceError::JointCount`] or [`SurfaceError::Palette`] for a palette that a surface of this

@@ -8,7 +8,9 @@ use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{
     Aabb, ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh,
 };
-use rapier3d::parry::shape::TriMeshFlags;
+use rapier3d::math::Vector;
+use rapier3d::parry::query::PointQueryWithLocation;
+use rapier3d::parry::shape::{TriMeshFlags, Triangle};
 use rapier3d::pipeline::ActiveHooks;
 
 use super::fit::RigidMotion;
@@ -220,41 +222,11 @@ fn insert(
     (body, collider)
 }
 
-/// Weights of the corners of a triangle's point closest to the origin (Ericson 2005, *Real-Time
-/// Collision Detection*, 5.1.5).
-fn closest_to_origin([a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = d1 / (d1 - d3);
-        return [1.0 - v, v, 0.0];
-    }
-    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = d2 / (d2 - d6);
-        return [1.0 - w, 0.0, w];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - w, w];
-    }
-    let sum = va + vb + vc;
-    if sum > 0.0 {
-        [va / sum, vb / sum, vc / sum]
-    } else {
-        [1.0, 0.0, 0.0]
-    }
+/// Weights of the corners of a triangle's point closest to the origin.
+fn closest_to_origin(corners: [DVec3; 3]) -> [f64; 3] {
+    let [a, b, c] = corners.map(|corner| corner.as_vec3());
+    let triangle = Triangle::new(a, b, c);
+    let (_, location) = triangle.project_local_point_and_get_location(Vector::ZERO, false);
+    let weights = location.barycentric_coordinates();
+    weights.unwrap_or([1.0, 0.0, 0.0]).map(f64::from)
 }
