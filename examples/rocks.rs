@@ -9,9 +9,11 @@ use std::process::ExitCode;
 use clamber_scenes::giant::giant;
 use clamber_scenes::rocks::{Outcome, Rocks, RocksOptions, TICK};
 
-/// Seconds in which rocks fall on the giant, and in which those that are left come to rest.
+/// Seconds in which rocks fall on the giant, and in which those that are left come to rest; and that are
+/// added, as often as it takes but no more than so often, while one is still in the air.
 const FALL: f64 = 8.0;
 const SETTLE: f64 = 8.0;
+const WAIT: (f64, u32) = (1.0, 8);
 
 /// Deepest that a rock may reach into the skin once it has settled, metres.
 const DEEPEST: f64 = 0.02;
@@ -37,20 +39,10 @@ fn run(options: &RocksOptions) -> Result<bool, Box<dyn Error>> {
     let giant = giant()?;
     let mut scene = Rocks::new(&giant, options.rocks, options.seed)?;
     let mut outcome = Outcome::default();
-    let acts = [("idle", FALL), ("shake", options.shake), ("idle", SETTLE)];
-    let mut tick = 0u32;
-    for (clip, seconds) in acts {
+    let mut tick = 0;
+    for (clip, seconds) in [("idle", FALL), ("shake", options.shake), ("idle", SETTLE)] {
         scene.play(Some(clip));
-        for _ in 0..(seconds / TICK).round() as u32 {
-            scene.pose()?;
-            let report = scene.step()?;
-            outcome.put_back += report.put_back;
-            outcome.caught += report.caught;
-            tick += 1;
-            if tick.is_multiple_of(LOOK_EVERY) {
-                outcome.look(&scene);
-            }
-        }
+        play(&mut scene, seconds, &mut outcome, &mut tick)?;
         if clip == "idle" {
             outcome.settle(&scene);
             println!(
@@ -61,8 +53,33 @@ fn run(options: &RocksOptions) -> Result<bool, Box<dyn Error>> {
             );
         }
     }
+    for _ in 0..WAIT.1 {
+        if outcome.all_lie() {
+            break;
+        }
+        play(&mut scene, WAIT.0, &mut outcome, &mut tick)?;
+        outcome.settle(&scene);
+    }
     println!("{:.0} s of rocks on the giant", f64::from(tick) * TICK);
     print!("{outcome}");
-    let all_somewhere = outcome.on_giant + outcome.on_ground == outcome.rocks;
-    Ok(outcome.tunnelled == 0 && outcome.deepest <= DEEPEST && all_somewhere)
+    Ok(outcome.tunnelled == 0 && outcome.deepest <= DEEPEST && outcome.all_lie())
+}
+
+fn play(
+    scene: &mut Rocks<'_>,
+    seconds: f64,
+    outcome: &mut Outcome,
+    tick: &mut u32,
+) -> Result<(), Box<dyn Error>> {
+    for _ in 0..(seconds / TICK).round() as u32 {
+        scene.pose()?;
+        let report = scene.step()?;
+        outcome.put_back += report.put_back;
+        outcome.caught += report.caught;
+        *tick += 1;
+        if tick.is_multiple_of(LOOK_EVERY) {
+            outcome.look(scene);
+        }
+    }
+    Ok(())
 }

@@ -4,6 +4,8 @@
 //! Two worlds with the same rocks on the same giant, which shakes; they take turns. One has the debris's
 //! pieces of skin, the other one kinematic body with all triangles, skinned by the same kernel and set
 //! each tick. A tick is posing the skin, whatever takes it to rapier, the step, and what comes after.
+//! A third world has the rocks without a giant: what is rapier's own in the other two, but for where
+//! the rocks lie.
 //! Prints a table and writes it to `target/measure/debris.csv`: name, value, bound, holds.
 //!
 //! `cargo bench --bench debris`; brief with `-- --test`.
@@ -56,8 +58,9 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
     let name = format!("{} vertices", creature.collider.positions().len());
     let mut ours = Rocks::new(&creature, ROCKS, 3)?;
     let mut whole = Whole::new(Rocks::new(&creature, ROCKS, 3)?)?;
+    let mut alone = Rocks::new(&creature, ROCKS, 3)?;
     let (fall, counted) = if brief { (20, 10) } else { (FALL, COUNTED) };
-    let mut times: [Vec<f64>; 6] = Default::default();
+    let mut times: [Vec<f64>; 7] = Default::default();
     let mut near = 0;
     for tick in 0..fall + counted {
         let clip = Some(if tick < fall / 2 { "idle" } else { "shake" });
@@ -75,6 +78,9 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
         let start = Instant::now();
         let skin = whole.step()?;
         let by_whole = start.elapsed().as_secs_f64() * 1e6;
+        let start = Instant::now();
+        alone.step_world();
+        let by_none = start.elapsed().as_secs_f64() * 1e6;
         if tick >= fall {
             times[0].push(by_patches);
             times[1].push(by_whole);
@@ -82,11 +88,12 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
             times[3].push(brought);
             times[4].push(stepped - brought);
             times[5].push(by_patches - stepped);
+            times[6].push(by_none);
             near += report.near;
         }
     }
     println!("{name}: {} rocks near the skin", near / counted);
-    let [by_patches, by_whole, skin, brought, stepped, kept] =
+    let [by_patches, by_whole, skin, brought, stepped, kept, alone] =
         times.map(|mut times| quantile(&mut times, 0.5));
     cells.value(
         &format!("{name}: debris, us a tick of {TICK:.4} s"),
@@ -97,6 +104,7 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
     cells.value(&format!("{name}: of that, keeping skin out"), kept);
     cells.value(&format!("{name}: whole mesh, us a tick"), by_whole);
     cells.value(&format!("{name}: of that, taking the mesh to rapier"), skin);
+    cells.value(&format!("{name}: rocks without a giant, us a tick"), alone);
     cells.push(
         &format!("{name}: debris / whole mesh"),
         by_patches / by_whole,

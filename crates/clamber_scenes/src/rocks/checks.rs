@@ -31,6 +31,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// True if the last look found each of them on the giant or in the valley, none in the air.
+    pub fn all_lie(&self) -> bool {
+        self.on_giant + self.on_ground == self.rocks
+    }
+
     /// Looks at whether rocks are inside the giant or under the ground.
     pub fn look(&mut self, scene: &Rocks<'_>) {
         let mut positions = Vec::new();

@@ -53,7 +53,7 @@ impl SurfacePatch {
         let place = |vertex: usize| self.patch.positions()[vertex];
         match &mut self.mesh {
             Some(mesh) if change == PatchChange::Moved => move_trimesh(mesh, place),
-            mesh => *mesh = trimesh(&self.patch, TriMeshFlags::empty(), place),
+            mesh => *mesh = trimesh(&self.patch, TriMeshFlags::DEFORMABLE, place),
         }
         Ok(change)
     }
@@ -69,10 +69,10 @@ impl SurfacePatch {
     }
 }
 
-/// A patch as a deformable mesh, its vertices wherever `place` puts them; `None` without triangles.
+/// A patch as a mesh, its vertices wherever `place` puts them; `None` without triangles.
 ///
-/// `flags` are what it is to have beside. They are left out where they would change vertices or
-/// triangles, as merging does where vertices coincide: the mesh has the patch's own.
+/// Flags that would change vertices or triangles, as merging does where vertices coincide, are left
+/// out with all that depends on them: the mesh has the patch's own.
 pub fn trimesh(
     patch: &Patch,
     flags: TriMeshFlags,
@@ -80,12 +80,11 @@ pub fn trimesh(
 ) -> Option<TriMesh> {
     let with = |flags: TriMeshFlags| {
         let vertices = (0..patch.vertices().len()).map(&place).collect();
-        let flags = flags | TriMeshFlags::DEFORMABLE;
         let mesh = TriMesh::with_flags(vertices, patch.indices().to_vec(), flags).ok()?;
         let same = mesh.vertices().len() == patch.vertices().len();
         (same && mesh.indices() == patch.indices()).then_some(mesh)
     };
-    with(flags).or_else(|| with(TriMeshFlags::empty()))
+    with(flags).or_else(|| with(flags & TriMeshFlags::DEFORMABLE))
 }
 
 /// Puts the vertices of such a mesh elsewhere, and refits its tree.

@@ -81,6 +81,29 @@ impl Patch {
         high: Vec3,
         margin: f32,
     ) -> Result<PatchChange, SurfaceError> {
+        let apart = |moving: &MovingTriangle| {
+            if moving.meets_box(low, high) {
+                0.0
+            } else {
+                margin
+            }
+        };
+        self.update_near(surface, low, high, margin, apart)
+    }
+
+    /// [`Patch::update`] near a region that fills little of the box around it: `apart` tells how far a
+    /// triangle moves past it, which may be less than it is, and is at most 0 for one that it meets.
+    ///
+    /// # Errors
+    /// As [`Patch::update`].
+    pub fn update_near(
+        &mut self,
+        surface: &SkinnedSurface,
+        low: Vec3,
+        high: Vec3,
+        margin: f32,
+        apart: impl Fn(&MovingTriangle) -> f32,
+    ) -> Result<PatchChange, SurfaceError> {
         if !(margin >= 0.0 && margin.is_finite()) {
             return Err(SurfaceError::Query {
                 what: "the margin of a patch",
@@ -88,21 +111,26 @@ impl Patch {
             });
         }
         let around = Vec3::splat(margin);
-        let (outer_low, outer_high) = (low - around, high + around);
-        if !(outer_low.is_finite() && outer_high.is_finite()) {
-            return Err(SurfaceError::Point);
-        }
         self.found.clear();
-        surface.visit_box(low, high, |moving| self.found.push(*moving))?;
-        let same_count = margin > 0.0 || self.found.len() == self.triangles.len();
-        if same_count && self.holds_what_was_found() && self.is_of(surface) {
+        let (mut met, mut all_held) = (0, true);
+        surface.visit_box(low - around, high + around, |moving| {
+            let apart = apart(moving);
+            if apart <= margin {
+                self.found.push(*moving);
+            }
+            if apart <= 0.0 {
+                met += 1;
+                all_held &= self.triangles.binary_search(&moving.triangle).is_ok();
+            }
+        })?;
+        // With a margin of 0, no more than it must; where nothing is met, nothing near it either.
+        let no_more = met > 0 && margin > 0.0 || met == self.triangles.len();
+        if all_held && no_more && self.is_of(surface) {
             self.take_positions(surface);
             return Ok(PatchChange::Moved);
         }
-        // Where nothing is near, nothing is wanted of what is nearly near.
-        if margin > 0.0 && !self.found.is_empty() {
+        if met == 0 {
             self.found.clear();
-            surface.visit_box(outer_low, outer_high, |moving| self.found.push(*moving))?;
         }
         self.rebuild(surface);
         Ok(PatchChange::Rebuilt)
@@ -153,12 +181,6 @@ impl Patch {
     pub fn velocities(&self, dt: f64) -> impl ExactSizeIterator<Item = Vec3> {
         let pairs = self.positions.iter().zip(&self.previous_positions);
         pairs.map(move |(now, before)| ((now.as_dvec3() - before.as_dvec3()) / dt).as_vec3())
-    }
-
-    fn holds_what_was_found(&self) -> bool {
-        let holds =
-            |moving: &MovingTriangle| self.triangles.binary_search(&moving.triangle).is_ok();
-        (self.triangles.is_empty() == self.found.is_empty()) && self.found.iter().all(holds)
     }
 
     /// False once one of its triangles was edited away, or hidden.

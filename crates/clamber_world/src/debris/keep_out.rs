@@ -13,6 +13,9 @@ pub(super) const SWEPT: f64 = 0.5;
 /// How near a sweep comes, as a share of the swept radius.
 const TOLERANCE: f64 = 1e-3;
 
+/// Skin farther than this from a core, as a share of its radius, is met by no sweep.
+pub(super) const MET: f64 = SWEPT * (1.0 + 2.0 * TOLERANCE);
+
 /// Rounds of pushing out: one for each piece of skin that a body can be caught between, and one to find
 /// that it is free. More would help a body in a closing fold no more.
 const ROUNDS: usize = 4;
@@ -28,6 +31,31 @@ pub(super) struct Kept {
     pub(super) free: bool,
 }
 
+impl Kept {
+    /// Nothing was in its way.
+    pub(super) const FREE: Self = Self {
+        shift: DVec3::ZERO,
+        pushed: None,
+        free: true,
+    };
+}
+
+/// True if the core, which ends there in world space, has met no skin, where skin and it have moved
+/// by at most `motion` metres past each other.
+pub(super) fn stays_clear(
+    surface: &SkinnedSurface,
+    core: &Core,
+    end: [DVec3; 2],
+    motion: f64,
+) -> Result<bool, SurfaceError> {
+    let world_from_model = surface.world_from_model();
+    let [a, b] = end.map(|end| world_from_model.inverse_transform_point_f32(end));
+    let radius = (core.radius * MET / world_from_model.scale) as f32;
+    let near = (motion / world_from_model.scale) as f32;
+    let found = surface.closest_to_capsule(&Capsule { a, b, radius }, near)?;
+    Ok(found.is_none())
+}
+
 /// Sweeps the core from its ends `start` to `end`, in world space, against skin that moves over a tick of
 /// `dt` seconds.
 pub(super) fn keep_out(
@@ -36,11 +64,7 @@ pub(super) fn keep_out(
     [start, end]: [[DVec3; 2]; 2],
     dt: f64,
 ) -> Result<Kept, SurfaceError> {
-    let mut kept = Kept {
-        shift: DVec3::ZERO,
-        pushed: None,
-        free: true,
-    };
+    let mut kept = Kept::FREE;
     for _ in 0..ROUNDS {
         let shifted = end.map(|end| end + kept.shift);
         let Some(hit) = sweep(surface, core, start, shifted)? else {

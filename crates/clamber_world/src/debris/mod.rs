@@ -3,6 +3,7 @@
 mod core;
 mod error;
 mod fit;
+mod hull;
 mod keep_out;
 mod pieces;
 mod skin_patch;

@@ -1,20 +1,20 @@
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{Aabb, ColliderHandle, ColliderSet, InteractionGroups, SolverFlags};
-use rapier3d::math::{Pose, Vector};
-use rapier3d::parry::bounding_volume::BoundingVolume;
+use rapier3d::geometry::{ColliderHandle, ColliderSet, InteractionGroups, SolverFlags};
+use rapier3d::math::Pose;
 use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
 use super::DebrisError;
 use super::core::Core;
-use super::keep_out::{SWEPT, keep_out};
+use super::hull::{Hull, Reach};
+use super::keep_out::{Kept, MET, SWEPT, keep_out, stays_clear};
 use super::skin_patch::{Place, SkinPatch};
 
 /// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
 /// within a tick, and rapier's own prediction of 2 cm. More gives rapier more triangles.
-const REACH: f32 = 0.04;
+const REACH: f64 = 0.025;
 
 /// How far rapier looks ahead along the motion of body and skin, as a share of the body's inner radius:
 /// contacts between faces that are farther from each other than they are large come out askew.
@@ -72,7 +72,7 @@ pub struct DebrisReport {
 /// # use clamber_surface::geometry::Similarity;
 /// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 /// # use clamber_surface::rig::JointId;
-/// # use clamber_surface::surface::SkinnedSurface;
+/// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 /// # use glam::Vec3;
 /// use clamber_world::rapier3d::prelude::*;
 /// use clamber_world::{Debris, DebrisConfig};
@@ -122,10 +122,9 @@ pub struct Debris {
 struct Piece {
     body: RigidBodyHandle,
     core: Core,
-    /// Where it was before the step.
-    start: Pose,
-    /// Where skin was looked for, in rapier's space.
-    reach: Option<Aabb>,
+    hull: Hull,
+    /// Where it was before the step, and where it would be after it if nothing stopped it.
+    course: [Pose; 2],
     /// One for each surface.
     patches: Vec<SkinPatch>,
 }
@@ -164,16 +163,20 @@ impl Debris {
         let known = bodies.get_mut(body).filter(|known| known.is_dynamic());
         let found = known.ok_or(DebrisError::NotDynamic(body))?;
         let core = Core::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
+        let hull = Hull::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
         found.set_soft_ccd_prediction(look_ahead(&core));
         match self.place_of(body) {
-            Ok(index) => self.pieces[index].core = core,
+            Ok(index) => {
+                self.pieces[index].core = core;
+                self.pieces[index].hull = hull;
+            }
             Err(index) => self.pieces.insert(
                 index,
                 Piece {
                     body,
                     core,
-                    start: *found.position(),
-                    reach: None,
+                    hull,
+                    course: [*found.position(); 2],
                     patches: Vec::new(),
                 },
             ),
@@ -232,23 +235,22 @@ impl Debris {
             let Some(body) = bodies.get(piece.body) else {
                 continue;
             };
-            piece.start = *body.position();
-            let reach = reach(body, colliders, dt).filter(|_| body.is_enabled());
-            piece.reach = reach.map(|(reach, _)| reach);
+            let end = body.predict_position_using_velocity(dt as f32);
+            piece.course = [*body.position(), end];
+            let place = Place {
+                origin: self.origin,
+                reach: Reach::new(piece.hull, [body.position(), &end], REACH),
+                look_ahead: look_ahead(&piece.core),
+                dt,
+            };
+            let enabled = body.is_enabled();
             while piece.patches.len() < surfaces.len() {
                 piece.patches.push(self.spare.pop().unwrap_or_default());
             }
             for (index, patch) in piece.patches.iter_mut().enumerate() {
-                let (Some(surface), Some((reach, center))) = (surfaces.get(index), reach) else {
+                let Some(surface) = surfaces.get(index).filter(|_| enabled) else {
                     patch.rest(colliders);
                     continue;
-                };
-                let place = Place {
-                    origin: self.origin,
-                    reach,
-                    center,
-                    look_ahead: look_ahead(&piece.core),
-                    dt,
                 };
                 let had = patch.handles();
                 patch
@@ -286,19 +288,11 @@ impl Debris {
                 let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
                     break;
                 };
-                let ends = [&piece.start, body.position()].map(|pose| piece.core.ends_at(pose));
-                if piece.patches.get(index).is_some_and(SkinPatch::is_empty)
-                    && piece.stayed_within_reach(&ends[1])
-                {
-                    continue;
-                }
-                let ends = ends.map(|pose| pose.map(|end| end + self.origin));
-                let kept = keep_out(surface, &piece.core, ends, dt).map_err(|source| {
-                    DebrisError::Surface {
-                        body: piece.body,
-                        surface: index,
-                        source,
-                    }
+                let kept = piece.keep_out(index, surface, body.position(), self.origin, dt);
+                let kept = kept.map_err(|source| DebrisError::Surface {
+                    body: piece.body,
+                    surface: index,
+                    source,
                 })?;
                 report.caught += u32::from(!kept.free);
                 if let Some((normal, skin)) = kept.pushed
@@ -375,52 +369,58 @@ impl PhysicsHooks for Debris {
 }
 
 impl Piece {
-    /// True if its core, which began there, ended in the box where skin was looked for.
-    fn stayed_within_reach(&self, ends: &[DVec3; 2]) -> bool {
-        let Some(reach) = self.reach else {
-            return false;
-        };
-        let (low, high) = (reach.mins.as_dvec3(), reach.maxs.as_dvec3());
-        let radius = DVec3::splat(self.core.radius * SWEPT);
-        let inside =
-            |end: &DVec3| (end - radius).cmpge(low).all() && (end + radius).cmple(high).all();
-        ends.iter().all(inside)
+    /// What keeps it out of one surface, now that the step took it to a pose.
+    fn keep_out(
+        &self,
+        index: usize,
+        surface: &SkinnedSurface,
+        end: &Pose,
+        origin: DVec3,
+        dt: f64,
+    ) -> Result<Kept, SurfaceError> {
+        let ends = [&self.course[0], end].map(|pose| self.core.ends_at(pose));
+        let in_world = ends.map(|ends| ends.map(|end| end + origin));
+        if let Some(patch) = self.patches.get(index)
+            && self.kept_course(&ends[1])
+            && (patch.is_empty() || self.stays_clear(patch, surface, ends, in_world[1])?)
+        {
+            #[cfg(test)]
+            assert_eq!(keep_out(surface, &self.core, in_world, dt)?.pushed, None);
+            return Ok(Kept::FREE);
+        }
+        keep_out(surface, &self.core, in_world, dt)
+    }
+
+    /// True if it is seen without a sweep that it met none of the skin that its hull could meet.
+    fn stays_clear(
+        &self,
+        patch: &SkinPatch,
+        surface: &SkinnedSurface,
+        [start, end]: [[DVec3; 2]; 2],
+        end_in_world: [DVec3; 2],
+    ) -> Result<bool, SurfaceError> {
+        let motion = patch.most_motion([0, 1].map(|side| end[side] - start[side]));
+        let middle = self.hull.middle_at(&self.course[0]);
+        let farther = (start[0] - middle)
+            .length()
+            .max((start[1] - middle).length());
+        let far = patch
+            .gap()
+            .is_some_and(|gap| gap - farther - motion > self.core.radius * MET);
+        Ok(far || stays_clear(surface, &self.core, end_in_world, motion)?)
+    }
+
+    /// True if its core ended where it was expected to, so far that what of it is swept can have met no
+    /// skin but that which its hull was to meet.
+    fn kept_course(&self, ends: &[DVec3; 2]) -> bool {
+        let expected = self.core.ends_at(&self.course[1]);
+        let astray = REACH + self.core.radius * (1.0 - SWEPT);
+        (0..2).all(|side| (ends[side] - expected[side]).length() <= astray)
     }
 }
 
 fn look_ahead(core: &Core) -> f32 {
     (core.radius * LOOK_AHEAD) as f32
-}
-
-/// The box that a body may reach in a tick, and its middle now; `None` without colliders.
-fn reach(body: &RigidBody, colliders: &ColliderSet, dt: f64) -> Option<(Aabb, DVec3)> {
-    let (start, end) = (
-        *body.position(),
-        body.predict_position_using_velocity(dt as f32),
-    );
-    let mut now: Option<Aabb> = None;
-    let mut reach: Option<Aabb> = None;
-    for handle in body.colliders() {
-        let Some(collider) = colliders
-            .get(*handle)
-            .filter(|c| c.is_enabled() && !c.is_sensor())
-        else {
-            continue;
-        };
-        let on_body = collider
-            .position_wrt_parent()
-            .copied()
-            .unwrap_or(Pose::IDENTITY);
-        let first = collider.shape().compute_aabb(&(start * on_body));
-        let last = collider.shape().compute_aabb(&(end * on_body));
-        now = Some(now.map_or(first, |all| all.merged(&first)));
-        let both = first.merged(&last);
-        reach = Some(reach.map_or(both, |all| all.merged(&both)));
-    }
-    let reach = reach?;
-    let around = Vector::splat(REACH);
-    let reach = Aabb::new(reach.mins - around, reach.maxs + around);
-    Some((reach, now?.center().as_dvec3()))
 }
 
 fn check_tick(dt: f64) -> Result<(), DebrisError> {

@@ -2,23 +2,22 @@
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::parry::{move_trimesh, trimesh};
-use clamber_surface::surface::{Patch, PatchChange, SkinnedSurface, SurfaceError};
+use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface, SurfaceError};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{
-    Aabb, ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh,
-};
+use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh};
 use rapier3d::math::Vector;
 use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::{TriMeshFlags, Triangle};
 use rapier3d::pipeline::ActiveHooks;
 
 use super::fit::RigidMotion;
+use super::hull::Reach;
 use super::pieces::DebrisConfig;
 
 /// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
 /// box. More makes it less often, and gives rapier more triangles in every tick.
-const MARGIN: f64 = 0.1;
+const MARGIN: f32 = 0.02;
 
 /// Without these, bodies that slide catch on edges between triangles. From both sides, since mirrored
 /// joints turn triangles inside out.
@@ -37,6 +36,8 @@ pub(super) struct SkinPatch {
     before: Vec<DVec3>,
     now: Vec<DVec3>,
     motion: RigidMotion,
+    /// How far the skin was from the middle of the body's hull a tick ago, if it was measured in this one.
+    gap: Option<f64>,
     /// Where the surface stands, if the skin shown stood still in it.
     still_at: Option<Similarity>,
 }
@@ -46,10 +47,8 @@ pub(super) struct SkinPatch {
 pub(super) struct Place {
     /// Rapier's origin in the world.
     pub(super) origin: DVec3,
-    /// All that the body may reach in this tick, in rapier's space.
-    pub(super) reach: Aabb,
-    /// Its middle now.
-    pub(super) center: DVec3,
+    /// What the body may reach in this tick.
+    pub(super) reach: Reach,
     /// How far rapier is to look ahead along the skin's motion.
     pub(super) look_ahead: f32,
     pub(super) dt: f64,
@@ -66,20 +65,17 @@ impl SkinPatch {
         colliders: &mut ColliderSet,
     ) -> Result<(), SurfaceError> {
         let world_from_model = surface.world_from_model();
-        let half = place.reach.half_extents().as_dvec3();
-        let center = place.origin + place.reach.center().as_dvec3();
-        let center = world_from_model.inverse_transform_point(center);
-        let inverse = world_from_model.rotation.conjugate();
-        let turned = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (inverse * axis).abs());
-        let half = turned[0] * half.x + turned[1] * half.y + turned[2] * half.z;
-        let half = half / world_from_model.scale;
-        let (low, high) = ((center - half).as_vec3(), (center + half).as_vec3());
-        let margin = (half.max_element() * MARGIN) as f32;
-        let change = self.patch.update(surface, low, high, margin)?;
+        let reach = place.reach.on(world_from_model, place.origin);
+        let margin = reach.half_side() * MARGIN;
+        let apart = |moving: &MovingTriangle| reach.apart(moving);
+        let change = self
+            .patch
+            .update_near(surface, reach.low, reach.high, margin, apart)?;
         if self.patch.is_empty() {
             self.rest(colliders);
             return Ok(());
         }
+        self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
         if still && change == PatchChange::Moved && self.still_at == Some(*world_from_model) {
             // Nothing is new. Left alone, rapier lets rocks fall asleep on it.
@@ -116,9 +112,24 @@ impl SkinPatch {
         self.handles
     }
 
+    /// How far the skin was from the middle of the body's hull before the tick, metres; `None` if that is
+    /// not known.
+    pub(super) fn gap(&self) -> Option<f64> {
+        self.gap
+    }
+
+    /// How far the skin and either end of the body, of which it is said how they moved, moved past each
+    /// other at most, metres.
+    pub(super) fn most_motion(&self, ends: [DVec3; 2]) -> f64 {
+        let pairs = self.before.iter().zip(&self.now);
+        let squares =
+            pairs.flat_map(|(before, now)| ends.map(|end| (*now - *before - end).length_squared()));
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
     fn place_vertices(&mut self, surface: &SkinnedSurface, place: &Place) {
         let world_from_model = surface.world_from_model();
-        let from = place.origin + place.center;
+        let from = place.origin + place.reach.middle();
         let local = |p: &glam::Vec3| world_from_model.transform_point_f32(*p) - from;
         self.before.clear();
         self.before
@@ -130,7 +141,7 @@ impl SkinPatch {
     /// The nearer a vertex the more it counts, and the point nearest to the body counts alone for the
     /// velocity there: what touches the body first moves as the skin does.
     fn fit(&mut self, place: &Place) {
-        let reach = place.reach.half_extents().as_dvec3().length_squared();
+        let reach = place.reach.radius() * place.reach.radius();
         let pairs = self.before.iter().zip(&self.now);
         let pairs = pairs.map(|(before, now)| {
             let apart = (*before + *now) * 0.5;
@@ -138,6 +149,7 @@ impl SkinPatch {
         });
         self.motion = RigidMotion::fit(pairs, place.dt);
         if let Some((before, now)) = self.nearest() {
+            self.gap = Some(before.length());
             let wanted = now - before;
             let off = wanted - self.motion.displacement(before, place.dt);
             self.motion.linear += off / place.dt;
@@ -194,7 +206,7 @@ impl SkinPatch {
             shown.set_enabled(true);
         }
         if let Some(body) = bodies.get_mut(body) {
-            body.set_translation(place.center.as_vec3(), false);
+            body.set_translation(place.reach.middle().as_vec3(), false);
             body.set_rotation(rapier3d::math::Rotation::IDENTITY, false);
             body.set_soft_ccd_prediction(place.look_ahead);
             body.set_linvel(self.motion.linear.as_vec3(), true);

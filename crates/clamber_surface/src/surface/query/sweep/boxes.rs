@@ -7,7 +7,7 @@ use super::super::stack::Stack;
 use super::super::{check_point, root};
 use super::cluster::MovingCluster;
 use crate::mesh::TriangleId;
-use crate::mesh::hierarchy::Child;
+use crate::mesh::hierarchy::{Child, LANES};
 use crate::surface::bounds::Spheres;
 use crate::surface::{SkinnedSurface, SurfaceError};
 
@@ -86,19 +86,22 @@ impl SkinnedSurface {
 /// Lanes of which anything may meet the box on its way between two poses: all of it lies in the box
 /// around the spheres at both.
 fn near_box([start, end]: &[Spheres; 2], [low, high]: [[f32; 3]; 2]) -> Lanes {
-    let axes = |spheres: &Spheres, lane: usize| {
-        [spheres.x[lane], spheres.y[lane], spheres.z[lane]].map(|x| (x, spheres.radius[lane]))
-    };
-    lanes(|lane| {
-        let (first, last) = (axes(start, lane), axes(end, lane));
-        // Negated, so that NaN touches.
-        !(0..3).any(|axis| {
-            let beyond = |(x, radius): (f32, f32)| {
-                let reach = radius + SLACK * (x.abs() + radius);
-                (x + reach < low[axis], x - reach > high[axis])
+    let mut beyond = [false; LANES];
+    for (axis, (first, last)) in axes(start).into_iter().zip(axes(end)).enumerate() {
+        for lane in 0..LANES {
+            let reach = |spheres: &Spheres, x: f32| {
+                spheres.radius[lane] + SLACK * (x.abs() + spheres.radius[lane])
             };
-            let (first, last) = (beyond(first[axis]), beyond(last[axis]));
-            first.0 && last.0 || first.1 && last.1
-        })
-    })
+            let (x, y) = (first[lane], last[lane]);
+            let (at_x, at_y) = (reach(start, x), reach(end, y));
+            // NaN is beyond nothing, so it touches.
+            beyond[lane] |= (x + at_x < low[axis]) & (y + at_y < low[axis]);
+            beyond[lane] |= (x - at_x > high[axis]) & (y - at_y > high[axis]);
+        }
+    }
+    lanes(|lane| !beyond[lane])
+}
+
+fn axes(spheres: &Spheres) -> [&[f32; LANES]; 3] {
+    [&spheres.x, &spheres.y, &spheres.z]
 }

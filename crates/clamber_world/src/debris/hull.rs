@@ -1,0 +1,339 @@
+//! The outside of a body, and what of the skin it may reach in a tick.
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::surface::MovingTriangle;
+use glam::{DMat3, DQuat, DVec3, Mat3, Vec3};
+use rapier3d::dynamics::RigidBody;
+use rapier3d::geometry::{ColliderSet, TypedShape};
+use rapier3d::math::Pose;
+use rapier3d::parry::bounding_volume::BoundingVolume;
+use rapier3d::parry::query::PointQuery;
+use rapier3d::parry::shape::Triangle;
+
+/// A box around all solid colliders of a body, in the body's space, or a ball if that is all it has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hull {
+    middle: DVec3,
+    half: DVec3,
+    is_ball: bool,
+}
+
+impl Hull {
+    /// `None` for a body without a solid collider.
+    pub(super) fn of(body: &RigidBody, colliders: &ColliderSet) -> Option<Self> {
+        let solid = body.colliders().iter().filter_map(|handle| {
+            let collider = colliders.get(*handle)?;
+            (collider.is_enabled() && !collider.is_sensor()).then_some(collider)
+        });
+        let boxes = solid.clone().map(|collider| {
+            let on_body = collider.position_wrt_parent();
+            let on_body = on_body.copied().unwrap_or(Pose::IDENTITY);
+            collider.shape().compute_aabb(&on_body)
+        });
+        let all = boxes.reduce(|all, one| all.merged(&one))?;
+        let is_ball = |shape| matches!(shape, TypedShape::Ball(_));
+        Some(Self {
+            middle: all.center().as_dvec3(),
+            half: all.half_extents().as_dvec3(),
+            is_ball: solid
+                .map(|c| is_ball(c.shape().as_typed_shape()))
+                .eq([true]),
+        })
+    }
+
+    /// The largest distance of its middle from what it holds.
+    pub(super) fn radius(&self) -> f64 {
+        if self.is_ball {
+            self.half.x
+        } else {
+            self.half.length()
+        }
+    }
+
+    /// Its middle under a pose, in rapier's space.
+    pub(super) fn middle_at(&self, pose: &Pose) -> DVec3 {
+        self.frame_at(pose).middle
+    }
+
+    /// Its middle and axes under a pose, in rapier's space; those of a ball never turn.
+    fn frame_at(&self, pose: &Pose) -> Frame {
+        let rotation = pose.rotation.as_dquat().normalize();
+        Frame {
+            middle: rotation * self.middle + pose.translation.as_dvec3(),
+            rotation: if self.is_ball {
+                DQuat::IDENTITY
+            } else {
+                rotation
+            },
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Frame {
+    middle: DVec3,
+    rotation: DQuat,
+}
+
+/// Where a body may get in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reach {
+    hull: Hull,
+    /// Before the tick, and after it if nothing stops the body.
+    frames: [Frame; 2],
+    /// Half the angle from the one to the other, radians.
+    half_turn: f64,
+    /// By how much its hull is to be larger, metres.
+    around: f64,
+}
+
+impl Reach {
+    /// Of a body that goes from one pose to another; skin may be `around` metres away.
+    pub(super) fn new(hull: Hull, poses: [&Pose; 2], around: f64) -> Self {
+        let frames = poses.map(|pose| hull.frame_at(pose));
+        let cosine = frames[0].rotation.dot(frames[1].rotation).abs().min(1.0);
+        Self {
+            hull,
+            frames,
+            half_turn: libm::acos(cosine),
+            around,
+        }
+    }
+
+    /// The middle of the body before the tick, in rapier's space.
+    pub(super) fn middle(&self) -> DVec3 {
+        self.frames[0].middle
+    }
+
+    /// How far from its middle it reaches.
+    pub(super) fn radius(&self) -> f64 {
+        self.hull.radius() + self.around
+    }
+
+    /// In the model space of a surface; `origin` is rapier's in the world.
+    pub(super) fn on(&self, world_from_model: &Similarity, origin: DVec3) -> ReachOnSurface {
+        let to_model = world_from_model.rotation.conjugate();
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        let half = self.hull.half + self.around;
+        // What is between the two boxes leaves the box around both by as much as a chord cuts off.
+        let cut = self.hull.radius() * (1.0 - libm::cos(self.half_turn));
+        let frames = self.frames.map(|frame| {
+            let middle = world_from_model.inverse_transform_point(origin + frame.middle);
+            let axes = DMat3::from_quat(to_model * frame.rotation);
+            let across = axes.x_axis.abs() * half.x
+                + axes.y_axis.abs() * half.y
+                + axes.z_axis.abs() * half.z;
+            let across = (across + cut) / world_from_model.scale;
+            (low, high) = (low.min(middle - across), high.max(middle + across));
+            let turned = axes.transpose() * world_from_model.scale;
+            (turned.as_mat3(), (turned * -middle).as_vec3())
+        });
+        ReachOnSurface {
+            low: low.as_vec3(),
+            high: high.as_vec3(),
+            frames,
+            half: half.as_vec3(),
+            is_ball: self.hull.is_ball,
+            turn: 2.0 * self.half_turn as f32,
+            scale: world_from_model.scale as f32,
+        }
+    }
+}
+
+/// A [`Reach`] in the model space of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ReachOnSurface {
+    /// The corners of a box around all of it.
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
+    /// From the model to the body's frame, before and after.
+    frames: [(Mat3, Vec3); 2],
+    half: Vec3,
+    is_ball: bool,
+    /// How far the frame turns, radians.
+    turn: f32,
+    scale: f32,
+}
+
+impl ReachOnSurface {
+    /// Half of the longest side of its box.
+    pub(super) fn half_side(&self) -> f32 {
+        ((self.high - self.low) * 0.5).max_element()
+    }
+
+    /// How far a triangle moves past it, in units of the model: no more than it does, and less where
+    /// it passes by a corner.
+    ///
+    /// Corners are taken straight from where they are in the first frame to where they are in the second.
+    /// Seen from a frame that turns by the angle a, a point that moves evenly by m, and is never farther than f
+    /// from the middle, has an acceleration of at most `a^2 f + 2 a m`, and so is at most an eighth
+    /// of that off the straight way.
+    pub(super) fn apart(&self, moving: &MovingTriangle) -> f32 {
+        let [(turn, shift), (last_turn, last_shift)] = self.frames;
+        let before = moving.previous.map(|p| turn * p + shift);
+        let after = moving.current.map(|p| last_turn * p + last_shift);
+        let mut low = before[0].min(after[0]);
+        let mut high = before[0].max(after[0]);
+        for corner in [before[1], before[2], after[1], after[2]] {
+            (low, high) = (low.min(corner), high.max(corner));
+        }
+        let apart = (low.max(-high) - self.half).max_element();
+        if !self.is_ball {
+            return (apart - self.cut(before, after)) / self.scale;
+        }
+        if apart > self.half.x * AT_ONCE {
+            return apart / self.scale;
+        }
+        let distance = Triangle::from(before).distance_to_local_point(Vec3::ZERO, false);
+        let apart = apart.max(distance - self.half.x - most_moved(before, after));
+        apart / self.scale
+    }
+
+    fn cut(&self, before: [Vec3; 3], after: [Vec3; 3]) -> f32 {
+        if self.turn == 0.0 {
+            return 0.0;
+        }
+        let farthest = before.into_iter().chain(after).map(Vec3::length_squared);
+        let farthest = farthest.fold(0.0, f32::max).sqrt();
+        // In the frame that does not turn: the rest is the turning itself.
+        let moved = most_moved(before, after) + self.turn * farthest;
+        self.turn * (self.turn * farthest + 2.0 * moved) / 8.0
+    }
+}
+
+fn most_moved(before: [Vec3; 3], after: [Vec3; 3]) -> f32 {
+    let moved = |corner: usize| (after[corner] - before[corner]).length_squared();
+    moved(0).max(moved(1)).max(moved(2)).sqrt()
+}
+
+/// A triangle so far from the box around a ball, as a share of its radius, is not measured any more closely.
+const AT_ONCE: f32 = 0.1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clamber_surface::geometry::rotation_from_axis_angle;
+    use clamber_surface::mesh::TriangleId;
+    use rapier3d::dynamics::RigidBodyBuilder;
+    use rapier3d::geometry::ColliderBuilder;
+    use rapier3d::math::Vector;
+    use rapier3d::pipeline::PhysicsWorld;
+
+    fn hull(colliders: &[ColliderBuilder]) -> Option<Hull> {
+        let mut world = PhysicsWorld::default();
+        let body = world.insert_body(RigidBodyBuilder::dynamic());
+        for collider in colliders {
+            world.insert_collider(collider.clone(), Some(body));
+        }
+        Hull::of(&world.bodies[body], &world.colliders)
+    }
+
+    #[test]
+    fn it_is_the_box_around_all_that_is_solid_and_enabled() {
+        let colliders = [
+            ColliderBuilder::ball(0.5),
+            ColliderBuilder::cuboid(0.1, 0.2, 0.3).translation(Vector::new(1.0, 0.0, 0.0)),
+            ColliderBuilder::ball(9.0).sensor(true),
+            ColliderBuilder::ball(9.0).enabled(false),
+        ];
+        let all = hull(&colliders).unwrap();
+        let (low, high) = (all.middle - all.half, all.middle + all.half);
+        assert!((low - DVec3::splat(-0.5)).length() < 1e-6, "{low}");
+        assert!((high - DVec3::new(1.1, 0.5, 0.5)).length() < 1e-6, "{high}");
+        assert!(!all.is_ball);
+        assert_eq!(hull(&colliders[2..]), None);
+        let ball = hull(&[ColliderBuilder::ball(0.5).translation(Vector::Y)]).unwrap();
+        assert!(ball.is_ball && ball.radius() == 0.5 && ball.middle == DVec3::Y);
+    }
+
+    /// A turn of up to an angle about any axis.
+    fn turn(rng: &mut fastrand::Rng, most: f64) -> DQuat {
+        let axis = vector(rng).normalize_or(DVec3::X);
+        rotation_from_axis_angle(axis, rng.f64() * most)
+    }
+
+    /// In the cube from -1 to 1.
+    fn vector(rng: &mut fastrand::Rng) -> DVec3 {
+        DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0
+    }
+
+    /// How far a triangle comes to the body's own shape, by trying many times of the tick, in which the
+    /// body turns and moves so far from a first pose.
+    fn nearest(
+        shape: &ColliderBuilder,
+        corners: &[[DVec3; 3]; 2],
+        first: &Pose,
+        (axis, angle, moved): (DVec3, f64, DVec3),
+    ) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for step in 0..=64 {
+            let share = f64::from(step) / 64.0;
+            let at = |corner: usize| corners[0][corner].lerp(corners[1][corner], share).as_vec3();
+            let triangle = Triangle::new(at(0), at(1), at(2));
+            let turned = rotation_from_axis_angle(axis, angle * share).as_quat();
+            let place = first.translation + (moved * share).as_vec3();
+            let pose = Pose::from_parts(place, turned * first.rotation);
+            let shape = shape.shape.as_ref();
+            let apart = rapier3d::parry::query::distance(&pose, shape, &Pose::IDENTITY, &triangle);
+            nearest = nearest.min(f64::from(apart.unwrap().distance));
+        }
+        nearest
+    }
+
+    #[test]
+    fn no_triangle_that_comes_near_is_said_to_pass_farther_away() {
+        let mut rng = fastrand::Rng::with_seed(7);
+        let shapes = [
+            ColliderBuilder::ball(0.5),
+            ColliderBuilder::cuboid(0.3, 0.4, 0.5),
+            ColliderBuilder::capsule_x(0.8, 0.2),
+        ];
+        let (mut met, mut passed) = (0, 0);
+        for round in 0..3000 {
+            let shape = &shapes[round % 3];
+            let hull = hull(std::slice::from_ref(shape)).unwrap();
+            let first = Pose::from_parts(vector(&mut rng).as_vec3(), turn(&mut rng, 3.0).as_quat());
+            let fast = if round % 2 == 0 { 0.05 } else { 1.0 };
+            let moved = vector(&mut rng) * fast;
+            let (axis, angle) = (vector(&mut rng).normalize_or(DVec3::X), rng.f64() * fast);
+            let turned = rotation_from_axis_angle(axis, angle).as_quat();
+            let last =
+                Pose::from_parts(first.translation + moved.as_vec3(), turned * first.rotation);
+            let root = Similarity {
+                rotation: turn(&mut rng, 3.0),
+                scale: 0.5 + rng.f64() * 2.0,
+                translation: vector(&mut rng) * 10.0,
+            };
+            let origin = vector(&mut rng) * 5.0;
+            let reach = Reach::new(hull, [&first, &last], 0.0).on(&root, origin);
+            let at = first.translation.as_dvec3() + vector(&mut rng) * 0.8;
+            let corners = [(); 3].map(|()| at + vector(&mut rng) * 0.4);
+            let skin = vector(&mut rng) * fast;
+            let corners = [
+                corners,
+                corners.map(|p| p + skin + vector(&mut rng) * 0.2 * fast),
+            ];
+            let in_model = |p: DVec3| root.inverse_transform_point_f32(p + origin);
+            let moving = MovingTriangle {
+                triangle: TriangleId(0),
+                previous: corners[0].map(in_model),
+                current: corners[1].map(in_model),
+            };
+            let nearest = nearest(shape, &corners, &first, (axis, angle, moved));
+            let said = f64::from(reach.apart(&moving)) * root.scale;
+            assert!(said <= nearest + 1e-4, "{round}: said {said}, is {nearest}");
+            // And what it meets is in its box.
+            if nearest < 1e-3 {
+                let slack = Vec3::splat(0.01);
+                assert!(
+                    moving.meets_box(reach.low - slack, reach.high + slack),
+                    "{round}"
+                );
+                met += 1;
+            }
+            passed += usize::from(said > 0.0);
+        }
+        assert!(met > 500 && passed > 500, "{met} met, {passed} passed");
+    }
+}
