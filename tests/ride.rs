@@ -12,7 +12,7 @@ use clamber_scenes::{Creature, test_data};
 
 /// Stands without input for so many seconds; gives the ticks.
 fn stand(creature: &Creature, height: f64, seed: u64, seconds: u32) -> Recording {
-    let mut battle = Battle::new(creature, height, seed).unwrap();
+    let mut battle = Battle::new(creature, height, seed, 0).unwrap();
     for _ in 0..seconds * 60 {
         battle.step(Intent::Stand).unwrap();
     }

@@ -1,14 +1,15 @@
-//! The main scene: a valley, a creature that walks and shakes, and a climber that is dropped on its
-//! back and rides it.
+//! The main scene: a valley, a creature that walks and shakes, a climber that is dropped on its back and
+//! rides it, and rocks that fall on it and roll off.
 //!
-//! One tick, in this order: the creature is posed, the physics steps, the climber steps, the scene
-//! checks what came of it.
+//! One tick, in this order: the creature is posed, the climber steps, the physics steps with the rocks, the
+//! scene checks what came of it.
 
 pub mod bot;
 mod checks;
 mod choreography;
 mod options;
 mod recording;
+mod rockfall;
 mod scene;
 mod summary;
 mod timeline;
@@ -18,6 +19,7 @@ use std::path::PathBuf;
 pub use choreography::Choreography;
 pub use options::BattleOptions;
 pub use recording::{Recording, Sample};
+pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
 pub use summary::{Check, Summary};
 
@@ -25,6 +27,7 @@ use crate::CreatureError;
 use clamber_climber::ClimberError;
 use clamber_surface::rig::RigError;
 use clamber_surface::surface::SurfaceError;
+use clamber_world::DebrisError;
 use thiserror::Error;
 
 /// Why a battle cannot be fought or written down.
@@ -51,6 +54,9 @@ pub enum BattleError {
     /// The climber refused.
     #[error(transparent)]
     Climber(#[from] ClimberError),
+    /// A rock cannot be held against the creature.
+    #[error(transparent)]
+    Debris(#[from] DebrisError),
     /// The results cannot be written.
     #[error("cannot write {path}: {reason}")]
     Write {
@@ -85,7 +91,12 @@ pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
         reason: error.to_string(),
     })?;
     let creature = options.load_creature()?;
-    let mut battle = Battle::new(&creature, options.height(), options.seed)?;
+    let mut battle = Battle::new(
+        &creature,
+        options.height(),
+        options.seed,
+        options.rocks as usize,
+    )?;
     let ticks = options.ticks();
     let progress = options::Progress::new(ticks);
     for tick in 0..ticks {

@@ -14,11 +14,11 @@ const FILE_HEIGHT: f64 = 20.0;
 /// Metres; what the giant is scaled to, and about what it has.
 const GIANT_HEIGHT: f64 = 40.0;
 
-/// A climber rides a walking, shaking creature.
+/// A climber rides a walking, shaking creature on which rocks fall.
 ///
 /// Drops a climber on the creature's back, where it stands, walks and jumps by script. Checks at
-/// every tick that it is carried exactly and stays above the ground, and six times a second that it
-/// is not inside the creature. Ends with a table, and exits with 1 if a check failed.
+/// every tick that it is carried exactly and stays above the ground, and several times a second that neither
+/// it nor a rock is inside the creature. Ends with a table, and exits with 1 if a check failed.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {
@@ -36,7 +36,12 @@ pub struct BattleOptions {
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: f64,
 
-    /// Where exactly the climber comes down: any number; the same one gives the same battle.
+    /// Rocks that fall on the creature; the climber does not feel them.
+    #[arg(long, value_name = "COUNT", default_value_t = 24)]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub rocks: u32,
+
+    /// Where exactly the climber and the rocks come down: any number; the same one gives the same battle.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 

@@ -18,7 +18,7 @@ pub struct Sample {
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
     pub skinned_share: f64,
-    /// What the tick cost: pose, physics, climber.
+    /// What the tick cost: pose, climber.
     pub microseconds: f64,
 }
 
@@ -37,7 +37,7 @@ impl Sample {
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     samples: Vec<Sample>,
-    /// Fingerprints of the climber's state, folded.
+    /// Fingerprints of the ticks, folded.
     hash: u64,
 }
 
@@ -52,7 +52,7 @@ impl Recording {
         &self.samples
     }
 
-    /// A number over every bit of the climber's states: equal for equal battles.
+    /// A number over every bit of the climber's states and the rocks' places: equal for equal battles.
     pub fn hash(&self) -> u64 {
         self.hash
     }

@@ -6,11 +6,13 @@ use clamber_climber::{
 };
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
+use clamber_world::rapier3d::pipeline::QueryFilter;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
 
 use super::bot::{self, Intent};
 use super::checks::Watch;
+use super::rockfall::Rockfall;
 use super::{BattleError, Choreography, Recording, Sample};
 use crate::{Creature, valley};
 
@@ -26,6 +28,9 @@ pub const CREATURE: ObstacleId = ObstacleId(1);
 /// How far above the perch the climber is dropped, metres.
 const DROP: f64 = 2.0;
 
+/// How far above the perch rocks fall from, as a share of the creature's height.
+const ROCKS_ABOVE: f64 = 0.5;
+
 /// Ticks on the ground after which the climber is lifted back onto the creature.
 const GROUNDED_TICKS: u32 = 60;
 
@@ -35,6 +40,7 @@ pub struct Battle<'a> {
     surface: SkinnedSurface,
     world: PhysicsWorld,
     before: BodyPoses,
+    rocks: Rockfall,
     climber: Climber,
     perch: MaterialPoint,
     height: f64,
@@ -47,12 +53,17 @@ pub struct Battle<'a> {
 }
 
 impl<'a> Battle<'a> {
-    /// A creature of `height` metres in the valley, and a climber above its back; `seed` shifts
-    /// where.
+    /// A creature of `height` metres in the valley, a climber above its back, and so many rocks above that;
+    /// `seed` shifts where.
     ///
     /// # Errors
     /// [`BattleError`].
-    pub fn new(creature: &'a Creature, height: f64, seed: u64) -> Result<Self, BattleError> {
+    pub fn new(
+        creature: &'a Creature,
+        height: f64,
+        seed: u64,
+        rocks: usize,
+    ) -> Result<Self, BattleError> {
         let mut choreography = Choreography::new(creature, height)?;
         let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
         let (palette, world_from_model) = choreography.pose()?;
@@ -62,11 +73,15 @@ impl<'a> Battle<'a> {
         })?;
         let config = ClimberConfig::default();
         let climber = Climber::new(config, perch.point + config.up() * (DROP + config.radius))?;
+        let mut world = valley::world();
+        let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
+        let rocks = Rockfall::new(&mut world, rocks, seed, above, height)?;
         Ok(Self {
             choreography,
             surface,
-            world: valley::world(),
+            world,
             before: BodyPoses::default(),
+            rocks,
             climber,
             perch: perch.material,
             height,
@@ -88,9 +103,6 @@ impl<'a> Battle<'a> {
         self.choreography.advance(TICK)?;
         let (palette, world_from_model) = self.choreography.pose()?;
         self.surface.advance(palette, world_from_model)?;
-        self.before.record(&self.world.bodies);
-        self.world.step();
-
         let state = self.climber.state();
         let seconds = self.tick as f64 * TICK;
         let input = bot::input(
@@ -101,7 +113,9 @@ impl<'a> Battle<'a> {
             seconds,
             self.height,
         );
-        let terrain = RapierTerrain::of_world(&self.world, &self.before);
+        // The climber and the rocks pass through each other.
+        let terrain = RapierTerrain::of_world(&self.world, &self.before)
+            .with_filter(QueryFilter::only_fixed());
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(TERRAIN, &terrain), (CREATURE, &self.surface)];
         let report = self.climber.step(&input, &obstacles, TICK)?;
@@ -109,6 +123,11 @@ impl<'a> Battle<'a> {
         let touched = self.surface.diagnostics();
 
         self.tick += 1;
+        let perch = Obstacle::motion(&self.surface, &self.perch, TICK);
+        let perch = perch.map_or(DVec3::ZERO, |perch| perch.position);
+        let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
+        self.rocks
+            .step(&self.surface, &mut self.world, above, self.tick)?;
         self.record(&input, &report, touched, microseconds);
         self.lift_if_grounded()
     }
@@ -140,7 +159,8 @@ impl<'a> Battle<'a> {
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
             microseconds,
         };
-        self.recording.push(sample, state.fingerprint());
+        let rocks = self.rocks.fingerprint(&self.world.bodies);
+        self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
     /// Once it has stood on the ground for a while, the climber is dropped on the back again.
@@ -183,6 +203,11 @@ impl<'a> Battle<'a> {
     /// The creature's skin.
     pub fn surface(&self) -> &SkinnedSurface {
         &self.surface
+    }
+
+    /// The rocks.
+    pub fn rocks(&self) -> &Rockfall {
+        &self.rocks
     }
 
     /// Every tick so far.

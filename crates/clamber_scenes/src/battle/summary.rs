@@ -4,6 +4,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Battle, BattleError, BattleOptions};
+use crate::measure::quantile;
 
 /// Farthest that a standing climber's contact may be from its material point, metres.
 const MAX_DRIFT: f64 = 1e-4;
@@ -62,7 +63,17 @@ pub struct Summary {
     pub max_penetration_m: f64,
     /// Vertices skinned per tick, as a share of all: the mean over the ticks.
     pub vertices_skinned_share: f64,
-    /// What half of the ticks cost at most: pose, physics, climber.
+    /// Rocks.
+    pub rocks: usize,
+    /// How often any of them was let fall.
+    pub rock_drops: u32,
+    /// Rocks at the creature's skin: the mean over the ticks.
+    pub rocks_near: f64,
+    /// Rocks that the physics let skin into, and that were put back in front of it.
+    pub rocks_put_back: u32,
+    /// What half of the ticks cost at most for the rocks, the physics included.
+    pub rocks_us_median: f64,
+    /// What half of the ticks cost at most, without the rocks: pose, climber.
     pub tick_us_median: f64,
     /// What 99 of 100 ticks cost at most.
     pub tick_us_p99: f64,
@@ -75,6 +86,7 @@ impl Summary {
         let recording = battle.recording();
         let mesh = battle.surface().mesh();
         let watch = battle.watch();
+        let (rocks, report) = (battle.rocks(), battle.rocks().report());
         let check = |name, found: f64, at_most: f64| Check {
             name,
             found,
@@ -97,6 +109,11 @@ impl Summary {
             max_push_out_m: recording.max_push_out(),
             max_penetration_m: watch.deepest,
             vertices_skinned_share: recording.skinned_share(),
+            rocks: rocks.len(),
+            rock_drops: report.drops,
+            rocks_near: report.near as f64 / recording.samples().len().max(1) as f64,
+            rocks_put_back: report.put_back,
+            rocks_us_median: quantile(&mut rocks.times().to_vec(), 0.5),
             tick_us_median: recording.tick_us(0.5),
             tick_us_p99: recording.tick_us(0.99),
             checks: vec![
@@ -107,6 +124,7 @@ impl Summary {
                     MAX_PUSH_OUT,
                 ),
                 check("ticks inside or below", f64::from(watch.fell_through), 0.0),
+                check("rocks inside or below", f64::from(report.fell_through), 0.0),
                 check(
                     "share of ticks not riding",
                     1.0 - recording.riding_share(),
@@ -167,6 +185,22 @@ impl fmt::Display for Summary {
             f,
             "tick, median and p99",
             format!("{:.0} us, {:.0} us", self.tick_us_median, self.tick_us_p99),
+        )?;
+        row(
+            f,
+            "rocks, drops, at the skin",
+            format!(
+                "{}, {}, {:.1}",
+                self.rocks, self.rock_drops, self.rocks_near
+            ),
+        )?;
+        row(
+            f,
+            "rocks, physics and all",
+            format!(
+                "{:.0} us, {} put back",
+                self.rocks_us_median, self.rocks_put_back
+            ),
         )?;
         row(f, "hash", self.hash.clone())?;
         for check in &self.checks {

@@ -50,7 +50,7 @@ impl<'a> Rocks<'a> {
         let root = Similarity::from_translation(DVec3::new(0.0, ground, 0.0));
         let mut world = valley::world();
         let top = root.transform_point_f32(high).y + 1.0;
-        let rocks = scatter(&mut world, count, seed, top);
+        let rocks = scatter(&mut world, count, seed, DVec3::Y * top, 1.0);
         let mut debris = Debris::new(DebrisConfig::default());
         for rock in &rocks {
             debris.add(*rock, &mut world.bodies, &world.colliders)?;
@@ -127,8 +127,17 @@ impl<'a> Rocks<'a> {
     /// # Errors
     /// As that one.
     pub fn keep_out(&mut self) -> Result<DebrisReport, RocksError> {
-        let bodies = &mut self.world.bodies;
-        Ok(self.debris.after_step(&[&self.surface], bodies, TICK)?)
+        let world = &mut self.world;
+        let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
+        let surfaces = [&self.surface];
+        Ok(self.debris.after_step(
+            &surfaces,
+            &mut world.bodies,
+            &world.colliders,
+            broad_phase,
+            narrow_phase,
+            TICK,
+        )?)
     }
 
     /// The part of rapier in [`Rocks::step`].
@@ -164,15 +173,18 @@ impl<'a> Rocks<'a> {
     }
 }
 
-/// Rocks, stones and logs over the middle of the valley, from `bottom` metres up; a sixth of them logs.
+/// Rocks, stones and logs above a place; a sixth of them logs. At a scale of 1 they have radii of 25
+/// to 70 cm.
 pub fn scatter(
     world: &mut PhysicsWorld,
     count: usize,
     seed: u64,
-    bottom: f64,
+    above: DVec3,
+    scale: f64,
 ) -> Vec<RigidBodyHandle> {
     let mut rng = fastrand::Rng::with_seed(seed);
-    let mut between = |low: f32, high: f32| low + (high - low) * rng.f32();
+    let scale = scale as f32;
+    let mut between = |low: f32, high: f32| (low + (high - low) * rng.f32()) * scale;
     let mut rocks = Vec::with_capacity(count);
     for index in 0..count {
         let size = between(0.25, 0.7);
@@ -182,13 +194,13 @@ pub fn scatter(
             _ => ColliderBuilder::ball(size),
         };
         // In layers, so that none begins inside another.
-        let layer = (index / 25) as f32 * 3.0;
-        let (row, column) = ((index % 25) / 5, index % 5);
-        let place = Vector::new(
-            (row as f32 - 2.0) * 2.6 + between(-0.3, 0.3),
-            bottom as f32 + layer,
-            (column as f32 - 2.0) * 2.6 + between(-0.3, 0.3),
+        let (layer, row, column) = (index / 25, (index % 25) / 5, index % 5);
+        let aside = Vector::new(
+            (row as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
+            layer as f32 * 3.0 * scale,
+            (column as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),
         );
+        let place = (above + aside.as_dvec3()).as_vec3();
         let body = RigidBodyBuilder::dynamic().translation(place);
         let collider = shape.density(2500.0).friction(0.6);
         rocks.push(world.insert(body, collider).0);

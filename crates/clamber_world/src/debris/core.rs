@@ -5,6 +5,10 @@ use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::{ColliderSet, Shape, TypedShape};
 use rapier3d::math::Pose;
 
+/// How far rapier looks ahead along the motion of body and skin, as a share of the body's inner radius:
+/// contacts between faces that are farther from each other than they are large come out askew.
+const LOOK_AHEAD: f64 = 0.5;
+
 /// A capsule that the body's largest solid collider holds, in the body's space: its segment, of length 0
 /// for a ball, and its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +81,11 @@ impl Core {
         if usable && largest.is_none_or(|largest| largest.radius < core.radius) {
             *largest = Some(core);
         }
+    }
+
+    /// How far rapier is to look ahead along the motion of body and skin, metres.
+    pub(super) fn look_ahead(&self) -> f32 {
+        (self.radius * LOOK_AHEAD) as f32
     }
 
     /// Its ends under a pose, in rapier's space.

@@ -5,6 +5,8 @@ mod error;
 mod fit;
 mod hull;
 mod keep_out;
+mod let_through;
+mod piece;
 mod pieces;
 mod skin_patch;
 

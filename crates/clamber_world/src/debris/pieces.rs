@@ -1,24 +1,18 @@
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{ColliderHandle, ColliderSet, InteractionGroups, SolverFlags};
-use rapier3d::math::Pose;
+use rapier3d::geometry::{
+    BroadPhaseBvh, ColliderHandle, ColliderSet, InteractionGroups, NarrowPhase, SolverFlags,
+};
 use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
 use super::DebrisError;
 use super::core::Core;
-use super::hull::{Hull, Reach};
-use super::keep_out::{Kept, MET, SWEPT, keep_out, stays_clear};
-use super::skin_patch::{Place, SkinPatch};
-
-/// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
-/// within a tick, and rapier's own prediction of 2 cm. More gives rapier more triangles.
-const REACH: f64 = 0.025;
-
-/// How far rapier looks ahead along the motion of body and skin, as a share of the body's inner radius:
-/// contacts between faces that are farther from each other than they are large come out askew.
-const LOOK_AHEAD: f64 = 0.5;
+use super::hull::Hull;
+use super::let_through::{Immovable, is_outside, owner_in};
+use super::piece::Piece;
+use super::skin_patch::SkinPatch;
 
 /// What skin is to debris.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +45,8 @@ pub struct DebrisReport {
     pub near: u32,
     /// Bodies that rapier let skin into, and that were put back in front of it.
     pub put_back: u32,
-    /// Bodies that skin passes through still: caught in a closing fold.
+    /// Bodies that skin passes through: caught in a closing fold, or between skin and what does not
+    /// move, such as under a foot.
     pub caught: u32,
 }
 
@@ -63,6 +58,9 @@ pub struct DebrisReport {
 /// to where it is. So rapier's own solver finds contacts and friction against skin that moves. Forces
 /// go one way: nothing ever pushes a creature. What is faster than rapier can tell, such as a limb that
 /// moves by a metre in a tick, is found by sweeping the inside of the body against the moving skin.
+///
+/// A creature that cannot be pushed would drive what it steps on through the ground. Such a body is left
+/// where it is, and the skin passes through it until it is outside again.
 ///
 /// Each tick, in this order; the patches belong to the debris, so its hooks must be among those of the
 /// step, and the same surfaces must come in the same order:
@@ -100,7 +98,14 @@ pub struct DebrisReport {
 ///     surface.advance(&palette, Similarity::IDENTITY)?;
 ///     debris.before_step(&[&surface], &mut world.bodies, &mut world.colliders, dt)?;
 ///     world.step_with_events(&debris, &());
-///     debris.after_step(&[&surface], &mut world.bodies, dt)?;
+///     debris.after_step(
+///         &[&surface],
+///         &mut world.bodies,
+///         &world.colliders,
+///         &world.broad_phase,
+///         &world.narrow_phase,
+///         dt,
+///     )?;
 /// }
 /// assert!((world.bodies[rock].translation().y - 0.5).abs() < 0.02);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -115,18 +120,6 @@ pub struct Debris {
     owners: Vec<(ColliderHandle, RigidBodyHandle)>,
     /// Of bodies that are gone.
     spare: Vec<SkinPatch>,
-}
-
-/// One body, and the skin near it.
-#[derive(Clone, Debug)]
-struct Piece {
-    body: RigidBodyHandle,
-    core: Core,
-    hull: Hull,
-    /// Where it was before the step, and where it would be after it if nothing stopped it.
-    course: [Pose; 2],
-    /// One for each surface.
-    patches: Vec<SkinPatch>,
 }
 
 impl Debris {
@@ -164,22 +157,13 @@ impl Debris {
         let found = known.ok_or(DebrisError::NotDynamic(body))?;
         let core = Core::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
         let hull = Hull::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
-        found.set_soft_ccd_prediction(look_ahead(&core));
+        found.set_soft_ccd_prediction(core.look_ahead());
         match self.place_of(body) {
-            Ok(index) => {
-                self.pieces[index].core = core;
-                self.pieces[index].hull = hull;
+            Ok(index) => self.pieces[index].reshape(core, hull),
+            Err(index) => {
+                let piece = Piece::new(body, core, hull, *found.position());
+                self.pieces.insert(index, piece);
             }
-            Err(index) => self.pieces.insert(
-                index,
-                Piece {
-                    body,
-                    core,
-                    hull,
-                    course: [*found.position(); 2],
-                    patches: Vec::new(),
-                },
-            ),
         }
         Ok(())
     }
@@ -198,6 +182,13 @@ impl Debris {
     /// Bodies that collide with skin, by ascending handle.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = RigidBodyHandle> {
         self.pieces.iter().map(|piece| piece.body)
+    }
+
+    /// True while skin passes through a body, since it was caught between skin and something that does not
+    /// move.
+    pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
+        let piece = self.place_of(body).map(|index| &self.pieces[index]);
+        piece.is_ok_and(|piece| piece.patches.iter().any(|patch| patch.let_through))
     }
 
     /// Which surface and which of its triangles a contact is with: `collider` and `subshape` are those
@@ -235,14 +226,7 @@ impl Debris {
             let Some(body) = bodies.get(piece.body) else {
                 continue;
             };
-            let end = body.predict_position_using_velocity(dt as f32);
-            piece.course = [*body.position(), end];
-            let place = Place {
-                origin: self.origin,
-                reach: Reach::new(piece.hull, [body.position(), &end], REACH),
-                look_ahead: look_ahead(&piece.core),
-                dt,
-            };
+            let place = piece.set_course(body, self.origin, dt);
             let enabled = body.is_enabled();
             while piece.patches.len() < surfaces.len() {
                 piece.patches.push(self.spare.pop().unwrap_or_default());
@@ -252,6 +236,10 @@ impl Debris {
                     patch.rest(colliders);
                     continue;
                 };
+                if patch.let_through {
+                    patch.rest(colliders);
+                    continue;
+                }
                 let had = patch.handles();
                 patch
                     .update(surface, &place, &self.config, bodies, colliders)
@@ -270,6 +258,7 @@ impl Debris {
     }
 
     /// Puts bodies that skin went into during the step back in front of it, with at least its speed.
+    /// Where that would press it into something else that does not move, skin passes through it from then on.
     ///
     /// # Errors
     /// As [`Debris::before_step`].
@@ -277,27 +266,69 @@ impl Debris {
         &mut self,
         surfaces: &[&SkinnedSurface],
         bodies: &mut RigidBodySet,
+        colliders: &ColliderSet,
+        broad_phase: &BroadPhaseBvh,
+        narrow_phase: &NarrowPhase,
         dt: f64,
     ) -> Result<DebrisReport, DebrisError> {
         check_tick(dt)?;
         let mut report = DebrisReport::default();
-        for piece in &self.pieces {
+        let immovable = Immovable {
+            colliders,
+            broad_phase,
+            narrow_phase,
+            skin: &self.owners,
+        };
+        for piece in &mut self.pieces {
             let near = piece.patches.iter().any(|patch| !patch.is_empty());
             report.near += u32::from(near);
             for (index, surface) in surfaces.iter().enumerate() {
                 let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
                     break;
                 };
-                let kept = piece.keep_out(index, surface, body.position(), self.origin, dt);
-                let kept = kept.map_err(|source| DebrisError::Surface {
+                let (start, end) = (*piece.start(), *body.position());
+                let moved = (end.translation - start.translation).as_dvec3();
+                let failed = |source| DebrisError::Surface {
                     body: piece.body,
                     surface: index,
                     source,
-                })?;
-                report.caught += u32::from(!kept.free);
-                if let Some((normal, skin)) = kept.pushed
-                    && let Some(body) = bodies.get_mut(piece.body)
+                };
+                if let Some(patch) = piece.patches.get_mut(index)
+                    && patch.let_through
                 {
+                    let outside = is_outside(surface, &piece.core, &end, self.origin);
+                    patch.let_through = !outside.map_err(failed)?;
+                    report.caught += u32::from(patch.let_through);
+                    continue;
+                }
+                // Rapier lets a kinematic body press another one into what is fixed.
+                if let Some(patch) = piece.patches.get_mut(index)
+                    && !patch.is_empty()
+                    && immovable.touches(bodies, body)
+                    && let Some(share) = immovable.blocks(bodies, &piece.core, &start, moved)
+                {
+                    patch.let_through = true;
+                    report.caught += 1;
+                    if let Some(body) = bodies.get_mut(piece.body) {
+                        let back = start.translation + (moved * share).as_vec3();
+                        body.set_translation(back, true);
+                    }
+                    continue;
+                }
+                let kept = piece.keep_out(index, surface, &end, self.origin, dt);
+                let kept = kept.map_err(failed)?;
+                let Some((normal, skin)) = kept.pushed else {
+                    continue;
+                };
+                if let Some(patch) = piece.patches.get_mut(index)
+                    && let Some(_) = immovable.blocks(bodies, &piece.core, &end, kept.shift)
+                {
+                    patch.let_through = true;
+                    report.caught += 1;
+                    continue;
+                }
+                report.caught += u32::from(!kept.free);
+                if let Some(body) = bodies.get_mut(piece.body) {
                     report.put_back += 1;
                     let place = body.translation() + kept.shift.as_vec3();
                     let velocity = body.linvel().as_dvec3();
@@ -318,11 +349,7 @@ impl Debris {
 
     /// The body that a collider is skin for; `None` if it is no skin.
     pub(super) fn owner_of(&self, collider: ColliderHandle) -> Option<RigidBodyHandle> {
-        let key = |(skin, _): &(ColliderHandle, RigidBodyHandle)| skin.into_raw_parts();
-        let index = self
-            .owners
-            .binary_search_by_key(&collider.into_raw_parts(), key);
-        Some(self.owners[index.ok()?].1)
+        owner_in(&self.owners, collider)
     }
 
     fn drop_lost(&mut self, bodies: &RigidBodySet, colliders: &mut ColliderSet) {
@@ -341,6 +368,7 @@ impl Debris {
     fn retire(&mut self, piece: Piece, colliders: &mut ColliderSet) {
         for mut patch in piece.patches {
             patch.rest(colliders);
+            patch.let_through = false;
             self.spare.push(patch);
         }
         self.list_owners();
@@ -366,61 +394,6 @@ impl PhysicsHooks for Debris {
             && meets(context.collider2, context.rigid_body1);
         both.then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
     }
-}
-
-impl Piece {
-    /// What keeps it out of one surface, now that the step took it to a pose.
-    fn keep_out(
-        &self,
-        index: usize,
-        surface: &SkinnedSurface,
-        end: &Pose,
-        origin: DVec3,
-        dt: f64,
-    ) -> Result<Kept, SurfaceError> {
-        let ends = [&self.course[0], end].map(|pose| self.core.ends_at(pose));
-        let in_world = ends.map(|ends| ends.map(|end| end + origin));
-        if let Some(patch) = self.patches.get(index)
-            && self.kept_course(&ends[1])
-            && (patch.is_empty() || self.stays_clear(patch, surface, ends, in_world[1])?)
-        {
-            #[cfg(test)]
-            assert_eq!(keep_out(surface, &self.core, in_world, dt)?.pushed, None);
-            return Ok(Kept::FREE);
-        }
-        keep_out(surface, &self.core, in_world, dt)
-    }
-
-    /// True if it is seen without a sweep that it met none of the skin that its hull could meet.
-    fn stays_clear(
-        &self,
-        patch: &SkinPatch,
-        surface: &SkinnedSurface,
-        [start, end]: [[DVec3; 2]; 2],
-        end_in_world: [DVec3; 2],
-    ) -> Result<bool, SurfaceError> {
-        let motion = patch.most_motion([0, 1].map(|side| end[side] - start[side]));
-        let middle = self.hull.middle_at(&self.course[0]);
-        let farther = (start[0] - middle)
-            .length()
-            .max((start[1] - middle).length());
-        let far = patch
-            .gap()
-            .is_some_and(|gap| gap - farther - motion > self.core.radius * MET);
-        Ok(far || stays_clear(surface, &self.core, end_in_world, motion)?)
-    }
-
-    /// True if its core ended where it was expected to, so far that what of it is swept can have met no
-    /// skin but that which its hull was to meet.
-    fn kept_course(&self, ends: &[DVec3; 2]) -> bool {
-        let expected = self.core.ends_at(&self.course[1]);
-        let astray = REACH + self.core.radius * (1.0 - SWEPT);
-        (0..2).all(|side| (ends[side] - expected[side]).length() <= astray)
-    }
-}
-
-fn look_ahead(core: &Core) -> f32 {
-    (core.radius * LOOK_AHEAD) as f32
 }
 
 fn check_tick(dt: f64) -> Result<(), DebrisError> {

@@ -38,6 +38,8 @@ pub(super) struct SkinPatch {
     motion: RigidMotion,
     /// How far the skin was from the middle of the body's hull a tick ago, if it was measured in this one.
     gap: Option<f64>,
+    /// Skin passes through the body, and none is shown.
+    pub(super) let_through: bool,
     /// Where the surface stands, if the skin shown stood still in it.
     still_at: Option<Similarity>,
 }

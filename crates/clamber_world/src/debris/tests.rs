@@ -3,4 +3,5 @@
 mod bookkeeping;
 mod riding;
 mod scene;
+mod stamping;
 mod sweeping;

@@ -187,7 +187,9 @@ fn bad_input_is_an_error() {
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let result = debris.before_step(&[&scene.surface], bodies, colliders, dt);
         assert!(matches!(result, Err(DebrisError::Tick(_))), "{dt}");
-        let result = debris.after_step(&[&scene.surface], bodies, dt);
+        let (broad, narrow) = (&scene.world.broad_phase, &scene.world.narrow_phase);
+        let surfaces = [&scene.surface];
+        let result = debris.after_step(&surfaces, bodies, colliders, broad, narrow, dt);
         assert!(matches!(result, Err(DebrisError::Tick(_))), "{dt}");
     }
     let (rock, _) = scene.drop(ColliderBuilder::ball(0.3), Vector::new(0.0, 0.8, 0.0));

@@ -136,7 +136,14 @@ impl Scene {
         self.world.step_with_events(&self.debris, &());
         let report = self
             .debris
-            .after_step(&[&self.surface], &mut self.world.bodies, DT)
+            .after_step(
+                &[&self.surface],
+                &mut self.world.bodies,
+                &self.world.colliders,
+                &self.world.broad_phase,
+                &self.world.narrow_phase,
+                DT,
+            )
             .unwrap();
         self.put_back += report.put_back;
         self.caught += report.caught;

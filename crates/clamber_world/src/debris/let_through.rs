@@ -1,0 +1,114 @@
+//! What becomes of a body between skin and something that does not move: under a foot, between a flank and a
+//! cliff. Nothing ever pushes a creature, so one of them must give way, and it is the skin.
+
+use clamber_surface::geometry::{self, Ray};
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use glam::{DVec3, Vec3};
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{
+    BroadPhaseBvh, Capsule, Collider, ColliderHandle, ColliderSet, NarrowPhase,
+};
+use rapier3d::math::Pose;
+use rapier3d::parry::query::{DefaultQueryDispatcher, ShapeCastOptions};
+use rapier3d::pipeline::QueryFilter;
+
+use super::core::Core;
+use super::keep_out::SWEPT;
+
+static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
+
+/// What of rapier's world does not move out of the way, and is no skin.
+#[derive(Clone, Copy)]
+pub(super) struct Immovable<'a> {
+    pub(super) colliders: &'a ColliderSet,
+    pub(super) broad_phase: &'a BroadPhaseBvh,
+    pub(super) narrow_phase: &'a NarrowPhase,
+    /// Skin, by ascending handle.
+    pub(super) skin: &'a [(ColliderHandle, RigidBodyHandle)],
+}
+
+impl Immovable<'_> {
+    /// True if the step found contacts of the body with any of it.
+    pub(super) fn touches(&self, bodies: &RigidBodySet, body: &RigidBody) -> bool {
+        body.colliders().iter().any(|own| {
+            let mut pairs = self.narrow_phase.contact_pairs_with(*own);
+            pairs.any(|pair| {
+                let other = if pair.collider1 == *own {
+                    pair.collider2
+                } else {
+                    pair.collider1
+                };
+                self.has(bodies, other) && pair.has_any_active_contact()
+            })
+        })
+    }
+
+    fn has(&self, bodies: &RigidBodySet, handle: ColliderHandle) -> bool {
+        let Some(collider) = self.colliders.get(handle) else {
+            return false;
+        };
+        let body = collider.parent().and_then(|parent| bodies.get(parent));
+        !body.is_some_and(RigidBody::is_dynamic) && owner_in(self.skin, handle).is_none()
+    }
+
+    /// The share of the way from a pose, by `shift` in rapier's space, after which the body's inside meets
+    /// any of it; `None` if it does not.
+    pub(super) fn blocks(
+        &self,
+        bodies: &RigidBodySet,
+        core: &Core,
+        pose: &Pose,
+        shift: DVec3,
+    ) -> Option<f64> {
+        let is_no_skin = |handle, _: &Collider| owner_in(self.skin, handle).is_none();
+        let filter = QueryFilter::exclude_dynamic()
+            .exclude_sensors()
+            .predicate(&is_no_skin);
+        let world = self
+            .broad_phase
+            .as_query_pipeline(&DISPATCHER, bodies, self.colliders, filter);
+        let [a, b] = core.ends_at(pose).map(|end| end.as_vec3());
+        let inside = Capsule::new(a, b, (core.radius * SWEPT) as f32);
+        let options = ShapeCastOptions {
+            stop_at_penetration: false,
+            ..ShapeCastOptions::with_max_time_of_impact(1.0)
+        };
+        let (_, hit) = world.cast_shape(&Pose::IDENTITY, shift.as_vec3(), &inside, options)?;
+        Some(f64::from(hit.time_of_impact))
+    }
+}
+
+/// The body that a collider is skin for, of pairs by ascending handle of the collider; `None` if it is no skin.
+pub(super) fn owner_in(
+    skin: &[(ColliderHandle, RigidBodyHandle)],
+    collider: ColliderHandle,
+) -> Option<RigidBodyHandle> {
+    let key = |(skin, _): &(ColliderHandle, RigidBodyHandle)| skin.into_raw_parts();
+    let index = skin.binary_search_by_key(&collider.into_raw_parts(), key);
+    Some(skin[index.ok()?].1)
+}
+
+/// True if the body's core touches no skin, and is not inside the creature: a ray from its middle
+/// meets nothing, or skin from outside. `origin` is rapier's in the world.
+pub(super) fn is_outside(
+    surface: &SkinnedSurface,
+    core: &Core,
+    pose: &Pose,
+    origin: DVec3,
+) -> Result<bool, SurfaceError> {
+    let world_from_model = surface.world_from_model();
+    let ends = core.ends_at(pose).map(|end| origin + end);
+    let [a, b] = ends.map(|end| world_from_model.inverse_transform_point_f32(end));
+    let radius = (core.radius / world_from_model.scale) as f32;
+    if surface
+        .closest_to_capsule(&geometry::Capsule { a, b, radius }, 0.0)?
+        .is_some()
+    {
+        return Ok(false);
+    }
+    let Some(ray) = Ray::new((a + b) * 0.5, Vec3::Y) else {
+        return Err(SurfaceError::Point);
+    };
+    let hit = surface.cast_ray(&ray, f32::INFINITY)?;
+    Ok(hit.is_none_or(|hit| hit.normal.dot(Vec3::Y) < 0.0))
+}
