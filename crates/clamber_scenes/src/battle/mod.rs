@@ -57,6 +57,9 @@ pub enum BattleError {
     /// A rock cannot be held against the creature.
     #[error(transparent)]
     Debris(#[from] DebrisError),
+    /// Whoever watches the battle failed.
+    #[error(transparent)]
+    Watching(Box<dyn std::error::Error + Send + Sync>),
     /// The results cannot be written.
     #[error("cannot write {path}: {reason}")]
     Write {
@@ -85,6 +88,17 @@ impl From<SurfaceError> for BattleError {
 /// # Errors
 /// [`BattleError`]. Failed checks are no error: they stand in the summary.
 pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
+    run_watched(options, |_| Ok(()))
+}
+
+/// [`run`], and calls `watch` once before the first tick and after every tick: to record it, or to draw it.
+///
+/// # Errors
+/// As [`run`], and those of `watch`, which end the battle.
+pub fn run_watched(
+    options: &BattleOptions,
+    mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
+) -> Result<Summary, BattleError> {
     // First, so that a folder that cannot be is not found out about at the end.
     std::fs::create_dir_all(&options.out).map_err(|error| BattleError::Write {
         path: options.out.clone(),
@@ -99,8 +113,10 @@ pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
     )?;
     let ticks = options.ticks();
     let progress = options::Progress::new(ticks);
+    watch(&battle)?;
     for tick in 0..ticks {
         battle.step(options.input_at(tick))?;
+        watch(&battle)?;
         progress.tick(tick + 1, battle.recording());
     }
     progress.finish();

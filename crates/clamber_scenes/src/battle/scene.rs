@@ -4,6 +4,7 @@ use std::time::Instant;
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
+use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::rapier3d::pipeline::QueryFilter;
@@ -48,6 +49,8 @@ pub struct Battle<'a> {
     grounded: u32,
     drops: u32,
     landings: u32,
+    input: ClimberInput,
+    report: StepReport,
     recording: Recording,
     watch: Watch,
 }
@@ -89,6 +92,8 @@ impl<'a> Battle<'a> {
             grounded: 0,
             drops: 1,
             landings: 0,
+            input: ClimberInput::default(),
+            report: StepReport::default(),
             recording: Recording::default(),
             watch: Watch::default(),
         })
@@ -128,21 +133,17 @@ impl<'a> Battle<'a> {
         let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
         self.rocks
             .step(&self.surface, &mut self.world, above, self.tick)?;
-        self.record(&input, &report, touched, microseconds);
+        (self.input, self.report) = (input, report);
+        self.record(touched, microseconds);
         self.lift_if_grounded()
     }
 
-    fn record(
-        &mut self,
-        input: &ClimberInput,
-        report: &StepReport,
-        touched: Diagnostics,
-        microseconds: f64,
-    ) {
+    fn record(&mut self, touched: Diagnostics, microseconds: f64) {
+        let (input, report) = (self.input, &self.report);
         let state = *self.climber.state();
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
-        let idle = *input == ClimberInput::default();
+        let idle = input == ClimberInput::default();
         let palette = self.choreography.palette();
         let drift = self
             .watch
@@ -203,6 +204,26 @@ impl<'a> Battle<'a> {
     /// The creature's skin.
     pub fn surface(&self) -> &SkinnedSurface {
         &self.surface
+    }
+
+    /// The creature's palette of the last tick.
+    pub fn palette(&self) -> &Palette {
+        self.choreography.palette()
+    }
+
+    /// What the climber was asked for in the last tick.
+    pub fn input(&self) -> &ClimberInput {
+        &self.input
+    }
+
+    /// What came of it.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// Valley and rocks.
+    pub fn world(&self) -> &PhysicsWorld {
+        &self.world
     }
 
     /// The rocks.
