@@ -1,5 +1,6 @@
 //! Rocks, tree trunks and walls on a moving creature: dynamic bodies of rapier's that collide with skin.
 
+mod config;
 mod core;
 mod error;
 mod fit;
@@ -8,10 +9,13 @@ mod keep_out;
 mod let_through;
 mod piece;
 mod pieces;
+mod report;
 mod skin_patch;
 
+pub use config::DebrisConfig;
 pub use error::DebrisError;
-pub use pieces::{Debris, DebrisConfig, DebrisReport};
+pub use pieces::Debris;
+pub use report::DebrisReport;
 
 #[cfg(test)]
 mod tests;

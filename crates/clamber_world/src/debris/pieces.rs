@@ -2,53 +2,15 @@ use clamber_surface::mesh::TriangleId;
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::{
-    BroadPhaseBvh, ColliderHandle, ColliderSet, InteractionGroups, NarrowPhase, SolverFlags,
-};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SolverFlags};
 use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
-use super::DebrisError;
 use super::core::Core;
 use super::hull::Hull;
 use super::let_through::{Immovable, is_outside, owner_in};
 use super::piece::Piece;
 use super::skin_patch::SkinPatch;
-
-/// What skin is to debris.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DebrisConfig {
-    /// Coefficient of friction, at least 0; rapier takes the mean of both sides'. Higher keeps rocks on
-    /// steeper backs.
-    pub friction: f32,
-    /// Coefficient of restitution, 0 to 1: higher lets rocks bounce.
-    pub restitution: f32,
-    /// Which of rapier's groups the skin belongs to. Whoever queries rapier's world can leave the skin
-    /// out by them; a body meets only its own piece of skin in any case.
-    pub groups: InteractionGroups,
-}
-
-impl Default for DebrisConfig {
-    /// Rough stone on hide; no bounce; all groups.
-    fn default() -> Self {
-        Self {
-            friction: 0.8,
-            restitution: 0.0,
-            groups: InteractionGroups::all(),
-        }
-    }
-}
-
-/// What a tick did to debris.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DebrisReport {
-    /// Bodies that had skin near them.
-    pub near: u32,
-    /// Bodies that rapier let skin into, and that were put back in front of it.
-    pub put_back: u32,
-    /// Bodies that skin passes through: caught in a closing fold, or between skin and what does not
-    /// move, such as under a foot.
-    pub caught: u32,
-}
+use super::{DebrisConfig, DebrisError, DebrisReport};
 
 /// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
 /// the stones of a wall.

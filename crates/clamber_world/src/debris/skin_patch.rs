@@ -11,9 +11,9 @@ use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::{TriMeshFlags, Triangle};
 use rapier3d::pipeline::ActiveHooks;
 
+use super::DebrisConfig;
 use super::fit::RigidMotion;
 use super::hull::Reach;
-use super::pieces::DebrisConfig;
 
 /// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
 /// box. More makes it less often, and gives rapier more triangles in every tick.
