@@ -150,6 +150,11 @@ impl Rockfall {
         }
     }
 
+    /// The rocks, in the world's own handles.
+    pub fn bodies(&self) -> &[RigidBodyHandle] {
+        &self.rocks
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.rocks.len()

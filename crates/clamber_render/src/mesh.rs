@@ -1,0 +1,209 @@
+use bytemuck::cast_slice;
+use clamber_surface::mesh::Influence;
+use glam::Vec3;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{Buffer, BufferUsages};
+
+use crate::{Gpu, RenderError};
+
+/// A mesh that a [`Renderer`](crate::Renderer) has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshId(pub(crate) u32);
+
+/// A mesh to be drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeshSource<'a> {
+    /// Rest positions.
+    pub positions: &'a [Vec3],
+    /// One a vertex; none takes those of the triangles around each vertex.
+    pub normals: &'a [Vec3],
+    /// Linear red, green and blue, one a vertex; none is all white.
+    pub colors: &'a [[f32; 3]],
+    /// What the surface is made of, one a vertex; none is all plain.
+    pub looks: &'a [Look],
+    /// Corners, counter-clockwise seen from outside.
+    pub triangles: &'a [[u32; 3]],
+    /// How joints move it; `None` for what is rigid.
+    pub skin: Option<SkinSource<'a>>,
+}
+
+/// How joints move a mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SkinSource<'a> {
+    /// Influences of the first vertex, then of the second, and so on, by ascending joint.
+    pub influences: &'a [Influence],
+    /// Where in `influences` those of each vertex end.
+    pub ends: &'a [u32],
+    /// Joints of the palettes to come.
+    pub joint_count: usize,
+}
+
+/// What a surface is made of, which its colour alone does not tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// Smooth.
+    #[default]
+    Plain,
+    /// Rough, in slabs.
+    Stone,
+    /// Strands that catch the light at the rim.
+    Fur,
+    /// Grass and earth, by the slope.
+    Ground,
+}
+
+/// Bytes of a vertex that never change: position at rest, colour with look.
+pub(crate) const STILL_BYTES: u64 = 32;
+
+/// Bytes of a vertex as posed: position, normal, each with a spare number.
+pub(crate) const POSED_BYTES: u64 = 32;
+
+/// A mesh on the GPU.
+#[derive(Debug)]
+pub(crate) struct Mesh {
+    pub(crate) still: Buffer,
+    pub(crate) rest: Buffer,
+    pub(crate) indices: Buffer,
+    pub(crate) index_count: u32,
+    pub(crate) vertex_count: u32,
+    pub(crate) skin: Option<Skin>,
+}
+
+/// How joints move a mesh, on the GPU.
+#[derive(Debug)]
+pub(crate) struct Skin {
+    pub(crate) ends: Buffer,
+    pub(crate) influences: Buffer,
+    pub(crate) joint_count: usize,
+}
+
+impl Mesh {
+    pub(crate) fn new(gpu: &Gpu, source: &MeshSource<'_>) -> Result<Self, RenderError> {
+        check(source)?;
+        let normals = match source.normals {
+            [] => normals(source),
+            given => given.to_vec(),
+        };
+        let mut still = Vec::with_capacity(source.positions.len());
+        let mut rest = Vec::with_capacity(source.positions.len());
+        for (index, (p, n)) in source.positions.iter().zip(&normals).enumerate() {
+            let color = source.colors.get(index).copied().unwrap_or([1.0; 3]);
+            let look = source.looks.get(index).copied().unwrap_or_default();
+            still.push([
+                p.x,
+                p.y,
+                p.z,
+                0.0,
+                color[0],
+                color[1],
+                color[2],
+                look as u8 as f32,
+            ]);
+            rest.push([p.x, p.y, p.z, 1.0, n.x, n.y, n.z, 0.0]);
+        }
+        let usage = BufferUsages::VERTEX | BufferUsages::STORAGE;
+        let skin = source.skin.map(|skin| {
+            let influences: Vec<[f32; 2]> = skin
+                .influences
+                .iter()
+                .map(|influence| [f32::from_bits(influence.joint.0), influence.weight])
+                .collect();
+            Skin {
+                ends: buffer(gpu, "ends", cast_slice(skin.ends), BufferUsages::STORAGE),
+                influences: buffer(
+                    gpu,
+                    "influences",
+                    cast_slice(&influences),
+                    BufferUsages::STORAGE,
+                ),
+                joint_count: skin.joint_count,
+            }
+        });
+        Ok(Self {
+            still: buffer(gpu, "still", cast_slice(&still), usage),
+            rest: buffer(gpu, "rest", cast_slice(&rest), usage),
+            indices: buffer(
+                gpu,
+                "indices",
+                cast_slice(source.triangles),
+                BufferUsages::INDEX,
+            ),
+            index_count: (source.triangles.len() * 3) as u32,
+            vertex_count: source.positions.len() as u32,
+            skin,
+        })
+    }
+}
+
+pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
+    // No buffer of no bytes can be bound.
+    let contents = if contents.is_empty() {
+        &[0; 16]
+    } else {
+        contents
+    };
+    gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage,
+    })
+}
+
+fn check(source: &MeshSource<'_>) -> Result<(), RenderError> {
+    let count = source.positions.len();
+    let wrong = |what: String| Err(RenderError::Mesh(what));
+    for (what, found) in [
+        ("normals", source.normals.len()),
+        ("colours", source.colors.len()),
+        ("looks", source.looks.len()),
+    ] {
+        if found != 0 && found != count {
+            return wrong(format!("{found} {what} for {count} positions"));
+        }
+    }
+    if !source.positions.iter().all(|p| p.is_finite()) {
+        return wrong("a position is not finite".into());
+    }
+    let corners = source.triangles.iter().flatten();
+    if let Some(corner) = corners.copied().find(|corner| *corner as usize >= count) {
+        return wrong(format!("a corner is vertex {corner} of {count}"));
+    }
+    let Some(skin) = &source.skin else {
+        return Ok(());
+    };
+    if skin.ends.len() != count {
+        return wrong(format!(
+            "influences of {} vertices for {count}",
+            skin.ends.len()
+        ));
+    }
+    let ascending = skin.ends.windows(2).all(|pair| pair[0] <= pair[1]);
+    let last = skin.ends.last().map_or(0, |end| *end as usize);
+    if !ascending || last != skin.influences.len() {
+        return wrong("the ends of influences do not ascend to their count".into());
+    }
+    let joints = skin
+        .influences
+        .iter()
+        .map(|influence| influence.joint.0 as usize);
+    if let Some(joint) = joints.max().filter(|joint| *joint >= skin.joint_count) {
+        return wrong(format!("joint {joint} of {}", skin.joint_count));
+    }
+    Ok(())
+}
+
+/// Of each vertex the sum of the scaled normals of its triangles.
+fn normals(source: &MeshSource<'_>) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; source.positions.len()];
+    for corners in source.triangles {
+        let [a, b, c] = corners.map(|corner| source.positions[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        for corner in corners {
+            normals[*corner as usize] += normal;
+        }
+    }
+    for normal in &mut normals {
+        *normal = normal.normalize_or(Vec3::Y);
+    }
+    normals
+}

@@ -1,0 +1,129 @@
+use glam::{DVec3, Vec3};
+
+use clamber_surface::geometry::rotation_from_axis_angle;
+
+/// Red, green, blue and opacity of an overlay, linear, 0 to 1.
+pub type Color = [f32; 4];
+
+/// Lines and triangles over a picture, in world space: what the collider knows.
+#[derive(Clone, Debug, Default)]
+pub struct Overlay {
+    lines: Vec<Line>,
+    triangles: Vec<([DVec3; 3], Color)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    ends: [DVec3; 2],
+    /// Pixels.
+    width: f32,
+    color: Color,
+}
+
+/// Sides of a circle.
+const SIDES: u32 = 32;
+
+/// Length of an arrow's head as a share of the arrow.
+const HEAD: f64 = 0.25;
+
+impl Overlay {
+    /// A line, so many pixels wide.
+    pub fn line(&mut self, from: DVec3, to: DVec3, width: f32, color: Color) {
+        let ends = [from, to];
+        self.lines.push(Line { ends, width, color });
+    }
+
+    /// A path through points.
+    pub fn path(&mut self, points: &[DVec3], width: f32, color: Color) {
+        for pair in points.windows(2) {
+            self.line(pair[0], pair[1], width, color);
+        }
+    }
+
+    /// An arrow along a vector.
+    pub fn arrow(&mut self, from: DVec3, along: DVec3, width: f32, color: Color) {
+        let to = from + along;
+        self.line(from, to, width, color);
+        let side = along.any_orthogonal_vector() * HEAD * 0.5;
+        let turned = along.cross(side).normalize_or_zero() * side.length();
+        for aside in [side, -side, turned, -turned] {
+            self.line(to, to - along * HEAD + aside, width, color);
+        }
+    }
+
+    /// A triangle.
+    pub fn triangle(&mut self, corners: [DVec3; 3], color: Color) {
+        self.triangles.push((corners, color));
+    }
+
+    /// A circle around an axis.
+    pub fn circle(&mut self, center: DVec3, axis: DVec3, radius: f64, width: f32, color: Color) {
+        let axis = axis.normalize_or(DVec3::Y);
+        let start = axis.any_orthonormal_vector() * radius;
+        let point = |side: u32| {
+            let angle = f64::from(side) / f64::from(SIDES) * core::f64::consts::TAU;
+            center + rotation_from_axis_angle(axis, angle) * start
+        };
+        for side in 0..SIDES {
+            self.line(point(side), point(side + 1), width, color);
+        }
+    }
+
+    /// A sphere, by three circles.
+    pub fn sphere(&mut self, center: DVec3, radius: f64, width: f32, color: Color) {
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            self.circle(center, axis, radius, width, color);
+        }
+    }
+
+    /// A capsule: circles around its ends, and four lines between.
+    pub fn capsule(&mut self, a: DVec3, b: DVec3, radius: f64, width: f32, color: Color) {
+        let axis = (b - a).normalize_or(DVec3::Y);
+        let side = axis.any_orthonormal_vector() * radius;
+        let other = axis.cross(side);
+        for end in [a, b] {
+            for around in [axis, side, other] {
+                self.circle(end, around, radius, width, color);
+            }
+        }
+        for aside in [side, -side, other, -other] {
+            self.line(a + aside, b + aside, width, color);
+        }
+    }
+
+    /// Nothing in it.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty() && self.triangles.is_empty()
+    }
+
+    /// Vertices for the shader, relative to the eye: triangles first.
+    pub(crate) fn vertices(&self, eye: DVec3) -> Vec<[f32; 12]> {
+        let mut vertices = Vec::with_capacity(self.triangles.len() * 3 + self.lines.len() * 6);
+        let mut push = |p: Vec3, width: f32, other: Vec3, side: f32, color: Color| {
+            let [r, g, b, a] = color;
+            vertices.push([
+                p.x, p.y, p.z, width, other.x, other.y, other.z, side, r, g, b, a,
+            ]);
+        };
+        for (corners, color) in &self.triangles {
+            for corner in corners {
+                push((corner - eye).as_vec3(), 0.0, Vec3::ZERO, 0.0, *color);
+            }
+        }
+        for line in &self.lines {
+            let [a, b] = line.ends.map(|end| (end - eye).as_vec3());
+            // Seen from either end the other side is the same one.
+            for (p, other, side) in [
+                (a, b, -1.0),
+                (a, b, 1.0),
+                (b, a, -1.0),
+                (b, a, -1.0),
+                (b, a, 1.0),
+                (a, b, -1.0),
+            ] {
+                push(p, line.width, other, side, line.color);
+            }
+        }
+        vertices
+    }
+}

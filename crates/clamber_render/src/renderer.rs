@@ -1,0 +1,392 @@
+use bytemuck::cast_slice;
+use clamber_surface::rig::Palette;
+use glam::dcamera::rh::proj::directx::orthographic;
+use glam::dcamera::rh::view::look_to_mat4;
+use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
+    BufferDescriptor, BufferUsages, Color, CommandEncoder, CompareFunction, IndexFormat, LoadOp,
+    Operations, RenderPass, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+    RenderPassDescriptor, SamplerDescriptor, StoreOp,
+};
+
+use crate::mesh::{Mesh, buffer};
+use crate::pipelines::Pipelines;
+use crate::skinning::{Posed, Skinning};
+use crate::target::{SHADOW, Target, read};
+use crate::{Drawn, Frame, Gpu, Image, MeshId, MeshSource, RenderError};
+
+/// Opacity of what of an overlay is behind something.
+const BEHIND: f32 = 0.22;
+
+/// Draws frames of one size.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    pipelines: Pipelines,
+    skinning: Skinning,
+    target: Target,
+    shadow_group: BindGroup,
+    meshes: Vec<Mesh>,
+    /// Of each mesh, as many as a frame has shown of it.
+    posed: Vec<Vec<Posed>>,
+    uploaded: u64,
+}
+
+impl Renderer {
+    /// For pictures of a size in pixels.
+    ///
+    /// # Errors
+    /// [`RenderError::Frame`] for a size that the device does not have; else as [`Renderer::draw`].
+    pub fn new(gpu: Gpu, width: u32, height: u32) -> Result<Self, RenderError> {
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        if !(1..=most).contains(&width) || !(1..=most).contains(&height) {
+            return Err(RenderError::Frame(format!(
+                "pictures of {width} x {height}: each side must be from 1 to {most}"
+            )));
+        }
+        let (pipelines, skinning, target) = gpu.checked(|| {
+            let target = Target::new(&gpu, width, height);
+            (Pipelines::new(&gpu), Skinning::new(&gpu), target)
+        })?;
+        let sampler = gpu.device.create_sampler(&SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(CompareFunction::LessEqual),
+            ..SamplerDescriptor::default()
+        });
+        let shadow_group = gpu.device.create_bind_group(&BindGroupDescriptor {
+            label: Some("shadow map"),
+            layout: &pipelines.shadow_map,
+            entries: &[
+                BindGroupEntry {
+                    binding: 0,
+                    resource: BindingResource::TextureView(&target.shadow),
+                },
+                BindGroupEntry {
+                    binding: 1,
+                    resource: BindingResource::Sampler(&sampler),
+                },
+            ],
+        });
+        Ok(Self {
+            gpu,
+            pipelines,
+            skinning,
+            target,
+            shadow_group,
+            meshes: Vec::new(),
+            posed: Vec::new(),
+            uploaded: 0,
+        })
+    }
+
+    /// Takes a mesh to the device, where it stays.
+    ///
+    /// # Errors
+    /// [`RenderError::Mesh`] for one that is not whole; else as [`Renderer::draw`].
+    pub fn add_mesh(&mut self, source: &MeshSource<'_>) -> Result<MeshId, RenderError> {
+        let mesh = self.gpu.checked(|| Mesh::new(&self.gpu, source))??;
+        let id = MeshId(self.meshes.len() as u32);
+        self.meshes.push(mesh);
+        self.posed.push(Vec::new());
+        Ok(id)
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Errors
+    /// [`RenderError::Frame`] for what cannot be drawn: a camera that looks nowhere, a mesh of another
+    /// renderer, a palette of another skeleton. [`RenderError::Lost`], [`RenderError::OutOfMemory`],
+    /// [`RenderError::Refused`].
+    pub fn draw(&mut self, frame: &Frame<'_>) -> Result<Image, RenderError> {
+        self.check(frame)?;
+        let places = self.make_room(frame)?;
+        let encoder = self.gpu.checked(|| self.encode(frame, &places))?;
+        let (encoder, uploaded) = encoder?;
+        self.uploaded = uploaded;
+        self.gpu.checked(|| {
+            self.gpu.queue.submit([encoder.finish()]);
+        })?;
+        self.target.read(&self.gpu)
+    }
+
+    /// Bytes that the last picture took to the device: palettes, places and overlays.
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Vertices of a skinned mesh as the device poses them, in model space: those that are drawn.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn posed_positions(
+        &mut self,
+        mesh: MeshId,
+        palette: &Palette,
+    ) -> Result<Vec<Vec3>, RenderError> {
+        let unknown = || RenderError::Frame("it shows a mesh of another renderer".into());
+        let index = mesh.0 as usize;
+        let found = self.meshes.get(index).ok_or_else(unknown)?;
+        let skin = found.skin.as_ref();
+        let skin = skin.ok_or_else(|| RenderError::Frame("the mesh has no joints".into()))?;
+        let posed = self
+            .gpu
+            .checked(|| self.skinning.posed(&self.gpu, found, skin))?;
+        let size = posed.vertices.size();
+        let copy = self.gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("posed, to be read"),
+            size,
+            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.encoder();
+        let count = found.vertex_count;
+        self.skinning
+            .run(&self.gpu, &mut encoder, &posed, count, palette)?;
+        encoder.copy_buffer_to_buffer(&posed.vertices, 0, &copy, 0, size);
+        self.gpu.checked(|| {
+            self.gpu.queue.submit([encoder.finish()]);
+        })?;
+        let bytes = read(&self.gpu, &copy)?;
+        let vertices = bytes.chunks_exact(32).take(count as usize);
+        Ok(vertices
+            .map(|vertex| {
+                let at = |axis: usize| {
+                    let bytes = &vertex[axis * 4..axis * 4 + 4];
+                    f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+                };
+                Vec3::new(at(0), at(1), at(2))
+            })
+            .collect())
+    }
+
+    fn check(&self, frame: &Frame<'_>) -> Result<(), RenderError> {
+        let wrong = |what: &str| Err(RenderError::Frame(what.into()));
+        if !frame.camera.is_valid() {
+            return wrong("the camera is not finite, or looks nowhere, or straight up or down");
+        }
+        let light = &frame.light;
+        let lit = light.to_sun.is_finite() && light.to_sun.length_squared() > 0.0;
+        let shadow = light.shadow_center.is_finite() && light.shadow_radius > 0.0;
+        if !lit || !shadow || !(light.fog >= 0.0) || !light.shadow_radius.is_finite() {
+            return wrong("the light has no direction, or its shadow or fog no size");
+        }
+        for drawn in &frame.drawn {
+            let Some(mesh) = self.meshes.get(drawn.mesh.0 as usize) else {
+                return wrong("it shows a mesh of another renderer");
+            };
+            if !drawn.world_from_model.is_valid() {
+                return wrong("a mesh stands at a place that is not finite");
+            }
+            if drawn.palette.is_some() && mesh.skin.is_none() {
+                return wrong("a palette for a mesh without joints");
+            }
+        }
+        Ok(())
+    }
+
+    /// For each skinned mesh of the frame, which of its instances it is.
+    fn make_room(&mut self, frame: &Frame<'_>) -> Result<Vec<usize>, RenderError> {
+        let mut used = vec![0; self.meshes.len()];
+        let mut places = Vec::with_capacity(frame.drawn.len());
+        for drawn in &frame.drawn {
+            let index = drawn.mesh.0 as usize;
+            let (mesh, posed) = (&self.meshes[index], &mut self.posed[index]);
+            places.push(used[index]);
+            if let (Some(_), Some(skin)) = (drawn.palette, &mesh.skin) {
+                used[index] += 1;
+                if posed.len() < used[index] {
+                    let room = self
+                        .gpu
+                        .checked(|| self.skinning.posed(&self.gpu, mesh, skin))?;
+                    posed.push(room);
+                }
+            }
+        }
+        Ok(places)
+    }
+
+    fn encoder(&self) -> CommandEncoder {
+        let descriptor = wgpu::CommandEncoderDescriptor::default();
+        self.gpu.device.create_command_encoder(&descriptor)
+    }
+
+    fn encode(
+        &self,
+        frame: &Frame<'_>,
+        places: &[usize],
+    ) -> Result<(CommandEncoder, u64), RenderError> {
+        let mut encoder = self.encoder();
+        let mut uploaded = 0;
+        for (drawn, place) in frame.drawn.iter().zip(places) {
+            let index = drawn.mesh.0 as usize;
+            if let Some(palette) = drawn.palette {
+                let (mesh, posed) = (&self.meshes[index], &self.posed[index][*place]);
+                uploaded += self.skinning.run(
+                    &self.gpu,
+                    &mut encoder,
+                    posed,
+                    mesh.vertex_count,
+                    palette,
+                )?;
+            }
+        }
+        let uniform = BufferUsages::UNIFORM;
+        let aspect = f64::from(self.target.width) / f64::from(self.target.height);
+        let clip_from_view = frame.camera.clip_from_view(aspect);
+        let globals = globals(frame, clip_from_view);
+        let instances: Vec<[f32; 16]> = frame
+            .drawn
+            .iter()
+            .map(|drawn| view_from_model(drawn, frame.camera.eye).to_cols_array())
+            .collect();
+        uploaded += (globals.len() * 4 + instances.len() * 64) as u64;
+        let globals = buffer(&self.gpu, "globals", cast_slice(&globals), uniform);
+        let instances = buffer(
+            &self.gpu,
+            "instances",
+            cast_slice(&instances),
+            BufferUsages::STORAGE,
+        );
+        let globals = self.group(&self.pipelines.globals, &[&globals, &instances]);
+        {
+            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some("shadow"),
+                depth_stencil_attachment: Some(depth(&self.target.shadow, 1.0)),
+                ..RenderPassDescriptor::default()
+            });
+            pass.set_pipeline(&self.pipelines.shadow);
+            pass.set_bind_group(0, &globals, &[]);
+            self.draw_meshes(&mut pass, frame, places);
+        }
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: &self.target.color,
+                depth_slice: None,
+                resolve_target: Some(&self.target.resolved_view),
+                ops: Operations {
+                    load: LoadOp::Clear(Color::BLACK),
+                    store: StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(depth(&self.target.depth, 0.0)),
+            ..RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, &globals, &[]);
+        pass.set_bind_group(1, &self.shadow_group, &[]);
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..3, 0..1);
+        pass.set_pipeline(&self.pipelines.mesh);
+        self.draw_meshes(&mut pass, frame, places);
+        uploaded += self.draw_overlay(&mut pass, frame, clip_from_view);
+        drop(pass);
+        self.target.copy_out(&mut encoder);
+        Ok((encoder, uploaded))
+    }
+
+    fn draw_meshes(&self, pass: &mut RenderPass<'_>, frame: &Frame<'_>, places: &[usize]) {
+        for (number, (drawn, place)) in (0..).zip(frame.drawn.iter().zip(places)) {
+            let index = drawn.mesh.0 as usize;
+            let mesh = &self.meshes[index];
+            let vertices = match drawn.palette {
+                Some(_) => &self.posed[index][*place].vertices,
+                None => &mesh.rest,
+            };
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.set_vertex_buffer(1, mesh.still.slice(..));
+            pass.set_index_buffer(mesh.indices.slice(..), IndexFormat::Uint32);
+            pass.draw_indexed(0..mesh.index_count, 0, number..number + 1);
+        }
+    }
+
+    fn draw_overlay(&self, pass: &mut RenderPass<'_>, frame: &Frame<'_>, clip: Mat4) -> u64 {
+        if frame.overlay.is_empty() {
+            return 0;
+        }
+        let vertices = frame.overlay.vertices(frame.camera.eye);
+        let contents = cast_slice(&vertices);
+        let over = buffer(&self.gpu, "overlay", contents, BufferUsages::VERTEX);
+        pass.set_vertex_buffer(0, over.slice(..));
+        for (pipeline, opacity) in self.pipelines.overlay.iter().zip([1.0, BEHIND]) {
+            let mut globals = clip.to_cols_array().to_vec();
+            let (width, height) = (self.target.width as f32, self.target.height as f32);
+            globals.extend([width, height, opacity, 0.0]);
+            let globals = cast_slice(&globals);
+            let globals = buffer(&self.gpu, "overlay", globals, BufferUsages::UNIFORM);
+            let globals = self.group(&self.pipelines.overlay_globals, &[&globals]);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &globals, &[]);
+            pass.draw(0..vertices.len() as u32, 0..1);
+        }
+        contents.len() as u64 + 2 * 80
+    }
+
+    fn group(&self, layout: &BindGroupLayout, buffers: &[&Buffer]) -> BindGroup {
+        let entries: Vec<BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.gpu.device.create_bind_group(&BindGroupDescriptor {
+            label: None,
+            layout,
+            entries: &entries,
+        })
+    }
+}
+
+fn depth(view: &wgpu::TextureView, clear: f32) -> RenderPassDepthStencilAttachment<'_> {
+    RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(Operations {
+            load: LoadOp::Clear(clear),
+            store: StoreOp::Store,
+        }),
+        stencil_ops: None,
+    }
+}
+
+/// From the model to the world relative to the eye.
+fn view_from_model(drawn: &Drawn<'_>, eye: DVec3) -> Mat4 {
+    let root = &drawn.world_from_model;
+    let axes = DMat3::from_quat(root.rotation) * root.scale;
+    let shift = root.translation - eye;
+    let column = |axis: DVec3| axis.extend(0.0);
+    DMat4::from_cols(
+        column(axes.x_axis),
+        column(axes.y_axis),
+        column(axes.z_axis),
+        DVec4::from((shift, 1.0)),
+    )
+    .as_mat4()
+}
+
+/// As the shader has them.
+fn globals(frame: &Frame<'_>, clip_from_view: Mat4) -> Vec<f32> {
+    let light = &frame.light;
+    let to_sun = light.to_sun.as_dvec3().normalize();
+    let radius = light.shadow_radius;
+    let center = light.shadow_center - frame.camera.eye;
+    let up = to_sun.any_orthonormal_vector();
+    let view = look_to_mat4(center + to_sun * (2.0 * radius), -to_sun, up);
+    let flat = orthographic(-radius, radius, -radius, radius, 0.0, 4.0 * radius);
+    let shadow_from_view = (flat * view).as_mat4();
+    let sun = to_sun.as_vec3();
+    let mut globals = Vec::with_capacity(56);
+    globals.extend(clip_from_view.to_cols_array());
+    globals.extend(clip_from_view.inverse().to_cols_array());
+    globals.extend(shadow_from_view.to_cols_array());
+    globals.extend([sun.x, sun.y, sun.z, 0.0]);
+    globals.extend([light.fog, 1.0 / SHADOW as f32, 0.0, 0.0]);
+    globals
+}

@@ -1,0 +1,121 @@
+//! Skinning on the GPU: a compute pass from rest vertices and a palette to posed vertices.
+
+use bytemuck::cast_slice;
+use clamber_surface::rig::Palette;
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferDescriptor, BufferUsages,
+    CommandEncoder, ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor,
+};
+
+use crate::mesh::{Mesh, POSED_BYTES, Skin};
+use crate::{Gpu, RenderError};
+
+/// Vertices to a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// Workgroups along one axis, as in the shader: the least that devices allow.
+const ROW: u32 = 32_768;
+
+#[derive(Debug)]
+pub(crate) struct Skinning {
+    pipeline: ComputePipeline,
+}
+
+/// One posed mesh.
+#[derive(Debug)]
+pub(crate) struct Posed {
+    pub(crate) vertices: Buffer,
+    palette: Buffer,
+    group: BindGroup,
+    joint_count: usize,
+}
+
+impl Skinning {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::include_wgsl!("shaders/skin.wgsl"));
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&ComputePipelineDescriptor {
+                label: Some("skin"),
+                layout: None,
+                module: &module,
+                entry_point: Some("skin"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+        Self { pipeline }
+    }
+
+    /// Room for one instance of a mesh.
+    pub(crate) fn posed(&self, gpu: &Gpu, mesh: &Mesh, skin: &Skin) -> Posed {
+        let vertices = gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("posed"),
+            size: u64::from(mesh.vertex_count.max(1)) * POSED_BYTES,
+            usage: BufferUsages::VERTEX | BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let palette = gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("palette"),
+            size: (skin.joint_count.max(1) * 48) as u64,
+            usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let buffers = [
+            &mesh.rest,
+            &skin.ends,
+            &skin.influences,
+            &palette,
+            &vertices,
+        ];
+        let entries: Vec<BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        let group = gpu.device.create_bind_group(&BindGroupDescriptor {
+            label: Some("skin"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Posed {
+            vertices,
+            palette,
+            group,
+            joint_count: skin.joint_count,
+        }
+    }
+
+    /// Poses an instance; gives the bytes that went to the device.
+    pub(crate) fn run(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        posed: &Posed,
+        vertex_count: u32,
+        palette: &Palette,
+    ) -> Result<u64, RenderError> {
+        let matrices = palette.matrices();
+        if matrices.len() != posed.joint_count {
+            return Err(RenderError::Frame(format!(
+                "a palette of {} joints for a mesh on {}",
+                matrices.len(),
+                posed.joint_count
+            )));
+        }
+        let rows: Vec<[[f32; 4]; 3]> = matrices.iter().map(|matrix| matrix.rows).collect();
+        gpu.queue.write_buffer(&posed.palette, 0, cast_slice(&rows));
+        let groups = vertex_count.div_ceil(GROUP);
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("skin"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &posed.group, &[]);
+        pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
+        Ok((rows.len() * 48) as u64)
+    }
+}

@@ -1,0 +1,144 @@
+//! What is drawn into, and how it comes back.
+
+use std::sync::mpsc;
+
+use wgpu::{
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Extent3d, Origin3d,
+    TexelCopyBufferInfo, TexelCopyBufferLayout, TexelCopyTextureInfo, Texture, TextureAspect,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
+};
+
+use crate::{Gpu, Image, RenderError};
+
+pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+
+/// Samples to a pixel.
+pub(crate) const SAMPLES: u32 = 4;
+
+/// Texels along a side of the shadow map: more is sharper, and slower in software.
+pub(crate) const SHADOW: u32 = 2048;
+
+/// Rows of a picture begin at multiples of this in a buffer.
+const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
+
+#[derive(Debug)]
+pub(crate) struct Target {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) color: TextureView,
+    pub(crate) depth: TextureView,
+    pub(crate) shadow: TextureView,
+    resolved: Texture,
+    pub(crate) resolved_view: TextureView,
+    readback: Buffer,
+}
+
+impl Target {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let texture = |label, width, height, samples, format, usage| {
+            gpu.device.create_texture(&TextureDescriptor {
+                label: Some(label),
+                size: extent(width, height),
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let view = |texture: &Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let attachment = TextureUsages::RENDER_ATTACHMENT;
+        let color = texture("color", width, height, SAMPLES, COLOR, attachment);
+        let depth = texture("depth", width, height, SAMPLES, DEPTH, attachment);
+        let sampled = attachment | TextureUsages::TEXTURE_BINDING;
+        let shadow = texture("shadow", SHADOW, SHADOW, 1, DEPTH, sampled);
+        let copied = attachment | TextureUsages::COPY_SRC;
+        let resolved = texture("picture", width, height, 1, COLOR, copied);
+        let readback = gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("readback"),
+            size: u64::from(row_bytes(width)) * u64::from(height),
+            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            width,
+            height,
+            color: view(&color),
+            depth: view(&depth),
+            shadow: view(&shadow),
+            resolved_view: view(&resolved),
+            resolved,
+            readback,
+        }
+    }
+
+    pub(crate) fn copy_out(&self, encoder: &mut CommandEncoder) {
+        encoder.copy_texture_to_buffer(
+            TexelCopyTextureInfo {
+                texture: &self.resolved,
+                mip_level: 0,
+                origin: Origin3d::ZERO,
+                aspect: TextureAspect::All,
+            },
+            TexelCopyBufferInfo {
+                buffer: &self.readback,
+                layout: TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row_bytes(self.width)),
+                    rows_per_image: None,
+                },
+            },
+            extent(self.width, self.height),
+        );
+    }
+
+    /// The picture, once the commands have run.
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Image, RenderError> {
+        let rows = read(gpu, &self.readback)?;
+        let used = self.width as usize * 4;
+        let pixels = rows
+            .chunks_exact(row_bytes(self.width) as usize)
+            .flat_map(|row| &row[..used])
+            .copied()
+            .collect();
+        Ok(Image {
+            width: self.width,
+            height: self.height,
+            pixels,
+        })
+    }
+}
+
+/// All bytes of a buffer that can be mapped.
+pub(crate) fn read(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, RenderError> {
+    let (sender, receiver) = mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+        // Nobody waits for it any more if the device was lost.
+        let _ = sender.send(mapped);
+    });
+    gpu.wait()?;
+    let refused = |reason: String| RenderError::Refused(reason);
+    match receiver.try_recv() {
+        Ok(Ok(())) => {}
+        Ok(Err(error)) => return Err(refused(error.to_string())),
+        Err(error) => return Err(refused(error.to_string())),
+    }
+    let view = buffer.get_mapped_range(..);
+    let bytes = view.map_err(|error| refused(error.to_string()))?.to_vec();
+    buffer.unmap();
+    Ok(bytes)
+}
+
+fn extent(width: u32, height: u32) -> Extent3d {
+    Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    }
+}
+
+fn row_bytes(width: u32) -> u32 {
+    (width * 4).next_multiple_of(ROW_ALIGNMENT)
+}

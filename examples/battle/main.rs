@@ -1,0 +1,126 @@
+//! The main job: a climber rides a walking, shaking creature for a minute, and rocks fall on it.
+//!
+//! `cargo run --release --example battle -- --help` lists the options. The scene itself, its script
+//! and its checks are `clamber_scenes::battle`; with `--features render` it can be filmed.
+
+#[cfg(feature = "render")]
+mod film;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
+use clap::Parser;
+
+/// What `--help` says is that of the battle.
+#[derive(Debug, Parser)]
+#[command(name = "battle", version)]
+struct Options {
+    #[command(flatten)]
+    battle: BattleOptions,
+    #[command(flatten)]
+    film: FilmOptions,
+}
+
+/// How the battle is filmed.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Filming, with --features render")]
+struct FilmOptions {
+    /// Folder for pictures: 00000.png, 00001.png and so on.
+    #[arg(long, value_name = "DIR")]
+    frames: Option<PathBuf>,
+
+    /// File for a moving picture of half the size.
+    #[arg(long, value_name = "FILE")]
+    gif: Option<PathBuf>,
+
+    /// Where the camera is.
+    #[arg(long, value_enum, default_value = "orbit")]
+    camera: CameraKind,
+
+    /// What is drawn over the pictures, with commas between.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
+    overlay: Vec<OverlayKind>,
+
+    /// Pictures for a second of the battle.
+    #[arg(long, value_name = "COUNT", default_value_t = 15)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=60))]
+    rate: u32,
+
+    /// Seconds of the battle that pass before filming begins.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    from: f64,
+
+    /// Pixels along a row.
+    #[arg(long, value_name = "PIXELS", default_value_t = 1280)]
+    width: u32,
+
+    /// Rows of pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 720)]
+    rows: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum CameraKind {
+    /// Circles around the creature.
+    Orbit,
+    /// Follows the climber.
+    Chase,
+    /// Stands in the valley and turns after the creature.
+    Fixed,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum OverlayKind {
+    /// The skeleton.
+    Joints,
+    /// Capsules around the parts.
+    Bounds,
+    /// The triangle under the climber, and the way it came.
+    Contact,
+    /// The velocity of the skin under the climber.
+    Velocity,
+    /// The pieces of skin that the physics engine has for the rocks.
+    Rocks,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let summary = match run(&options) {
+        Ok(summary) => summary,
+        Err(error) => {
+            eprintln!("battle: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    print!("{summary}");
+    println!("  written to {}", options.battle.out.display());
+    if summary.holds() {
+        ExitCode::SUCCESS
+    } else {
+        eprintln!("battle: a check failed");
+        ExitCode::FAILURE
+    }
+}
+
+fn run(options: &Options) -> Result<Summary, BattleError> {
+    let film = &options.film;
+    if film.frames.is_none() && film.gif.is_none() {
+        return battle::run(&options.battle);
+    }
+    filmed(options)
+}
+
+#[cfg(feature = "render")]
+fn filmed(options: &Options) -> Result<Summary, BattleError> {
+    let failed = |error: Box<dyn std::error::Error + Send + Sync>| BattleError::Watching(error);
+    let mut film = film::Film::new(&options.battle, &options.film).map_err(failed)?;
+    battle::run_watched(&options.battle, |battle| film.watch(battle).map_err(failed))
+}
+
+#[cfg(not(feature = "render"))]
+fn filmed(_: &Options) -> Result<Summary, BattleError> {
+    Err(BattleError::Watching(
+        "built without pictures: add `--features render` to the command, before `--`".into(),
+    ))
+}
