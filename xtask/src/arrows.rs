@@ -3,11 +3,12 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 8] = [
+const ALLOWED: [(&str, &[&str]); 9] = [
     ("clamber_surface", &[]),
     ("clamber_world", &["clamber_surface"]),
     ("clamber_climber", &["clamber_surface", "clamber_world"]),
     ("clamber_gltf", &["clamber_surface"]),
+    ("clamber_render", &["clamber_surface"]),
     (
         "clamber",
         &[
@@ -15,6 +16,7 @@ const ALLOWED: [(&str, &[&str]); 8] = [
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",
+            "clamber_render",
         ],
     ),
     (
@@ -34,10 +36,11 @@ const ALLOWED: [(&str, &[&str]); 8] = [
 const ALLOWED_FOR_TESTS: [(&str, &str); 1] = [("clamber", "clamber_scenes")];
 
 /// Crates outside the workspace that only one crate of it may know.
-const KEPT_TO: [(&str, &str); 3] = [
+const KEPT_TO: [(&str, &str); 4] = [
     ("rapier3d", "clamber_world"),
     ("parry3d", "clamber_surface"),
     ("gltf", "clamber_gltf"),
+    ("wgpu", "clamber_render"),
 ];
 
 /// All that the core may depend on outside the workspace.

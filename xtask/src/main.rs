@@ -37,7 +37,7 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
         let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
@@ -56,6 +56,10 @@ const STEPS: [Step; 9] = [
     }),
     ("doctests", |_| {
         cargo(&["test", "--workspace", "--doc", "--quiet"])
+    }),
+    ("pictures", |_| {
+        let test = ["test", "--quiet", "--features", "render", "--test"];
+        cargo(&[&test[..], &["pictures"]].concat())
     }),
     ("examples", examples::run),
     ("benches", benches::run),

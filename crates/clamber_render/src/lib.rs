@@ -1,13 +1,8 @@
-//! Off-screen pictures of creatures, with what the collider knows drawn over them.
-//!
-//! A [`Renderer`] draws a [`Frame`] into an [`Image`], without a window: creatures skinned on the GPU by
-//! the palette that poses their colliders, ground, rocks and climbers as plain meshes, a sun with shadow,
-//! sky and fog; and over them lines and triangles of an [`Overlay`]: joints, bounds, clusters, contacts,
-//! anchors. It runs on a GPU or on Mesa's software Vulkan.
-//!
-//! Positions are f64 in the world; what the GPU gets is relative to the camera, so pictures 100 km from
-//! the origin are as sharp as those at it. Per frame it gets palettes, one matrix a mesh and the overlay:
-//! nothing for any vertex.
+#![doc = include_str!("../README.md")]
+#![allow(
+    clippy::disallowed_types,
+    reason = "pictures are no part of what must have the same bits everywhere"
+)]
 
 mod camera;
 mod error;
