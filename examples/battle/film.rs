@@ -65,8 +65,14 @@ impl Film {
                 &mut renderer,
                 &SharedShape::capsule_y(0.42, 0.24),
                 [0.36, 0.08, 0.06],
+                Look::Plain,
             )?,
-            add_solid(&mut renderer, &SharedShape::ball(0.17), [0.55, 0.36, 0.26])?,
+            add_solid(
+                &mut renderer,
+                &SharedShape::ball(0.17),
+                [0.55, 0.36, 0.26],
+                Look::Plain,
+            )?,
         ];
         if let Some(folder) = &film.frames {
             std::fs::create_dir_all(folder)?;
@@ -221,6 +227,7 @@ impl Film {
                     &mut self.renderer,
                     shape,
                     [shade, shade * 0.95, shade * 0.86],
+                    Look::Stone,
                 )?;
                 self.rocks.push((*rock, mesh));
             }
@@ -299,6 +306,7 @@ fn add_solid(
     renderer: &mut Renderer,
     shape: &SharedShape,
     color: [f32; 3],
+    look: Look,
 ) -> Result<MeshId, Failure> {
     let (positions, triangles) = match shape.as_typed_shape() {
         TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
@@ -317,7 +325,6 @@ fn add_solid(
         (positions, triangles)
     };
     let colors = vec![color; positions.len()];
-    let look = if sharp { Look::Stone } else { Look::Plain };
     let looks = vec![look; positions.len()];
     Ok(renderer.add_mesh(&MeshSource {
         positions: &positions,
