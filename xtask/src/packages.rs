@@ -87,8 +87,10 @@ fn check_files(package: &Package) -> Result<(), String> {
         &package.name,
     ];
     let files = cargo_output(&list)?;
-    let source =
-        |file: &str| file.ends_with(".rs") && (file.contains("src/") || file.starts_with("tests/"));
+    let source = |file: &str| {
+        let code = file.ends_with(".rs") && (file.contains("src/") || file.starts_with("tests/"));
+        code || file.ends_with(".wgsl") && file.starts_with("src/")
+    };
     for file in files.lines() {
         if !TOP_LEVEL.contains(&file) && !source(file) {
             return Err(format!("{} would ship {file}", package.name));

@@ -1,6 +1,6 @@
 use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
 use glam::dcamera::rh::view::look_to_mat4;
-use glam::{DVec3, Mat4};
+use glam::{DMat4, DVec3};
 
 /// From where a picture is taken: in the world, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,10 +49,10 @@ impl Camera {
     }
 
     /// From the world relative to the eye to the picture; depth is 1 at the near plane and 0 at infinity.
-    pub(crate) fn clip_from_view(&self, aspect: f64) -> Mat4 {
+    pub(crate) fn clip_from_view(&self, aspect: f64) -> DMat4 {
         let ahead = (self.target - self.eye).normalize();
         let view = look_to_mat4(DVec3::ZERO, ahead, self.up.normalize());
         let projection = perspective_infinite_reverse(self.field_of_view, aspect, NEAR);
-        (projection * view).as_mat4()
+        projection * view
     }
 }

@@ -175,7 +175,8 @@ impl Renderer {
         let light = &frame.light;
         let lit = light.to_sun.is_finite() && light.to_sun.length_squared() > 0.0;
         let shadow = light.shadow_center.is_finite() && light.shadow_radius > 0.0;
-        if !lit || !shadow || !(light.fog >= 0.0) || !light.shadow_radius.is_finite() {
+        let air = light.fog >= 0.0 && light.fog.is_finite();
+        if !lit || !shadow || !air || !light.shadow_radius.is_finite() {
             return wrong("the light has no direction, or its shadow or fog no size");
         }
         for drawn in &frame.drawn {
@@ -307,7 +308,7 @@ impl Renderer {
         }
     }
 
-    fn draw_overlay(&self, pass: &mut RenderPass<'_>, frame: &Frame<'_>, clip: Mat4) -> u64 {
+    fn draw_overlay(&self, pass: &mut RenderPass<'_>, frame: &Frame<'_>, clip: DMat4) -> u64 {
         if frame.overlay.is_empty() {
             return 0;
         }
@@ -316,7 +317,7 @@ impl Renderer {
         let over = buffer(&self.gpu, "overlay", contents, BufferUsages::VERTEX);
         pass.set_vertex_buffer(0, over.slice(..));
         for (pipeline, opacity) in self.pipelines.overlay.iter().zip([1.0, BEHIND]) {
-            let mut globals = clip.to_cols_array().to_vec();
+            let mut globals = clip.as_mat4().to_cols_array().to_vec();
             let (width, height) = (self.target.width as f32, self.target.height as f32);
             globals.extend([width, height, opacity, 0.0]);
             let globals = cast_slice(&globals);
@@ -372,7 +373,7 @@ fn view_from_model(drawn: &Drawn<'_>, eye: DVec3) -> Mat4 {
 }
 
 /// As the shader has them.
-fn globals(frame: &Frame<'_>, clip_from_view: Mat4) -> Vec<f32> {
+fn globals(frame: &Frame<'_>, clip_from_view: DMat4) -> Vec<f32> {
     let light = &frame.light;
     let to_sun = light.to_sun.as_dvec3().normalize();
     let radius = light.shadow_radius;
@@ -383,8 +384,8 @@ fn globals(frame: &Frame<'_>, clip_from_view: Mat4) -> Vec<f32> {
     let shadow_from_view = (flat * view).as_mat4();
     let sun = to_sun.as_vec3();
     let mut globals = Vec::with_capacity(56);
-    globals.extend(clip_from_view.to_cols_array());
-    globals.extend(clip_from_view.inverse().to_cols_array());
+    globals.extend(clip_from_view.as_mat4().to_cols_array());
+    globals.extend(clip_from_view.inverse().as_mat4().to_cols_array());
     globals.extend(shadow_from_view.to_cols_array());
     globals.extend([sun.x, sun.y, sun.z, 0.0]);
     globals.extend([light.fog, 1.0 / SHADOW as f32, 0.0, 0.0]);

@@ -1,10 +1,6 @@
 //! The device poses vertices as the collider does.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test's helpers may fail like the test"
-)]
+#![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
 
 mod common;
 
