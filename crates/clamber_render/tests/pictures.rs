@@ -109,7 +109,7 @@ fn a_square_is_where_it_stands_near_the_origin_and_far_from_it() {
             let expected = DVec3::new(
                 f64::from(WIDTH) / 2.0 + aside.x * metre,
                 f64::from(ROWS) / 2.0 - aside.y * metre,
-                (2.0 * metre).powi(2),
+                4.0 * metre * metre,
             );
             assert!(
                 (x - expected.x).abs() < 0.5,
