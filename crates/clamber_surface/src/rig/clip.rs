@@ -97,6 +97,21 @@ impl Channel {
         self.joint
     }
 
+    /// How it gets from one key frame to the next.
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Seconds of the key frames, not decreasing.
+    pub fn times(&self) -> &[f32] {
+        &self.times
+    }
+
+    /// As many values as times, or three times as many for [`Interpolation::CubicSpline`].
+    pub fn values(&self) -> &Keyframes {
+        &self.values
+    }
+
     /// Seconds of the first and last key frame.
     pub fn span(&self) -> (f32, f32) {
         (self.times[0], self.times[self.times.len() - 1])

@@ -1,6 +1,7 @@
 use std::sync::atomic::Ordering;
 
 use super::SkinnedSurface;
+use crate::mesh::TriangleId;
 
 /// What this tick's queries touched. Counts what is distinct, so it does not depend on how threads
 /// interleave.
@@ -41,6 +42,19 @@ impl SkinnedSurface {
             triangles_tested: self.triangles_tested.load(Ordering::Relaxed),
             most_sweep_steps: self.most_sweep_steps.load(Ordering::Relaxed),
         }
+    }
+
+    /// The triangles of the clusters that queries have reached since then, cluster by cluster. Takes
+    /// O(clusters).
+    pub fn touched_triangles(&self) -> impl Iterator<Item = TriangleId> {
+        let clusters = self.mesh.clusters();
+        let touched = self.current.asked_clusters();
+        touched.flat_map(|cluster| {
+            clusters.clusters[cluster]
+                .triangles(clusters)
+                .iter()
+                .copied()
+        })
     }
 
     /// Bytes that the collider takes: the rest data that surfaces share, and this surface's caches.
