@@ -116,6 +116,16 @@ impl<'a> Choreography<'a> {
         Ok((&self.palette, self.world_from_model()))
     }
 
+    /// Seconds gone by and metres walked: all that changes.
+    pub(super) fn progress(&self) -> (f64, f64) {
+        (self.time, self.walked)
+    }
+
+    /// Goes to where [`Choreography::progress`] was.
+    pub(super) fn go_to(&mut self, (time, walked): (f64, f64)) {
+        (self.time, self.walked) = (time, walked);
+    }
+
     /// The palette of the last [`Choreography::pose`].
     pub fn palette(&self) -> &Palette {
         &self.palette

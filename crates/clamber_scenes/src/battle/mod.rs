@@ -8,9 +8,12 @@ pub mod bot;
 mod checks;
 mod choreography;
 mod options;
+#[cfg(feature = "record")]
+mod record;
 mod recording;
 mod rockfall;
 mod scene;
+mod snapshot;
 mod summary;
 mod timeline;
 
@@ -18,9 +21,12 @@ use std::path::PathBuf;
 
 pub use choreography::Choreography;
 pub use options::BattleOptions;
+#[cfg(feature = "record")]
+pub use record::{BattleRecorder, Replay, replay};
 pub use recording::{Recording, Sample};
 pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
+pub use snapshot::BattleSnapshot;
 pub use summary::{Check, Summary};
 
 use crate::CreatureError;
@@ -57,6 +63,15 @@ pub enum BattleError {
     /// A rock cannot be held against the creature.
     #[error(transparent)]
     Debris(#[from] DebrisError),
+    /// `--record` in a build that cannot.
+    #[error("this build cannot record: add --features record to cargo's arguments")]
+    CannotRecord,
+    /// A snapshot cannot be written or read.
+    #[error("no snapshot of a battle: {0}")]
+    Snapshot(String),
+    /// Settings that no battle can be made from.
+    #[error("no battle can be made from these settings: {0}")]
+    Settings(String),
     /// Whoever watches the battle failed.
     #[error(transparent)]
     Watching(Box<dyn std::error::Error + Send + Sync>),
@@ -83,12 +98,23 @@ impl From<SurfaceError> for BattleError {
 }
 
 /// Fights a battle from beginning to end, writes `summary.json` and `timeline.svg` into its folder,
-/// which is made if need be, and gives the summary.
+/// which is made if need be, and gives the summary. Records it, if the options say so.
 ///
 /// # Errors
 /// [`BattleError`]. Failed checks are no error: they stand in the summary.
 pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
-    run_watched(options, |_| Ok(()))
+    let Some(path) = &options.record else {
+        return run_watched(options, |_| Ok(()));
+    };
+    #[cfg(feature = "record")]
+    {
+        record::run(options, path)
+    }
+    #[cfg(not(feature = "record"))]
+    {
+        let _ = path;
+        Err(BattleError::CannotRecord)
+    }
 }
 
 /// [`run`], and calls `watch` once before the first tick and after every tick: to record it, or to draw it.

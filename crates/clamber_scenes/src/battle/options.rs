@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
@@ -48,6 +49,10 @@ pub struct BattleOptions {
     /// Folder for summary.json and timeline.svg.
     #[arg(long, value_name = "DIR", default_value = "target/battle")]
     pub out: PathBuf,
+
+    /// Records the battle to a file for Foxglove, Rerun and the replay example; needs --features record.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub record: Option<PathBuf>,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -68,6 +73,37 @@ impl BattleOptions {
     /// From the command line; prints help or what is wrong with it, and exits.
     pub fn from_command_line() -> Self {
         Self::parse()
+    }
+
+    /// What makes the same battle again, by the names of the options: all but where results go.
+    ///
+    /// # Errors
+    /// [`BattleError::Settings`] if the creature's file has a name that is no text.
+    pub fn to_settings(&self) -> Result<BTreeMap<String, String>, BattleError> {
+        let mut settings = BTreeMap::from([
+            ("height".to_owned(), self.height().to_string()),
+            ("seconds".to_owned(), self.seconds.to_string()),
+            ("rocks".to_owned(), self.rocks.to_string()),
+            ("seed".to_owned(), self.seed.to_string()),
+        ]);
+        if let Some(path) = &self.creature {
+            let unreadable = || BattleError::Settings(format!("{} is no text", path.display()));
+            let path = path.to_str().ok_or_else(unreadable)?;
+            settings.insert("creature".to_owned(), path.to_owned());
+        }
+        Ok(settings)
+    }
+
+    /// From [`BattleOptions::to_settings`].
+    ///
+    /// # Errors
+    /// [`BattleError::Settings`] if they are not options of a battle.
+    pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, BattleError> {
+        let arguments = settings
+            .iter()
+            .map(|(name, value)| format!("--{name}={value}"));
+        Self::try_parse_from(std::iter::once("battle".to_owned()).chain(arguments))
+            .map_err(|error| BattleError::Settings(error.to_string()))
     }
 
     pub(super) fn load_creature(&self) -> Result<Creature, BattleError> {
@@ -92,7 +128,7 @@ impl BattleOptions {
 
     /// The script: stands for four tenths of the battle, walks up and down the back for the next
     /// third, jumps once in the middle of that, and stands again.
-    pub(super) fn input_at(&self, tick: u64) -> Intent {
+    pub fn input_at(&self, tick: u64) -> Intent {
         let part = tick as f64 / self.ticks() as f64;
         let jump = self.ticks() * 57 / 100;
         if tick == jump {

@@ -171,7 +171,7 @@ impl Rockfall {
     }
 
     /// What each tick of theirs cost, physics included, microseconds.
-    pub(super) fn times(&self) -> &[f64] {
+    pub fn times(&self) -> &[f64] {
         &self.times
     }
 

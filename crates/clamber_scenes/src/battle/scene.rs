@@ -14,7 +14,7 @@ use glam::DVec3;
 use super::bot::{self, Intent};
 use super::checks::Watch;
 use super::rockfall::Rockfall;
-use super::{BattleError, Choreography, Recording, Sample};
+use super::{BattleError, BattleSnapshot, Choreography, Recording, Sample};
 use crate::{Creature, valley};
 
 /// Seconds of a tick.
@@ -53,6 +53,7 @@ pub struct Battle<'a> {
     report: StepReport,
     recording: Recording,
     watch: Watch,
+    rocks_fingerprint: u64,
 }
 
 impl<'a> Battle<'a> {
@@ -80,6 +81,7 @@ impl<'a> Battle<'a> {
         let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
         let rocks = Rockfall::new(&mut world, rocks, seed, above, height)?;
         Ok(Self {
+            rocks_fingerprint: rocks.fingerprint(&world.bodies),
             choreography,
             surface,
             world,
@@ -99,25 +101,39 @@ impl<'a> Battle<'a> {
         })
     }
 
-    /// One tick.
+    /// One tick, the climber's input by the script.
     ///
     /// # Errors
     /// [`BattleError`] if a clip does not fit the creature.
     pub fn step(&mut self, intent: Intent) -> Result<(), BattleError> {
         let start = Instant::now();
+        self.pose_creature()?;
+        let seconds = self.tick as f64 * TICK;
+        let state = self.climber.state();
+        let (surface, perch) = (&self.surface, &self.perch);
+        let input = bot::input(intent, state, surface, perch, seconds, self.height);
+        self.step_posed(input, start)
+    }
+
+    /// One tick with an input from elsewhere, such as a recording.
+    ///
+    /// # Errors
+    /// [`BattleError`] if a clip does not fit the creature, or the input is not finite.
+    pub fn step_with(&mut self, input: ClimberInput) -> Result<(), BattleError> {
+        let start = Instant::now();
+        self.pose_creature()?;
+        self.step_posed(input, start)
+    }
+
+    fn pose_creature(&mut self) -> Result<(), BattleError> {
         self.choreography.advance(TICK)?;
         let (palette, world_from_model) = self.choreography.pose()?;
         self.surface.advance(palette, world_from_model)?;
-        let state = self.climber.state();
-        let seconds = self.tick as f64 * TICK;
-        let input = bot::input(
-            intent,
-            state,
-            &self.surface,
-            &self.perch,
-            seconds,
-            self.height,
-        );
+        Ok(())
+    }
+
+    /// The rest of a tick that began at `start`, once the creature is posed.
+    fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
         // The climber and the rocks pass through each other.
         let terrain = RapierTerrain::of_world(&self.world, &self.before)
             .with_filter(QueryFilter::only_fixed());
@@ -160,7 +176,8 @@ impl<'a> Battle<'a> {
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
             microseconds,
         };
-        let rocks = self.rocks.fingerprint(&self.world.bodies);
+        self.rocks_fingerprint = self.rocks.fingerprint(&self.world.bodies);
+        let rocks = self.rocks_fingerprint;
         self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
@@ -189,6 +206,45 @@ impl<'a> Battle<'a> {
         self.grounded = 0;
         self.drops += 1;
         Ok(())
+    }
+
+    /// What is needed to go on from here, beside the climber's state; the rocks are not.
+    pub fn snapshot(&self) -> BattleSnapshot {
+        let (time, walked) = self.choreography.progress();
+        BattleSnapshot {
+            tick: self.tick,
+            time,
+            walked,
+            grounded: self.grounded,
+            drops: self.drops,
+            landings: self.landings,
+        }
+    }
+
+    /// Goes on from a snapshot of a battle made with the same options. Creature and climber do so with the
+    /// same bits; the rocks stay where they are.
+    ///
+    /// # Errors
+    /// [`BattleError`] if the state is none of a climber's or a clip does not fit the creature.
+    pub fn restore(
+        &mut self,
+        snapshot: &BattleSnapshot,
+        state: ClimberState,
+    ) -> Result<(), BattleError> {
+        self.climber.restore(state)?;
+        self.choreography.go_to((snapshot.time, snapshot.walked));
+        let (palette, world_from_model) = self.choreography.pose()?;
+        self.surface.place(palette, world_from_model)?;
+        self.tick = snapshot.tick;
+        self.grounded = snapshot.grounded;
+        self.drops = snapshot.drops;
+        self.landings = snapshot.landings;
+        Ok(())
+    }
+
+    /// Ticks fought.
+    pub fn tick(&self) -> u64 {
+        self.tick
     }
 
     /// The climber.
@@ -229,6 +285,11 @@ impl<'a> Battle<'a> {
     /// The rocks.
     pub fn rocks(&self) -> &Rockfall {
         &self.rocks
+    }
+
+    /// A number over every bit of where the rocks are.
+    pub fn rocks_fingerprint(&self) -> u64 {
+        self.rocks_fingerprint
     }
 
     /// Every tick so far.

@@ -1,0 +1,136 @@
+//! What does it cost to record a battle, and how large does the file get?
+//!
+//! Two battles of the same options take turns, tick by tick: one is recorded to a file, one not. A tick is pose,
+//! climber and rocks, without what the scene checks. Prints a table and writes it to
+//! `target/measure/record.csv`: name, value, bound, holds.
+//!
+//! `cargo bench --features record --bench record`; brief with `-- --test`.
+
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clamber::record::RecordOptions;
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+
+fn main() -> ExitCode {
+    match run(is_brief()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    // A machine's first megabytes of file cache may cost ten times what later ones do.
+    let warm = std::env::temp_dir().join(format!("clamber-warm-{}", std::process::id()));
+    std::fs::write(&warm, vec![1; 40_000_000])?;
+    std::fs::remove_file(&warm)?;
+    let no_views = RecordOptions {
+        transforms_every: 0,
+        skin_every: 0,
+        ..RecordOptions::default()
+    };
+    for rocks in [24, 0] {
+        let name = format!("{rocks} rocks");
+        measure(&name, rocks, RecordOptions::default(), brief, &mut cells)?;
+        let name = format!("{rocks} rocks, only what a replay needs");
+        measure(&name, rocks, no_views, brief, &mut cells)?;
+    }
+    cells.finish("record", brief)
+}
+
+fn measure(
+    name: &str,
+    rocks: u32,
+    how: RecordOptions,
+    brief: bool,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let creature = giant()?;
+    let settings = [("rocks".to_owned(), rocks.to_string())].into();
+    let options = BattleOptions::from_settings(&settings)?;
+    let battle = || Battle::new(&creature, options.height(), options.seed, rocks as usize);
+    let (mut plain, mut recorded) = (battle()?, battle()?);
+    let path = std::env::temp_dir().join(format!("clamber-record-{}.mcap", std::process::id()));
+    let file = BufWriter::new(File::create(&path)?);
+    let mut recorder = BattleRecorder::new(file, &recorded, &options, how)?;
+    let ticks = if brief { 120 } else { 3600 };
+    let mut costs = Vec::new();
+    recorder.tick(&recorded)?;
+    for tick in 0..ticks {
+        let intent = options.input_at(tick);
+        // By turns, since the second finds warm caches.
+        if tick.is_multiple_of(2) {
+            plain.step(intent)?;
+            recorded.step(intent)?;
+        } else {
+            recorded.step(intent)?;
+            plain.step(intent)?;
+        }
+        let start = Instant::now();
+        recorder.tick(&recorded)?;
+        costs.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    recorder.finish()?;
+    let bytes = std::fs::metadata(&path)?.len() as f64;
+    std::fs::remove_file(&path)?;
+    if plain.recording().hash() != recorded.recording().hash() {
+        return Err("the battle that was recorded is not the one that was not".into());
+    }
+    let (without, beside) = (tick_us(&plain), tick_us(&recorded));
+    let recording = mean(&costs);
+    cells.value(&format!("{name}: a tick, us, mean"), without);
+    cells.value(
+        &format!("{name}: a tick that is recorded, us, mean"),
+        beside + recording,
+    );
+    cells.value(&format!("{name}: of that, recording"), recording);
+    // By what is due: the rarer one is, the more goes with it.
+    let kinds = [
+        ("state and input only", 1, 4),
+        ("with transforms", 4, 30),
+        ("with the skin", 30, 60),
+        ("with a chunk to write", 60, u64::MAX),
+    ];
+    let viewed = how.skin_every > 0;
+    for (what, every, but) in kinds.into_iter().filter(|_| viewed) {
+        let due = (1..).zip(&costs).filter(|(tick, _)| {
+            u64::is_multiple_of(*tick, every) && !u64::is_multiple_of(*tick, but)
+        });
+        let mut due: Vec<f64> = due.map(|(_, cost)| *cost).collect();
+        let median = quantile(&mut due, 0.5);
+        cells.value(&format!("{name}: recording, us, median, {what}"), median);
+    }
+    let share = Bound::Most(0.05);
+    cells.push(
+        &format!("{name}: recording / a tick"),
+        recording / without,
+        share,
+    );
+    let minute = bytes * 3600.0 / ticks as f64 / 1e6;
+    cells.push(&format!("{name}: MB a minute"), minute, Bound::Most(50.0));
+    Ok(())
+}
+
+/// Pose, climber and rocks, without what the scene checks.
+fn tick_us(battle: &Battle<'_>) -> f64 {
+    let own: Vec<f64> = battle
+        .recording()
+        .samples()
+        .iter()
+        .map(|s| s.microseconds)
+        .collect();
+    mean(&own) + mean(battle.rocks().times())
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

@@ -1,0 +1,271 @@
+use std::fmt;
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+
+use clamber_climber::{ClimberInput, ClimberState};
+use prost::Message;
+
+use crate::file::{self, Kind};
+use crate::messages::{Snapshot, Tick};
+use crate::{RecordError, RecordingInfo, topics};
+
+/// Larger files are refused: a recording is read into memory. Some twenty minutes of a battle have 200 MB.
+const LARGEST: u64 = 1 << 30;
+
+/// How a recording ends.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Ending {
+    /// As its recorder finished it.
+    Whole,
+    /// Before that: its recorder was stopped, or the file was cut.
+    #[default]
+    Early,
+    /// It is damaged from a byte on; what stands before that is whole.
+    Damaged {
+        /// The byte.
+        at: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("file is whole"),
+            Self::Early => f.write_str("file ends early"),
+            Self::Damaged { at, reason } => write!(f, "file is damaged at byte {at} ({reason})"),
+        }
+    }
+}
+
+/// One tick as it was recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedTick {
+    /// Its number.
+    pub tick: u64,
+    /// What the climber was asked for.
+    pub input: ClimberInput,
+    /// Its state at the end of the tick, bit for bit.
+    pub state: ClimberState,
+    /// Of that state.
+    pub state_fingerprint: u64,
+    /// Of the creature's palette.
+    pub palette_fingerprint: u64,
+    /// Of whatever else the scene had recorded; 0 for nothing.
+    pub scene_fingerprint: u64,
+}
+
+/// What a scene needs to go on from a tick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedSnapshot {
+    /// The tick, with the climber's state at its end.
+    pub tick: RecordedTick,
+    /// The rest, in the scene's own words.
+    pub scene: String,
+}
+
+/// A recording that was read: its metadata, and every tick up to where the file ends or is damaged.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    info: RecordingInfo,
+    bytes: Vec<u8>,
+    first: u64,
+    /// Where each tick's message stands.
+    ticks: Vec<Range<usize>>,
+    /// Ticks with a snapshot, ascending, and where it stands.
+    snapshots: Vec<(u64, Range<usize>)>,
+    ending: Ending,
+}
+
+impl Recording {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`], [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
+        let path = path.as_ref();
+        let failed = |source| RecordError::Io {
+            what: format!("cannot read {}", path.display()),
+            source,
+        };
+        let file = File::open(path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        // One more than allowed, so that a longer file shows, whatever the file system says of its length.
+        let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
+        let read = read.map_err(failed)? as u64;
+        if read > LARGEST {
+            return Err(RecordError::TooLarge {
+                bytes: read,
+                limit: LARGEST,
+            });
+        }
+        Self::from_bytes(bytes)
+    }
+
+    /// Reads what a recorder wrote. A file that was cut or damaged gives the ticks before that; see
+    /// [`Recording::ending`].
+    ///
+    /// # Errors
+    /// [`RecordError::NotMcap`], [`RecordError::NotARecording`], [`RecordError::TickSeconds`].
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
+        let mut contents = file::read(&bytes)?;
+        let mut take = |name: &str| {
+            contents.metadata.remove(name).ok_or_else(|| {
+                let (ending, wanted) = (&contents.ending, format!("metadata named {name:?}"));
+                RecordError::NotARecording(format!("it has no {wanted}; the {ending}"))
+            })
+        };
+        let metadata = take(RecordingInfo::METADATA)?;
+        let info = RecordingInfo::from_metadata(&metadata, take(RecordingInfo::SETTINGS)?)?;
+        let mut recording = Self {
+            info,
+            bytes,
+            first: 0,
+            ticks: Vec::new(),
+            snapshots: Vec::new(),
+            ending: contents.ending,
+        };
+        for (kind, place) in contents.messages {
+            let at = place.start;
+            if let Err(error) = recording.add(kind, place) {
+                let reason = error.to_string();
+                recording.ending = Ending::Damaged { at, reason };
+                break;
+            }
+        }
+        Ok(recording)
+    }
+
+    /// Checks a message and remembers where it stands.
+    fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
+        match kind {
+            Kind::Tick => {
+                let tick = self.decode_tick(&place)?.tick;
+                if self.ticks.is_empty() {
+                    self.first = tick;
+                }
+                let expected = self.first.checked_add(self.ticks.len() as u64);
+                if expected != Some(tick) {
+                    let last = self.last().unwrap_or_default();
+                    return Err(RecordError::Order { last, found: tick });
+                }
+                self.ticks.push(place);
+            }
+            Kind::Snapshot => {
+                let tick = self.decode_snapshot(&place)?.tick;
+                if self.last() != Some(tick) {
+                    let last = self.last().unwrap_or_default();
+                    return Err(RecordError::Order { last, found: tick });
+                }
+                self.snapshots.push((tick, place));
+            }
+        }
+        Ok(())
+    }
+
+    /// What it is a recording of.
+    pub fn info(&self) -> &RecordingInfo {
+        &self.info
+    }
+
+    /// How the file ends.
+    pub fn ending(&self) -> &Ending {
+        &self.ending
+    }
+
+    /// How many ticks it holds.
+    pub fn len(&self) -> usize {
+        self.ticks.len()
+    }
+
+    /// True without ticks.
+    pub fn is_empty(&self) -> bool {
+        self.ticks.is_empty()
+    }
+
+    /// The number of the first tick; `None` without ticks.
+    pub fn first(&self) -> Option<u64> {
+        (!self.ticks.is_empty()).then_some(self.first)
+    }
+
+    /// The number of the last tick; `None` without ticks.
+    pub fn last(&self) -> Option<u64> {
+        Some(self.first()? + (self.ticks.len() as u64 - 1))
+    }
+
+    /// A tick by its number.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`].
+    pub fn tick(&self, tick: u64) -> Result<RecordedTick, RecordError> {
+        let index = tick.checked_sub(self.first).map(usize::try_from);
+        let place = index.and_then(|index| self.ticks.get(index.ok()?));
+        let ticks = self.first().zip(self.last());
+        let missing = RecordError::NoTick { asked: tick, ticks };
+        self.decode_tick(place.ok_or(missing)?)
+    }
+
+    /// All ticks, in order.
+    pub fn ticks(&self) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
+        self.ticks.iter().map(|place| self.decode_tick(place))
+    }
+
+    /// The ticks from one on, in order.
+    pub fn ticks_from(
+        &self,
+        tick: u64,
+    ) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
+        let skipped = tick.saturating_sub(self.first);
+        let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
+        self.ticks().skip(skipped)
+    }
+
+    /// The last snapshot at or before a tick.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if there is none.
+    pub fn snapshot(&self, tick: u64) -> Result<RecordedSnapshot, RecordError> {
+        self.tick(tick)?;
+        let after = self.snapshots.partition_point(|(at, _)| *at <= tick);
+        let nearest = after.checked_sub(1).map(|index| &self.snapshots[index]);
+        let (at, place) = nearest.ok_or(RecordError::NoSnapshot(tick))?;
+        Ok(RecordedSnapshot {
+            tick: self.tick(*at)?,
+            scene: self.decode_snapshot(place)?.scene,
+        })
+    }
+
+    fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedTick, RecordError> {
+        let failed = |reason: String| RecordError::Message {
+            at: place.start,
+            topic: topics::TICK,
+            reason,
+        };
+        let tick = Tick::decode(&self.bytes[place.clone()]).map_err(|e| failed(e.to_string()))?;
+        let state = tick.state.to_climber();
+        let state =
+            state.map_err(|mode| failed(format!("no mode {mode} of a climber is known")))?;
+        if state.fingerprint() != tick.state_fingerprint {
+            return Err(failed("a state that is not the one recorded".to_owned()));
+        }
+        Ok(RecordedTick {
+            tick: tick.tick,
+            input: tick.input.into(),
+            state,
+            state_fingerprint: tick.state_fingerprint,
+            palette_fingerprint: tick.palette_fingerprint,
+            scene_fingerprint: tick.scene_fingerprint,
+        })
+    }
+
+    fn decode_snapshot(&self, place: &Range<usize>) -> Result<Snapshot, RecordError> {
+        Snapshot::decode(&self.bytes[place.clone()]).map_err(|error| RecordError::Message {
+            at: place.start,
+            topic: topics::SNAPSHOT,
+            reason: error.to_string(),
+        })
+    }
+}

@@ -1,0 +1,101 @@
+use std::collections::HashSet;
+
+use clamber_climber::ClimberState;
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{JointId, Palette, Skeleton};
+use foxglove::messages::{FrameTransform, FrameTransforms};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::{CLIMBER, CREATURE, WORLD, Z_UP, rotation, timestamp, vector};
+
+/// Transforms that stand before those of the joints.
+const OWN: usize = 3;
+
+/// Where creature, climber and joints are. Every joint hangs off the creature, not off its parent: these
+/// transforms know no scale.
+pub(crate) struct Frames {
+    /// Kept for its names and its memory.
+    message: FrameTransforms,
+}
+
+impl Frames {
+    pub(crate) fn new(skeleton: &Skeleton) -> Self {
+        let frame = |parent: &str, child: String| FrameTransform {
+            timestamp: None,
+            parent_frame_id: parent.to_owned(),
+            child_frame_id: child,
+            translation: Some(vector(DVec3::ZERO)),
+            rotation: Some(rotation(DQuat::IDENTITY)),
+        };
+        let mut transforms = vec![
+            frame(Z_UP, WORLD.to_owned()),
+            frame(WORLD, CREATURE.to_owned()),
+            frame(WORLD, CLIMBER.to_owned()),
+        ];
+        // A quarter turn about X takes Y up to Z up.
+        let half = core::f64::consts::FRAC_1_SQRT_2;
+        transforms[0].rotation = Some(rotation(DQuat::from_xyzw(half, 0.0, 0.0, half)));
+        let own = [WORLD, CREATURE, CLIMBER, Z_UP].map(str::to_owned);
+        let mut taken: HashSet<String> = own.into();
+        for (index, joint) in skeleton.joints().iter().enumerate() {
+            let mut name = joint.name.clone();
+            if name.is_empty() || taken.contains(&name) {
+                name = format!("{name}#{index}");
+            }
+            taken.insert(name.clone());
+            transforms.push(frame(CREATURE, name));
+        }
+        Self {
+            message: FrameTransforms { transforms },
+        }
+    }
+
+    /// Joints without a place in the palette keep their last transform.
+    pub(crate) fn update(
+        &mut self,
+        nanoseconds: u64,
+        state: &ClimberState,
+        world_from_model: &Similarity,
+        palette: &Palette,
+    ) -> &FrameTransforms {
+        let now = timestamp(nanoseconds);
+        let (own, joints) = self.message.transforms.split_at_mut(OWN);
+        if let [root, creature, climber] = own {
+            root.timestamp = Some(now);
+            let turn = world_from_model.rotation;
+            place(creature, now, world_from_model.translation, turn);
+            place(climber, now, state.position, facing(state.heading));
+        }
+        for (index, joint) in joints.iter_mut().enumerate() {
+            if let Some(placed) = palette.model_from_joint(JointId(index as u32)) {
+                let position = placed.translation * world_from_model.scale;
+                place(joint, now, position, upright(&placed.matrix3));
+            }
+        }
+        &self.message
+    }
+}
+
+fn place(
+    frame: &mut FrameTransform,
+    now: foxglove::messages::Timestamp,
+    translation: DVec3,
+    turn: DQuat,
+) {
+    frame.timestamp = Some(now);
+    frame.translation = Some(vector(translation));
+    frame.rotation = Some(rotation(turn));
+}
+
+/// The rotation that takes +Z to a unit vector, about as upright as Y.
+fn facing(heading: DVec3) -> DQuat {
+    let right = DVec3::Y.cross(heading).normalize_or(DVec3::X);
+    DQuat::from_mat3(&DMat3::from_cols(right, heading.cross(right), heading))
+}
+
+/// The rotation nearest to a linear map's first two columns: without scale, shear and mirroring.
+fn upright(map: &DMat3) -> DQuat {
+    let x = map.x_axis.normalize_or(DVec3::X);
+    let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());
+    DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
+}

@@ -1,0 +1,55 @@
+use clamber_surface::mesh::{ColliderMesh, VertexId};
+use foxglove::messages::packed_element_field::NumericType;
+use foxglove::messages::{PackedElementField, PointCloud};
+use glam::{DVec3, Vec3};
+
+use super::{CREATURE, pose, timestamp};
+
+/// Bytes of a point: three f32.
+const STRIDE: usize = 12;
+
+/// Vertices of the posed skin, in the creature's frame, metres.
+pub(crate) struct Skin {
+    at_most: usize,
+}
+
+impl Skin {
+    /// So many points at most, evenly picked from the order of the vertices.
+    pub(crate) fn new(at_most: usize) -> Self {
+        Self {
+            at_most: at_most.max(1),
+        }
+    }
+
+    /// `positions` are those of all vertices of the mesh, in model space.
+    pub(crate) fn message(
+        &self,
+        nanoseconds: u64,
+        mesh: &ColliderMesh,
+        positions: &[Vec3],
+        scale: f64,
+    ) -> PointCloud {
+        let step = positions.len().div_ceil(self.at_most).max(1);
+        let mut data = Vec::with_capacity(positions.len() / step * STRIDE + STRIDE);
+        for (vertex, position) in positions.iter().enumerate().step_by(step) {
+            if mesh.has_vertex(VertexId(vertex as u32)) {
+                for x in (*position * scale as f32).to_array() {
+                    data.extend_from_slice(&x.to_le_bytes());
+                }
+            }
+        }
+        let field = |name: &str, offset| PackedElementField {
+            name: name.to_owned(),
+            offset,
+            r#type: NumericType::Float32 as i32,
+        };
+        PointCloud {
+            timestamp: Some(timestamp(nanoseconds)),
+            frame_id: CREATURE.to_owned(),
+            pose: Some(pose(DVec3::ZERO)),
+            point_stride: STRIDE as u32,
+            fields: vec![field("x", 0), field("y", 4), field("z", 8)],
+            data: data.into(),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Battles recorded and fought again.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::collections::BTreeMap;
+
+use clamber_record::{
+    Difference, Ending, RecordOptions, RecordedTick, Recording, Replayed, palette_fingerprint,
+    replay, topics,
+};
+use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
+
+/// Long enough for a landing and a jump.
+const TICKS: u64 = 300;
+
+fn options(rocks: u32, seed: u64) -> BattleOptions {
+    let settings = [
+        ("rocks", rocks.to_string()),
+        ("seed", seed.to_string()),
+        ("seconds", "5".to_owned()),
+    ];
+    let settings: BTreeMap<_, _> = settings.map(|(k, v)| (k.to_owned(), v)).into();
+    BattleOptions::from_settings(&settings).unwrap()
+}
+
+fn record(options: &BattleOptions) -> Vec<u8> {
+    let creature = giant().unwrap();
+    let (height, rocks) = (options.height(), options.rocks as usize);
+    let mut battle = Battle::new(&creature, height, options.seed, rocks).unwrap();
+    let how = RecordOptions::default();
+    let mut recorder = BattleRecorder::new(Vec::new(), &battle, options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    for tick in 0..TICKS {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    recorder.finish().unwrap()
+}
+
+#[test]
+fn a_battle_is_fought_again_bit_for_bit() {
+    let recording = Recording::from_bytes(record(&options(8, 1))).unwrap();
+    assert_eq!(*recording.ending(), Ending::Whole);
+    assert_eq!(recording.len() as u64, TICKS + 1);
+    let replay = battle::replay(&recording, None).unwrap();
+    assert_eq!(replay.difference, None);
+    assert_eq!(replay.agreed, TICKS + 1);
+    assert!(replay.with_rocks);
+    // It was worth it: something happened.
+    let inputs = recording.ticks().map(|tick| tick.unwrap().input);
+    assert!(inputs.filter(|input| input.jump).count() == 1);
+}
+
+#[test]
+fn a_battle_is_fought_again_from_any_snapshot() {
+    let recording = Recording::from_bytes(record(&options(8, 1))).unwrap();
+    for (from, snapshot) in [
+        (0, 0),
+        (59, 0),
+        (60, 60),
+        (200, 180),
+        (299, 240),
+        (300, 300),
+    ] {
+        let replay = battle::replay(&recording, Some(from)).unwrap();
+        assert_eq!(replay.difference, None, "from {from}");
+        assert_eq!(replay.from, snapshot, "from {from}");
+        assert_eq!(replay.agreed, TICKS + 1 - snapshot, "from {from}");
+        assert!(!replay.with_rocks);
+    }
+    let missing = battle::replay(&recording, Some(301)).unwrap_err();
+    assert!(missing.to_string().contains("ticks 0 to 300"), "{missing}");
+}
+
+#[test]
+fn two_recordings_of_a_battle_are_the_same_bytes_and_another_seed_gives_others() {
+    let first = record(&options(4, 1));
+    assert!(first == record(&options(4, 1)), "the bytes differ");
+    assert!(
+        first != record(&options(4, 2)),
+        "the seed makes no difference"
+    );
+}
+
+/// Replays a battle of the same options with recorded ticks that `change` was let loose on.
+fn first_difference(
+    recording: &Recording,
+    options: &BattleOptions,
+    change: impl Fn(&mut RecordedTick),
+) -> Option<u64> {
+    let creature = giant().unwrap();
+    let mut battle = Battle::new(
+        &creature,
+        options.height(),
+        options.seed,
+        options.rocks as usize,
+    )
+    .unwrap();
+    let ticks = recording.ticks().map(|tick| {
+        let mut tick = tick?;
+        change(&mut tick);
+        Ok(tick)
+    });
+    let step = |recorded: &RecordedTick| {
+        if recorded.tick > 0 {
+            battle.step_with(recorded.input)?;
+        }
+        Ok::<_, battle::BattleError>(Replayed {
+            state: *battle.climber().state(),
+            palette_fingerprint: palette_fingerprint(battle.palette()),
+            scene_fingerprint: Some(battle.rocks_fingerprint()),
+        })
+    };
+    match replay(ticks, step) {
+        Ok(_) => None,
+        Err(clamber_record::ReplayError::Differs(difference)) => {
+            let Difference { recorded, .. } = *difference;
+            Some(recorded.tick)
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+#[test]
+fn what_is_changed_shows_at_its_tick() {
+    let options = options(2, 1);
+    let recording = Recording::from_bytes(record(&options)).unwrap();
+    assert_eq!(first_difference(&recording, &options, |_| {}), None);
+    // The lowest bit of one input: while it walks, and so late that no later tick shows it.
+    let walking = |tick: &RecordedTick| tick.input.walk.x != 0.0;
+    let ticks: Vec<RecordedTick> = recording.ticks().map(Result::unwrap).collect();
+    let at = ticks.iter().find(|tick| walking(tick)).unwrap().tick;
+    let nudge = |tick: &mut RecordedTick| {
+        if tick.tick == at {
+            tick.input.walk.x = f64::from_bits(tick.input.walk.x.to_bits() ^ (1 << 20));
+        }
+    };
+    assert_eq!(first_difference(&recording, &options, nudge), Some(at));
+    let no_jump = |tick: &mut RecordedTick| tick.input.jump = false;
+    let jump = ticks.iter().find(|tick| tick.input.jump).unwrap().tick;
+    assert_eq!(first_difference(&recording, &options, no_jump), Some(jump));
+    // Another creature's pose, the rocks, the start.
+    let palette = |tick: &mut RecordedTick| {
+        tick.palette_fingerprint ^= u64::from(tick.tick == 77);
+    };
+    assert_eq!(first_difference(&recording, &options, palette), Some(77));
+    let rocks = |tick: &mut RecordedTick| tick.scene_fingerprint ^= u64::from(tick.tick == 78);
+    assert_eq!(first_difference(&recording, &options, rocks), Some(78));
+    let other_seed = BattleOptions {
+        seed: 2,
+        ..options.clone()
+    };
+    assert_eq!(first_difference(&recording, &other_seed, |_| {}), Some(0));
+}
+
+/// A constant of the scene: the height that it was made with, from the recording's own settings.
+#[test]
+fn a_changed_constant_shows_as_a_difference() {
+    let options = options(0, 1);
+    let recording = Recording::from_bytes(record(&options)).unwrap();
+    let taller = BattleOptions {
+        height: Some(options.height() * (1.0 + 1e-12)),
+        ..options
+    };
+    assert_eq!(first_difference(&recording, &taller, |_| {}), Some(0));
+}
+
+#[test]
+fn other_peoples_reader_finds_every_tick_in_order_and_the_metadata() {
+    let file = record(&options(2, 1));
+    let summary = mcap::Summary::read(&file).unwrap().unwrap();
+    let stats = summary.stats.as_ref().unwrap();
+    assert_eq!(stats.metadata_count, 2);
+    assert!(stats.chunk_count >= 5, "{} chunks", stats.chunk_count);
+    assert_eq!(stats.message_start_time, 0);
+    assert_eq!(stats.message_end_time, TICKS * 1_000_000_000 / 60);
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    let mut last = 0;
+    for message in mcap::MessageStream::new(&file).unwrap() {
+        let message = message.unwrap();
+        assert!(
+            message.log_time >= last,
+            "{} after {last}",
+            message.log_time
+        );
+        last = message.log_time;
+        let schema = message.channel.schema.as_ref().unwrap();
+        assert_eq!(schema.encoding, "protobuf");
+        assert_eq!(message.channel.message_encoding, "protobuf");
+        *counts.entry(message.channel.topic.clone()).or_default() += 1;
+    }
+    assert_eq!(counts[topics::TICK], TICKS + 1);
+    assert_eq!(counts[topics::TRANSFORMS], TICKS / 4 + 1);
+    assert_eq!(counts[topics::SKIN], TICKS / 30 + 1);
+    assert_eq!(counts[topics::SCENE], TICKS / 30 + 1);
+    assert_eq!(counts[topics::TOUCHED], TICKS / 30 + 1);
+    assert_eq!(counts[topics::SNAPSHOT], TICKS / 60 + 1);
+    assert!(counts[topics::LOG] >= 2, "{counts:?}");
+    let metadata = summary.metadata_indexes.iter().map(|index| {
+        let metadata = mcap::read::metadata(&file, index).unwrap();
+        (metadata.name, metadata.metadata)
+    });
+    let metadata: BTreeMap<_, _> = metadata.collect();
+    assert_eq!(metadata["settings"]["seed"], "1");
+    assert_eq!(metadata["settings"]["rocks"], "2");
+    assert_eq!(metadata["clamber"]["creature"], "giant");
+    assert_eq!(metadata["clamber"]["version"], env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn recording_changes_nothing() {
+    let creature = giant().unwrap();
+    let options = options(8, 3);
+    let battle = || Battle::new(&creature, options.height(), 3, 8).unwrap();
+    let (mut plain, mut recorded) = (battle(), battle());
+    // All views each tick: they skin the whole creature and read what was touched.
+    let how = RecordOptions {
+        transforms_every: 1,
+        skin_every: 1,
+        ..RecordOptions::default()
+    };
+    let mut recorder = BattleRecorder::new(Vec::new(), &recorded, &options, how).unwrap();
+    for tick in 0..TICKS {
+        plain.step(options.input_at(tick)).unwrap();
+        recorded.step(options.input_at(tick)).unwrap();
+        recorder.tick(&recorded).unwrap();
+        let touched = |battle: &Battle<'_>| battle.surface().diagnostics();
+        assert_eq!(touched(&plain), touched(&recorded), "tick {tick}");
+    }
+    assert_eq!(plain.recording().hash(), recorded.recording().hash());
+}

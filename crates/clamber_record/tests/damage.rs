@@ -1,0 +1,229 @@
+//! Files that were cut, changed, emptied, or never were recordings.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::sync::OnceLock;
+
+use clamber_record::{Ending, RecordError, RecordOptions, Recording};
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
+
+const TICKS: u64 = 180;
+
+fn file() -> &'static [u8] {
+    static FILE: OnceLock<Vec<u8>> = OnceLock::new();
+    FILE.get_or_init(|| {
+        let creature = giant().unwrap();
+        let settings = [("rocks".to_owned(), "0".to_owned())].into();
+        let options = BattleOptions::from_settings(&settings).unwrap();
+        let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+        let how = RecordOptions {
+            skin_points: 50,
+            ..RecordOptions::default()
+        };
+        let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+        recorder.tick(&battle).unwrap();
+        for tick in 0..TICKS {
+            battle.step(options.input_at(tick)).unwrap();
+            recorder.tick(&battle).unwrap();
+        }
+        recorder.finish().unwrap()
+    })
+}
+
+/// Whatever a reader makes of some bytes, what it says it holds can be read, and is what was recorded.
+fn check(bytes: Vec<u8>, what: &str) -> Option<(usize, Ending)> {
+    static WHOLE: OnceLock<Recording> = OnceLock::new();
+    let whole = WHOLE.get_or_init(|| Recording::from_bytes(file().to_vec()).unwrap());
+    let recording = match Recording::from_bytes(bytes) {
+        Ok(recording) => recording,
+        Err(error) => {
+            assert!(!error.to_string().is_empty(), "{what}");
+            return None;
+        }
+    };
+    for tick in recording.ticks() {
+        let tick = tick.unwrap_or_else(|error| panic!("{what}: {error}"));
+        let recorded = whole.tick(tick.tick).unwrap();
+        assert_eq!(tick, recorded, "{what}");
+    }
+    for from in 0..=TICKS {
+        let _ = recording.snapshot(from);
+    }
+    Some((recording.len(), recording.ending().clone()))
+}
+
+#[test]
+fn a_whole_file_is_whole() {
+    let (ticks, ending) = check(file().to_vec(), "whole").unwrap();
+    assert_eq!((ticks as u64, ending), (TICKS + 1, Ending::Whole));
+}
+
+#[test]
+fn a_file_cut_anywhere_holds_its_whole_chunks() {
+    let whole = file();
+    let mut rng = fastrand::Rng::with_seed(5);
+    let ends = [0, 1, 7, 8, 9, 16, 17, 18].into_iter();
+    let anywhere = (0..400).map(|_| rng.usize(..whole.len()));
+    let near_the_end = (1..300).map(|back| whole.len() - back);
+    let mut cuts: Vec<usize> = ends.chain(anywhere).chain(near_the_end).collect();
+    cuts.sort_unstable();
+    let (mut before, mut steps) = (0, 0);
+    for cut in cuts {
+        let what = format!("cut at {cut} of {}", whole.len());
+        let Some((ticks, ending)) = check(whole[..cut].to_vec(), &what) else {
+            assert!(cut < 2000, "{what}: nothing is left");
+            continue;
+        };
+        assert_eq!(ending, Ending::Early, "{what}");
+        assert!(ticks >= before, "{what}: {ticks} after {before}");
+        steps += u32::from(ticks > before);
+        before = ticks;
+    }
+    assert_eq!(before as u64, TICKS + 1, "a cut behind the last chunk");
+    assert!(steps >= 3, "{steps} chunks, where a second each was wanted");
+}
+
+#[test]
+fn a_flipped_bit_is_noticed_or_harmless() {
+    let whole = file();
+    let mut rng = fastrand::Rng::with_seed(6);
+    let (mut refused, mut damaged, mut unseen) = (0, 0, 0);
+    for round in 0..1500 {
+        let mut bytes = whole.to_vec();
+        // A third of them at the front, where the lengths and the metadata are, a third at the end.
+        let at = match round % 3 {
+            0 => rng.usize(..2500),
+            1 => whole.len() - 1 - rng.usize(..4000),
+            _ => rng.usize(..whole.len()),
+        };
+        bytes[at] ^= 1 << rng.u32(..8);
+        match check(bytes, &format!("byte {at} changed")) {
+            None => refused += 1,
+            Some((_, Ending::Whole)) => {
+                unseen += 1;
+                // Only what comes after the data may change unseen: it is not read.
+                assert!(at > whole.len() - 20_000, "byte {at} changed unseen");
+            }
+            Some(_) => damaged += 1,
+        }
+    }
+    assert!(refused > 0 && damaged > 500, "{refused} {damaged} {unseen}");
+}
+
+#[test]
+fn several_bytes_of_noise_are_noticed_or_harmless() {
+    let whole = file();
+    let mut rng = fastrand::Rng::with_seed(7);
+    for round in 0..500 {
+        let mut bytes = whole.to_vec();
+        for _ in 0..rng.usize(1..40) {
+            let at = rng.usize(..bytes.len());
+            bytes[at] = rng.u8(..);
+        }
+        check(bytes, &format!("round {round} of noise"));
+    }
+}
+
+#[test]
+fn what_is_no_recording_is_refused() {
+    let no_mcap = |bytes: &[u8]| {
+        let error = Recording::from_bytes(bytes.to_vec()).unwrap_err();
+        assert!(matches!(error, RecordError::NotMcap), "{error}");
+    };
+    no_mcap(b"");
+    no_mcap(b"glTF\x02\x00\x00\x00");
+    no_mcap(&file()[..7]);
+    let no_recording = |bytes: Vec<u8>| {
+        let error = Recording::from_bytes(bytes).unwrap_err();
+        assert!(matches!(error, RecordError::NotARecording(_)), "{error}");
+    };
+    no_recording(mcap::MAGIC.to_vec());
+    // Another program's file.
+    let mut foreign = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
+    foreign
+        .add_channel(0, topics_of_others(), "json", &Default::default())
+        .unwrap();
+    foreign.finish().unwrap();
+    no_recording(foreign.into_inner().into_inner());
+    // One that promises a record longer than any memory.
+    let mut endless = mcap::MAGIC.to_vec();
+    endless.push(6);
+    endless.extend(u64::MAX.to_le_bytes());
+    endless.extend([0; 100]);
+    no_recording(endless);
+    let mut rng = fastrand::Rng::with_seed(8);
+    for _ in 0..2000 {
+        let mut noise = mcap::MAGIC.to_vec();
+        noise.extend((0..rng.usize(..200)).map(|_| rng.u8(..16)));
+        assert!(Recording::from_bytes(noise).is_err());
+    }
+}
+
+fn topics_of_others() -> &'static str {
+    "/imu"
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = Recording::open("no/such/file.mcap").unwrap_err();
+    assert!(error.to_string().contains("no/such/file.mcap"), "{error}");
+}
+
+#[test]
+fn a_writer_that_fails_gives_its_error() {
+    struct Full(usize);
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            if self.0 < bytes.len() {
+                return Err(std::io::Error::other("the disk is full"));
+            }
+            self.0 -= bytes.len();
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let creature = giant().unwrap();
+    let settings = [("rocks".to_owned(), "0".to_owned())].into();
+    let options = BattleOptions::from_settings(&settings).unwrap();
+    let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+    let how = RecordOptions::default();
+    let mut recorder = BattleRecorder::new(Full(200_000), &battle, &options, how).unwrap();
+    let mut failed = None;
+    for tick in 0..TICKS {
+        battle.step(options.input_at(tick)).unwrap();
+        if let Err(error) = recorder.tick(&battle) {
+            failed.get_or_insert(error);
+        }
+    }
+    let error = failed.unwrap();
+    assert!(error.to_string().contains("the disk is full"), "{error}");
+    assert!(recorder.finish().is_err());
+}
+
+#[test]
+fn a_run_that_is_killed_leaves_its_whole_seconds() {
+    let creature = giant().unwrap();
+    let settings = [("rocks".to_owned(), "0".to_owned())].into();
+    let options = BattleOptions::from_settings(&settings).unwrap();
+    let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+    let how = RecordOptions::default();
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
+    let file = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
+    let mut recorder = BattleRecorder::new(file, &battle, &options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    for tick in 0..150 {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    std::mem::forget(recorder);
+    let recording = Recording::open(&path).unwrap();
+    assert_eq!(*recording.ending(), Ending::Early);
+    assert_eq!(recording.len(), 120);
+}

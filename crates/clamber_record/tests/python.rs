@@ -1,0 +1,47 @@
+//! The check by other people's reader in Python, where that is installed.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+
+use clamber_record::RecordOptions;
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::giant::giant;
+
+#[test]
+fn python_decodes_a_recording() {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let probe = Command::new(&python)
+        .args(["-c", "import mcap.reader, mcap_protobuf.decoder"])
+        .output();
+    if !probe.is_ok_and(|output| output.status.success()) {
+        // Not by `eprintln`, whose output passing tests swallow.
+        let line = format!(
+            "SKIPPED python_decodes_a_recording: {python} has no packages mcap and \
+             mcap-protobuf-support; install them, or name another python by PYTHON\n"
+        );
+        let _ = std::io::stderr().write_all(line.as_bytes());
+        return;
+    }
+    let creature = giant().unwrap();
+    let settings = [("rocks".to_owned(), "4".to_owned())].into();
+    let options = BattleOptions::from_settings(&settings).unwrap();
+    let mut battle = Battle::new(&creature, options.height(), options.seed, 4).unwrap();
+    let how = RecordOptions::default();
+    let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    for tick in 0..200 {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("python.mcap");
+    std::fs::write(&file, recorder.finish().unwrap()).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/check.py");
+    let output = Command::new(&python)
+        .arg(script)
+        .arg(&file)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Decodes a recording with the readers of other people, and checks counts and fields.
+
+pip install mcap mcap-protobuf-support
+check.py FILE.mcap
+"""
+
+import struct
+import sys
+from collections import Counter
+
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+WANTED = {
+    "/tick": "tick.Tick",
+    "/snapshot": "snapshot.Snapshot",
+    "/transforms": "foxglove.FrameTransforms",
+    "/scene": "foxglove.SceneUpdate",
+    "/skin": "foxglove.PointCloud",
+    "/touched": "touched.Touched",
+    "/log": "foxglove.Log",
+}
+
+
+def check(condition, what):
+    if not condition:
+        sys.exit(f"check.py: {what}")
+
+
+def check_tick(message, count):
+    check(message.tick == count, f"tick {message.tick} where {count} was expected")
+    for name in ("position", "velocity", "heading"):
+        v = getattr(message.state, name)
+        check(all(abs(x) < 1e6 for x in (v.x, v.y, v.z)), f"tick {count}: {name} {v}")
+    standing = message.state.mode == 1
+    check(standing == message.state.HasField("footing"), f"tick {count}: mode and footing")
+    heading = message.state.heading
+    length = heading.x**2 + heading.y**2 + heading.z**2
+    check(abs(length - 1) < 1e-9, f"tick {count}: heading of length^2 {length}")
+    check(message.palette_fingerprint != 0, f"tick {count}: no fingerprint")
+
+
+def check_transforms(message):
+    parents = {t.child_frame_id: t.parent_frame_id for t in message.transforms}
+    check(len(parents) == len(message.transforms), "two transforms of one name")
+    check(parents.get("creature") == "world" == parents.get("climber"), f"{parents}")
+    for t in message.transforms:
+        q = t.rotation
+        check(abs(q.x**2 + q.y**2 + q.z**2 + q.w**2 - 1) < 1e-6, f"{t.child_frame_id}: {q}")
+    return len(parents) - 3
+
+
+def check_skin(message):
+    check([f.name for f in message.fields] == ["x", "y", "z"], "fields of a point")
+    check(len(message.data) % message.point_stride == 0, "a piece of a point")
+    points = list(struct.iter_unpack("<fff", message.data))
+    check(points and all(abs(x) < 1e4 for p in points for x in p), "points out of the world")
+    return len(points)
+
+
+def check_scene(message):
+    entities = {e.id: e for e in message.entities}
+    check(set(entities) == {"touched", "underfoot", "climber"}, f"{list(entities)}")
+    for entity in entities.values():
+        for triangles in entity.triangles:
+            check(len(triangles.indices) % 3 == 0, "a piece of a triangle")
+            check(
+                all(i < len(triangles.points) for i in triangles.indices),
+                "a corner that is no point",
+            )
+    return len(entities["touched"].triangles[0].indices) // 3
+
+
+def main(path):
+    counts, most, last = Counter(), Counter(), 0
+    with open(path, "rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        summary = reader.get_summary()
+        check(len(summary.chunk_indexes) > 0, "no chunks")
+        metadata = {m.name: m.metadata for m in reader.iter_metadata()}
+        for schema, channel, message, decoded in reader.iter_decoded_messages():
+            topic = channel.topic
+            check(schema.name == WANTED.get(topic), f"{topic} has schema {schema.name}")
+            check(message.log_time >= last, f"{topic}: time goes back at {message.log_time}")
+            last = message.log_time
+            if topic == "/tick":
+                check_tick(decoded, counts[topic])
+            elif topic == "/transforms":
+                most["joints"] = max(most["joints"], check_transforms(decoded))
+            elif topic == "/skin":
+                most["points"] = max(most["points"], check_skin(decoded))
+            elif topic == "/scene":
+                most["touched"] = max(most["touched"], check_scene(decoded))
+            elif topic == "/touched":
+                check(0 < decoded.clusters_touched <= decoded.clusters, f"{decoded}")
+            elif topic == "/log":
+                check(decoded.message != "", "a log line of nothing")
+            counts[topic] += 1
+    for topic in WANTED:
+        check(counts[topic] > 0, f"nothing on {topic}")
+        stored = summary.statistics.channel_message_counts
+        ids = [c.id for c in summary.channels.values() if c.topic == topic]
+        check(stored.get(ids[0], 0) == counts[topic], f"{topic}: the index counts otherwise")
+    dt = float(metadata["clamber"]["tick_seconds"])
+    check(abs(last * 1e-9 - (counts["/tick"] - 1) * dt) < 1e-6, "the last tick's time")
+    check("seed" in metadata["settings"], "no seed")
+    check(most["joints"] > 0 and most["touched"] > 0, f"{dict(most)}")
+    print(f"{path}: {dict(counts)}; at most {dict(most)}; {metadata['clamber']['creature']}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
