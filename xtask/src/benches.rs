@@ -9,7 +9,10 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
         for target in &package.targets {
             if target.kind.contains(&TargetKind::Bench) {
                 let bench = ["bench", "--quiet", "-p", &package.name];
-                cargo(&[&bench[..], &["--bench", &target.name, "--", "--test"]].concat())?;
+                // With those that are on by default: the others have to be named.
+                let features = target.required_features.join(",");
+                let with = ["--features", &features, "--bench", &target.name];
+                cargo(&[&bench[..], &with, &["--", "--test"]].concat())?;
             }
         }
     }

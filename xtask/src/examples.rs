@@ -1,5 +1,5 @@
-//! Every example once, briefly, as built for tests; the main one also as released, with equal
-//! results.
+//! Every example once, briefly, as built for tests; the main one also as released and recorded, with equal
+//! results, and what was recorded fought again.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,8 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     let queries = query_files(metadata)?;
     for package in metadata.workspace_packages() {
         for target in &package.targets {
-            if target.kind.contains(&TargetKind::Example) && target.name != "battle" {
+            let apart = ["battle", "replay"].contains(&target.name.as_str());
+            if target.kind.contains(&TargetKind::Example) && !apart {
                 let run = ["run", "--quiet", "-p", &package.name, "--example"];
                 let needed = ARGUMENTS.iter().find(|(name, _)| *name == target.name);
                 let arguments = needed.map_or(&[][..], |(_, arguments)| *arguments);
@@ -32,15 +33,30 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
             }
         }
     }
-    let slow = battle_hash(metadata, &[])?;
-    let fast = battle_hash(metadata, &["--release"])?;
+    let slow = battle_hash(metadata, &[], &[])?;
+    let fast = battle_hash(metadata, &["--release"], &[])?;
     if slow != fast {
         return Err(format!(
             "the battle's hash is {slow} in the development profile, {fast} in release"
         ));
     }
     println!("   battle: hash {fast} in both profiles");
-    Ok(())
+    let recording = metadata.target_directory.join("xtask-battle.mcap");
+    let recorded = battle_hash(
+        metadata,
+        &["--features", "record"],
+        &["--record", recording.as_str()],
+    )?;
+    if recorded != fast {
+        return Err(format!(
+            "the battle's hash is {fast}, and {recorded} when it is recorded"
+        ));
+    }
+    // Recorded in the development profile, fought again as released.
+    let replay = ["run", "--quiet", "--release", "--features", "record"];
+    let file = ["--example", "replay", "--", recording.as_str()];
+    cargo(&[&replay[..], &file].concat())?;
+    cargo(&[&replay[..], &file, &["--from", "200"]].concat())
 }
 
 /// The query files of the test data, or where there is none a file of one query.
@@ -66,8 +82,8 @@ fn query_files(metadata: &Metadata) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// A battle of some seconds; gives its hash.
-fn battle_hash(metadata: &Metadata, profile: &[&str]) -> Result<String, String> {
+/// A battle of some seconds, built so and with these options beside; gives its hash.
+fn battle_hash(metadata: &Metadata, profile: &[&str], more: &[&str]) -> Result<String, String> {
     let folder = metadata.target_directory.join("xtask-battle");
     let fight = [
         "--example",
@@ -78,7 +94,7 @@ fn battle_hash(metadata: &Metadata, profile: &[&str]) -> Result<String, String> 
         "--out",
         folder.as_str(),
     ];
-    cargo_output(&[&["run", "--quiet"], profile, &fight].concat())?;
+    cargo_output(&[&["run", "--quiet"], profile, &fight, more].concat())?;
     let path = folder.join("summary.json");
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{path}: {e}"))?;
     let summary: serde_json::Value =
