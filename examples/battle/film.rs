@@ -1,13 +1,15 @@
 //! Films a battle.
 
 use std::error::Error;
+use std::io::Write;
 use std::path::PathBuf;
 
 use clamber::gltf::{Rig, load};
 use clamber::mesh::PartId;
 use clamber::prelude::*;
 use clamber::render::{
-    Camera, Drawn, Frame, Gif, Gpu, Light, Look, MeshId, MeshSource, Overlay, Renderer, SkinSource,
+    Camera, Color, Drawn, Frame, Gif, Gpu, Light, Look, MeshId, MeshSource, Overlay, Renderer,
+    SkinSource,
 };
 use clamber::rig::JointId;
 use clamber::surface::{JointMaps, PartBounds};
@@ -41,6 +43,7 @@ pub(crate) struct Film {
     height: f64,
     frames: Option<PathBuf>,
     gif: Option<Gif>,
+    raw: bool,
     /// Ticks from one picture to the next.
     every: u32,
     /// Ticks before the first.
@@ -92,6 +95,7 @@ impl Film {
             height: battle.height(),
             frames: film.frames.clone(),
             gif: gif.transpose()?,
+            raw: film.raw,
             every: ((1.0 / TICK).round() as u32 / film.rate).max(1),
             from: (film.from / TICK) as u32,
             tick: 0,
@@ -160,6 +164,9 @@ impl Film {
         if let Some(gif) = &mut self.gif {
             gif.push(&image.halved())?;
         }
+        if self.raw {
+            std::io::stdout().write_all(&image.pixels)?;
+        }
         self.taken += 1;
         Ok(())
     }
@@ -208,7 +215,9 @@ impl Film {
         for kind in &self.overlays {
             match kind {
                 OverlayKind::Joints => joints(&mut over, battle),
-                OverlayKind::Bounds => bounds(&mut over, battle),
+                OverlayKind::Capsules => bounds(&mut over, battle, false),
+                OverlayKind::Spheres => bounds(&mut over, battle, true),
+                OverlayKind::Touched => touched(&mut over, battle),
                 OverlayKind::Contact => contact(&mut over, battle, &self.way),
                 OverlayKind::Velocity => velocity(&mut over, battle),
                 OverlayKind::Rocks => rocks(&mut over, battle),
@@ -353,20 +362,43 @@ fn joints(over: &mut Overlay, battle: &Battle<'_>) {
     }
 }
 
-fn bounds(over: &mut Overlay, battle: &Battle<'_>) {
+fn bounds(over: &mut Overlay, battle: &Battle<'_>, spheres: bool) {
+    const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
     let mesh = battle.surface().mesh();
     let root = battle.surface().world_from_model();
     let bounds = PartBounds::new(mesh);
     let Ok(maps) = JointMaps::new(mesh, battle.palette()) else {
         return;
     };
-    for part in 0..bounds.part_count() {
-        if let Some(capsule) = bounds.capsule(PartId(part as u32), &maps) {
+    for part in (0..bounds.part_count() as u32).map(PartId) {
+        if spheres && let Some(sphere) = bounds.sphere(part, &maps) {
+            let center = root.transform_point_f32(sphere.center);
+            over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
+        }
+        if !spheres && let Some(capsule) = bounds.capsule(part, &maps) {
             let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
-            let radius = f64::from(capsule.radius) * root.scale;
-            over.capsule(a, b, radius, 1.0, [0.2, 0.8, 1.0, 0.5]);
+            over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
         }
     }
+}
+
+fn touched(over: &mut Overlay, battle: &Battle<'_>) {
+    let surface = battle.surface();
+    for triangle in surface.touched_triangles() {
+        if let Some(corners) = posed(surface, triangle) {
+            over.triangle(corners, [1.0, 0.55, 0.05, 0.35]);
+            let [a, b, c] = corners;
+            over.path(&[a, b, c, a], 1.0, [1.0, 0.7, 0.2, 0.8]);
+        }
+    }
+}
+
+/// The corners of a triangle, in the world.
+fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
+    let corners = surface.mesh().triangles().get(triangle.index())?;
+    let [a, b, c] = corners.map(|vertex| surface.position(vertex));
+    let root = surface.world_from_model();
+    Some([a?, b?, c?].map(|corner| root.transform_point_f32(corner)))
 }
 
 fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
@@ -375,20 +407,11 @@ fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     let Some(footing) = footing.filter(|footing| footing.obstacle == CREATURE) else {
         return;
     };
-    let surface = battle.surface();
-    let root = surface.world_from_model();
-    let corners = surface.mesh().triangles().get(footing.point.key as usize);
-    if let Some(corners) = corners {
-        let corners = corners.map(|vertex| surface.position(vertex));
-        if let [Some(a), Some(b), Some(c)] = corners {
-            let corners = [a, b, c].map(|corner| root.transform_point_f32(corner));
-            over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
-            over.path(
-                &[corners[0], corners[1], corners[2], corners[0]],
-                3.0,
-                [0.1, 1.0, 0.3, 1.0],
-            );
-        }
+    let triangle = TriangleId(footing.point.key as u32);
+    if let Some(corners) = posed(battle.surface(), triangle) {
+        over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
+        let [a, b, c] = corners;
+        over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
     }
     over.sphere(footing.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
 }

@@ -34,6 +34,10 @@ struct FilmOptions {
     #[arg(long, value_name = "FILE")]
     gif: Option<PathBuf>,
 
+    /// Writes pictures to standard output, bare: four bytes a pixel, red, green, blue, opacity.
+    #[arg(long)]
+    raw: bool,
+
     /// Where the camera is.
     #[arg(long, value_enum, default_value = "orbit")]
     camera: CameraKind,
@@ -75,7 +79,11 @@ enum OverlayKind {
     /// The skeleton.
     Joints,
     /// Capsules around the parts.
-    Bounds,
+    Capsules,
+    /// Spheres around the parts.
+    Spheres,
+    /// The triangles that were skinned in this tick.
+    Touched,
     /// The triangle under the climber, and the way it came.
     Contact,
     /// The velocity of the skin under the climber.
@@ -93,8 +101,13 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    print!("{summary}");
-    println!("  written to {}", options.battle.out.display());
+    let table = format!("{summary}  written to {}", options.battle.out.display());
+    if options.film.raw {
+        // Standard output has the pictures.
+        eprintln!("{table}");
+    } else {
+        println!("{table}");
+    }
     if summary.holds() {
         ExitCode::SUCCESS
     } else {
@@ -105,7 +118,7 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> Result<Summary, BattleError> {
     let film = &options.film;
-    if film.frames.is_none() && film.gif.is_none() {
+    if film.frames.is_none() && film.gif.is_none() && !film.raw {
         return battle::run(&options.battle);
     }
     filmed(options)

@@ -12,12 +12,12 @@ pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
 #[doc(inline)]
 pub use clamber_gltf as gltf;
-#[cfg(feature = "render")]
-#[doc(inline)]
-pub use clamber_render as render;
 #[cfg(feature = "record")]
 #[doc(inline)]
 pub use clamber_record as record;
+#[cfg(feature = "render")]
+#[doc(inline)]
+pub use clamber_render as render;
 #[cfg(feature = "parry")]
 #[doc(inline)]
 pub use clamber_surface::parry;

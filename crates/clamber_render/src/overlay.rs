@@ -69,6 +69,17 @@ impl Overlay {
         }
     }
 
+    /// From `across` over `top` to the other side, both from the middle.
+    fn half_circle(&mut self, center: DVec3, across: DVec3, top: DVec3, width: f32, color: Color) {
+        let point = |side: u32| {
+            let angle = f64::from(side) / f64::from(SIDES) * core::f64::consts::TAU;
+            center + across * libm::cos(angle) + top * libm::sin(angle)
+        };
+        for side in 0..SIDES / 2 {
+            self.line(point(side), point(side + 1), width, color);
+        }
+    }
+
     /// A sphere, by three circles.
     pub fn sphere(&mut self, center: DVec3, radius: f64, width: f32, color: Color) {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
@@ -76,14 +87,17 @@ impl Overlay {
         }
     }
 
-    /// A capsule: circles around its ends, and four lines between.
+    /// A capsule: circles and half circles at its ends, and four lines between.
     pub fn capsule(&mut self, a: DVec3, b: DVec3, radius: f64, width: f32, color: Color) {
         let axis = (b - a).normalize_or(DVec3::Y);
         let side = axis.any_orthonormal_vector() * radius;
         let other = axis.cross(side);
         for end in [a, b] {
-            for around in [axis, side, other] {
-                self.circle(end, around, radius, width, color);
+            self.circle(end, axis, radius, width, color);
+        }
+        for (end, outward) in [(a, -axis), (b, axis)] {
+            for across in [side, other] {
+                self.half_circle(end, across, outward * radius, width, color);
             }
         }
         for aside in [side, -side, other, -other] {

@@ -103,12 +103,23 @@ impl From<SurfaceError> for BattleError {
 /// # Errors
 /// [`BattleError`]. Failed checks are no error: they stand in the summary.
 pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
+    run_watched(options, |_| Ok(()))
+}
+
+/// [`run`], and calls `watch` once before the first tick and after every tick: to draw it, say.
+///
+/// # Errors
+/// As [`run`], and those of `watch`, which end the battle.
+pub fn run_watched(
+    options: &BattleOptions,
+    watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
+) -> Result<Summary, BattleError> {
     let Some(path) = &options.record else {
-        return run_watched(options, |_| Ok(()));
+        return fight(options, watch);
     };
     #[cfg(feature = "record")]
     {
-        record::run(options, path)
+        record::run(options, path, watch)
     }
     #[cfg(not(feature = "record"))]
     {
@@ -117,11 +128,7 @@ pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
     }
 }
 
-/// [`run`], and calls `watch` once before the first tick and after every tick: to record it, or to draw it.
-///
-/// # Errors
-/// As [`run`], and those of `watch`, which end the battle.
-pub fn run_watched(
+fn fight(
     options: &BattleOptions,
     mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
 ) -> Result<Summary, BattleError> {

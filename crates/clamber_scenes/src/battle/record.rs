@@ -8,7 +8,7 @@ use clamber_record::{
     RecordingInfo, ReplayError, Replayed, TickView, creature_fingerprint, palette_fingerprint,
 };
 
-use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, run_watched};
+use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
 use crate::Creature;
 
 /// Ticks from one snapshot to the next: a second.
@@ -75,8 +75,13 @@ impl<W: Write> BattleRecorder<W> {
     }
 }
 
-/// [`run_watched`], recording to a file. What was recorded stays if the battle fails on the way.
-pub(super) fn run(options: &BattleOptions, path: &Path) -> Result<Summary, BattleError> {
+/// Fights a battle, watched as it is, and records it to a file. What was recorded stays if the battle fails on
+/// the way.
+pub(super) fn run(
+    options: &BattleOptions,
+    path: &Path,
+    mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
+) -> Result<Summary, BattleError> {
     let failed = |error: std::io::Error| BattleError::Write {
         path: path.to_owned(),
         reason: error.to_string(),
@@ -90,7 +95,8 @@ pub(super) fn run(options: &BattleOptions, path: &Path) -> Result<Summary, Battl
     let file = std::fs::File::create(path).map_err(failed)?;
     let mut out = Some(std::io::BufWriter::new(file));
     let mut recorder = None;
-    let summary = run_watched(options, |battle| {
+    let summary = fight(options, |battle| {
+        watch(battle)?;
         if let Some(out) = out.take() {
             let how = RecordOptions::default();
             recorder = Some(BattleRecorder::new(out, battle, options, how)?);
