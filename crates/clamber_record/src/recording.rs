@@ -11,7 +11,7 @@ use crate::file::{self, Kind};
 use crate::messages::{Snapshot, Tick};
 use crate::{RecordError, RecordingInfo, topics};
 
-/// Larger files are refused: a recording is read into memory. Some twenty minutes of a battle have 200 MB.
+/// Larger files are refused: a recording is read into memory. Twenty minutes of a battle have 240 MB.
 const LARGEST: u64 = 1 << 30;
 
 /// How a recording ends.
