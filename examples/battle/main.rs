@@ -3,7 +3,7 @@
 //! `cargo run --release --example battle -- --help` lists the options. The scene itself, its script
 //! and its checks are `clamber_scenes::battle`; with `--features render` it can be filmed.
 
-#[cfg(feature = "render")]
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod film;
 
 use std::path::PathBuf;
@@ -124,14 +124,14 @@ fn run(options: &Options) -> Result<Summary, BattleError> {
     filmed(options)
 }
 
-#[cfg(feature = "render")]
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 fn filmed(options: &Options) -> Result<Summary, BattleError> {
     let failed = |error: Box<dyn std::error::Error + Send + Sync>| BattleError::Watching(error);
     let mut film = film::Film::new(&options.battle, &options.film).map_err(failed)?;
     battle::run_watched(&options.battle, |battle| film.watch(battle).map_err(failed))
 }
 
-#[cfg(not(feature = "render"))]
+#[cfg(not(all(feature = "render", feature = "gltf", feature = "rapier")))]
 fn filmed(_: &Options) -> Result<Summary, BattleError> {
     Err(BattleError::Watching(
         "built without pictures: add `--features render` to the command, before `--`".into(),
