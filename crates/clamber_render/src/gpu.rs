@@ -1,6 +1,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
-use wgpu::{Device, ErrorFilter, Queue};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, Buffer, Device, ErrorFilter,
+    Queue,
+};
 
 use crate::RenderError;
 
@@ -81,6 +84,22 @@ impl Gpu {
             Some(wgpu::Error::OutOfMemory { .. }) => Err(RenderError::OutOfMemory),
             Some(error) => Err(RenderError::Refused(error.to_string())),
         }
+    }
+
+    /// Buffers for a shader, bound in their order.
+    pub(crate) fn bind(&self, layout: &BindGroupLayout, buffers: &[&Buffer]) -> BindGroup {
+        let entries: Vec<BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.device.create_bind_group(&BindGroupDescriptor {
+            label: None,
+            layout,
+            entries: &entries,
+        })
     }
 
     /// Waits until all that was asked for is done.

@@ -136,9 +136,9 @@ impl Mesh {
 }
 
 pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
-    // No buffer of no bytes can be bound.
+    // Nothing can be bound that is shorter than one element of what a shader reads.
     let contents = if contents.is_empty() {
-        &[0; 16]
+        &[0; 64]
     } else {
         contents
     };

@@ -4,10 +4,10 @@ use glam::dcamera::rh::proj::directx::orthographic;
 use glam::dcamera::rh::view::look_to_mat4;
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3};
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
-    BufferDescriptor, BufferUsages, Color, CommandEncoder, CompareFunction, IndexFormat, LoadOp,
-    Operations, RenderPass, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-    RenderPassDescriptor, SamplerDescriptor, StoreOp,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, BufferDescriptor,
+    BufferUsages, Color, CommandEncoder, CompareFunction, IndexFormat, LoadOp, Operations,
+    RenderPass, RenderPassColorAttachment, RenderPassDepthStencilAttachment, RenderPassDescriptor,
+    SamplerDescriptor, StoreOp,
 };
 
 use crate::mesh::{Mesh, buffer};
@@ -256,7 +256,9 @@ impl Renderer {
             cast_slice(&instances),
             BufferUsages::STORAGE,
         );
-        let globals = self.group(&self.pipelines.globals, &[&globals, &instances]);
+        let globals = self
+            .gpu
+            .bind(&self.pipelines.globals, &[&globals, &instances]);
         {
             let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
                 label: Some("shadow"),
@@ -322,27 +324,12 @@ impl Renderer {
             globals.extend([width, height, opacity, 0.0]);
             let globals = cast_slice(&globals);
             let globals = buffer(&self.gpu, "overlay", globals, BufferUsages::UNIFORM);
-            let globals = self.group(&self.pipelines.overlay_globals, &[&globals]);
+            let globals = self.gpu.bind(&self.pipelines.overlay_globals, &[&globals]);
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &globals, &[]);
             pass.draw(0..vertices.len() as u32, 0..1);
         }
         contents.len() as u64 + 2 * 80
-    }
-
-    fn group(&self, layout: &BindGroupLayout, buffers: &[&Buffer]) -> BindGroup {
-        let entries: Vec<BindGroupEntry<'_>> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        self.gpu.device.create_bind_group(&BindGroupDescriptor {
-            label: None,
-            layout,
-            entries: &entries,
-        })
     }
 }
 

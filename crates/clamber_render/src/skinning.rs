@@ -3,8 +3,8 @@
 use bytemuck::cast_slice;
 use clamber_surface::rig::Palette;
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferDescriptor, BufferUsages,
-    CommandEncoder, ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor,
+    BindGroup, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor,
+    ComputePipeline, ComputePipelineDescriptor,
 };
 
 use crate::mesh::{Mesh, POSED_BYTES, Skin};
@@ -69,18 +69,7 @@ impl Skinning {
             &palette,
             &vertices,
         ];
-        let entries: Vec<BindGroupEntry<'_>> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let group = gpu.device.create_bind_group(&BindGroupDescriptor {
-            label: Some("skin"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let group = gpu.bind(&self.pipeline.get_bind_group_layout(0), &buffers);
         Posed {
             vertices,
             palette,

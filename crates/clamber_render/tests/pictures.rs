@@ -230,6 +230,31 @@ fn overlays_lie_where_they_are_in_the_world_and_are_faint_behind_things() {
 }
 
 #[test]
+fn an_empty_frame_is_sky_and_an_empty_mesh_is_nothing() {
+    let Some(mut renderer) = renderer("nothing") else {
+        return;
+    };
+    let sky = renderer.draw(&frame(DVec3::ZERO, Vec::new())).unwrap();
+    assert!(sky.pixels.chunks_exact(4).all(|pixel| pixel[2] > 20));
+    let nothing = MeshSource {
+        skin: Some(SkinSource {
+            joint_count: 1,
+            ..SkinSource::default()
+        }),
+        ..MeshSource::default()
+    };
+    let mesh = renderer.add_mesh(&nothing).unwrap();
+    let palette = Palette::from_matrices([Affine::IDENTITY]);
+    let drawn = Drawn {
+        palette: Some(&palette),
+        ..at(mesh, DVec3::ZERO)
+    };
+    let seen = renderer.draw(&frame(DVec3::ZERO, vec![drawn])).unwrap();
+    assert_eq!(seen, sky);
+    assert_eq!(renderer.posed_positions(mesh, &palette).unwrap(), []);
+}
+
+#[test]
 fn the_same_frame_gives_the_same_picture() {
     let Some(mut renderer) = renderer("repeats") else {
         return;
