@@ -10,8 +10,22 @@ use std::process::ExitCode;
 
 use clamber::record::{Ending, Recording};
 use clamber_scenes::battle;
+use clap::Parser;
 
-const USAGE: &str = "usage: replay FILE.mcap [--from TICK]";
+/// Fights a recorded battle again and compares every tick, bit for bit.
+///
+/// Exits with 1 if a tick differs, with 2 if there is nothing to replay.
+#[derive(Debug, Parser)]
+#[command(name = "replay", version)]
+struct Options {
+    /// What `battle --record FILE` wrote.
+    #[arg(value_name = "FILE.mcap")]
+    path: PathBuf,
+
+    /// Starts from the nearest snapshot at or before this tick, without the rocks.
+    #[arg(long, value_name = "TICK")]
+    from: Option<u64>,
+}
 
 fn main() -> ExitCode {
     match run() {
@@ -24,10 +38,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
-    let Some(Arguments { path, from }) = Arguments::read(std::env::args().skip(1))? else {
-        println!("{USAGE}");
-        return Ok(ExitCode::SUCCESS);
-    };
+    let Options { path, from } = Options::parse();
     let recording = Recording::open(&path)?;
     let (info, ticks) = (recording.info(), recording.len());
     let seconds = ticks.saturating_sub(1) as f64 * info.tick_seconds;
@@ -59,33 +70,4 @@ fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
         replay.agreed, replay.from
     );
     Ok(ExitCode::SUCCESS)
-}
-
-/// What the command line asks for.
-struct Arguments {
-    path: PathBuf,
-    from: Option<u64>,
-}
-
-impl Arguments {
-    /// `None` for help.
-    fn read(mut given: impl Iterator<Item = String>) -> Result<Option<Self>, String> {
-        let (mut path, mut from) = (None, None);
-        while let Some(argument) = given.next() {
-            match argument.as_str() {
-                "--help" | "-h" => return Ok(None),
-                "--from" => {
-                    let tick = given.next().ok_or(USAGE)?;
-                    let parsed = tick.parse();
-                    from = Some(parsed.map_err(|error| format!("--from {tick}: {error}"))?);
-                }
-                _ if path.is_none() && !argument.starts_with('-') => {
-                    path = Some(PathBuf::from(argument));
-                }
-                other => return Err(format!("{other} is not expected; {USAGE}")),
-            }
-        }
-        let path = path.ok_or(USAGE)?;
-        Ok(Some(Self { path, from }))
-    }
 }

@@ -283,7 +283,9 @@ impl Debris {
                     continue;
                 };
                 if let Some(patch) = piece.patches.get_mut(index)
-                    && let Some(_) = immovable.blocks(bodies, &piece.core, &end, kept.shift)
+                    && immovable
+                        .blocks(bodies, &piece.core, &end, kept.shift)
+                        .is_some()
                 {
                     patch.let_through = true;
                     report.caught += 1;
