@@ -12,8 +12,8 @@ use std::io::BufWriter;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clamber::record::RecordOptions;
-use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber::record::{RecordOptions, Recorder, RecordingInfo, TickView};
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder, TICK};
 use clamber_scenes::giant::giant;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 
@@ -109,6 +109,9 @@ fn measure(
         let median = quantile(&mut due, 0.5);
         cells.value(&format!("{name}: recording, us, median, {what}"), median);
     }
+    let written = writer_us(&recorded, &options, how, ticks)?;
+    let what = format!("{name}: on the thread that writes, us a tick, mean");
+    cells.value(&what, written);
     let share = Bound::Most(0.05);
     cells.push(
         &format!("{name}: recording / a tick"),
@@ -118,6 +121,43 @@ fn measure(
     let minute = bytes * 3600.0 / ticks as f64 / 1e6;
     cells.push(&format!("{name}: MB a minute"), minute, Bound::Most(50.0));
     Ok(())
+}
+
+/// What the thread that writes takes for a tick: the game does nothing but wait for it.
+fn writer_us(
+    battle: &Battle<'_>,
+    options: &BattleOptions,
+    how: RecordOptions,
+    ticks: u64,
+) -> Result<f64, Box<dyn Error>> {
+    let info = RecordingInfo {
+        creature: battle.creature().name.clone(),
+        creature_fingerprint: 0,
+        tick_seconds: TICK,
+        climber: *battle.climber().config(),
+        settings: options.to_settings()?,
+        version: RecordingInfo::VERSION.to_owned(),
+    };
+    let skeleton = &battle.creature().skeleton;
+    let mut recorder = Recorder::new(std::io::sink(), &info, skeleton, how)?;
+    let snapshot = battle.snapshot().to_json()?;
+    let start = Instant::now();
+    for tick in 0..ticks {
+        recorder.tick(&TickView {
+            tick,
+            input: battle.input(),
+            state: battle.climber().state(),
+            report: battle.report(),
+            surface: battle.surface(),
+            palette: battle.palette(),
+            scene_fingerprint: 0,
+        })?;
+        if tick.is_multiple_of(60) {
+            recorder.snapshot(&snapshot)?;
+        }
+    }
+    recorder.finish()?;
+    Ok(start.elapsed().as_secs_f64() * 1e6 / ticks as f64)
 }
 
 /// Pose, climber and rocks, without what the scene checks.

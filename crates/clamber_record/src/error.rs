@@ -33,6 +33,19 @@ pub enum RecordError {
         /// The one handed over.
         found: u64,
     },
+    /// The palette is not one of the surface's creature.
+    #[error(
+        "the surface has {mesh} joints, but the palette {palette}: hand over the palette that posed it"
+    )]
+    JointCount {
+        /// Joints of the surface's mesh.
+        mesh: usize,
+        /// Matrices of the palette.
+        palette: usize,
+    },
+    /// Writing has ended earlier, by an error that was told then.
+    #[error("the recording has ended: an earlier part of it could not be written")]
+    Ended,
     /// The seconds of a tick are not positive or not finite.
     #[error("a tick must last a positive number of seconds, found {0}")]
     TickSeconds(f64),

@@ -64,9 +64,13 @@ impl Fold {
 
 /// Of a palette: of every bit of every matrix.
 pub fn palette_fingerprint(palette: &Palette) -> u64 {
+    matrices_fingerprint(palette.matrices())
+}
+
+pub(crate) fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
     // Two folds side by side: a multiplication waits for the one before it in its own.
     let (mut even, mut odd) = (Fold::START, Fold::START);
-    for matrix in palette.matrices() {
+    for matrix in matrices {
         let [x, y, z] = &matrix.rows;
         let word = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         even.word(word(x[0], x[1]));

@@ -108,8 +108,10 @@ mod messages;
 mod recorder;
 mod recording;
 mod replay;
+mod taken;
 pub mod topics;
 mod views;
+mod writing;
 
 pub use error::RecordError;
 pub use fingerprint::{creature_fingerprint, palette_fingerprint};

@@ -286,3 +286,51 @@ impl From<Diagnostics> for Touched {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clamber_climber::{Climber, ClimberConfig};
+    use prost::Message;
+
+    #[test]
+    fn every_bit_of_a_number_survives_a_negative_zero_and_the_smallest_too() {
+        let state = ClimberState {
+            velocity: DVec3::new(-0.0, f64::from_bits(1), -f64::MAX),
+            ..*Climber::new(ClimberConfig::default(), DVec3::ZERO)
+                .unwrap()
+                .state()
+        };
+        for walk in [
+            DVec3::new(-0.0, 0.0, 1.0),
+            DVec3::new(0.0, -0.0, -f64::MIN_POSITIVE),
+            DVec3::ZERO,
+        ] {
+            for state in [
+                state,
+                ClimberState {
+                    velocity: DVec3::ZERO,
+                    ..state
+                },
+            ] {
+                let push_out = Push::default();
+                let message = Tick {
+                    input: Input {
+                        walk: walk.into(),
+                        jump: true,
+                    },
+                    state: (&state).into(),
+                    push_out,
+                    ..Tick::default()
+                };
+                let mut buffer = Vec::new();
+                message.write(&mut buffer).unwrap();
+                let read = Tick::decode(&buffer[..]).unwrap();
+                let bits = |v: Vector| [v.x, v.y, v.z].map(f64::to_bits);
+                assert_eq!(bits(read.input.walk), bits(message.input.walk), "{walk}");
+                let restored = read.state.to_climber().unwrap();
+                assert_eq!(restored.fingerprint(), state.fingerprint(), "{state:?}");
+            }
+        }
+    }
+}

@@ -9,11 +9,12 @@
 use std::collections::BTreeMap;
 
 use clamber_record::{
-    Difference, Ending, RecordOptions, RecordedTick, Recording, Replayed, palette_fingerprint,
-    replay, topics,
+    Difference, Ending, RecordError, RecordOptions, RecordedTick, Recorder, Recording, Replayed,
+    TickView, palette_fingerprint, replay, topics,
 };
 use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
+use clamber_surface::rig::Palette;
 
 /// Long enough for a landing and a jump.
 const TICKS: u64 = 300;
@@ -233,4 +234,36 @@ fn recording_changes_nothing() {
         assert_eq!(touched(&plain), touched(&recorded), "tick {tick}");
     }
     assert_eq!(plain.recording().hash(), recorded.recording().hash());
+}
+
+#[test]
+fn a_tick_that_is_refused_changes_nothing() {
+    let creature = giant().unwrap();
+    let options = options(0, 1);
+    let battle = Battle::new(&creature, options.height(), 1, 0).unwrap();
+    let whole = Recording::from_bytes(record(&options)).unwrap();
+    let out = Vec::new();
+    let how = RecordOptions::default();
+    let mut recorder = Recorder::new(out, whole.info(), &creature.skeleton, how).unwrap();
+    let stranger = Palette::default();
+    let view = |tick, palette| TickView {
+        tick,
+        input: battle.input(),
+        state: battle.climber().state(),
+        report: battle.report(),
+        surface: battle.surface(),
+        palette,
+        scene_fingerprint: 0,
+    };
+    let refused = recorder.tick(&view(7, &stranger)).unwrap_err();
+    assert!(matches!(
+        refused,
+        RecordError::JointCount { palette: 0, .. }
+    ));
+    recorder.tick(&view(7, battle.palette())).unwrap();
+    let refused = recorder.tick(&view(9, battle.palette())).unwrap_err();
+    assert!(matches!(refused, RecordError::Order { last: 7, found: 9 }));
+    recorder.tick(&view(8, battle.palette())).unwrap();
+    let recording = Recording::from_bytes(recorder.finish().unwrap()).unwrap();
+    assert_eq!(recording.len(), 2);
 }

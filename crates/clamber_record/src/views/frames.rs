@@ -1,12 +1,11 @@
 use std::collections::HashSet;
 
-use clamber_climber::ClimberState;
-use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::{JointId, Palette, Skeleton};
+use clamber_surface::rig::Skeleton;
 use foxglove::messages::{FrameTransform, FrameTransforms};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::{CLIMBER, CREATURE, WORLD, Z_UP, rotation, timestamp, vector};
+use crate::taken::Taken;
 
 /// Transforms that stand before those of the joints.
 const OWN: usize = 3;
@@ -51,13 +50,8 @@ impl Frames {
     }
 
     /// Joints without a place in the palette keep their last transform.
-    pub(crate) fn update(
-        &mut self,
-        nanoseconds: u64,
-        state: &ClimberState,
-        world_from_model: &Similarity,
-        palette: &Palette,
-    ) -> &FrameTransforms {
+    pub(crate) fn update(&mut self, nanoseconds: u64, taken: &Taken) -> &FrameTransforms {
+        let (state, world_from_model) = (&taken.state, &taken.world_from_model);
         let now = timestamp(nanoseconds);
         let (own, joints) = self.message.transforms.split_at_mut(OWN);
         if let [root, creature, climber] = own {
@@ -66,11 +60,9 @@ impl Frames {
             place(creature, now, world_from_model.translation, turn);
             place(climber, now, state.position, facing(state.heading));
         }
-        for (index, joint) in joints.iter_mut().enumerate() {
-            if let Some(placed) = palette.model_from_joint(JointId(index as u32)) {
-                let position = placed.translation * world_from_model.scale;
-                place(joint, now, position, upright(&placed.matrix3));
-            }
+        for (joint, placed) in joints.iter_mut().zip(&taken.joints) {
+            let position = placed.translation * world_from_model.scale;
+            place(joint, now, position, upright(&placed.matrix3));
         }
         &self.message
     }

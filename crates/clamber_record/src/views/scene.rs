@@ -1,12 +1,12 @@
-use clamber_climber::{ClimberMode, ClimberState};
-use clamber_surface::mesh::{TriangleId, VertexId};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_climber::ClimberMode;
+use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use foxglove::messages::{
     Color, Point3, SceneEntity, SceneUpdate, SpherePrimitive, TriangleListPrimitive,
 };
 use glam::{DVec3, Vec3};
 
 use super::{CREATURE, WORLD, color, pose, timestamp, vector};
+use crate::taken::{Taken, TakenSkin};
 
 /// Marks a vertex without a place among the points.
 const NOWHERE: u32 = u32::MAX;
@@ -30,10 +30,12 @@ impl Scene {
     pub(crate) fn message(
         &mut self,
         nanoseconds: u64,
-        state: &ClimberState,
-        surface: &SkinnedSurface,
+        taken: &Taken,
+        skin: &TakenSkin,
         positions: &[Vec3],
     ) -> SceneUpdate {
+        let (state, scale) = (&taken.state, taken.world_from_model.scale);
+        let mesh = &*skin.mesh;
         let entity = |id: &str, frame: &str| SceneEntity {
             timestamp: Some(timestamp(nanoseconds)),
             frame_id: frame.to_owned(),
@@ -42,18 +44,18 @@ impl Scene {
             ..SceneEntity::default()
         };
         let mut touched = entity("touched", CREATURE);
-        let triangles = surface.touched_triangles();
+        let triangles = skin.triangles.iter().copied();
         let tint = color(0.95, 0.7, 0.2, 0.5);
-        touched.triangles = vec![self.list(surface, positions, triangles, tint)];
+        touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
 
         let mut underfoot = entity("underfoot", CREATURE);
         // A footing on another obstacle has a key of its own meaning, which may name a triangle by chance:
         // only one that the contact lies on counts.
         let key = state.footing.map(|footing| footing.point.key);
-        let on = key.filter(|_| contact_is_on(surface, positions, state));
+        let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
         let tint = color(0.9, 0.1, 0.1, 1.0);
-        underfoot.triangles = vec![self.list(surface, positions, triangle, tint)];
+        underfoot.triangles = vec![self.list(mesh, scale, positions, triangle, tint)];
 
         let mut climber = entity("climber", WORLD);
         climber.spheres = vec![SpherePrimitive {
@@ -73,13 +75,12 @@ impl Scene {
     /// Triangles as a list of points and corners, in the creature's frame.
     fn list(
         &mut self,
-        surface: &SkinnedSurface,
+        mesh: &ColliderMesh,
+        scale: f64,
         positions: &[Vec3],
         triangles: impl Iterator<Item = TriangleId>,
         tint: Color,
     ) -> TriangleListPrimitive {
-        let mesh = surface.mesh();
-        let scale = surface.world_from_model().scale;
         self.places.resize(positions.len(), NOWHERE);
         let (mut points, mut indices) = (Vec::new(), Vec::new());
         let mut used: Vec<VertexId> = Vec::new();
@@ -118,17 +119,17 @@ impl Scene {
 }
 
 /// True if the climber's footing names a triangle of the surface that its contact lies near.
-fn contact_is_on(surface: &SkinnedSurface, positions: &[Vec3], state: &ClimberState) -> bool {
+fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
-        let footing = state.footing?;
+        let footing = taken.state.footing?;
         let triangle = usize::try_from(footing.point.key).ok()?;
-        let corners = surface.mesh().triangles().get(triangle)?;
+        let corners = mesh.triangles().get(triangle)?;
         let mut position = DVec3::ZERO;
         for (corner, weight) in corners.iter().zip(footing.point.coordinates) {
             position += positions.get(corner.index())?.as_dvec3() * weight;
         }
-        let in_world = surface.world_from_model().transform_point(position);
-        Some(in_world.distance(footing.contact) < 0.01 * surface.world_from_model().scale.max(1.0))
+        let in_world = taken.world_from_model.transform_point(position);
+        Some(in_world.distance(footing.contact) < 0.01 * taken.world_from_model.scale.max(1.0))
     };
     named().unwrap_or(false)
 }

@@ -23,7 +23,7 @@ impl From<RecordError> for BattleError {
 /// Records a battle as it is fought.
 pub struct BattleRecorder<W: Write>(Recorder<W>);
 
-impl<W: Write> BattleRecorder<W> {
+impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// A recorder for a battle that was made from these options, into anything that takes bytes.
     ///
     /// # Errors

@@ -1,0 +1,87 @@
+//! What is copied of a tick while the game waits: enough to write everything else later.
+
+use std::sync::Arc;
+
+use clamber_climber::{ClimberEvent, ClimberInput, ClimberState, PushOut};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::rig::JointId;
+use clamber_surface::surface::Diagnostics;
+use glam::DAffine3;
+
+use crate::{RecordOptions, TickView};
+
+/// A copy of a tick. Its vectors keep their memory from one tick to another.
+#[derive(Debug)]
+pub(crate) struct Taken {
+    pub(crate) tick: u64,
+    pub(crate) input: ClimberInput,
+    pub(crate) state: ClimberState,
+    pub(crate) push_out: PushOut,
+    pub(crate) world_from_model: Similarity,
+    pub(crate) scene_fingerprint: u64,
+    pub(crate) events: Vec<ClimberEvent>,
+    pub(crate) matrices: Vec<Affine>,
+    /// Where joints stand in model space, if their transforms are due.
+    pub(crate) joints: Vec<DAffine3>,
+    pub(crate) transforms_due: bool,
+    /// If a look at the skin is due.
+    pub(crate) skin: Option<TakenSkin>,
+    /// Of the scene after this tick, in its own words.
+    pub(crate) snapshots: Vec<String>,
+}
+
+/// What a look at the skin takes beside the palette.
+#[derive(Debug)]
+pub(crate) struct TakenSkin {
+    pub(crate) mesh: Arc<ColliderMesh>,
+    pub(crate) touched: Diagnostics,
+    pub(crate) triangles: Vec<TriangleId>,
+}
+
+impl Taken {
+    pub(crate) fn new(view: &TickView<'_>, options: &RecordOptions) -> Self {
+        let mut taken = Self {
+            tick: view.tick,
+            input: *view.input,
+            state: *view.state,
+            push_out: view.report.push_out,
+            world_from_model: *view.surface.world_from_model(),
+            scene_fingerprint: view.scene_fingerprint,
+            events: Vec::new(),
+            matrices: Vec::new(),
+            joints: Vec::new(),
+            transforms_due: false,
+            skin: None,
+            snapshots: Vec::new(),
+        };
+        taken.take(view, options);
+        taken
+    }
+
+    /// Copies another tick over this one.
+    pub(crate) fn take(&mut self, view: &TickView<'_>, options: &RecordOptions) {
+        let due = |every: u32| every > 0 && view.tick.is_multiple_of(u64::from(every));
+        self.tick = view.tick;
+        self.input = *view.input;
+        self.state = *view.state;
+        self.push_out = view.report.push_out;
+        self.world_from_model = *view.surface.world_from_model();
+        self.scene_fingerprint = view.scene_fingerprint;
+        self.events.clone_from(&view.report.events);
+        self.matrices.clear();
+        self.matrices.extend_from_slice(view.palette.matrices());
+        self.transforms_due = due(options.transforms_every);
+        self.joints.clear();
+        if self.transforms_due {
+            let joints = (0..).map_while(|joint| view.palette.model_from_joint(JointId(joint)));
+            self.joints.extend(joints);
+        }
+        self.skin = due(options.skin_every).then(|| TakenSkin {
+            mesh: Arc::clone(view.surface.mesh()),
+            touched: view.surface.diagnostics(),
+            triangles: view.surface.touched_triangles().collect(),
+        });
+        self.snapshots.clear();
+    }
+}
