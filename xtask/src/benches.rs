@@ -2,19 +2,16 @@
 
 use cargo_metadata::{Metadata, TargetKind};
 
+use crate::build::SELECTION;
 use crate::run::cargo;
 
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
-    for package in metadata.workspace_packages() {
-        for target in &package.targets {
-            if target.kind.contains(&TargetKind::Bench) {
-                let bench = ["bench", "--quiet", "-p", &package.name];
-                // With those that are on by default: the others have to be named.
-                let features = target.required_features.join(",");
-                let with = ["--features", &features, "--bench", &target.name];
-                cargo(&[&bench[..], &with, &["--", "--test"]].concat())?;
-            }
-        }
-    }
-    Ok(())
+    let packages = metadata.workspace_packages();
+    let targets = packages.iter().flat_map(|package| &package.targets);
+    let benches = targets.filter(|target| target.kind.contains(&TargetKind::Bench));
+    // By name: all of them would be the libraries' tests as well.
+    let named = benches.flat_map(|bench| ["--bench", bench.name.as_str()]);
+    let named: Vec<&str> = named.collect();
+    let bench = ["bench", "--quiet"];
+    cargo(&[&bench[..], &SELECTION, &named, &["--", "--test"]].concat())
 }

@@ -1,11 +1,14 @@
 //! Every example once, briefly, as built for tests; the main one also as released and recorded, with equal
 //! results, and what was recorded fought again.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use cargo_metadata::{Metadata, TargetKind};
+use cargo_metadata::Metadata;
+use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
-use crate::run::{cargo, cargo_output};
+use crate::build;
+use crate::run::program;
 
 /// What an example cannot do without.
 const ARGUMENTS: [(&str, &[&str]); 2] = [
@@ -20,21 +23,20 @@ const QUERY: &str = "\
 
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     let queries = query_files(metadata)?;
-    for package in metadata.workspace_packages() {
-        for target in &package.targets {
-            let apart = ["battle", "replay"].contains(&target.name.as_str());
-            if target.kind.contains(&TargetKind::Example) && !apart {
-                let run = ["run", "--quiet", "-p", &package.name, "--example"];
-                let needed = ARGUMENTS.iter().find(|(name, _)| *name == target.name);
-                let arguments = needed.map_or(&[][..], |(_, arguments)| *arguments);
-                let files = queries.iter().map(String::as_str);
-                let files: Vec<&str> = files.filter(|_| target.name == "ccd_queries").collect();
-                cargo(&[&run[..], &[&target.name, "--"], arguments, &files].concat())?;
-            }
+    let examples = build::examples(&["--examples"])?;
+    for (name, binary) in &examples {
+        if ["battle", "replay"].contains(&name.as_str()) {
+            continue;
         }
+        let needed = ARGUMENTS.iter().find(|(needing, _)| needing == name);
+        let arguments = needed.map_or(&[][..], |(_, arguments)| *arguments);
+        let files = queries.iter().map(String::as_str);
+        let files: Vec<&str> = files.filter(|_| name == "ccd_queries").collect();
+        program(binary, &[arguments, &files].concat())?;
     }
-    let slow = battle_hash(metadata, &[], &[])?;
-    let fast = battle_hash(metadata, &["--release"], &[])?;
+    let released = build::examples(&["--release", "--example", "battle", "--example", "replay"])?;
+    let slow = battle_hash(metadata, find(&examples, "battle")?, &[])?;
+    let fast = battle_hash(metadata, find(&released, "battle")?, &[])?;
     if slow != fast {
         return Err(format!(
             "the battle's hash is {slow} in the development profile, {fast} in release"
@@ -42,21 +44,25 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     }
     println!("   battle: hash {fast} in both profiles");
     let recording = metadata.target_directory.join("xtask-battle.mcap");
-    let recorded = battle_hash(
-        metadata,
-        &["--features", "record"],
-        &["--record", recording.as_str()],
-    )?;
+    let recorded = ["--record", recording.as_str()];
+    let recorded = battle_hash(metadata, find(&examples, "battle")?, &recorded)?;
     if recorded != fast {
         return Err(format!(
             "the battle's hash is {fast}, and {recorded} when it is recorded"
         ));
     }
     // Recorded in the development profile, fought again as released.
-    let replay = ["run", "--quiet", "--release", "--features", "record"];
-    let file = ["--example", "replay", "--", recording.as_str()];
-    cargo(&[&replay[..], &file].concat())?;
-    cargo(&[&replay[..], &file, &["--from", "200"]].concat())
+    let replay = find(&released, "replay")?;
+    program(replay, &[recording.as_str()])?;
+    program(replay, &[recording.as_str(), "--from", "200"])
+}
+
+fn find<'a>(
+    examples: &'a BTreeMap<String, Utf8PathBuf>,
+    name: &str,
+) -> Result<&'a Utf8Path, String> {
+    let binary = examples.get(name);
+    Ok(binary.ok_or_else(|| format!("cargo built no example {name}"))?)
 }
 
 /// The query files of the test data, or where there is none a file of one query.
@@ -82,19 +88,11 @@ fn query_files(metadata: &Metadata) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// A battle of some seconds, built so and with these options beside; gives its hash.
-fn battle_hash(metadata: &Metadata, profile: &[&str], more: &[&str]) -> Result<String, String> {
+/// A battle of some seconds, with these options beside; gives its hash.
+fn battle_hash(metadata: &Metadata, battle: &Utf8Path, more: &[&str]) -> Result<String, String> {
     let folder = metadata.target_directory.join("xtask-battle");
-    let fight = [
-        "--example",
-        "battle",
-        "--",
-        "--seconds",
-        "5",
-        "--out",
-        folder.as_str(),
-    ];
-    cargo_output(&[&["run", "--quiet"], profile, &fight, more].concat())?;
+    let fight = ["--seconds", "5", "--out", folder.as_str()];
+    program(battle, &[&fight, more].concat())?;
     let path = folder.join("summary.json");
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{path}: {e}"))?;
     let summary: serde_json::Value =

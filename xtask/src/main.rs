@@ -3,6 +3,7 @@
 
 mod arrows;
 mod benches;
+mod build;
 mod examples;
 mod features;
 mod packages;
@@ -25,7 +26,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks beside `cargo test --workspace`; goes on after a failure and lists
+    /// Everything that CI checks beside the workspace's tests; goes on after a failure and lists
     /// them all at the end. Takes some minutes on a cold target.
     Ci {
         /// Run only the steps whose name contains this.
@@ -37,7 +38,7 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 8] = [
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
         let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
@@ -53,13 +54,6 @@ const STEPS: [Step; 10] = [
             "--quiet",
         ];
         run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
-    }),
-    ("doctests", |_| {
-        cargo(&["test", "--workspace", "--doc", "--quiet"])
-    }),
-    ("pictures", |_| {
-        let test = ["test", "--quiet", "--features", "render", "--test"];
-        cargo(&[&test[..], &["pictures"]].concat())
     }),
     ("examples", examples::run),
     ("benches", benches::run),

@@ -1,9 +1,10 @@
 //! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not
 //! belong there, and it builds from its package alone.
 
+use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};
 
-use crate::run::{cargo, cargo_output};
+use crate::run::{cargo, cargo_output, program};
 
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
@@ -30,19 +31,51 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         check_licences(metadata, package)?;
         check_files(package)?;
     }
-    // A folder of its own each time: cargo remembers the packages of a folder by their version, and
-    // would check today's crates against yesterday's.
-    let folder = metadata
-        .target_directory
-        .join(format!("xtask-packages-{}", std::process::id()));
-    let mut arguments = vec!["package", "--quiet", "--allow-dirty"];
+    let folder = metadata.target_directory.join("xtask-packages");
+    let built = unpack(&packages, &folder).and_then(|()| check_build(&packages, &folder));
+    let removed = std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"));
+    built.and(removed)
+}
+
+/// Makes the packages and unpacks them beside each other.
+fn unpack(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
+    let mut arguments = vec!["package", "--quiet", "--allow-dirty", "--no-verify"];
     arguments.extend(["--target-dir", folder.as_str()]);
-    for package in &packages {
+    for package in packages {
         arguments.extend(["-p", package.name.as_str()]);
     }
-    let packaged = cargo(&arguments);
-    let removed = std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"));
-    packaged.and(removed)
+    cargo(&arguments)?;
+    for package in packages {
+        let archive = format!("package/{}-{}.crate", package.name, package.version);
+        program(
+            "tar".into(),
+            &["-xzf", folder.join(archive).as_str(), "-C", folder.as_str()],
+        )?;
+    }
+    Ok(())
+}
+
+/// Checks that the packages build from each other, as a workspace outside of this one, with the versions that are
+/// locked here, so that the dependencies need no other build. Every feature alone is another step.
+fn check_build(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
+    let mut manifest =
+        "[workspace]\nresolver = \"3\"\nmembers = [\"*-*\"]\n[patch.crates-io]\n".to_owned();
+    for package in packages {
+        let (name, version) = (&package.name, &package.version);
+        manifest += &format!("{name} = {{ path = \"{name}-{version}\" }}\n");
+    }
+    let path = folder.join("Cargo.toml");
+    std::fs::write(&path, manifest).map_err(|error| format!("{path}: {error}"))?;
+    std::fs::copy("Cargo.lock", folder.join("Cargo.lock"))
+        .map_err(|error| format!("Cargo.lock: {error}"))?;
+    let check = [
+        "check",
+        "--quiet",
+        "--workspace",
+        "--manifest-path",
+        path.as_str(),
+    ];
+    cargo(&[&check[..], &["--target-dir", "target", "--all-features"]].concat())
 }
 
 fn check_metadata(package: &Package) -> Result<(), String> {

@@ -2,6 +2,8 @@
 
 use std::process::{Command, Stdio};
 
+use cargo_metadata::camino::Utf8Path;
+
 /// Runs cargo; an error if it fails.
 pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
     cargo_with(arguments, &[])
@@ -38,6 +40,25 @@ pub(crate) fn cargo_output(arguments: &[&str]) -> Result<String, String> {
             "`cargo {}` ended with {}",
             arguments.join(" "),
             output.status
+        ))
+    }
+}
+
+/// Runs a program in the workspace's root; an error if it fails.
+pub(crate) fn program(binary: &Utf8Path, arguments: &[&str]) -> Result<(), String> {
+    let name = binary.file_name().unwrap_or(binary.as_str());
+    println!("   {name} {}", arguments.join(" "));
+    let status = Command::new(binary)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .status()
+        .map_err(|error| format!("cannot start {binary}: {error}"))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!(
+            "`{binary} {}` ended with {status}",
+            arguments.join(" ")
         ))
     }
 }
