@@ -1,8 +1,9 @@
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, Buffer, Device, ErrorFilter,
-    Queue,
+    InstanceDescriptor, Limits, PollType, Queue,
 };
 
 use crate::RenderError;
@@ -15,6 +16,8 @@ pub struct Gpu {
     adapter: wgpu::AdapterInfo,
     /// Why the device is gone, once it is.
     lost: Arc<Mutex<Option<String>>>,
+    /// What it had to say when nobody asked; without a listener the graphics library panics.
+    unasked: Arc<Mutex<Option<RenderError>>>,
 }
 
 impl Gpu {
@@ -24,7 +27,17 @@ impl Gpu {
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::Adapter`].
     pub fn new() -> Result<Self, RenderError> {
-        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        Self::with(
+            InstanceDescriptor::new_without_display_handle_from_env(),
+            |limits| limits,
+        )
+    }
+
+    /// The same of an instance, with other limits than the largest there are.
+    pub(crate) fn with(
+        descriptor: InstanceDescriptor,
+        limits: impl FnOnce(Limits) -> Limits,
+    ) -> Result<Self, RenderError> {
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -35,15 +48,15 @@ impl Gpu {
         })?;
         let info = adapter.get_info();
         // As large as it can, since creatures may be.
-        let limits = wgpu::Limits {
+        let largest = Limits {
             max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
             max_buffer_size: adapter.limits().max_buffer_size,
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
-            ..wgpu::Limits::default()
+            ..Limits::default()
         };
         let device = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("clamber"),
-            required_limits: limits,
+            required_limits: limits(largest),
             ..wgpu::DeviceDescriptor::default()
         }));
         let (device, queue) = device.map_err(|error| RenderError::Adapter {
@@ -56,11 +69,18 @@ impl Gpu {
             *said.lock().unwrap_or_else(PoisonError::into_inner) =
                 Some(format!("{reason:?}: {message}"));
         });
+        let unasked = Arc::new(Mutex::new(None));
+        let said = Arc::clone(&unasked);
+        device.on_uncaptured_error(Arc::new(move |error| {
+            let mut first = said.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert_with(|| typed(error));
+        }));
         Ok(Self {
             device,
             queue,
             adapter: info,
             lost,
+            unasked,
         })
     }
 
@@ -75,15 +95,14 @@ impl Gpu {
         let validation = self.device.push_error_scope(ErrorFilter::Validation);
         let internal = self.device.push_error_scope(ErrorFilter::Internal);
         let done = commands();
-        let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
-        if let Some(reason) = self.lost() {
-            return Err(RenderError::Lost(reason));
-        }
-        match errors.into_iter().flatten().next() {
-            None => Ok(done),
-            Some(wgpu::Error::OutOfMemory { .. }) => Err(RenderError::OutOfMemory),
-            Some(error) => Err(RenderError::Refused(error.to_string())),
-        }
+        // What fails for want of memory also makes what follows invalid.
+        let scopes = [internal, validation, memory];
+        let [internal, validation, memory] = scopes.map(|scope| pollster::block_on(scope.pop()));
+        self.poll(PollType::Poll)?;
+        let unasked = self.unasked.lock();
+        let unasked = unasked.unwrap_or_else(PoisonError::into_inner).take();
+        let error = memory.or(validation).or(internal).map(typed);
+        error.or(unasked).map_or(Ok(done), Err)
     }
 
     /// Buffers for a shader, bound in their order.
@@ -102,13 +121,25 @@ impl Gpu {
         })
     }
 
-    /// Waits until all that was asked for is done.
-    pub(crate) fn wait(&self) -> Result<(), RenderError> {
-        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
-        match (self.lost(), waited) {
+    /// Waits until the device has done all that it was asked for.
+    ///
+    /// # Errors
+    /// [`RenderError::Lost`].
+    pub fn wait(&self) -> Result<(), RenderError> {
+        self.poll(PollType::wait_indefinitely())
+    }
+
+    fn poll(&self, how: PollType) -> Result<(), RenderError> {
+        if let Some(reason) = self.lost() {
+            return Err(RenderError::Lost(reason));
+        }
+        // The graphics library panics where the device is lost while it waits.
+        let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
+        match (self.lost(), polled) {
             (Some(reason), _) => Err(RenderError::Lost(reason)),
-            (None, Err(error)) => Err(RenderError::Lost(error.to_string())),
-            (None, Ok(_)) => Ok(()),
+            (None, Err(_)) => Err(RenderError::Lost("it cannot be waited for".into())),
+            (None, Ok(Err(error))) => Err(RenderError::Lost(error.to_string())),
+            (None, Ok(Ok(_))) => Ok(()),
         }
     }
 
@@ -117,5 +148,12 @@ impl Gpu {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
+    }
+}
+
+fn typed(error: wgpu::Error) -> RenderError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => RenderError::OutOfMemory,
+        error => RenderError::Refused(error.to_string()),
     }
 }

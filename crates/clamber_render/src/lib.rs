@@ -4,8 +4,14 @@
     reason = "pictures are no part of what must have the same bits everywhere"
 )]
 
+// So that what all tests share names this crate alike inside of it.
+#[cfg(test)]
+extern crate self as clamber_render;
+
 mod camera;
 mod error;
+#[cfg(test)]
+mod failures;
 mod frame;
 mod gpu;
 mod image;

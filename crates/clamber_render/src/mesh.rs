@@ -1,8 +1,7 @@
 use bytemuck::cast_slice;
 use clamber_surface::mesh::Influence;
 use glam::Vec3;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{Buffer, BufferUsages};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 use crate::{Gpu, RenderError};
 
@@ -58,6 +57,9 @@ pub(crate) const STILL_BYTES: u64 = 32;
 /// Bytes of a vertex as posed: position, normal, each with a spare number.
 pub(crate) const POSED_BYTES: u64 = 32;
 
+/// Bytes of a joint's matrix.
+pub(crate) const PALETTE_BYTES: u64 = 48;
+
 /// A mesh on the GPU.
 #[derive(Debug)]
 pub(crate) struct Mesh {
@@ -80,6 +82,7 @@ pub(crate) struct Skin {
 impl Mesh {
     pub(crate) fn new(gpu: &Gpu, source: &MeshSource<'_>) -> Result<Self, RenderError> {
         check(source)?;
+        check_size(gpu, source)?;
         let normals = match source.normals {
             [] => normals(source),
             given => given.to_vec(),
@@ -142,11 +145,46 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsage
     } else {
         contents
     };
-    gpu.device.create_buffer_init(&BufferInitDescriptor {
+    let buffer = gpu.device.create_buffer(&BufferDescriptor {
         label: Some(label),
-        contents,
+        size: contents.len() as u64,
         usage,
-    })
+        mapped_at_creation: true,
+    });
+    // It is not mapped if the device has no memory for it or is lost, which `Gpu::checked` tells.
+    if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
+        view.copy_from_slice(contents);
+    }
+    buffer.unmap();
+    buffer
+}
+
+/// Nothing that is larger than what the device allows.
+fn check_size(gpu: &Gpu, source: &MeshSource<'_>) -> Result<(), RenderError> {
+    let limits = gpu.device.limits();
+    let skin = source.skin.unwrap_or_default();
+    let bound = limits
+        .max_buffer_size
+        .min(limits.max_storage_buffer_binding_size);
+    for (what, count, bytes, most) in [
+        ("vertices", source.positions.len(), POSED_BYTES, bound),
+        ("influences", skin.influences.len(), 8, bound),
+        ("joints", skin.joint_count, PALETTE_BYTES, bound),
+        (
+            "triangles",
+            source.triangles.len(),
+            12,
+            limits.max_buffer_size.min(u64::from(u32::MAX / 3) * 12),
+        ),
+    ] {
+        if count as u64 > most / bytes {
+            return Err(RenderError::Mesh(format!(
+                "{count} {what}, where this device takes {} at most: split it into smaller meshes",
+                most / bytes
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn check(source: &MeshSource<'_>) -> Result<(), RenderError> {

@@ -10,10 +10,10 @@ use wgpu::{
     SamplerDescriptor, StoreOp,
 };
 
-use crate::mesh::{Mesh, buffer};
+use crate::mesh::{Mesh, POSED_BYTES, buffer};
 use crate::pipelines::Pipelines;
 use crate::skinning::{Posed, Skinning};
-use crate::target::{SHADOW, Target, read};
+use crate::target::{SHADOW, Target, read, readback_bytes};
 use crate::{Drawn, Frame, Gpu, Image, MeshId, MeshSource, RenderError};
 
 /// Opacity of what of an overlay is behind something.
@@ -39,37 +39,21 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Frame`] for a size that the device does not have; else as [`Renderer::draw`].
     pub fn new(gpu: Gpu, width: u32, height: u32) -> Result<Self, RenderError> {
-        let most = gpu.device.limits().max_texture_dimension_2d;
-        if !(1..=most).contains(&width) || !(1..=most).contains(&height) {
+        let limits = gpu.device.limits();
+        let most = limits.max_texture_dimension_2d;
+        let fits = [width, height].iter().all(|side| (1..=most).contains(side));
+        if !fits || readback_bytes(width, height) > limits.max_buffer_size {
             return Err(RenderError::Frame(format!(
-                "pictures of {width} x {height}: each side must be from 1 to {most}"
+                "a picture of {width} x {height}: on this device each side must be from 1 to {most} pixels, \
+                 and all of it {} bytes at most",
+                limits.max_buffer_size
             )));
         }
         let (pipelines, skinning, target) = gpu.checked(|| {
             let target = Target::new(&gpu, width, height);
             (Pipelines::new(&gpu), Skinning::new(&gpu), target)
         })?;
-        let sampler = gpu.device.create_sampler(&SamplerDescriptor {
-            label: Some("shadow"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            compare: Some(CompareFunction::LessEqual),
-            ..SamplerDescriptor::default()
-        });
-        let shadow_group = gpu.device.create_bind_group(&BindGroupDescriptor {
-            label: Some("shadow map"),
-            layout: &pipelines.shadow_map,
-            entries: &[
-                BindGroupEntry {
-                    binding: 0,
-                    resource: BindingResource::TextureView(&target.shadow),
-                },
-                BindGroupEntry {
-                    binding: 1,
-                    resource: BindingResource::Sampler(&sampler),
-                },
-            ],
-        });
+        let shadow_group = gpu.checked(|| shadow_group(&gpu, &pipelines, &target))?;
         Ok(Self {
             gpu,
             pipelines,
@@ -94,22 +78,26 @@ impl Renderer {
         Ok(id)
     }
 
-    /// Draws a picture.
+    /// Draws a picture and reads it back.
     ///
     /// # Errors
     /// [`RenderError::Frame`] for what cannot be drawn: a camera that looks nowhere, a mesh of another
     /// renderer, a palette of another skeleton. [`RenderError::Lost`], [`RenderError::OutOfMemory`],
     /// [`RenderError::Refused`].
     pub fn draw(&mut self, frame: &Frame<'_>) -> Result<Image, RenderError> {
-        self.check(frame)?;
-        let places = self.make_room(frame)?;
-        let encoder = self.gpu.checked(|| self.encode(frame, &places))?;
-        let (encoder, uploaded) = encoder?;
-        self.uploaded = uploaded;
-        self.gpu.checked(|| {
-            self.gpu.queue.submit([encoder.finish()]);
-        })?;
+        let encoder = self.encoded(frame)?;
+        self.submit(encoder, |encoder| self.target.copy_out(encoder))?;
         self.target.read(&self.gpu)
+    }
+
+    /// Has a picture drawn that stays on the device, and does not wait for it: to measure what drawing
+    /// costs, with [`Gpu::wait`].
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_unread(&mut self, frame: &Frame<'_>) -> Result<(), RenderError> {
+        let encoder = self.encoded(frame)?;
+        self.submit(encoder, |_| {})
     }
 
     /// Bytes that the last picture took to the device: palettes, places and overlays.
@@ -131,32 +119,25 @@ impl Renderer {
         mesh: MeshId,
         palette: &Palette,
     ) -> Result<Vec<Vec3>, RenderError> {
-        let unknown = || RenderError::Frame("it shows a mesh of another renderer".into());
-        let index = mesh.0 as usize;
-        let found = self.meshes.get(index).ok_or_else(unknown)?;
-        let skin = found.skin.as_ref();
-        let skin = skin.ok_or_else(|| RenderError::Frame("the mesh has no joints".into()))?;
-        let posed = self
-            .gpu
-            .checked(|| self.skinning.posed(&self.gpu, found, skin))?;
+        self.make_room(mesh, 0)?;
+        let (found, posed) = self.posed_mesh(mesh, 0);
         let size = posed.vertices.size();
-        let copy = self.gpu.device.create_buffer(&BufferDescriptor {
-            label: Some("posed, to be read"),
-            size,
-            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.encoder();
-        let count = found.vertex_count;
-        self.skinning
-            .run(&self.gpu, &mut encoder, &posed, count, palette)?;
-        encoder.copy_buffer_to_buffer(&posed.vertices, 0, &copy, 0, size);
-        self.gpu.checked(|| {
-            self.gpu.queue.submit([encoder.finish()]);
+        let (copy, encoder) = self.gpu.checked(|| {
+            let copy = self.gpu.device.create_buffer(&BufferDescriptor {
+                label: Some("posed, to be read"),
+                size,
+                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            (copy, self.posing(found, posed, palette))
+        })?;
+        self.submit(encoder?, |encoder| {
+            encoder.copy_buffer_to_buffer(&posed.vertices, 0, &copy, 0, size);
         })?;
         let bytes = read(&self.gpu, &copy)?;
-        let vertices = bytes.chunks_exact(32).take(count as usize);
+        let vertices = bytes.chunks_exact(POSED_BYTES as usize);
         Ok(vertices
+            .take(found.vertex_count as usize)
             .map(|vertex| {
                 let at = |axis: usize| {
                     let bytes = &vertex[axis * 4..axis * 4 + 4];
@@ -165,6 +146,18 @@ impl Renderer {
                 Vec3::new(at(0), at(1), at(2))
             })
             .collect())
+    }
+
+    /// Has a skinned mesh posed on the device, and does not wait for it: to measure what posing costs,
+    /// with [`Gpu::wait`].
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn pose_unread(&mut self, mesh: MeshId, palette: &Palette) -> Result<(), RenderError> {
+        self.make_room(mesh, 0)?;
+        let (found, posed) = self.posed_mesh(mesh, 0);
+        let encoder = self.gpu.checked(|| self.posing(found, posed, palette))?;
+        self.submit(encoder?, |_| {})
     }
 
     fn check(&self, frame: &Frame<'_>) -> Result<(), RenderError> {
@@ -178,6 +171,17 @@ impl Renderer {
         let air = light.fog >= 0.0 && light.fog.is_finite();
         if !lit || !shadow || !air || !light.shadow_radius.is_finite() {
             return wrong("the light has no direction, or its shadow or fog no size");
+        }
+        let limits = self.gpu.device.limits();
+        let most = limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size)
+            / 64;
+        if frame.drawn.len() as u64 > most {
+            return wrong(&format!(
+                "{} meshes, where this device takes {most}: join some of them",
+                frame.drawn.len()
+            ));
         }
         for drawn in &frame.drawn {
             let Some(mesh) = self.meshes.get(drawn.mesh.0 as usize) else {
@@ -193,30 +197,79 @@ impl Renderer {
         Ok(())
     }
 
-    /// For each skinned mesh of the frame, which of its instances it is.
-    fn make_room(&mut self, frame: &Frame<'_>) -> Result<Vec<usize>, RenderError> {
+    /// Room for one more instance of a skinned mesh than `number`.
+    fn make_room(&mut self, mesh: MeshId, number: usize) -> Result<(), RenderError> {
+        let index = mesh.0 as usize;
+        let unknown = || RenderError::Frame("it shows a mesh of another renderer".into());
+        let found = self.meshes.get(index).ok_or_else(unknown)?;
+        let skin = found.skin.as_ref();
+        let skin = skin.ok_or_else(|| RenderError::Frame("the mesh has no joints".into()))?;
+        while self.posed[index].len() <= number {
+            let room = self
+                .gpu
+                .checked(|| self.skinning.posed(&self.gpu, found, skin))?;
+            self.posed[index].push(room);
+        }
+        Ok(())
+    }
+
+    /// For each mesh of the frame, which of its instances it is.
+    fn places(&mut self, frame: &Frame<'_>) -> Result<Vec<usize>, RenderError> {
         let mut used = vec![0; self.meshes.len()];
         let mut places = Vec::with_capacity(frame.drawn.len());
         for drawn in &frame.drawn {
-            let index = drawn.mesh.0 as usize;
-            let (mesh, posed) = (&self.meshes[index], &mut self.posed[index]);
-            places.push(used[index]);
-            if let (Some(_), Some(skin)) = (drawn.palette, &mesh.skin) {
-                used[index] += 1;
-                if posed.len() < used[index] {
-                    let room = self
-                        .gpu
-                        .checked(|| self.skinning.posed(&self.gpu, mesh, skin))?;
-                    posed.push(room);
-                }
+            let used = &mut used[drawn.mesh.0 as usize];
+            places.push(*used);
+            if drawn.palette.is_some() {
+                self.make_room(drawn.mesh, *used)?;
+                *used += 1;
             }
         }
         Ok(places)
     }
 
+    fn posed_mesh(&self, mesh: MeshId, number: usize) -> (&Mesh, &Posed) {
+        let index = mesh.0 as usize;
+        (&self.meshes[index], &self.posed[index][number])
+    }
+
+    fn posing(
+        &self,
+        mesh: &Mesh,
+        posed: &Posed,
+        palette: &Palette,
+    ) -> Result<CommandEncoder, RenderError> {
+        let mut encoder = self.encoder();
+        let count = mesh.vertex_count;
+        self.skinning
+            .run(&self.gpu, &mut encoder, posed, count, palette)?;
+        Ok(encoder)
+    }
+
     fn encoder(&self) -> CommandEncoder {
         let descriptor = wgpu::CommandEncoderDescriptor::default();
         self.gpu.device.create_command_encoder(&descriptor)
+    }
+
+    fn encoded(&mut self, frame: &Frame<'_>) -> Result<CommandEncoder, RenderError> {
+        self.check(frame)?;
+        let places = self.places(frame)?;
+        let encoded = self.gpu.checked(|| self.encode(frame, &places))?;
+        let (encoder, uploaded) = encoded?;
+        self.uploaded = uploaded;
+        Ok(encoder)
+    }
+
+    /// Hands commands over, and some more after them.
+    fn submit(
+        &self,
+        mut encoder: CommandEncoder,
+        after: impl FnOnce(&mut CommandEncoder),
+    ) -> Result<(), RenderError> {
+        self.gpu.checked(|| {
+            after(&mut encoder);
+            self.gpu.queue.submit([encoder.finish()]);
+        })
     }
 
     fn encode(
@@ -289,9 +342,8 @@ impl Renderer {
         pass.draw(0..3, 0..1);
         pass.set_pipeline(&self.pipelines.mesh);
         self.draw_meshes(&mut pass, frame, places);
-        uploaded += self.draw_overlay(&mut pass, frame, clip_from_view);
+        uploaded += self.draw_overlay(&mut pass, frame, clip_from_view)?;
         drop(pass);
-        self.target.copy_out(&mut encoder);
         Ok((encoder, uploaded))
     }
 
@@ -310,12 +362,24 @@ impl Renderer {
         }
     }
 
-    fn draw_overlay(&self, pass: &mut RenderPass<'_>, frame: &Frame<'_>, clip: DMat4) -> u64 {
+    fn draw_overlay(
+        &self,
+        pass: &mut RenderPass<'_>,
+        frame: &Frame<'_>,
+        clip: DMat4,
+    ) -> Result<u64, RenderError> {
         if frame.overlay.is_empty() {
-            return 0;
+            return Ok(0);
         }
         let vertices = frame.overlay.vertices(frame.camera.eye);
         let contents = cast_slice(&vertices);
+        let most = self.gpu.device.limits().max_buffer_size;
+        if contents.len() as u64 > most {
+            return Err(RenderError::Frame(format!(
+                "an overlay of {} bytes, where this device takes {most}: draw fewer lines and triangles",
+                contents.len()
+            )));
+        }
         let over = buffer(&self.gpu, "overlay", contents, BufferUsages::VERTEX);
         pass.set_vertex_buffer(0, over.slice(..));
         for (pipeline, opacity) in self.pipelines.overlay.iter().zip([1.0, BEHIND]) {
@@ -329,8 +393,32 @@ impl Renderer {
             pass.set_bind_group(0, &globals, &[]);
             pass.draw(0..vertices.len() as u32, 0..1);
         }
-        contents.len() as u64 + 2 * 80
+        Ok(contents.len() as u64 + 2 * 80)
     }
+}
+
+fn shadow_group(gpu: &Gpu, pipelines: &Pipelines, target: &Target) -> BindGroup {
+    let sampler = gpu.device.create_sampler(&SamplerDescriptor {
+        label: Some("shadow"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        compare: Some(CompareFunction::LessEqual),
+        ..SamplerDescriptor::default()
+    });
+    gpu.device.create_bind_group(&BindGroupDescriptor {
+        label: Some("shadow map"),
+        layout: &pipelines.shadow_map,
+        entries: &[
+            BindGroupEntry {
+                binding: 0,
+                resource: BindingResource::TextureView(&target.shadow),
+            },
+            BindGroupEntry {
+                binding: 1,
+                resource: BindingResource::Sampler(&sampler),
+            },
+        ],
+    })
 }
 
 fn depth(view: &wgpu::TextureView, clear: f32) -> RenderPassDepthStencilAttachment<'_> {

@@ -7,7 +7,7 @@ use wgpu::{
     ComputePipeline, ComputePipelineDescriptor,
 };
 
-use crate::mesh::{Mesh, POSED_BYTES, Skin};
+use crate::mesh::{Mesh, PALETTE_BYTES, POSED_BYTES, Skin};
 use crate::{Gpu, RenderError};
 
 /// Vertices to a workgroup, as in the shader.
@@ -58,7 +58,7 @@ impl Skinning {
         });
         let palette = gpu.device.create_buffer(&BufferDescriptor {
             label: Some("palette"),
-            size: (skin.joint_count.max(1) * 48) as u64,
+            size: skin.joint_count.max(1) as u64 * PALETTE_BYTES,
             usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -105,6 +105,6 @@ impl Skinning {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &posed.group, &[]);
         pass.dispatch_workgroups(groups.min(ROW), groups.div_ceil(ROW), 1);
-        Ok((rows.len() * 48) as u64)
+        Ok(rows.len() as u64 * PALETTE_BYTES)
     }
 }

@@ -58,7 +58,7 @@ impl Target {
         let resolved = texture("picture", width, height, 1, COLOR, copied);
         let readback = gpu.device.create_buffer(&BufferDescriptor {
             label: Some("readback"),
-            size: u64::from(row_bytes(width)) * u64::from(height),
+            size: readback_bytes(width, height),
             usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -114,10 +114,12 @@ impl Target {
 /// All bytes of a buffer that can be mapped.
 pub(crate) fn read(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, RenderError> {
     let (sender, receiver) = mpsc::channel();
-    buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-        // Nobody waits for it any more if the device was lost.
-        let _ = sender.send(mapped);
-    });
+    gpu.checked(|| {
+        buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+            // Nobody waits for it any more if the device was lost.
+            let _ = sender.send(mapped);
+        });
+    })?;
     gpu.wait()?;
     let refused = |reason: String| RenderError::Refused(reason);
     match receiver.try_recv() {
@@ -125,10 +127,12 @@ pub(crate) fn read(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, RenderError> {
         Ok(Err(error)) => return Err(refused(error.to_string())),
         Err(error) => return Err(refused(error.to_string())),
     }
-    let view = buffer.get_mapped_range(..);
-    let bytes = view.map_err(|error| refused(error.to_string()))?.to_vec();
-    buffer.unmap();
-    Ok(bytes)
+    gpu.checked(|| {
+        let view = buffer.get_mapped_range(..);
+        let bytes = view.map(|view| view.to_vec());
+        buffer.unmap();
+        bytes.map_err(|error| refused(error.to_string()))
+    })?
 }
 
 fn extent(width: u32, height: u32) -> Extent3d {
@@ -137,6 +141,11 @@ fn extent(width: u32, height: u32) -> Extent3d {
         height,
         depth_or_array_layers: 1,
     }
+}
+
+/// Bytes that a picture takes on its way back.
+pub(crate) fn readback_bytes(width: u32, height: u32) -> u64 {
+    u64::from(row_bytes(width)) * u64::from(height)
 }
 
 fn row_bytes(width: u32) -> u32 {
