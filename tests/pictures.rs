@@ -6,55 +6,15 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::mesh::VertexId;
+#[path = "../crates/clamber_render/tests/common/mod.rs"]
+mod common;
+
 use clamber::prelude::*;
-use clamber::render::{
-    Camera, Drawn, Frame, Gpu, Image, Light, MeshId, MeshSource, Overlay, RenderError, Renderer,
-    SkinSource,
-};
+use clamber::render::{Camera, Drawn, Frame, Image, Light, MeshSource, Overlay, Renderer};
 use clamber_scenes::giant::giant;
+use clamber_scenes::picture::add_collider;
 use clamber_scenes::{Creature, test_data};
 use glam::{DVec3, Vec3};
-
-/// A device; `None`, said loudly, where there is none and none is required.
-fn gpu(what: &str) -> Option<Gpu> {
-    match Gpu::new() {
-        Ok(gpu) => Some(gpu),
-        Err(RenderError::NoAdapter { reason })
-            if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() =>
-        {
-            eprintln!(
-                "SKIPPED, {what}: no graphics adapter, install mesa-vulkan-drivers ({reason})"
-            );
-            None
-        }
-        Err(error) => panic!("{what}: {error}"),
-    }
-}
-
-/// The collider itself, to be drawn.
-fn add_collider(renderer: &mut Renderer, mesh: &ColliderMesh, color: [f32; 3]) -> MeshId {
-    let count = mesh.positions().len() as u32;
-    let (mut influences, mut ends) = (Vec::new(), Vec::new());
-    for vertex in 0..count {
-        let own = mesh.influences(VertexId(vertex));
-        influences.extend(own.map(|(joint, weight)| Influence { joint, weight }));
-        ends.push(influences.len() as u32);
-    }
-    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|t| t.map(|v| v.0)).collect();
-    let added = renderer.add_mesh(&MeshSource {
-        positions: mesh.positions(),
-        colors: &vec![color; count as usize],
-        triangles: &triangles,
-        skin: Some(SkinSource {
-            influences: &influences,
-            ends: &ends,
-            joint_count: mesh.joint_count(),
-        }),
-        ..MeshSource::default()
-    });
-    added.unwrap()
-}
 
 fn palettes(creature: &Creature) -> Vec<Palette> {
     let rest = creature.skeleton.rest_pose();
@@ -70,14 +30,14 @@ fn palettes(creature: &Creature) -> Vec<Palette> {
 
 #[test]
 fn the_device_poses_the_skin_as_the_collider_does() {
-    let Some(gpu) = gpu("posing") else {
+    let Some(gpu) = common::gpu("posing") else {
         return;
     };
     let mut renderer = Renderer::new(gpu, 16, 16).unwrap();
     let mut creatures = vec![giant().unwrap()];
     creatures.extend(test_data::five_creatures("posing").unwrap());
     for creature in &creatures {
-        let mesh = add_collider(&mut renderer, &creature.collider, [1.0; 3]);
+        let mesh = add_collider(&mut renderer, &creature.collider, [1.0; 3]).unwrap();
         let (mut worst, mut poses) = (0.0f64, 0);
         for palette in palettes(creature) {
             let posed = renderer.posed_positions(mesh, &palette).unwrap();
@@ -117,12 +77,12 @@ fn mean(places: &[[f64; 2]]) -> [f64; 2] {
 fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     const WIDTH: u32 = 480;
     const ROWS: u32 = 360;
-    let Some(gpu) = gpu("contact") else {
+    let Some(gpu) = common::gpu("contact") else {
         return;
     };
     let giant = giant().unwrap();
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
-    let skin = add_collider(&mut renderer, &giant.collider, [0.0, 0.0, 1.0]);
+    let skin = add_collider(&mut renderer, &giant.collider, [0.0, 0.0, 1.0]).unwrap();
     // A pillar on the point of its contact.
     let corners: Vec<Vec3> = (0..8)
         .map(|i| {

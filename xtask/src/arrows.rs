@@ -32,6 +32,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
             "clamber_climber",
             "clamber_gltf",
             "clamber_record",
+            "clamber_render",
         ],
     ),
     ("clamber_fuzz", &["clamber_surface", "clamber_gltf"]),

@@ -1,7 +1,5 @@
 //! Without any graphics driver there is an error that says what to install.
 
-#![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
-
 use std::process::Command;
 
 use clamber_render::{Gpu, RenderError};

@@ -7,6 +7,7 @@
 //! - [`rocks`]: rocks on a shaking giant.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
+//! - `picture`, with the feature `render`: what of a battle is to be seen.
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`measure`]: tables, quantiles and yardsticks for benches.
 //! - [`ccd`]: continuous collision queries with exact answers, and proofs of what sweeps claim.
@@ -22,6 +23,8 @@ mod creature;
 pub mod giant;
 pub mod inspect;
 pub mod measure;
+#[cfg(feature = "render")]
+pub mod picture;
 pub mod resample;
 pub mod rocks;
 pub mod solid_angle;

@@ -1,0 +1,204 @@
+//! What of a battle is to be seen: its creature, its climber and the ground, as meshes of a renderer.
+
+use clamber_gltf::Rig;
+use clamber_render::{
+    Camera, Drawn, Light, Look, MeshId, MeshSource, RenderError, Renderer, SkinSource,
+};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::{ColliderMesh, Influence, SurfaceKind, SurfaceTag, VertexId};
+use clamber_surface::rig::Palette;
+use clamber_world::rapier3d::prelude::*;
+use glam::{DVec3, Vec3};
+
+use crate::battle::Battle;
+use crate::valley;
+
+/// Metres between two vertices of the ground that is drawn.
+const GROUND_CELL: f64 = 2.0;
+
+/// The meshes of a battle.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    creature: Vec<MeshId>,
+    ground: MeshId,
+    /// Body and head.
+    climber: [MeshId; 2],
+}
+
+impl Stage {
+    /// Takes the ground, the climber and a creature, [`add_visual`] or [`add_collider`], to a renderer.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn new(renderer: &mut Renderer, creature: Vec<MeshId>) -> Result<Self, RenderError> {
+        let body = SharedShape::capsule_y(0.42, 0.24).as_capsule().copied();
+        let body = body.map(|capsule| capsule.to_trimesh(24, 12));
+        let (body, head) = (body.unwrap_or_default(), Ball::new(0.17).to_trimesh(24, 16));
+        Ok(Self {
+            creature,
+            ground: add_ground(renderer)?,
+            climber: [
+                add_plain(renderer, &body, [0.36, 0.08, 0.06])?,
+                add_plain(renderer, &head, [0.55, 0.36, 0.26])?,
+            ],
+        })
+    }
+
+    /// All of it as it stands now, the creature in a pose: [`Battle::palette`], or another one.
+    pub fn drawn<'a>(&self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
+        let config = battle.climber().config();
+        let up = config.up();
+        let feet = battle.climber().state().position - up * config.radius;
+        let at = |mesh, place| Drawn {
+            mesh,
+            world_from_model: Similarity::from_translation(place),
+            palette: None,
+        };
+        let [body, head] = self.climber;
+        let mut drawn = vec![
+            at(self.ground, DVec3::ZERO),
+            at(body, feet + up * 0.72),
+            at(head, feet + up * 1.56),
+        ];
+        drawn.extend(self.creature.iter().map(|mesh| Drawn {
+            mesh: *mesh,
+            world_from_model: *battle.surface().world_from_model(),
+            palette: Some(palette),
+        }));
+        drawn
+    }
+}
+
+/// The sun over a battle with a creature of a height.
+pub fn light(battle: &Battle<'_>, height: f64) -> Light {
+    let root = battle.surface().world_from_model();
+    let center = root.translation + DVec3::Y * (0.45 * height);
+    Light::over(center, height * 0.85)
+}
+
+/// All of the creature, of a height, from `heading` radians around it, above the ground.
+pub fn orbit(battle: &Battle<'_>, height: f64, heading: f64) -> Camera {
+    let middle = battle.surface().world_from_model().translation + DVec3::Y * (0.42 * height);
+    let mut camera = Camera::orbit(middle, 1.45 * height, heading, -0.12);
+    let least = valley::height(camera.eye.x, camera.eye.z) + 0.04 * height;
+    camera.eye.y = camera.eye.y.max(least);
+    camera
+}
+
+/// The climber, from `away` of it.
+pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
+    let place = battle.climber().state().position;
+    Camera::new(place + away, place)
+}
+
+/// What is to be seen of a creature's file: fur and stone where it has them.
+///
+/// # Errors
+/// [`RenderError`].
+pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<MeshId>, RenderError> {
+    let mut meshes = Vec::new();
+    for visual in &rig.visual {
+        let mut colors = vec![[1.0; 3]; visual.positions.len()];
+        let mut looks = vec![Look::Plain; visual.positions.len()];
+        let mut triangles = Vec::new();
+        for primitive in &visual.primitives {
+            let material = primitive.material.map(|index| &rig.materials[index]);
+            let base = material.map_or([1.0; 4], |material| material.base_color);
+            let look = material.map_or(Look::Plain, |material| look_of(material.tag));
+            for corner in primitive.triangles.iter().flatten() {
+                let vertex = *corner as usize;
+                let own = visual.colors.get(vertex).copied().unwrap_or([1.0; 4]);
+                colors[vertex] = [0, 1, 2].map(|channel| base[channel] * own[channel]);
+                looks[vertex] = look;
+            }
+            triangles.extend_from_slice(&primitive.triangles);
+        }
+        meshes.push(renderer.add_mesh(&MeshSource {
+            positions: &visual.positions,
+            normals: &visual.normals,
+            colors: &colors,
+            looks: &looks,
+            triangles: &triangles,
+            skin: Some(SkinSource {
+                influences: &visual.influences,
+                ends: &visual.influence_ends,
+                joint_count: rig.skeleton.joints().len(),
+            }),
+        })?);
+    }
+    Ok(meshes)
+}
+
+/// A collider itself, in one colour.
+///
+/// # Errors
+/// [`RenderError`].
+pub fn add_collider(
+    renderer: &mut Renderer,
+    mesh: &ColliderMesh,
+    color: [f32; 3],
+) -> Result<MeshId, RenderError> {
+    let count = mesh.positions().len() as u32;
+    let (mut influences, mut ends) = (Vec::new(), Vec::new());
+    for vertex in 0..count {
+        let own = mesh.influences(VertexId(vertex));
+        influences.extend(own.map(|(joint, weight)| Influence { joint, weight }));
+        ends.push(influences.len() as u32);
+    }
+    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|t| t.map(|v| v.0)).collect();
+    renderer.add_mesh(&MeshSource {
+        positions: mesh.positions(),
+        colors: &vec![color; count as usize],
+        triangles: &triangles,
+        skin: Some(SkinSource {
+            influences: &influences,
+            ends: &ends,
+            joint_count: mesh.joint_count(),
+        }),
+        ..MeshSource::default()
+    })
+}
+
+fn look_of(tag: SurfaceTag) -> Look {
+    match tag.kind {
+        SurfaceKind::Fur => Look::Fur,
+        SurfaceKind::Stone => Look::Stone,
+        _ => Look::Plain,
+    }
+}
+
+fn add_ground(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
+    let cells = (valley::SIZE / GROUND_CELL) as u32;
+    let place = |index: u32| f64::from(index) * GROUND_CELL - valley::SIZE / 2.0;
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for row in 0..=cells {
+        for column in 0..=cells {
+            let (x, z) = (place(column), place(row));
+            positions.push(DVec3::new(x, valley::height(x, z), z).as_vec3());
+            if row < cells && column < cells {
+                let [a, b] = [row, row + 1].map(|row| row * (cells + 1) + column);
+                triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
+            }
+        }
+    }
+    renderer.add_mesh(&MeshSource {
+        positions: &positions,
+        looks: &vec![Look::Ground; positions.len()],
+        triangles: &triangles,
+        ..MeshSource::default()
+    })
+}
+
+fn add_plain(
+    renderer: &mut Renderer,
+    (positions, triangles): &(Vec<Vec3>, Vec<[u32; 3]>),
+    color: [f32; 3],
+) -> Result<MeshId, RenderError> {
+    renderer.add_mesh(&MeshSource {
+        positions,
+        colors: &vec![color; positions.len()],
+        triangles,
+        ..MeshSource::default()
+    })
+}
