@@ -88,7 +88,7 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     let [width, rows] = SIZE;
     let what = format!("battle of {width} x {rows} on {}", gpu.name());
     let mut renderer = Renderer::new(gpu, width, rows)?;
-    let seen = add_visual(&mut renderer, &clamber::gltf::load(giant::path())?)?;
+    let seen = add_visual(&mut renderer, &giant::rig()?)?;
     let stage = Stage::new(&mut renderer, seen)?;
     // What a frame costs for the first time is not counted.
     let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {

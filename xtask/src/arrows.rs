@@ -40,11 +40,10 @@ const ALLOWED: [(&str, &[&str]); 10] = [
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 4] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 3] = [
     ("clamber", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
-    ("clamber_render", "clamber_gltf"),
 ];
 
 /// Crates outside the workspace that only one crate of it may know.

@@ -98,7 +98,7 @@ fn a_battle_looks_as_stored_and_no_mistake_does() {
     };
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
     let creature = giant().unwrap();
-    let rig = clamber_gltf::load(giant::path()).unwrap();
+    let rig = giant::rig().unwrap();
     let mut stage = |plain: &[SurfaceKind]| {
         let mut rig = rig.clone();
         for material in &mut rig.materials {

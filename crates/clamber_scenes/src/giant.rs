@@ -24,7 +24,15 @@ pub fn path() -> PathBuf {
 /// # Errors
 /// [`CreatureError`] if its file is missing or broken.
 pub fn giant() -> Result<Creature, CreatureError> {
-    Ok(creature(&clamber_gltf::load(path())?))
+    Ok(creature(&rig()?))
+}
+
+/// All of its file, with what is to be seen.
+///
+/// # Errors
+/// As [`giant`].
+pub fn rig() -> Result<Rig, CreatureError> {
+    Ok(clamber_gltf::load(path())?)
 }
 
 /// The giant with so many vertices, or nearly: its collision mesh with longest edges halved or
