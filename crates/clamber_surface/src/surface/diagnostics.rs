@@ -25,6 +25,17 @@ pub struct Diagnostics {
     pub most_sweep_steps: u32,
 }
 
+/// One cluster of a surface's triangles, and what this tick's queries made of it.
+#[derive(Clone, Copy, Debug)]
+pub struct ClusterState<'a> {
+    /// Its triangles. Removed ones stand in no cluster.
+    pub triangles: &'a [TriangleId],
+    /// Queries reached it.
+    pub touched: bool,
+    /// It was skinned: touched, or ahead of queries where the ticks before touched nearly everything.
+    pub skinned: bool,
+}
+
 impl SkinnedSurface {
     /// What was touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`].
     /// Clusters that an edit has replaced since then count no more. Takes O(clusters).
@@ -44,17 +55,25 @@ impl SkinnedSurface {
         }
     }
 
+    /// Every cluster, and what was made of it since then. Takes O(clusters).
+    pub fn clusters(&self) -> impl Iterator<Item = ClusterState<'_>> {
+        let clusters = self.mesh.clusters();
+        let mut touched = self.current.asked_clusters().peekable();
+        let mut skinned = self.current.skinned_clusters().peekable();
+        let all = clusters.clusters.iter().enumerate();
+        let states = all.map(move |(index, cluster)| ClusterState {
+            triangles: cluster.triangles(clusters),
+            touched: touched.next_if_eq(&index).is_some(),
+            skinned: skinned.next_if_eq(&index).is_some(),
+        });
+        states.filter(|cluster| !cluster.triangles.is_empty())
+    }
+
     /// The triangles of the clusters that queries have reached since then, cluster by cluster. Takes
     /// O(clusters).
     pub fn touched_triangles(&self) -> impl Iterator<Item = TriangleId> {
-        let clusters = self.mesh.clusters();
-        let touched = self.current.asked_clusters();
-        touched.flat_map(|cluster| {
-            clusters.clusters[cluster]
-                .triangles(clusters)
-                .iter()
-                .copied()
-        })
+        let touched = self.clusters().filter(|cluster| cluster.touched);
+        touched.flat_map(|cluster| cluster.triangles.iter().copied())
     }
 
     /// Bytes that the collider takes: the rest data that surfaces share, and this surface's caches.
@@ -80,3 +99,6 @@ impl SkinnedSurface {
         self.most_sweep_steps.fetch_max(steps, Ordering::Relaxed);
     }
 }
+
+#[cfg(test)]
+mod tests;

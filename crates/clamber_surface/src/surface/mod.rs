@@ -29,7 +29,7 @@ pub use anchor::Anchor;
 pub use bounds::{JointMaps, NodeBounds, PartBounds, WeightInterval};
 pub(crate) use bounds::{RootBalls, inflation};
 pub use brute_force::BruteForce;
-pub use diagnostics::Diagnostics;
+pub use diagnostics::{ClusterState, Diagnostics};
 pub use edit::SurfaceEdit;
 pub use error::SurfaceError;
 pub use motion::Motion;
