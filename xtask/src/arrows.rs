@@ -47,11 +47,12 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 3] = [
 ];
 
 /// Crates outside the workspace that only one crate of it may know.
-const KEPT_TO: [(&str, &str); 7] = [
+const KEPT_TO: [(&str, &str); 8] = [
     ("rapier3d", "clamber_world"),
     ("parry3d", "clamber_surface"),
     ("gltf", "clamber_gltf"),
     ("wgpu", "clamber_render"),
+    ("embedded-graphics", "clamber_render"),
     ("mcap", "clamber_record"),
     ("foxglove", "clamber_record"),
     ("prost", "clamber_record"),

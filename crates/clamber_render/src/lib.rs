@@ -21,6 +21,7 @@ mod pipelines;
 mod renderer;
 mod skinning;
 mod target;
+mod text;
 
 pub use camera::Camera;
 pub use error::RenderError;
@@ -30,3 +31,4 @@ pub use image::{Gif, Image};
 pub use mesh::{Look, MeshId, MeshSource, SkinSource};
 pub use overlay::{Color, Overlay};
 pub use renderer::Renderer;
+pub use text::TextSize;
