@@ -22,6 +22,19 @@ struct Instance {
 const SUN = vec3f(4.2, 3.5, 2.6);
 const ZENITH = vec3f(0.14, 0.28, 0.60);
 const HORIZON = vec3f(0.80, 0.74, 0.62);
+// Texels of the shadow map that a face is lifted by: less shows bands of its own shadow on it.
+const LIFT = 3.0;
+
+// And so many along its smooth normal, if it is round.
+const LIFT_ROUND = 2.0;
+
+// Cosines of the angle between a face and its smooth normal between which it is taken for a part of something
+// round: ours have faces of up to 15 degrees.
+const ROUND = vec2f(0.80, 0.95);
+
+// Cosines of the angle to the sun between which a face of something round goes dark.
+const TURNED = vec2f(-0.3, -0.1);
+
 const BOUNCE = vec3f(0.13, 0.12, 0.08);
 
 struct Vertex {
@@ -84,21 +97,40 @@ fn noise(p: vec3f) -> f32 {
     return mix(near, far, u.z);
 }
 
-// How much of the sun reaches a point: the mean over 3 x 3 texels around it.
-fn sunlit(view: vec3f, normal: vec3f) -> f32 {
-    let lifted = globals.shadow_from_view * vec4f(view + normal * 0.12, 1.0);
+// How much of the sun reaches a point of a flat face: the mean over 3 x 3 texels around it.
+//
+// Those texels and their filter reach 2 sqrt(2) texels aside, where the face is nearer to the sun by as much
+// times the tangent of its slope. Lifted along the face's normal by as much times the sine it is in front of
+// all of them. A face of something round is lifted along its smooth normal as well, out of the shadow of the
+// next face where the shape turns away; on fur the two have little to do with each other.
+fn sunlit(view: vec3f, face: vec3f, smooth_normal: vec3f) -> f32 {
+    let facing = dot(face, globals.to_sun.xyz);
+    let slope = sqrt(max(1.0 - facing * facing, 0.0));
+    let round = smoothstep(ROUND.x, ROUND.y, dot(face, smooth_normal));
+    // A face that is turned away is dark, however its smooth normal leans.
+    let flat = smoothstep(0.0, 0.1, facing);
+    let turned = mix(flat, smoothstep(TURNED.x, TURNED.y, facing), round);
+    if (turned <= 0.0) {
+        return 0.0;
+    }
+    let across = vec3f(globals.shadow_from_view[0].x, globals.shadow_from_view[1].x, globals.shadow_from_view[2].x);
+    let texel = 2.0 * globals.air.y / length(across);
+    let lift = (face * (LIFT * slope) + smooth_normal * (LIFT_ROUND * round)) * texel;
+    let lifted = globals.shadow_from_view * vec4f(view + lift, 1.0);
     let at = lifted.xy * vec2f(0.5, -0.5) + 0.5;
     if (any(at < vec2f(0.0)) || any(at > vec2f(1.0)) || lifted.z < 0.0 || lifted.z > 1.0) {
-        return 1.0;
+        return turned;
     }
+    // Depth reaches over four radii of the shadow, the map over two: this is one texel.
+    let depth = lifted.z - 0.5 * globals.air.y;
     var sum = 0.0;
     for (var x = -1; x <= 1; x++) {
         for (var y = -1; y <= 1; y++) {
             let aside = vec2f(f32(x), f32(y)) * globals.air.y;
-            sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at + aside, lifted.z - 0.0006);
+            sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at + aside, depth);
         }
     }
-    return sum / 9.0;
+    return turned * sum / 9.0;
 }
 
 fn sky(direction: vec3f) -> vec3f {
@@ -113,10 +145,14 @@ fn sky(direction: vec3f) -> vec3f {
 fn fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let distance = length(in.view);
     let toward = -in.view / max(distance, 1e-6);
+    // Of the triangle itself, towards the eye.
+    var face = normalize(cross(dpdx(in.view), dpdy(in.view)));
+    face *= select(-1.0, 1.0, dot(face, toward) > 0.0);
     var n = normalize(in.normal);
     if (!front) {
         n = -n;
     }
+    let smooth_normal = n;
     var albedo = in.color;
     var wrap = 0.0;
     var rim = 0.0;
@@ -144,7 +180,7 @@ fn fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     }
     let facing = dot(n, globals.to_sun.xyz);
     let direct = max((facing + wrap) / (1.0 + wrap), 0.0);
-    let lit = direct * sunlit(in.view, normalize(in.normal));
+    let lit = direct * sunlit(in.view, face, smooth_normal);
     let above = 0.5 + 0.5 * n.y;
     let ambient = mix(BOUNCE, mix(HORIZON, ZENITH, 0.7) * 0.62, above);
     let edge = pow(1.0 - max(dot(n, toward), 0.0), 3.0) * rim;
