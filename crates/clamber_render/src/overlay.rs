@@ -26,6 +26,26 @@ const SIDES: u32 = 32;
 /// Length of an arrow's head as a share of the arrow.
 const HEAD: f64 = 0.25;
 
+/// Radius of an arrow's head as a share of the head's length.
+const SLENDER: f64 = 0.24;
+
+/// Sides of an arrow's head.
+const HEAD_SIDES: u32 = 12;
+
+/// Points around an axis, the first one again at the end.
+fn ring(
+    center: DVec3,
+    axis: DVec3,
+    radius: f64,
+    sides: u32,
+) -> impl Iterator<Item = DVec3> + Clone {
+    let start = axis.any_orthonormal_vector() * radius;
+    (0..=sides).map(move |side| {
+        let angle = f64::from(side) / f64::from(sides) * core::f64::consts::TAU;
+        center + rotation_from_axis_angle(axis, angle) * start
+    })
+}
+
 impl Overlay {
     /// A line, so many pixels wide.
     pub fn line(&mut self, from: DVec3, to: DVec3, width: f32, color: Color) {
@@ -40,14 +60,18 @@ impl Overlay {
         }
     }
 
-    /// An arrow along a vector.
+    /// An arrow along a vector, which ends at its tip: a line so many pixels wide, and a cone.
     pub fn arrow(&mut self, from: DVec3, along: DVec3, width: f32, color: Color) {
-        let to = from + along;
-        self.line(from, to, width, color);
-        let side = along.any_orthogonal_vector() * HEAD * 0.5;
-        let turned = along.cross(side).normalize_or_zero() * side.length();
-        for aside in [side, -side, turned, -turned] {
-            self.line(to, to - along * HEAD + aside, width, color);
+        let tip = from + along;
+        let neck = tip - along * HEAD;
+        self.line(from, neck, width, color);
+        let Some(axis) = along.try_normalize() else {
+            return;
+        };
+        let rim = ring(neck, axis, along.length() * HEAD * SLENDER, HEAD_SIDES);
+        for (a, b) in rim.clone().zip(rim.skip(1)) {
+            self.triangle([a, b, tip], color);
+            self.triangle([b, a, neck], color);
         }
     }
 
@@ -58,14 +82,9 @@ impl Overlay {
 
     /// A circle around an axis.
     pub fn circle(&mut self, center: DVec3, axis: DVec3, radius: f64, width: f32, color: Color) {
-        let axis = axis.normalize_or(DVec3::Y);
-        let start = axis.any_orthonormal_vector() * radius;
-        let point = |side: u32| {
-            let angle = f64::from(side) / f64::from(SIDES) * core::f64::consts::TAU;
-            center + rotation_from_axis_angle(axis, angle) * start
-        };
-        for side in 0..SIDES {
-            self.line(point(side), point(side + 1), width, color);
+        let points = ring(center, axis.normalize_or(DVec3::Y), radius, SIDES);
+        for (a, b) in points.clone().zip(points.skip(1)) {
+            self.line(a, b, width, color);
         }
     }
 
