@@ -5,20 +5,17 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clamber::gltf::{Rig, load};
-use clamber::mesh::PartId;
 use clamber::prelude::*;
 use clamber::render::{
-    Camera, Color, Drawn, Frame, Gif, Gpu, Light, Look, MeshId, MeshSource, Overlay, Renderer,
-    SkinSource,
+    Camera, Drawn, Frame, Gif, Gpu, Light, Look, MeshId, MeshSource, Renderer, SkinSource,
 };
-use clamber::rig::JointId;
-use clamber::surface::{JointMaps, PartBounds};
 use clamber::world::rapier3d::prelude::*;
-use clamber_scenes::battle::{Battle, BattleOptions, CREATURE, TICK};
+use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::{giant, valley};
 use glam::{DQuat, DVec3, Vec3};
 
-use crate::{CameraKind, FilmOptions, OverlayKind};
+use crate::overlays::Overlays;
+use crate::{CameraKind, FilmOptions};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -28,9 +25,6 @@ const GROUND_CELL: f64 = 2.0;
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
 
-/// Points of the climber's way that are drawn.
-const WAY: usize = 90;
-
 /// A camera, what it films, and where the pictures go.
 pub(crate) struct Film {
     renderer: Renderer,
@@ -39,7 +33,7 @@ pub(crate) struct Film {
     climber: [MeshId; 2],
     rocks: Vec<(RigidBodyHandle, MeshId)>,
     camera: CameraKind,
-    overlays: Vec<OverlayKind>,
+    overlays: Overlays,
     height: f64,
     frames: Option<PathBuf>,
     gif: Option<Gif>,
@@ -50,7 +44,6 @@ pub(crate) struct Film {
     from: u32,
     tick: u32,
     taken: u32,
-    way: Vec<DVec3>,
     /// Where a chasing camera looks from and at, behind what it follows.
     eye: Option<[DVec3; 2]>,
 }
@@ -91,7 +84,7 @@ impl Film {
             climber,
             rocks: Vec::new(),
             camera: film.camera,
-            overlays: film.overlay.clone(),
+            overlays: Overlays::new(&film.overlay, battle.height()),
             height: battle.height(),
             frames: film.frames.clone(),
             gif: gif.transpose()?,
@@ -100,7 +93,6 @@ impl Film {
             from: (film.from / TICK) as u32,
             tick: 0,
             taken: 0,
-            way: Vec::new(),
             eye: None,
         })
     }
@@ -111,10 +103,7 @@ impl Film {
         self.tick += 1;
         let up = battle.climber().config().up();
         let feet = battle.climber().state().position - up * battle.climber().config().radius;
-        self.way.push(feet);
-        if self.way.len() > WAY {
-            self.way.remove(0);
-        }
+        self.overlays.watch(battle);
         let camera = self.follow(battle);
         if tick < self.from || !(tick - self.from).is_multiple_of(self.every) {
             return Ok(());
@@ -155,14 +144,17 @@ impl Film {
             camera,
             light: Light::over(center, self.height * 0.85),
             drawn,
-            overlay: self.overlay(battle),
+            overlay: self.overlays.draw(battle, &camera),
         };
-        let image = self.renderer.draw(&frame)?;
+        let mut image = self.renderer.draw(&frame)?;
+        if let Some(gif) = &mut self.gif {
+            let mut half = image.halved();
+            self.overlays.write(battle, &mut half);
+            gif.push(&half)?;
+        }
+        self.overlays.write(battle, &mut image);
         if let Some(folder) = &self.frames {
             image.write_png(&folder.join(format!("{:05}.png", self.taken)))?;
-        }
-        if let Some(gif) = &mut self.gif {
-            gif.push(&image.halved())?;
         }
         if self.raw {
             std::io::stdout().write_all(&image.pixels)?;
@@ -208,22 +200,6 @@ impl Film {
                 Camera::new(eye, target)
             }
         }
-    }
-
-    fn overlay(&self, battle: &Battle<'_>) -> Overlay {
-        let mut over = Overlay::default();
-        for kind in &self.overlays {
-            match kind {
-                OverlayKind::Joints => joints(&mut over, battle),
-                OverlayKind::Capsules => bounds(&mut over, battle, false),
-                OverlayKind::Spheres => bounds(&mut over, battle, true),
-                OverlayKind::Touched => touched(&mut over, battle),
-                OverlayKind::Contact => contact(&mut over, battle, &self.way),
-                OverlayKind::Velocity => velocity(&mut over, battle),
-                OverlayKind::Rocks => rocks(&mut over, battle),
-            }
-        }
-        over
     }
 
     fn add_rocks(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {
@@ -342,113 +318,4 @@ fn add_solid(
         triangles: &triangles,
         ..MeshSource::default()
     })?)
-}
-
-fn joints(over: &mut Overlay, battle: &Battle<'_>) {
-    let root = battle.surface().world_from_model();
-    let skeleton = &battle.creature().skeleton;
-    let at = |joint: JointId| {
-        let frame = battle.palette().model_from_joint(joint)?;
-        Some(root.transform_point(frame.translation))
-    };
-    for (index, joint) in (0..).zip(skeleton.joints()) {
-        let Some(place) = at(JointId(index)) else {
-            continue;
-        };
-        if let Some(parent) = joint.parent.and_then(at) {
-            over.line(parent, place, 3.0, [1.0, 0.75, 0.1, 0.9]);
-        }
-        over.sphere(place, 0.25, 1.5, [1.0, 0.35, 0.05, 0.9]);
-    }
-}
-
-fn bounds(over: &mut Overlay, battle: &Battle<'_>, spheres: bool) {
-    const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
-    let mesh = battle.surface().mesh();
-    let root = battle.surface().world_from_model();
-    let bounds = PartBounds::new(mesh);
-    let Ok(maps) = JointMaps::new(mesh, battle.palette()) else {
-        return;
-    };
-    for part in (0..bounds.part_count() as u32).map(PartId) {
-        if spheres && let Some(sphere) = bounds.sphere(part, &maps) {
-            let center = root.transform_point_f32(sphere.center);
-            over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
-        }
-        if !spheres && let Some(capsule) = bounds.capsule(part, &maps) {
-            let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
-            over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
-        }
-    }
-}
-
-fn touched(over: &mut Overlay, battle: &Battle<'_>) {
-    let surface = battle.surface();
-    for triangle in surface.touched_triangles() {
-        if let Some(corners) = posed(surface, triangle) {
-            over.triangle(corners, [1.0, 0.55, 0.05, 0.35]);
-            let [a, b, c] = corners;
-            over.path(&[a, b, c, a], 1.0, [1.0, 0.7, 0.2, 0.8]);
-        }
-    }
-}
-
-/// The corners of a triangle, in the world.
-fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
-    let corners = surface.mesh().triangles().get(triangle.index())?;
-    let [a, b, c] = corners.map(|vertex| surface.position(vertex));
-    let root = surface.world_from_model();
-    Some([a?, b?, c?].map(|corner| root.transform_point_f32(corner)))
-}
-
-fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
-    over.path(way, 2.5, [1.0, 1.0, 1.0, 0.8]);
-    let footing = battle.climber().state().footing;
-    let Some(footing) = footing.filter(|footing| footing.obstacle == CREATURE) else {
-        return;
-    };
-    let triangle = TriangleId(footing.point.key as u32);
-    if let Some(corners) = posed(battle.surface(), triangle) {
-        over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
-        let [a, b, c] = corners;
-        over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
-    }
-    over.sphere(footing.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
-}
-
-fn velocity(over: &mut Overlay, battle: &Battle<'_>) {
-    let footing = battle.climber().state().footing;
-    let Some(footing) = footing.filter(|footing| footing.obstacle == CREATURE) else {
-        return;
-    };
-    if let Some(motion) = Obstacle::motion(battle.surface(), &footing.point, TICK) {
-        over.arrow(
-            motion.position,
-            motion.velocity * 0.5,
-            3.0,
-            [1.0, 0.2, 0.8, 1.0],
-        );
-    }
-}
-
-fn rocks(over: &mut Overlay, battle: &Battle<'_>) {
-    for (_, collider) in battle.world().colliders.iter() {
-        let Some(mesh) = collider
-            .shape()
-            .as_trimesh()
-            .filter(|_| collider.is_enabled())
-        else {
-            continue;
-        };
-        for triangle in mesh.triangles() {
-            let at = |corner: Vec3| collider.position().transform_point(corner).as_dvec3();
-            let corners = [at(triangle.a), at(triangle.b), at(triangle.c)];
-            over.triangle(corners, [0.1, 0.5, 1.0, 0.35]);
-            over.path(
-                &[corners[0], corners[1], corners[2], corners[0]],
-                1.5,
-                [0.3, 0.7, 1.0, 0.9],
-            );
-        }
-    }
 }

@@ -5,6 +5,8 @@
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod film;
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
+mod overlays;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -82,14 +84,18 @@ enum OverlayKind {
     Capsules,
     /// Spheres around the parts.
     Spheres,
-    /// The triangles that were skinned in this tick.
-    Touched,
+    /// The skin's clusters: orange if skinned in this tick, else blue.
+    Clusters,
     /// The triangle under the climber, and the way it came.
     Contact,
-    /// The velocity of the skin under the climber.
-    Velocity,
+    /// A material point on each part, and the one under the climber, with their velocities.
+    Anchors,
+    /// How climber and rocks moved in this tick, and where they touched something.
+    Sweeps,
     /// The pieces of skin that the physics engine has for the rocks.
     Rocks,
+    /// Text: time, what the climber does, speeds, what was skinned.
+    State,
 }
 
 fn main() -> ExitCode {

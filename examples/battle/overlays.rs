@@ -1,0 +1,481 @@
+//! What is drawn over the pictures of a battle.
+//!
+//! Colours are of Okabe and Ito's set, which the colour-blind tell apart.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use clamber::geometry::Ray;
+use clamber::mesh::{Part, PartId, VertexId};
+use clamber::prelude::*;
+use clamber::render::{Camera, Color, Image, Overlay, TextSize};
+use clamber::rig::JointId;
+use clamber::surface::{JointMaps, PartBounds};
+use clamber::world::rapier3d::prelude::*;
+use clamber_scenes::battle::{Battle, CREATURE, TICK};
+use glam::{DVec3, Vec3};
+
+use crate::OverlayKind;
+
+/// Points of the climber's way that are drawn.
+const WAY: usize = 90;
+
+/// Points of the way of the climber and of rocks that are drawn with their sweeps.
+const TRAIL: usize = 20;
+
+/// Metres of arrow for a metre a second.
+const ARROW: f64 = 0.5;
+
+/// Radius of a dot, as a share of its distance from the eye: about 4 pixels at 720 rows.
+const DOT: f64 = 0.005;
+
+/// Parts of less than this share of the skin have no anchor.
+const LEAST_AREA: f32 = 0.005;
+
+/// What lies on the skin is drawn this much nearer to the eye, as a share of the creature's height: fur and
+/// stone as they are seen reach so far beyond the collider.
+const NEARER: f64 = 0.02;
+
+/// What moved farther than this in a tick was put there, metres.
+const PUT: f64 = 2.0;
+
+/// What moved less than this in a tick lies still, metres.
+const STILL: f64 = 0.02;
+
+/// Where text begins: column and row.
+const TEXT_AT: [u32; 2] = [16, 16];
+
+/// Pictures of fewer rows get small text.
+const ROWS_FOR_LARGE_TEXT: u32 = 600;
+
+const ORANGE: [f32; 3] = [0.79, 0.35, 0.0];
+const SKY_BLUE: [f32; 3] = [0.09, 0.46, 0.82];
+const YELLOW: [f32; 3] = [0.87, 0.78, 0.05];
+const VERMILION: [f32; 3] = [0.67, 0.11, 0.0];
+const MAGENTA: [f32; 3] = [1.0, 0.2, 0.8];
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// The kinds asked for, and what they remember from tick to tick.
+pub(crate) struct Overlays {
+    kinds: Vec<OverlayKind>,
+    anchors: Vec<MaterialPoint>,
+    /// How much nearer to the eye what lies on the skin is drawn, metres.
+    nearer: f64,
+    /// The climber's way, at its feet.
+    way: Vec<DVec3>,
+    /// Where the climber's sphere was in the last ticks, since it was last put somewhere; now is last.
+    climber: Vec<DVec3>,
+    /// The same of each rock.
+    rocks: Vec<Vec<DVec3>>,
+}
+
+impl Overlays {
+    pub(crate) fn new(kinds: &[OverlayKind], height: f64) -> Self {
+        Self {
+            kinds: kinds.to_vec(),
+            anchors: Vec::new(),
+            nearer: NEARER * height,
+            way: Vec::new(),
+            climber: Vec::new(),
+            rocks: Vec::new(),
+        }
+    }
+
+    /// To be called before the first tick and after every one.
+    pub(crate) fn watch(&mut self, battle: &Battle<'_>) {
+        let config = battle.climber().config();
+        let now = battle.climber().state().position;
+        let bodies = &battle.world().bodies;
+        let rocks = battle.rocks().bodies().iter();
+        let rocks = rocks.map(|rock| bodies[*rock].translation().as_dvec3());
+        if self.way.is_empty() {
+            self.anchors = anchors(battle.surface().mesh());
+            self.rocks.resize(battle.rocks().len(), Vec::new());
+        }
+        follow(&mut self.climber, now);
+        for (trail, now) in self.rocks.iter_mut().zip(rocks) {
+            follow(trail, now);
+        }
+        self.way.push(now - config.up() * config.radius);
+        if self.way.len() > WAY {
+            self.way.remove(0);
+        }
+    }
+
+    pub(crate) fn draw(&self, battle: &Battle<'_>, camera: &Camera) -> Overlay {
+        let mut over = Overlay::default();
+        let eye = camera.eye;
+        for kind in &self.kinds {
+            match kind {
+                OverlayKind::Joints => joints(&mut over, battle),
+                OverlayKind::Capsules => bounds(&mut over, battle, false),
+                OverlayKind::Spheres => bounds(&mut over, battle, true),
+                OverlayKind::Clusters => clusters(&mut over, battle, eye, self.nearer),
+                OverlayKind::Contact => contact(&mut over, battle, &self.way),
+                OverlayKind::Anchors => self.anchors(&mut over, battle, eye),
+                OverlayKind::Sweeps => self.sweeps(&mut over, battle, eye),
+                OverlayKind::Rocks => rocks(&mut over, battle),
+                // Written once the picture is there.
+                OverlayKind::State => {}
+            }
+        }
+        over
+    }
+
+    /// What stands on the picture as text.
+    pub(crate) fn write(&self, battle: &Battle<'_>, image: &mut Image) {
+        if self.kinds.contains(&OverlayKind::State) {
+            let size = if image.height < ROWS_FOR_LARGE_TEXT {
+                TextSize::Small
+            } else {
+                TextSize::Large
+            };
+            image.text(TEXT_AT, size, &state(battle));
+        }
+    }
+
+    fn anchors(&self, over: &mut Overlay, battle: &Battle<'_>, eye: DVec3) {
+        let motion = |point: &MaterialPoint| Obstacle::motion(battle.surface(), point, TICK);
+        let mut show = |motion: PointMotion, width: f32, arrow, point| {
+            let [from, to] = [DVec3::ZERO, motion.velocity * ARROW]
+                .map(|along| nearer(motion.position + along, eye, self.nearer));
+            over.arrow(from, to - from, width, opaque(arrow));
+            dot(over, from, eye, f64::from(width) / 3.0, point);
+        };
+        for motion in self.anchors.iter().filter_map(motion) {
+            show(motion, 3.0, SKY_BLUE, YELLOW);
+        }
+        let footing = battle.climber().state().footing;
+        let footing = footing.filter(|footing| footing.obstacle == CREATURE);
+        if let Some(motion) = footing.and_then(|footing| motion(&footing.point)) {
+            show(motion, 4.5, MAGENTA, MAGENTA);
+        }
+    }
+
+    fn sweeps(&self, over: &mut Overlay, battle: &Battle<'_>, eye: DVec3) {
+        let radius = battle.climber().config().radius;
+        self.sweep(over, &self.climber, radius, eye, WHITE);
+        if let Some(footing) = battle.climber().state().footing {
+            dot(over, footing.contact, eye, 1.0, VERMILION);
+        }
+        let world = battle.world();
+        for (trail, rock) in self.rocks.iter().zip(battle.rocks().bodies()) {
+            for collider in world.bodies[*rock].colliders() {
+                let radius = inner_radius(world.colliders[*collider].shape());
+                if self.sweep(over, trail, radius, eye, YELLOW) {
+                    for point in touching(world, *collider) {
+                        dot(over, point, eye, 1.0, VERMILION);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The way of a ball, the last tick's with its ends; false if it lies still.
+    fn sweep(
+        &self,
+        over: &mut Overlay,
+        trail: &[DVec3],
+        radius: f64,
+        eye: DVec3,
+        color: [f32; 3],
+    ) -> bool {
+        let [.., from, to] = *trail else {
+            return false;
+        };
+        if from.distance(to) < STILL {
+            return false;
+        }
+        over.path(trail, 2.0, seen_through(color, 0.5));
+        over.capsule(from, to, radius, 1.5, opaque(color));
+        // In front of what moved.
+        let [from, to] = [from, to].map(|end| nearer(end, eye, 2.0 * self.nearer));
+        over.arrow(from, to - from, 4.0, opaque(color));
+        true
+    }
+}
+
+/// Adds where something is now to where it was.
+fn follow(trail: &mut Vec<DVec3>, now: DVec3) {
+    if trail.last().is_some_and(|last| last.distance(now) > PUT) {
+        trail.clear();
+    }
+    trail.push(now);
+    if trail.len() > TRAIL {
+        trail.remove(0);
+    }
+}
+
+fn opaque([red, green, blue]: [f32; 3]) -> Color {
+    [red, green, blue, 1.0]
+}
+
+fn seen_through([red, green, blue]: [f32; 3], opacity: f32) -> Color {
+    [red, green, blue, opacity]
+}
+
+/// The same place in the picture, but so many metres nearer to the eye, if it is as far from it.
+fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
+    let distance = (place - eye).length();
+    eye + (place - eye) * (1.0 - (by / distance).min(0.5))
+}
+
+/// A dot of much the same size wherever it is.
+fn dot(over: &mut Overlay, at: DVec3, eye: DVec3, size: f64, color: [f32; 3]) {
+    let radius = (at - eye).length() * DOT * size;
+    for side in 0..8u32 {
+        let sign = |bit: u32| {
+            if side >> bit & 1 == 0 {
+                radius
+            } else {
+                -radius
+            }
+        };
+        let tips = [DVec3::X * sign(0), DVec3::Y * sign(1), DVec3::Z * sign(2)];
+        over.triangle(tips.map(|tip| at + tip), opaque(color));
+    }
+}
+
+/// For each part of the skin, at rest, what is seen first from outside in front of its middle: that is where
+/// the part is looked at from where most of it is seen, and from away from the creature's middle.
+fn anchors(mesh: &Arc<ColliderMesh>) -> Vec<MaterialPoint> {
+    let surface = SkinnedSurface::new(Arc::clone(mesh));
+    let far = 4.0 * mesh.radius();
+    let parts: Vec<Side> = mesh.parts().iter().map(|part| side(mesh, part)).collect();
+    let area: f32 = parts.iter().map(|part| part.area).sum();
+    let middle = parts
+        .iter()
+        .map(|part| part.middle * part.area)
+        .sum::<Vec3>()
+        / area;
+    let found = parts.iter().filter(|part| part.area >= LEAST_AREA * area);
+    let found = found.filter_map(|part| {
+        let away = (part.middle - middle) / mesh.radius();
+        let outward = (part.normal / part.area + away).normalize_or(Vec3::Y);
+        let ray = Ray::new(part.middle + outward * far, -outward)?;
+        let hit = surface.cast_ray(&ray, 2.0 * far).ok()??;
+        Some(MaterialPoint {
+            key: u64::from(hit.triangle.0),
+            coordinates: hit.barycentric.map(f64::from),
+        })
+    });
+    found.collect()
+}
+
+/// A part of the skin at rest.
+struct Side {
+    area: f32,
+    middle: Vec3,
+    /// The sum of its triangles' normals, each as long as its area.
+    normal: Vec3,
+}
+
+fn side(mesh: &ColliderMesh, part: &Part) -> Side {
+    let mut side = Side {
+        area: 0.0,
+        middle: Vec3::ZERO,
+        normal: Vec3::ZERO,
+    };
+    for triangle in &part.triangles {
+        let corners = mesh.triangles()[triangle.index()];
+        let [a, b, c] = corners.map(|vertex| mesh.positions()[vertex.index()]);
+        let normal = (b - a).cross(c - a) / 2.0;
+        side.normal += normal;
+        side.area += normal.length();
+        side.middle += (a + b + c) / 3.0 * normal.length();
+    }
+    side.middle /= side.area.max(f32::MIN_POSITIVE);
+    side
+}
+
+fn joints(over: &mut Overlay, battle: &Battle<'_>) {
+    let root = battle.surface().world_from_model();
+    let skeleton = &battle.creature().skeleton;
+    let at = |joint: JointId| {
+        let frame = battle.palette().model_from_joint(joint)?;
+        Some(root.transform_point(frame.translation))
+    };
+    for (index, joint) in (0..).zip(skeleton.joints()) {
+        let Some(place) = at(JointId(index)) else {
+            continue;
+        };
+        if let Some(parent) = joint.parent.and_then(at) {
+            over.line(parent, place, 3.0, [1.0, 0.75, 0.1, 0.9]);
+        }
+        over.sphere(place, 0.25, 1.5, [1.0, 0.35, 0.05, 0.9]);
+    }
+}
+
+fn bounds(over: &mut Overlay, battle: &Battle<'_>, spheres: bool) {
+    const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
+    let mesh = battle.surface().mesh();
+    let root = battle.surface().world_from_model();
+    let bounds = PartBounds::new(mesh);
+    let Ok(maps) = JointMaps::new(mesh, battle.palette()) else {
+        return;
+    };
+    for part in (0..bounds.part_count() as u32).map(PartId) {
+        if spheres && let Some(sphere) = bounds.sphere(part, &maps) {
+            let center = root.transform_point_f32(sphere.center);
+            over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
+        }
+        if !spheres && let Some(capsule) = bounds.capsule(part, &maps) {
+            let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
+            over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
+        }
+    }
+}
+
+/// The triangles that face the eye, and the borders between clusters.
+fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
+    let surface = battle.surface();
+    for cluster in surface.clusters() {
+        let (color, fill, border) = if cluster.skinned {
+            (ORANGE, 0.6, 1.0)
+        } else {
+            (SKY_BLUE, 0.22, 0.45)
+        };
+        // How many triangles of the cluster have an edge.
+        let mut edges: BTreeMap<[VertexId; 2], ([DVec3; 2], u32)> = BTreeMap::new();
+        for triangle in cluster.triangles {
+            let Some(corners) = posed(surface, *triangle) else {
+                continue;
+            };
+            let [a, b, c] = corners;
+            if (b - a).cross(c - a).dot(eye - a) <= 0.0 {
+                continue;
+            }
+            let corners = corners.map(|corner| nearer(corner, eye, by));
+            over.triangle(corners, seen_through(color, fill));
+            let vertices = surface.mesh().triangles()[triangle.index()];
+            for [from, to] in [[0, 1], [1, 2], [2, 0]] {
+                let mut edge = [vertices[from], vertices[to]];
+                edge.sort_unstable();
+                let places = [corners[from], corners[to]];
+                edges.entry(edge).or_insert((places, 0)).1 += 1;
+            }
+        }
+        for ([from, to], count) in edges.into_values() {
+            if count == 1 {
+                over.line(from, to, 1.5, seen_through(color, border));
+            }
+        }
+    }
+}
+
+/// The corners of a triangle, in the world.
+fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
+    let corners = surface.mesh().triangles().get(triangle.index())?;
+    let [a, b, c] = corners.map(|vertex| surface.position(vertex));
+    let root = surface.world_from_model();
+    Some([a?, b?, c?].map(|corner| root.transform_point_f32(corner)))
+}
+
+fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
+    over.path(way, 2.5, [1.0, 1.0, 1.0, 0.8]);
+    let footing = battle.climber().state().footing;
+    let Some(footing) = footing.filter(|footing| footing.obstacle == CREATURE) else {
+        return;
+    };
+    let triangle = TriangleId(footing.point.key as u32);
+    if let Some(corners) = posed(battle.surface(), triangle) {
+        over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
+        let [a, b, c] = corners;
+        over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
+    }
+    over.sphere(footing.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
+}
+
+/// Of the largest ball in a rock.
+fn inner_radius(shape: &dyn Shape) -> f64 {
+    f64::from(match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => ball.radius,
+        TypedShape::Capsule(capsule) => capsule.radius,
+        TypedShape::Cuboid(cuboid) => cuboid.half_extents.min_element(),
+        _ => 0.0,
+    })
+}
+
+/// Where a collider touched others, deepest point of each.
+fn touching(world: &PhysicsWorld, collider: ColliderHandle) -> Vec<DVec3> {
+    let pairs = world.narrow_phase.contact_pairs_with(collider);
+    let pairs = pairs.filter(|pair| pair.has_any_active_contact());
+    let points = pairs.filter_map(|pair| {
+        let first = world.colliders.get(pair.collider1)?.position();
+        let (_, contact) = pair.find_deepest_contact()?;
+        Some(first.transform_point(contact.local_p1).as_dvec3())
+    });
+    points.collect()
+}
+
+fn rocks(over: &mut Overlay, battle: &Battle<'_>) {
+    for (_, collider) in battle.world().colliders.iter() {
+        let Some(mesh) = collider
+            .shape()
+            .as_trimesh()
+            .filter(|_| collider.is_enabled())
+        else {
+            continue;
+        };
+        for triangle in mesh.triangles() {
+            let at = |corner: Vec3| collider.position().transform_point(corner).as_dvec3();
+            let corners = [at(triangle.a), at(triangle.b), at(triangle.c)];
+            over.triangle(corners, [0.1, 0.5, 1.0, 0.35]);
+            over.path(
+                &[corners[0], corners[1], corners[2], corners[0]],
+                1.5,
+                [0.3, 0.7, 1.0, 0.9],
+            );
+        }
+    }
+}
+
+/// As text, a line each.
+fn state(battle: &Battle<'_>) -> String {
+    let surface = battle.surface();
+    let mesh = surface.mesh();
+    let state = battle.climber().state();
+    let on_skin = state.footing.filter(|footing| footing.obstacle == CREATURE);
+    let doing = match (state.mode, on_skin) {
+        (ClimberMode::Falling, _) => "falls".to_owned(),
+        (ClimberMode::Standing, None) => "stands on the ground".to_owned(),
+        (ClimberMode::Standing, Some(footing)) => {
+            let triangle = TriangleId(footing.point.key as u32);
+            let part = mesh.part_of(triangle);
+            let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
+            let joints = battle.creature().skeleton.joints();
+            let joint = joint.and_then(|joint| joints.get(joint));
+            let kind = mesh.tags().get(triangle.index()).map(|tag| tag.kind);
+            format!(
+                "stands on {} of {}",
+                match kind {
+                    Some(SurfaceKind::Fur) => "fur",
+                    Some(SurfaceKind::Stone) => "stone",
+                    _ => "skin",
+                },
+                joint.map_or("the creature", |joint| &joint.name)
+            )
+        }
+    };
+    let motion = on_skin.and_then(|footing| Obstacle::motion(surface, &footing.point, TICK));
+    let speeds = match motion {
+        Some(motion) => format!(
+            "speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s",
+            (state.velocity - motion.velocity).length(),
+            motion.velocity.length()
+        ),
+        None => format!(
+            "speed    {:5.2} m/s\nskin         -",
+            state.velocity.length()
+        ),
+    };
+    let tick = surface.diagnostics();
+    let skinned = 100.0 * tick.vertices_skinned as f64 / tick.vertices.max(1) as f64;
+    format!(
+        "time     {:5.2} s, tick {}\nclimber  {doing}\n{speeds}\nskinned  {skinned:5.1} % of vertices\n\
+         rocks    {:2}",
+        battle.tick() as f64 * TICK,
+        battle.tick(),
+        battle.rocks().len()
+    )
+}
