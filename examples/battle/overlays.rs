@@ -36,6 +36,9 @@ const LEAST_AREA: f32 = 0.005;
 /// stone as they are seen reach so far beyond the collider.
 const NEARER: f64 = 0.02;
 
+/// The same for joints, which are seen through the skin.
+const THROUGH: f64 = 0.25;
+
 /// What moved farther than this in a tick was put there, metres.
 const PUT: f64 = 2.0;
 
@@ -59,6 +62,8 @@ const WHITE: [f32; 3] = [1.0; 3];
 pub(crate) struct Overlays {
     kinds: Vec<OverlayKind>,
     anchors: Vec<MaterialPoint>,
+    /// Of the creature, metres.
+    height: f64,
     /// How much nearer to the eye what lies on the skin is drawn, metres.
     nearer: f64,
     /// The climber's way, at its feet.
@@ -74,6 +79,7 @@ impl Overlays {
         Self {
             kinds: kinds.to_vec(),
             anchors: Vec::new(),
+            height,
             nearer: NEARER * height,
             way: Vec::new(),
             climber: Vec::new(),
@@ -107,7 +113,7 @@ impl Overlays {
         let eye = camera.eye;
         for kind in &self.kinds {
             match kind {
-                OverlayKind::Joints => joints(&mut over, battle),
+                OverlayKind::Joints => joints(&mut over, battle, eye, THROUGH * self.height),
                 OverlayKind::Capsules => bounds(&mut over, battle, false),
                 OverlayKind::Spheres => bounds(&mut over, battle, true),
                 OverlayKind::Clusters => clusters(&mut over, battle, eye, self.nearer),
@@ -288,12 +294,12 @@ fn side(mesh: &ColliderMesh, part: &Part) -> Side {
     side
 }
 
-fn joints(over: &mut Overlay, battle: &Battle<'_>) {
+fn joints(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     let root = battle.surface().world_from_model();
     let skeleton = &battle.creature().skeleton;
     let at = |joint: JointId| {
         let frame = battle.palette().model_from_joint(joint)?;
-        Some(root.transform_point(frame.translation))
+        Some(nearer(root.transform_point(frame.translation), eye, by))
     };
     for (index, joint) in (0..).zip(skeleton.joints()) {
         let Some(place) = at(JointId(index)) else {
@@ -302,7 +308,7 @@ fn joints(over: &mut Overlay, battle: &Battle<'_>) {
         if let Some(parent) = joint.parent.and_then(at) {
             over.line(parent, place, 3.0, [1.0, 0.75, 0.1, 0.9]);
         }
-        over.sphere(place, 0.25, 1.5, [1.0, 0.35, 0.05, 0.9]);
+        dot(over, place, eye, 1.0, VERMILION);
     }
 }
 
