@@ -1,6 +1,6 @@
 //! What is drawn over the pictures of a battle.
 //!
-//! Colours are of Okabe and Ito's set, which the colour-blind tell apart.
+//! Colours by name are of Okabe and Ito's set, which the colour-blind tell apart; white and magenta beside them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
