@@ -4,23 +4,19 @@ use std::error::Error;
 use std::io::Write;
 use std::path::PathBuf;
 
-use clamber::gltf::{Rig, load};
+use clamber::gltf::load;
 use clamber::prelude::*;
-use clamber::render::{
-    Camera, Drawn, Frame, Gif, Gpu, Light, Look, MeshId, MeshSource, Renderer, SkinSource,
-};
+use clamber::render::{Camera, Drawn, Frame, Gif, Gpu, Look, MeshId, MeshSource, Renderer};
 use clamber::world::rapier3d::prelude::*;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
+use clamber_scenes::picture::{Stage, add_visual, light, orbit};
 use clamber_scenes::{giant, valley};
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 use crate::overlays::Overlays;
 use crate::{CameraKind, FilmOptions};
 
 type Failure = Box<dyn Error + Send + Sync>;
-
-/// Metres between two vertices of the ground that is drawn.
-const GROUND_CELL: f64 = 2.0;
 
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
@@ -28,9 +24,7 @@ const ORBIT: f64 = 0.08;
 /// A camera, what it films, and where the pictures go.
 pub(crate) struct Film {
     renderer: Renderer,
-    creature: Vec<MeshId>,
-    ground: MeshId,
-    climber: [MeshId; 2],
+    stage: Stage,
     rocks: Vec<(RigidBodyHandle, MeshId)>,
     camera: CameraKind,
     overlays: Overlays,
@@ -54,22 +48,8 @@ impl Film {
         eprintln!("pictures by {}", gpu.name());
         let mut renderer = Renderer::new(gpu, film.width, film.rows)?;
         let path = battle.creature.clone().unwrap_or_else(giant::path);
-        let creature = add_creature(&mut renderer, &load(path)?)?;
-        let ground = add_ground(&mut renderer)?;
-        let climber = [
-            add_solid(
-                &mut renderer,
-                &SharedShape::capsule_y(0.42, 0.24),
-                [0.36, 0.08, 0.06],
-                Look::Plain,
-            )?,
-            add_solid(
-                &mut renderer,
-                &SharedShape::ball(0.17),
-                [0.55, 0.36, 0.26],
-                Look::Plain,
-            )?,
-        ];
+        let creature = add_visual(&mut renderer, &load(path)?)?;
+        let stage = Stage::new(&mut renderer, creature)?;
         if let Some(folder) = &film.frames {
             std::fs::create_dir_all(folder)?;
         }
@@ -79,9 +59,7 @@ impl Film {
         });
         Ok(Self {
             renderer,
-            creature,
-            ground,
-            climber,
+            stage,
             rocks: Vec::new(),
             camera: film.camera,
             overlays: Overlays::new(&film.overlay, battle.height()),
@@ -101,8 +79,6 @@ impl Film {
     pub(crate) fn watch(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {
         let tick = self.tick;
         self.tick += 1;
-        let up = battle.climber().config().up();
-        let feet = battle.climber().state().position - up * battle.climber().config().radius;
         self.overlays.watch(battle);
         let camera = self.follow(battle);
         if tick < self.from || !(tick - self.from).is_multiple_of(self.every) {
@@ -111,38 +87,22 @@ impl Film {
         if self.rocks.is_empty() {
             self.add_rocks(battle)?;
         }
-        let root = *battle.surface().world_from_model();
-        let center = root.translation + DVec3::Y * (0.45 * self.height);
-        let mut drawn = vec![Drawn {
-            mesh: self.ground,
-            world_from_model: Similarity::IDENTITY,
-            palette: None,
-        }];
-        drawn.extend(self.creature.iter().map(|mesh| Drawn {
-            mesh: *mesh,
-            world_from_model: root,
-            palette: Some(battle.palette()),
-        }));
-        let at = |mesh, translation, rotation: DQuat| Drawn {
-            mesh,
-            world_from_model: Similarity {
-                rotation,
-                scale: 1.0,
-                translation,
-            },
-            palette: None,
-        };
-        let [body, head] = self.climber;
-        drawn.push(at(body, feet + up * 0.72, DQuat::IDENTITY));
-        drawn.push(at(head, feet + up * 1.56, DQuat::IDENTITY));
-        for (rock, mesh) in &self.rocks {
+        let mut drawn = self.stage.drawn(battle, battle.palette());
+        drawn.extend(self.rocks.iter().map(|(rock, mesh)| {
             let body = &battle.world().bodies[*rock];
-            let turn = body.rotation().as_dquat().normalize();
-            drawn.push(at(*mesh, body.translation().as_dvec3(), turn));
-        }
+            Drawn {
+                mesh: *mesh,
+                world_from_model: Similarity {
+                    rotation: body.rotation().as_dquat().normalize(),
+                    scale: 1.0,
+                    translation: body.translation().as_dvec3(),
+                },
+                palette: None,
+            }
+        }));
         let frame = Frame {
             camera,
-            light: Light::over(center, self.height * 0.85),
+            light: light(battle, self.height),
             drawn,
             overlay: self.overlays.draw(battle, &camera),
         };
@@ -166,19 +126,10 @@ impl Film {
     fn follow(&mut self, battle: &Battle<'_>) -> Camera {
         let root = battle.surface().world_from_model();
         let middle = root.translation + DVec3::Y * (0.42 * self.height);
-        let above_ground = |eye: DVec3, least: f64| {
-            DVec3::new(
-                eye.x,
-                eye.y.max(valley::height(eye.x, eye.z) + least),
-                eye.z,
-            )
-        };
         match self.camera {
             CameraKind::Orbit => {
                 let heading = 0.6 + ORBIT * f64::from(self.tick) * TICK;
-                let mut camera = Camera::orbit(middle, 1.45 * self.height, heading, -0.12);
-                camera.eye = above_ground(camera.eye, 0.04 * self.height);
-                camera
+                orbit(battle, self.height, heading)
             }
             CameraKind::Fixed => {
                 let eye = DVec3::new(0.0, valley::height(0.0, 0.0) + 0.08 * self.height, 0.0);
@@ -194,7 +145,8 @@ impl Film {
                     state.position + (behind.normalize_or(DVec3::X) * 8.0 + DVec3::Y * 4.0);
                 let wanted = [wanted, state.position];
                 let [eye, target] = self.eye.unwrap_or(wanted);
-                let eye = above_ground(eye.lerp(wanted[0], 0.06), 1.0);
+                let mut eye = eye.lerp(wanted[0], 0.06);
+                eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
                 let target = target.lerp(wanted[1], 0.3);
                 self.eye = Some([eye, target]);
                 Camera::new(eye, target)
@@ -219,72 +171,6 @@ impl Film {
         }
         Ok(())
     }
-}
-
-fn add_creature(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<MeshId>, Failure> {
-    let mut meshes = Vec::new();
-    for visual in &rig.visual {
-        let mut colors = vec![[1.0; 3]; visual.positions.len()];
-        let mut looks = vec![Look::Plain; visual.positions.len()];
-        let mut triangles = Vec::new();
-        for primitive in &visual.primitives {
-            let material = primitive.material.map(|index| &rig.materials[index]);
-            let base = material.map_or([1.0; 4], |material| material.base_color);
-            let look = material.map_or(Look::Plain, |material| look_of(material.tag));
-            for corner in primitive.triangles.iter().flatten() {
-                let vertex = *corner as usize;
-                let own = visual.colors.get(vertex).copied().unwrap_or([1.0; 4]);
-                colors[vertex] = [0, 1, 2].map(|channel| base[channel] * own[channel]);
-                looks[vertex] = look;
-            }
-            triangles.extend_from_slice(&primitive.triangles);
-        }
-        meshes.push(renderer.add_mesh(&MeshSource {
-            positions: &visual.positions,
-            normals: &visual.normals,
-            colors: &colors,
-            looks: &looks,
-            triangles: &triangles,
-            skin: Some(SkinSource {
-                influences: &visual.influences,
-                ends: &visual.influence_ends,
-                joint_count: rig.skeleton.joints().len(),
-            }),
-        })?);
-    }
-    Ok(meshes)
-}
-
-fn look_of(tag: SurfaceTag) -> Look {
-    match tag.kind {
-        SurfaceKind::Fur => Look::Fur,
-        SurfaceKind::Stone => Look::Stone,
-        _ => Look::Plain,
-    }
-}
-
-fn add_ground(renderer: &mut Renderer) -> Result<MeshId, Failure> {
-    let cells = (valley::SIZE / GROUND_CELL) as u32;
-    let place = |index: u32| f64::from(index) * GROUND_CELL - valley::SIZE / 2.0;
-    let mut positions = Vec::new();
-    let mut triangles = Vec::new();
-    for row in 0..=cells {
-        for column in 0..=cells {
-            let (x, z) = (place(column), place(row));
-            positions.push(DVec3::new(x, valley::height(x, z), z).as_vec3());
-            if row < cells && column < cells {
-                let [a, b] = [row, row + 1].map(|row| row * (cells + 1) + column);
-                triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
-            }
-        }
-    }
-    let looks = vec![Look::Ground; positions.len()];
-    Ok(renderer.add_mesh(&MeshSource {
-        positions: &positions,
-        looks: &looks,
-        triangles: &triangles,
-        ..MeshSource::default()
-    })?)
 }
 
 fn add_solid(
