@@ -20,11 +20,13 @@ pub struct RecordOptions {
     pub transforms_every: u32,
     /// Ticks from one look at the skin to the next, points and touched triangles; 0 for none. Default 30: 2 a
     /// second at 60 Hz: the dearest part. Skins the whole creature and takes some 50 kB a look. Raise it for large creatures.
+    /// Until a look is written it shares the surface's mesh, which the first edit meanwhile has to copy.
     pub skin_every: u32,
     /// Points of the skin at most. Default 2000.
     pub skin_points: usize,
-    /// Ticks in a chunk, at least 1. Default 60. A crash loses at most so many, and the chunk that was being
-    /// written.
+    /// Ticks in a chunk. Default 60; 0 is taken for 1. A crash loses the chunk being gathered and those not yet
+    /// written: up to three in all, one or two where the disk keeps up. Raise it for fewer, larger writes; each
+    /// tick waits in memory with its palette.
     pub chunk_ticks: u32,
 }
 
@@ -156,6 +158,9 @@ impl<W: Write> Recorder<W> {
     /// [`RecordError::Order`] unless ticks come one after another, [`RecordError::JointCount`] for a palette
     /// that does not fit the surface: such a tick is not recorded, the next may be. [`RecordError::Write`] or
     /// another one if an earlier chunk could not be written, [`RecordError::Ended`] ever after.
+    ///
+    /// # Panics
+    /// As the writer did, if it did.
     pub fn tick(&mut self, view: &TickView<'_>) -> Result<(), RecordError> {
         if self.thread.is_none() {
             return Err(RecordError::Ended);
@@ -208,6 +213,9 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// [`RecordError::Write`], [`RecordError::Io`]; [`RecordError::Ended`] if a tick told of the failure.
+    ///
+    /// # Panics
+    /// As the writer did, if it did.
     pub fn finish(mut self) -> Result<W, RecordError> {
         self.hand_over()?;
         self.end()
@@ -226,18 +234,25 @@ impl<W: Write> Recorder<W> {
         self.end().and(Err(RecordError::Ended))
     }
 
-    /// Waits for the thread.
+    /// Waits for the thread, and panics as it did.
     fn end(&mut self) -> Result<W, RecordError> {
         let WriterThread { chunks, handle, .. } = self.thread.take().ok_or(RecordError::Ended)?;
         drop(chunks);
-        handle.join().unwrap_or(Err(RecordError::Ended))
+        match handle.join() {
+            Ok(ended) => ended,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
     }
 }
 
 impl<W: Write> Drop for Recorder<W> {
     fn drop(&mut self) {
-        if self.hand_over().is_ok() {
-            let _ = self.end();
+        if let Some(WriterThread { chunks, handle, .. }) = self.thread.take() {
+            // A thread that takes no more has its reason, which nobody asks for now.
+            let chunk = core::mem::take(&mut self.chunk);
+            let _ = chunks.send((chunk, self.gathered));
+            drop(chunks);
+            let _ = handle.join();
         }
     }
 }

@@ -6,7 +6,8 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
 
 use clamber_record::{Ending, RecordError, RecordOptions, Recording};
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
@@ -238,4 +239,104 @@ fn a_run_that_is_killed_leaves_its_whole_seconds() {
     let recording = recording.unwrap();
     assert_eq!(*recording.ending(), Ending::Early);
     assert_eq!(recording.len(), 120);
+}
+
+/// Bytes that several can see, each write of which takes a while.
+#[derive(Clone, Default)]
+struct Shared {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    pause: Duration,
+}
+
+impl std::io::Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        std::thread::sleep(self.pause);
+        self.bytes.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Records a battle of 70 ticks in chunks of so many, and hands the recorder over.
+fn record_into<W: std::io::Write + Send + 'static>(
+    out: W,
+    chunk_ticks: u32,
+    end: impl FnOnce(BattleRecorder<W>),
+) {
+    let creature = giant().unwrap();
+    let settings = [("rocks".to_owned(), "0".to_owned())].into();
+    let options = BattleOptions::from_settings(&settings).unwrap();
+    let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+    let how = RecordOptions {
+        chunk_ticks,
+        skin_points: 50,
+        ..RecordOptions::default()
+    };
+    let mut recorder = BattleRecorder::new(out, &battle, &options, how).unwrap();
+    for tick in 0..70 {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    end(recorder);
+}
+
+#[test]
+fn a_slow_disk_a_drop_and_a_panic_lose_nothing() {
+    for chunk_ticks in [2, 60] {
+        let whole = Shared::default();
+        record_into(whole.clone(), chunk_ticks, |recorder| {
+            recorder.finish().unwrap();
+        });
+        let whole = whole.bytes.lock().unwrap().clone();
+        assert_eq!(Recording::from_bytes(whole.clone()).unwrap().len(), 70);
+        let slow = Shared {
+            pause: Duration::from_micros(300),
+            ..Shared::default()
+        };
+        record_into(slow.clone(), chunk_ticks, |recorder| {
+            recorder.finish().unwrap();
+        });
+        let dropped = slow.clone();
+        let dropped = Shared {
+            bytes: Arc::default(),
+            ..dropped
+        };
+        record_into(dropped.clone(), chunk_ticks, drop);
+        let unwound = Shared::default();
+        let panicked = std::panic::catch_unwind(|| {
+            record_into(unwound.clone(), chunk_ticks, |_recorder| {
+                panic!("on purpose")
+            });
+        });
+        assert!(panicked.is_err());
+        for other in [slow, dropped, unwound] {
+            assert!(*other.bytes.lock().unwrap() == whole, "{chunk_ticks}");
+        }
+    }
+}
+
+#[test]
+fn a_writer_that_panics_is_no_error_without_a_cause() {
+    struct Bug(usize);
+    impl std::io::Write for Bug {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0 += bytes.len();
+            assert!(self.0 < 50_000, "a bug of the caller's");
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let panicked = std::panic::catch_unwind(|| {
+        record_into(Bug(0), 60, |recorder| drop(recorder.finish()));
+    });
+    let panic = panicked.unwrap_err();
+    assert_eq!(panic.downcast_ref::<&str>(), Some(&"a bug of the caller's"));
+    // Nobody asks.
+    record_into(Bug(0), 60, drop);
 }
