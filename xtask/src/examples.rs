@@ -51,6 +51,7 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
             "the battle's hash is {fast}, and {recorded} when it is recorded"
         ));
     }
+    film(metadata, find(&released, "battle")?, &fast)?;
     // Recorded in the development profile, fought again as released.
     let replay = find(&released, "replay")?;
     program(replay, &[recording.as_str()])?;
@@ -63,6 +64,45 @@ fn find<'a>(
 ) -> Result<&'a Utf8Path, String> {
     let binary = examples.get(name);
     Ok(binary.ok_or_else(|| format!("cargo built no example {name}"))?)
+}
+
+/// Films a battle with all that can be drawn over it: pictures are there, and the battle is the same. Without a
+/// graphics device, says that it does not.
+fn film(metadata: &Metadata, battle: &Utf8Path, hash: &str) -> Result<(), String> {
+    if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() {
+        println!("   SKIPPED: no battle is filmed without CLAMBER_REQUIRE_GPU");
+        return Ok(());
+    }
+    let frames = metadata.target_directory.join("xtask-frames");
+    let gif = frames.join("battle.gif");
+    if frames.exists() {
+        std::fs::remove_dir_all(&frames).map_err(|error| format!("{frames}: {error}"))?;
+    }
+    let overlays = "joints,capsules,spheres,clusters,contact,anchors,sweeps,rocks,state";
+    let size = ["--width", "320", "--rows", "180", "--overlay", overlays];
+    let when = ["--from", "4", "--rate", "4", "--camera", "chase"];
+    let to = ["--frames", frames.as_str(), "--gif", gif.as_str()];
+    let filmed = battle_hash(metadata, battle, &[&size[..], &when, &to].concat())?;
+    if filmed != hash {
+        return Err(format!(
+            "the battle's hash is {hash}, and {filmed} when it is filmed"
+        ));
+    }
+    let files = std::fs::read_dir(&frames).map_err(|error| format!("{frames}: {error}"))?;
+    let (mut stills, mut moving) = (0, 0);
+    for file in files.filter_map(Result::ok) {
+        match file.path().extension().and_then(|end| end.to_str()) {
+            Some("png") => stills += 1,
+            Some("gif") => moving += 1,
+            _ => {}
+        }
+    }
+    match (stills, moving) {
+        (4, 1) => Ok(()),
+        _ => Err(format!(
+            "a second of film is {stills} pictures and {moving} GIFs in {frames}, not 4 and 1"
+        )),
+    }
 }
 
 /// The query files of the test data, or where there is none a file of one query.

@@ -1,5 +1,5 @@
-//! `cargo xtask ci` runs what CI runs after the tests, for a person as well: format, lints, each
-//! feature, documentation, examples, benches, dependency arrows, packages.
+//! `cargo xtask ci` runs what CI runs, for a person as well: tests, format, lints, each feature, documentation,
+//! examples, benches, dependency arrows, packages.
 
 mod arrows;
 mod benches;
@@ -26,7 +26,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks beside the workspace's tests; goes on after a failure and lists
+    /// Everything that CI checks; goes on after a failure and lists
     /// them all at the end. Takes some minutes on a cold target.
     Ci {
         /// Run only the steps whose name contains this.
@@ -38,7 +38,10 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 8] = [
+const STEPS: [Step; 9] = [
+    ("tests", |_| {
+        cargo(&[&["test"][..], &build::SELECTION].concat())
+    }),
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
         let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
@@ -70,6 +73,12 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    // Wherever it was called from.
+    let root = &metadata.workspace_root;
+    if let Err(error) = std::env::set_current_dir(root) {
+        eprintln!("{root}: {error}");
+        return ExitCode::FAILURE;
+    }
     let mut failures = Vec::new();
     let mut ran = 0;
     for (name, step) in STEPS {

@@ -32,6 +32,10 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         check_files(package)?;
     }
     let folder = metadata.target_directory.join("xtask-packages");
+    // What an interrupted run has left, today's packages may lack.
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"))?;
+    }
     let built = unpack(&packages, &folder).and_then(|()| check_build(&packages, &folder));
     let removed = std::fs::remove_dir_all(&folder).map_err(|error| format!("{folder}: {error}"));
     built.and(removed)
@@ -46,10 +50,16 @@ fn unpack(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
     }
     cargo(&arguments)?;
     for package in packages {
+        // -m: an archive has one date for all its files, by which cargo would take changed sources for built ones.
         let archive = format!("package/{}-{}.crate", package.name, package.version);
         program(
             "tar".into(),
-            &["-xzf", folder.join(archive).as_str(), "-C", folder.as_str()],
+            &[
+                "-xzmf",
+                folder.join(archive).as_str(),
+                "-C",
+                folder.as_str(),
+            ],
         )?;
     }
     Ok(())
@@ -75,7 +85,8 @@ fn check_build(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
         "--manifest-path",
         path.as_str(),
     ];
-    cargo(&[&check[..], &["--target-dir", "target", "--all-features"]].concat())
+    let target = folder.parent().map_or("target", Utf8Path::as_str);
+    cargo(&[&check[..], &["--target-dir", target, "--all-features"]].concat())
 }
 
 fn check_metadata(package: &Package) -> Result<(), String> {
