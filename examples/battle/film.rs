@@ -18,6 +18,8 @@ use crate::{CameraKind, FilmOptions};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
+const TICKS_A_SECOND: u64 = 60;
+
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
 
@@ -32,8 +34,8 @@ pub(crate) struct Film {
     frames: Option<PathBuf>,
     gif: Option<Gif>,
     raw: bool,
-    /// Ticks from one picture to the next.
-    every: u32,
+    /// Pictures a second.
+    rate: u32,
     /// Ticks before the first.
     from: u32,
     tick: u32,
@@ -67,7 +69,7 @@ impl Film {
             frames: film.frames.clone(),
             gif: gif.transpose()?,
             raw: film.raw,
-            every: ((1.0 / TICK).round() as u32 / film.rate).max(1),
+            rate: film.rate,
             from: (film.from / TICK) as u32,
             tick: 0,
             taken: 0,
@@ -81,7 +83,10 @@ impl Film {
         self.tick += 1;
         self.overlays.watch(battle);
         let camera = self.follow(battle);
-        if tick < self.from || !(tick - self.from).is_multiple_of(self.every) {
+        // As many in each second as are asked for, however they divide its ticks.
+        let rate = u64::from(self.rate);
+        let phase = |since: u32| u64::from(since) * rate % TICKS_A_SECOND;
+        if tick < self.from || phase(tick - self.from) >= rate {
             return Ok(());
         }
         if self.rocks.is_empty() {
@@ -160,12 +165,8 @@ impl Film {
             let shade = 0.24 + 0.03 * (number % 5) as f32;
             for collider in body.colliders() {
                 let shape = battle.world().colliders[*collider].shared_shape();
-                let mesh = add_solid(
-                    &mut self.renderer,
-                    shape,
-                    [shade, shade * 0.95, shade * 0.86],
-                    Look::Stone,
-                )?;
+                let color = [shade, shade * 0.95, shade * 0.86];
+                let mesh = add_rock(&mut self.renderer, shape, color)?;
                 self.rocks.push((*rock, mesh));
             }
         }
@@ -173,11 +174,10 @@ impl Film {
     }
 }
 
-fn add_solid(
+fn add_rock(
     renderer: &mut Renderer,
     shape: &SharedShape,
     color: [f32; 3],
-    look: Look,
 ) -> Result<MeshId, Failure> {
     let (positions, triangles) = match shape.as_typed_shape() {
         TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
@@ -196,7 +196,7 @@ fn add_solid(
         (positions, triangles)
     };
     let colors = vec![color; positions.len()];
-    let looks = vec![look; positions.len()];
+    let looks = vec![Look::Stone; positions.len()];
     Ok(renderer.add_mesh(&MeshSource {
         positions: &positions,
         colors: &colors,

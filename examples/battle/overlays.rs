@@ -42,8 +42,8 @@ const THROUGH: f64 = 0.25;
 /// What moved farther than this in a tick was put there, metres.
 const PUT: f64 = 2.0;
 
-/// What moved less than this in a tick lies still, metres.
-const STILL: f64 = 0.02;
+/// What moved less than this in a tick lies still, metres: 0.12 m/s.
+const STILL: f64 = 0.002;
 
 /// Where text begins: column and row.
 const TEXT_AT: [u32; 2] = [16, 16];
@@ -114,8 +114,7 @@ impl Overlays {
         for kind in &self.kinds {
             match kind {
                 OverlayKind::Joints => joints(&mut over, battle, eye, THROUGH * self.height),
-                OverlayKind::Capsules => bounds(&mut over, battle, false),
-                OverlayKind::Spheres => bounds(&mut over, battle, true),
+                OverlayKind::Capsules | OverlayKind::Spheres => bounds(&mut over, battle, *kind),
                 OverlayKind::Clusters => clusters(&mut over, battle, eye, self.nearer),
                 OverlayKind::Contact => contact(&mut over, battle, &self.way),
                 OverlayKind::Anchors => self.anchors(&mut over, battle, eye),
@@ -220,7 +219,7 @@ fn seen_through([red, green, blue]: [f32; 3], opacity: f32) -> Color {
     [red, green, blue, opacity]
 }
 
-/// The same place in the picture, but so many metres nearer to the eye, if it is as far from it.
+/// The same place in the picture, but so many metres nearer to the eye, at most half of the way.
 fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
     let distance = (place - eye).length();
     eye + (place - eye) * (1.0 - (by / distance).min(0.5))
@@ -312,7 +311,7 @@ fn joints(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     }
 }
 
-fn bounds(over: &mut Overlay, battle: &Battle<'_>, spheres: bool) {
+fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
     const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
     let mesh = battle.surface().mesh();
     let root = battle.surface().world_from_model();
@@ -321,11 +320,15 @@ fn bounds(over: &mut Overlay, battle: &Battle<'_>, spheres: bool) {
         return;
     };
     for part in (0..bounds.part_count() as u32).map(PartId) {
-        if spheres && let Some(sphere) = bounds.sphere(part, &maps) {
+        if kind == OverlayKind::Spheres
+            && let Some(sphere) = bounds.sphere(part, &maps)
+        {
             let center = root.transform_point_f32(sphere.center);
             over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
         }
-        if !spheres && let Some(capsule) = bounds.capsule(part, &maps) {
+        if kind == OverlayKind::Capsules
+            && let Some(capsule) = bounds.capsule(part, &maps)
+        {
             let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
             over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
         }

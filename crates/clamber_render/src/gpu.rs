@@ -1,3 +1,4 @@
+use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -137,7 +138,7 @@ impl Gpu {
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
         match (self.lost(), polled) {
             (Some(reason), _) => Err(RenderError::Lost(reason)),
-            (None, Err(_)) => Err(RenderError::Lost("it cannot be waited for".into())),
+            (None, Err(panic)) => Err(RenderError::Lost(message(panic.as_ref()))),
             (None, Ok(Err(error))) => Err(RenderError::Lost(error.to_string())),
             (None, Ok(Ok(_))) => Ok(()),
         }
@@ -149,6 +150,13 @@ impl Gpu {
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
     }
+}
+
+/// What a panic says.
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+    text.unwrap_or("it cannot be waited for").to_owned()
 }
 
 fn typed(error: wgpu::Error) -> RenderError {

@@ -14,9 +14,16 @@ use glam::{DVec3, Vec3};
 
 const SIDE: u32 = 120;
 
+/// If something stands between the ground and the sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sun {
+    Free,
+    BehindAWall,
+}
+
 /// Darkest and lightest in the middle of a picture of a square of 40 m, seen from +Z and lit by a sun that
-/// stands `height` above it, as a sine; its normals lean towards the sun by `lean`. A wall stands in the sun, or none.
-fn lit(renderer: &mut Renderer, height: f32, lean: f32, wall_stands: bool) -> [u8; 2] {
+/// stands `height` above it, as a sine; its normals lean towards the sun by `lean`.
+fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
     let to_sun = Vec3::new((1.0 - height * height).sqrt(), 0.0, height);
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let corners = corners.map(|[x, y]: [f32; 2]| Vec3::new(20.0 * x, 20.0 * y, 0.0));
@@ -56,7 +63,7 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, wall_stands: bool) -> [u
         drawn: vec![drawn(ground.unwrap())],
         overlay: Overlay::default(),
     };
-    if wall_stands {
+    if sun == Sun::BehindAWall {
         frame.drawn.push(drawn(wall.unwrap()));
     }
     let image = renderer.draw(&frame).unwrap();
@@ -78,14 +85,14 @@ fn a_face_shows_no_bands_of_its_own_shadow_and_that_of_a_wall() {
     let mut renderer = Renderer::new(gpu, SIDE, SIDE).unwrap();
     for height in [0.12, 0.2, 0.4, 0.7, 0.95] {
         for lean in [0.0, 0.5, 2.0] {
-            let [darkest, lightest] = lit(&mut renderer, height, lean, false);
+            let [darkest, lightest] = lit(&mut renderer, height, lean, Sun::Free);
             println!("{height} {lean}: {darkest} to {lightest}");
             assert!(
                 lightest - darkest <= 2,
                 "{height} {lean}: {darkest} to {lightest}"
             );
             if height < 0.7 {
-                let [shadow, to] = lit(&mut renderer, height, lean, true);
+                let [shadow, to] = lit(&mut renderer, height, lean, Sun::BehindAWall);
                 assert!(
                     to - shadow <= 2,
                     "{height} {lean}: shadow from {shadow} to {to}"

@@ -6,7 +6,7 @@ struct Globals {
     view_from_clip: mat4x4f,
     shadow_from_view: mat4x4f,
     to_sun: vec4f,
-    // Share of light that a metre of air takes; size of a texel of the shadow map; height of the eye.
+    // Share of light that a metre of air takes; size of a texel of the shadow map; two unused.
     air: vec4f,
 }
 
@@ -29,7 +29,7 @@ const LIFT = 3.0;
 const LIFT_ROUND = 2.0;
 
 // Cosines of the angle between a face and its smooth normal between which it is taken for a part of something
-// round: ours have faces of up to 15 degrees.
+// round, 37 and 18 degrees: balls and capsules of two dozen sides have up to 15.
 const ROUND = vec2f(0.80, 0.95);
 
 // Cosines of the angle to the sun between which a face of something round goes dark.
