@@ -81,6 +81,8 @@ pub struct BuildReport {
     pub degenerate_triangles: usize,
     /// Triangles dropped because another one has the same corners in the same orientation.
     pub duplicate_triangles: usize,
+    /// Which of the source's triangles each triangle of the mesh is, ascending.
+    pub source_triangles: Vec<u32>,
     /// The most influences of one vertex, after merging.
     pub max_influences: usize,
     /// The largest difference from 1 of a vertex's weights as given.
@@ -114,6 +116,7 @@ impl ColliderMesh {
     /// let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default())?;
     /// assert_eq!(mesh.triangles().len(), 1);
     /// assert_eq!(report.duplicate_triangles, 1);
+    /// assert_eq!(report.source_triangles, [0]);
     /// # Ok::<(), clamber_surface::mesh::MeshError>(())
     /// ```
     ///
@@ -176,6 +179,7 @@ impl ColliderMesh {
                 continue;
             }
             self.triangles.push(corners);
+            report.source_triangles.push(index as u32);
             self.tags
                 .push(source.tags.get(index).copied().unwrap_or_default());
         }

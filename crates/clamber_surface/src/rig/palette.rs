@@ -23,6 +23,13 @@ impl Palette {
         }
     }
 
+    /// Becomes [`Palette::from_matrices`] of others, and keeps its memory.
+    pub fn set_matrices(&mut self, matrices: &[Affine]) {
+        self.matrices.clear();
+        self.matrices.extend_from_slice(matrices);
+        self.model_from_joint.clear();
+    }
+
     /// The matrices, in joint order.
     pub fn matrices(&self) -> &[Affine] {
         &self.matrices

@@ -1,0 +1,155 @@
+use bevy_app::{App, Plugin, PostUpdate};
+use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::prelude::*;
+use bevy_math::Quat;
+use bevy_reflect::prelude::*;
+use bevy_transform::components::Transform;
+use clamber_surface::rig;
+use clamber_surface::surface::Anchor;
+use glam::{DAffine3, DQuat};
+
+use crate::{ClamberSystems, PosedSurface};
+
+/// The deepest hierarchy that an anchored entity may hang in.
+const MAX_DEPTH: usize = 4096;
+
+/// Sticks this entity to a point of skin: an arrow, the end of a rope, a decal, a light, a camera.
+///
+/// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, position
+/// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is left alone. When the
+/// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Clone, Debug, PartialEq)]
+#[require(Transform)]
+pub struct SurfaceAnchor {
+    /// The entity with the [`PosedSurface`].
+    pub surface: Entity,
+    /// The point, and how the skin around it is turned.
+    pub anchor: Anchor,
+    /// Rotation of the entity relative to the skin around the point.
+    pub rotation: Quat,
+}
+
+impl SurfaceAnchor {
+    /// At a point of a surface as it is posed now, turned in the world as given.
+    pub fn new(entity: Entity, surface: &PosedSurface, anchor: Anchor, rotation: Quat) -> Self {
+        let skin = surface.world_from_model().rotation * anchor.frame.as_dquat();
+        Self {
+            surface: entity,
+            anchor,
+            rotation: (skin.conjugate() * rotation.as_dquat())
+                .normalize()
+                .as_quat(),
+        }
+    }
+}
+
+/// Triggered on an entity whose [`SurfaceAnchor`] was taken off because what it stuck to is gone.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AnchorLost {
+    /// That entity.
+    pub entity: Entity,
+    /// What it stuck to; may be despawned.
+    pub surface: Entity,
+}
+
+/// Moves anchored entities with the skin; part of [`ClamberPlugins`](crate::ClamberPlugins).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SurfaceAnchorPlugin;
+
+impl Plugin for SurfaceAnchorPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<SurfaceAnchor>().add_systems(
+            PostUpdate,
+            (pose_anchored_surfaces, follow)
+                .chain()
+                .in_set(ClamberSystems::Anchor),
+        );
+    }
+}
+
+/// Poses those surfaces as drawn that something sticks to.
+fn pose_anchored_surfaces(anchors: Query<&SurfaceAnchor>, mut surfaces: Query<&mut PosedSurface>) {
+    for anchor in &anchors {
+        if let Ok(mut surface) = surfaces.get_mut(anchor.surface) {
+            surface.bypass_change_detection().pose_as_drawn();
+        }
+    }
+}
+
+fn follow(
+    mut anchors: Query<(Entity, &mut SurfaceAnchor, Option<&ChildOf>)>,
+    surfaces: Query<&PosedSurface>,
+    mut transforms: Query<(&mut Transform, Option<&ChildOf>)>,
+    mut commands: Commands,
+) {
+    for (entity, mut anchor, child_of) in &mut anchors {
+        let Some(placed) = place(&anchor, &surfaces) else {
+            let surface = anchor.surface;
+            commands.entity(entity).try_remove::<SurfaceAnchor>();
+            commands.trigger(AnchorLost { entity, surface });
+            continue;
+        };
+        let Some((world, frame)) = placed else {
+            // This frame's pose cannot be had: it stays where it is.
+            continue;
+        };
+        anchor.bypass_change_detection().anchor.frame = frame;
+        let local = match child_of {
+            None => world,
+            Some(child_of) => parent(child_of.parent(), &transforms).inverse() * world,
+        };
+        let (_, rotation, translation) = local.to_scale_rotation_translation();
+        if let Ok((mut transform, _)) = transforms.get_mut(entity) {
+            let moved = Transform {
+                translation: translation.as_vec3(),
+                rotation: rotation.as_quat(),
+                scale: transform.scale,
+            };
+            transform.set_if_neq(moved);
+        }
+    }
+}
+
+/// Where an anchored entity belongs, and how the skin there is turned; `None` if the point is gone, `Some(None)`
+/// if the surface has no pose of this frame.
+fn place(
+    anchor: &SurfaceAnchor,
+    surfaces: &Query<&PosedSurface>,
+) -> Option<Option<(DAffine3, Quat)>> {
+    let surface = surfaces.get(anchor.surface).ok()?;
+    if !surface.is_enabled(anchor.anchor.triangle) {
+        return None;
+    }
+    let Some(drawn) = surface.as_drawn() else {
+        return Some(None);
+    };
+    // The motion is not asked for: any tick will do.
+    let motion = drawn.motion(&anchor.anchor, 1.0).ok()?;
+    let world_from_model = drawn.world_from_model();
+    let skin = world_from_model.rotation * motion.frame.as_dquat();
+    let rotation: DQuat = (skin * anchor.rotation.as_dquat()).normalize();
+    let position = world_from_model.transform_point_f32(motion.position);
+    let world = DAffine3::from_rotation_translation(rotation, position);
+    Some(Some((world, motion.frame)))
+}
+
+/// Where a parent is in the world, from the transforms of this frame.
+fn parent(entity: Entity, transforms: &Query<(&mut Transform, Option<&ChildOf>)>) -> DAffine3 {
+    let mut world = DAffine3::IDENTITY;
+    let mut next = Some(entity);
+    for _ in 0..MAX_DEPTH {
+        let Some(Ok((transform, child_of))) = next.map(|entity| transforms.get(entity)) else {
+            break;
+        };
+        let local = rig::Transform {
+            translation: transform.translation,
+            rotation: transform.rotation,
+            scale: transform.scale,
+        };
+        world = local.to_affine() * world;
+        next = child_of.map(ChildOf::parent);
+    }
+    world
+}

@@ -1,0 +1,139 @@
+use std::sync::Arc;
+
+use bevy_asset::{AssetEvent, AssetId, Assets};
+use bevy_ecs::prelude::*;
+use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
+use bevy_mesh::{Mesh, Mesh3d};
+use clamber_surface::geometry::Affine;
+use glam::DAffine3;
+
+use super::meshes::ColliderKey;
+use super::{ColliderMeshes, ColliderStatus, ColliderTag, SkinnedCollider};
+use crate::PosedSurface;
+use crate::surface::{Hierarchy, Rig};
+
+/// An asset that changed: what was built from it is built anew; one that is gone takes it along.
+pub(crate) fn forget_changed_assets(
+    mut meshes: MessageReader<AssetEvent<Mesh>>,
+    mut bindposes: MessageReader<AssetEvent<SkinnedMeshInverseBindposes>>,
+    mut colliders: ResMut<ColliderMeshes>,
+    mut entities: Query<(Entity, &Mesh3d, &SkinnedMesh, &mut ColliderStatus)>,
+    mut commands: Commands,
+) {
+    for event in meshes.read() {
+        let (id, gone) = match event {
+            AssetEvent::Modified { id } => (*id, false),
+            AssetEvent::Removed { id } => (*id, true),
+            _ => continue,
+        };
+        colliders.forget(id);
+        for (entity, mesh, _, mut status) in &mut entities {
+            if AssetId::from(mesh.clone()) != id {
+                continue;
+            }
+            wait(&mut status);
+            if gone {
+                commands.entity(entity).remove::<PosedSurface>();
+            }
+        }
+    }
+    for event in bindposes.read() {
+        if let AssetEvent::Modified { id } = event {
+            for (_, _, skin, mut status) in &mut entities {
+                if skin.inverse_bindposes.id() == *id {
+                    wait(&mut status);
+                }
+            }
+        }
+    }
+}
+
+/// Components that a collider follows from.
+type Source = (
+    Entity,
+    Ref<'static, SkinnedCollider>,
+    Ref<'static, ColliderTag>,
+    Option<Ref<'static, Mesh3d>>,
+    Option<Ref<'static, SkinnedMesh>>,
+    &'static mut ColliderStatus,
+    Option<&'static mut PosedSurface>,
+);
+
+/// Makes surfaces of what is loaded, and takes away those whose components are gone.
+pub(crate) fn build_colliders(
+    mut sources: Query<Source>,
+    meshes: Res<Assets<Mesh>>,
+    bindposes: Res<Assets<SkinnedMeshInverseBindposes>>,
+    mut colliders: ResMut<ColliderMeshes>,
+    hierarchy: Hierarchy<'_, '_>,
+    mut commands: Commands,
+) {
+    for (entity, collider, tag, mesh, skin, mut status, surface) in &mut sources {
+        let (Some(mesh), Some(skin)) = (mesh, skin) else {
+            if surface.is_some() {
+                commands.entity(entity).remove::<PosedSurface>();
+            }
+            wait(&mut status);
+            continue;
+        };
+        if tag.is_changed() || mesh.is_changed() || skin.is_changed() {
+            wait(&mut status);
+        }
+        if let Some(mut surface) = surface
+            && collider.is_changed()
+        {
+            surface.set_timing(*collider);
+        }
+        if !matches!(*status, ColliderStatus::Waiting | ColliderStatus::Building) {
+            continue;
+        }
+        let (Some(asset), Some(inverse_bindposes)) = (
+            meshes.get(mesh.id()),
+            bindposes.get(&skin.inverse_bindposes),
+        ) else {
+            continue;
+        };
+        let key = ColliderKey {
+            mesh: mesh.id(),
+            joint_count: skin.joints.len(),
+            tag: tag.0,
+        };
+        let Some(built) = colliders.get_or_build(key, asset) else {
+            if !matches!(*status, ColliderStatus::Building) {
+                *status = ColliderStatus::Building;
+            }
+            continue;
+        };
+        let surface = built.and_then(|built| {
+            let inverse = inverse_bindposes.iter().map(|m| widen(&m.to_cols_array()));
+            let rig = Rig::new(skin.joints.clone(), inverse.collect(), &hierarchy);
+            let rig = rig.map_err(|error| {
+                tracing::error!("no surface for {entity}: {error}");
+                Arc::new(error)
+            })?;
+            Ok(PosedSurface::new(built, rig, *collider, &hierarchy))
+        });
+        match surface {
+            Ok(surface) => {
+                commands.entity(entity).insert(surface);
+                *status = ColliderStatus::Ready;
+            }
+            Err(error) => {
+                commands.entity(entity).remove::<PosedSurface>();
+                *status = ColliderStatus::Failed(error);
+            }
+        }
+    }
+}
+
+/// Marked as changed only if it is.
+fn wait(status: &mut Mut<'_, ColliderStatus>) {
+    if !matches!(**status, ColliderStatus::Waiting) {
+        **status = ColliderStatus::Waiting;
+    }
+}
+
+/// A matrix by columns, whose last row says nothing.
+fn widen(columns: &[f32; 16]) -> DAffine3 {
+    Affine::from_cols_array(columns).to_f64()
+}

@@ -1,0 +1,64 @@
+//! From mesh assets to collider meshes: read, build away from the main thread, share, forget.
+
+mod build;
+mod error;
+mod meshes;
+mod raw;
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::prelude::*;
+use clamber_surface::mesh::SurfaceTag;
+use std::sync::Arc;
+
+use crate::PoseTiming;
+
+pub(crate) use build::{build_colliders, forget_changed_assets};
+pub use error::ColliderError;
+pub(crate) use meshes::{BuiltCollider, ColliderMeshes};
+
+/// Makes a surface of the skinned mesh on this entity: its `Mesh3d` and `SkinnedMesh`.
+///
+/// Once both assets are loaded, the collider is built away from the main thread, and shared by all that show
+/// the same mesh; then a [`PosedSurface`](crate::PosedSurface) appears here. [`ColliderStatus`] says how far it
+/// is, or what is wrong.
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_mesh::skinning::SkinnedMesh;
+/// # use bevy_clamber::prelude::*;
+/// /// Whatever has a skinned mesh gets a collider, as scenes spawn.
+/// fn add_colliders(added: On<Add<SkinnedMesh>>, mut commands: Commands) {
+///     commands.entity(added.entity).insert(SkinnedCollider::default());
+/// }
+/// ```
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+#[require(ColliderStatus, ColliderTag)]
+pub struct SkinnedCollider {
+    /// When the joints are animated. Default: once a frame, as by Bevy's `AnimationPlugin`.
+    pub joints: PoseTiming,
+    /// When what stands above the joints is moved, as the root of a scene. Default: once a frame.
+    pub root: PoseTiming,
+}
+
+/// What the triangles of a mesh are made of. Changing it builds the collider anew.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+pub struct ColliderTag(pub SurfaceTag);
+
+/// How far a [`SkinnedCollider`] is.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Default, Clone, Debug)]
+pub enum ColliderStatus {
+    /// For mesh, inverse bind poses, `Mesh3d` or `SkinnedMesh`.
+    #[default]
+    Waiting,
+    /// Being built.
+    Building,
+    /// There is a [`PosedSurface`](crate::PosedSurface).
+    Ready,
+    /// It cannot be built. Tried again when one of its assets or components changes.
+    Failed(Arc<ColliderError>),
+}

@@ -1,0 +1,7 @@
+//! What most apps need: `use bevy_clamber::prelude::*;`.
+
+pub use crate::{
+    AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
+    PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldHit,
+};
+pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};

@@ -1,0 +1,38 @@
+use std::time::Duration;
+
+use bevy_ecs::prelude::*;
+use bevy_time::{Fixed, Time, Virtual};
+
+/// When the last poses were drawn, and where between that and this frame the current tick is.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct PoseClock {
+    drawn: Duration,
+    /// 0 at the last frame, 1 at this one.
+    fraction: f64,
+}
+
+impl PoseClock {
+    pub(crate) fn fraction(&self) -> f64 {
+        self.fraction
+    }
+}
+
+/// In the fixed loop, before surfaces are posed.
+pub(crate) fn tell_tick(
+    mut clock: ResMut<PoseClock>,
+    tick: Res<Time<Fixed>>,
+    frame: Res<Time<Virtual>>,
+) {
+    let of_frame = |time: Duration| time.saturating_sub(clock.drawn).as_secs_f64();
+    let length = of_frame(frame.elapsed());
+    clock.fraction = if length > 0.0 {
+        (of_frame(tick.elapsed()) / length).min(1.0)
+    } else {
+        1.0
+    };
+}
+
+/// At the end of a frame, when its poses are noted.
+pub(crate) fn tell_frame(mut clock: ResMut<PoseClock>, frame: Res<Time<Virtual>>) {
+    clock.drawn = frame.elapsed();
+}

@@ -1,0 +1,75 @@
+use bevy_app::{AnimationSystems, App, FixedPostUpdate, Plugin, PostUpdate, PreUpdate};
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
+use bevy_transform::TransformSystems;
+
+use super::clock::{tell_frame, tell_tick};
+use super::pose::{pose_surfaces, sample_poses};
+use super::{PoseClock, PoseTiming, PosedSurface};
+use crate::collider::{ColliderMeshes, build_colliders, forget_changed_assets};
+use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider};
+
+/// Builds colliders and poses surfaces; part of [`ClamberPlugins`](crate::ClamberPlugins).
+///
+/// Needs `TaskPoolPlugin`, `TimePlugin`, `AssetPlugin`, and the assets `Mesh` and `SkinnedMeshInverseBindposes`.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePlugin {
+    schedule: InternedScheduleLabel,
+}
+
+impl SurfacePlugin {
+    /// With surfaces posed in a schedule of the fixed loop.
+    pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Default for SurfacePlugin {
+    fn default() -> Self {
+        Self::in_schedule(FixedPostUpdate)
+    }
+}
+
+impl Plugin for SurfacePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<ColliderMeshes>()
+            .init_resource::<PoseClock>()
+            .register_type::<SkinnedCollider>()
+            .register_type::<PoseTiming>()
+            .register_type::<ColliderTag>()
+            .register_type::<ColliderStatus>()
+            .add_observer(remove_surface)
+            .configure_sets(
+                PostUpdate,
+                (ClamberSystems::Sample, ClamberSystems::Anchor)
+                    .chain()
+                    .after(AnimationSystems)
+                    .before(TransformSystems::Propagate),
+            )
+            .add_systems(
+                PreUpdate,
+                (forget_changed_assets, build_colliders)
+                    .chain()
+                    .in_set(ClamberSystems::Build),
+            )
+            .add_systems(
+                self.schedule,
+                (tell_tick, pose_surfaces)
+                    .chain()
+                    .in_set(ClamberSystems::Pose),
+            )
+            .add_systems(
+                PostUpdate,
+                (sample_poses, tell_frame).in_set(ClamberSystems::Sample),
+            );
+    }
+}
+
+/// Without the collider there is no surface.
+fn remove_surface(removed: On<Remove<SkinnedCollider>>, mut commands: Commands) {
+    if let Ok(mut entity) = commands.get_entity(removed.entity) {
+        entity.try_remove::<(PosedSurface, ColliderStatus, ColliderTag)>();
+    }
+}
