@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 10] = [
+const ALLOWED: [(&str, &[&str]); 11] = [
     ("clamber_surface", &[]),
     ("clamber_world", &["clamber_surface"]),
     ("clamber_climber", &["clamber_surface", "clamber_world"]),
@@ -35,12 +35,17 @@ const ALLOWED: [(&str, &[&str]); 10] = [
             "clamber_render",
         ],
     ),
+    (
+        "bevy_clamber",
+        &["clamber_surface", "clamber_world", "clamber_gltf"],
+    ),
     ("clamber_fuzz", &["clamber_surface", "clamber_gltf"]),
     ("xtask", &[]),
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 3] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 4] = [
+    ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
@@ -87,6 +92,9 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
             let fine = if inside {
                 allowed.contains(&to) || for_tests && ALLOWED_FOR_TESTS.contains(&(name, to))
             } else {
+                if to.starts_with("bevy") && name != "bevy_clamber" {
+                    wrong.push(format!("{name} must not know Bevy"));
+                }
                 let kept = KEPT_TO.iter().find(|(engine, _)| *engine == to);
                 let core = name == CORE.0 && !for_tests;
                 kept.is_none_or(|(_, owner)| *owner == name) && (!core || CORE.1.contains(&to))

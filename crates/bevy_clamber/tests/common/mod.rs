@@ -1,12 +1,14 @@
 //! A headless app and a limb of two joints, which bends.
 
+#![allow(dead_code, reason = "no test uses all of it")]
+
 use std::time::Duration;
 
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, Assets, Handle, RenderAssetUsages};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{Mat4, Quat, Vec3};
+use bevy_math::{Quat, Vec3};
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
 use bevy_time::{Time, TimePlugin, TimeUpdateStrategy};
@@ -14,14 +16,14 @@ use bevy_transform::TransformPlugin;
 use bevy_transform::components::{GlobalTransform, Transform};
 
 /// Radians a second that the limb's upper joint turns.
-pub const SPIN: f64 = 2.0;
+pub(crate) const SPIN: f64 = 2.0;
 
 /// An app without a window, each of whose updates is a frame of `1 / rate` seconds.
-pub fn app(rate: f64) -> App {
+pub(crate) fn app(rate: f64) -> App {
     app_with(rate, ClamberPlugins::default())
 }
 
-pub fn app_with(rate: f64, plugins: ClamberPlugins) -> App {
+pub(crate) fn app_with(rate: f64, plugins: ClamberPlugins) -> App {
     let mut app = App::new();
     app.add_plugins((
         TaskPoolPlugin::default(),
@@ -41,18 +43,17 @@ pub fn app_with(rate: f64, plugins: ClamberPlugins) -> App {
 }
 
 /// Where the upper joint is turned to at a time.
-pub fn bend(seconds: f64) -> Quat {
-    // SAFETY of the sign: any angle will do.
+pub(crate) fn bend(seconds: f64) -> Quat {
     let half = 0.5 * SPIN * seconds;
     Quat::from_xyzw(0.0, 0.0, libm::sin(half) as f32, libm::cos(half) as f32)
 }
 
 /// Marks what the animation turns.
 #[derive(Component)]
-pub struct Bending;
+pub(crate) struct Bending;
 
 /// Turns by the time of the schedule that it runs in.
-pub fn animate(time: Res<Time>, mut joints: Query<&mut Transform, With<Bending>>) {
+pub(crate) fn animate(time: Res<Time>, mut joints: Query<&mut Transform, With<Bending>>) {
     for mut joint in &mut joints {
         joint.rotation = bend(time.elapsed().as_secs_f64());
     }
@@ -60,15 +61,15 @@ pub fn animate(time: Res<Time>, mut joints: Query<&mut Transform, With<Bending>>
 
 /// Entities of a limb.
 #[derive(Clone, Copy, Debug)]
-pub struct Limb {
-    pub root: Entity,
-    pub joints: [Entity; 2],
-    pub mesh: Entity,
+pub(crate) struct Limb {
+    pub(crate) root: Entity,
+    pub(crate) joints: [Entity; 2],
+    pub(crate) mesh: Entity,
 }
 
 /// A square tube along Y, 2 m high and 0.4 m wide, the lower half on one joint at its foot, the upper on one in the
 /// middle, blended around that.
-pub fn limb_mesh() -> Mesh {
+pub(crate) fn limb_mesh() -> Mesh {
     let rings = 21;
     let (mut positions, mut joints, mut weights) = (Vec::new(), Vec::new(), Vec::new());
     let mut indices = Vec::new();
@@ -100,12 +101,16 @@ pub fn limb_mesh() -> Mesh {
     .with_inserted_indices(Indices::U32(indices))
 }
 
-pub fn add_mesh(app: &mut App, mesh: Mesh) -> Handle<Mesh> {
+pub(crate) fn add_mesh(app: &mut App, mesh: Mesh) -> Handle<Mesh> {
     app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh)
 }
 
-pub fn add_bindposes(app: &mut App) -> Handle<SkinnedMeshInverseBindposes> {
-    let poses = vec![Mat4::IDENTITY, Mat4::from_translation(Vec3::NEG_Y)];
+pub(crate) fn add_bindposes(app: &mut App) -> Handle<SkinnedMeshInverseBindposes> {
+    let foot = Transform::IDENTITY;
+    let poses = vec![
+        foot.to_matrix(),
+        Transform::from_translation(Vec3::NEG_Y).to_matrix(),
+    ];
     let mut assets = app
         .world_mut()
         .resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
@@ -113,7 +118,7 @@ pub fn add_bindposes(app: &mut App) -> Handle<SkinnedMeshInverseBindposes> {
 }
 
 /// Spawns a limb at a place, without a collider.
-pub fn spawn_limb(
+pub(crate) fn spawn_limb(
     app: &mut App,
     mesh: Handle<Mesh>,
     inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
@@ -136,7 +141,7 @@ pub fn spawn_limb(
 }
 
 /// A limb with a collider, in an app that has made its surface.
-pub fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -> Limb {
+pub(crate) fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -> Limb {
     let mesh = add_mesh(app, limb_mesh());
     let inverse_bindposes = add_bindposes(app);
     let limb = spawn_limb(app, mesh, inverse_bindposes, place);
@@ -146,7 +151,7 @@ pub fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -> Limb 
 }
 
 /// Updates until a collider is done, one way or the other.
-pub fn wait(app: &mut App, entity: Entity) {
+pub(crate) fn wait(app: &mut App, entity: Entity) {
     for _ in 0..10_000 {
         app.update();
         let status = app.world().get::<ColliderStatus>(entity);
@@ -163,7 +168,7 @@ pub fn wait(app: &mut App, entity: Entity) {
 }
 
 /// Where a vertex of the limb's mesh is drawn, as Bevy's shader computes it, in f64.
-pub fn drawn(app: &App, limb: &Limb, vertex: usize) -> glam::DVec3 {
+pub(crate) fn drawn(app: &App, limb: &Limb, vertex: usize) -> glam::DVec3 {
     let world = app.world();
     let mesh = world.get::<Mesh3d>(limb.mesh).unwrap();
     let mesh = world.resource::<Assets<Mesh>>().get(mesh).unwrap();
