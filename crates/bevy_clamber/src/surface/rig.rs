@@ -1,5 +1,6 @@
 //! The entities that pose a skin: joints, what stands between and above them.
 
+use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
@@ -21,17 +22,24 @@ pub(crate) type Hierarchy<'w, 's> = Query<'w, 's, (&'static Transform, Option<&'
 
 /// Whose transforms make the palette, and how.
 ///
-/// Model space is that of the nearest entity above all joints, or the world. The palette is composed there, so
-/// that it does not depend on where in the world a creature is.
+/// Model space is that of the nearest entity above all joints; of a skeleton that hangs under nothing, the world's,
+/// moved to where its topmost joint is. The palette is composed there, so that it does not depend on where in the
+/// world a creature is.
 #[derive(Debug)]
 pub(crate) struct Rig {
     joints: Vec<Entity>,
+    /// By joint.
+    joint_from_mesh: Vec<DAffine3>,
+    tree: Tree,
+}
+
+/// How joints hang under each other.
+#[derive(Debug)]
+struct Tree {
     /// Joints, and what stands between them and model space; parents first.
     nodes: Vec<Node>,
     /// By joint, which node it is.
     node_of_joint: Vec<u32>,
-    /// By joint.
-    joint_from_mesh: Vec<DAffine3>,
     /// From model space up to the top of the hierarchy.
     above: Vec<Entity>,
 }
@@ -62,57 +70,22 @@ impl Rig {
         joint_from_mesh: Vec<DAffine3>,
         hierarchy: &Hierarchy<'_, '_>,
     ) -> Result<Self, ColliderError> {
-        if joints.len() != joint_from_mesh.len() {
+        if joints.len() > joint_from_mesh.len() {
             return Err(ColliderError::InverseBindposes {
                 joints: joints.len(),
                 inverse_bindposes: joint_from_mesh.len(),
             });
         }
-        let mut above: Option<Vec<Entity>> = None;
-        let mut paths = Vec::with_capacity(joints.len());
-        for (joint, entity) in joints.iter().enumerate() {
-            let path = path_up(*entity, hierarchy).ok_or(ColliderError::Joint { joint })?;
-            match &mut above {
-                None => above = Some(path[1..].to_vec()),
-                Some(above) => {
-                    if path.last() != paths.first().and_then(|first: &Vec<Entity>| first.last()) {
-                        return Err(ColliderError::Hierarchies { joint });
-                    }
-                    let shared = path[1..].iter().rev().zip(above.iter().rev());
-                    let shared = shared.take_while(|(a, b)| a == b).count();
-                    above.drain(..above.len() - shared);
-                }
-            }
-            paths.push(path);
-        }
-        let above = above.unwrap_or_default();
-        let mut nodes: Vec<Node> = Vec::new();
-        let mut node_of_joint = Vec::with_capacity(joints.len());
-        for path in &paths {
-            let mut parent = None;
-            for entity in path[..path.len() - above.len()].iter().rev() {
-                let known = nodes.iter().position(|node| node.entity == *entity);
-                let node = known.unwrap_or(nodes.len()) as u32;
-                if known.is_none() {
-                    let entity = *entity;
-                    nodes.push(Node { entity, parent });
-                }
-                parent = Some(node);
-            }
-            node_of_joint.extend(parent);
-        }
         Ok(Self {
+            tree: Tree::new(&joints, hierarchy)?,
             joints,
-            nodes,
-            node_of_joint,
             joint_from_mesh,
-            above,
         })
     }
 
     /// Follows a hierarchy that has changed.
     pub(crate) fn follow(&mut self, hierarchy: &Hierarchy<'_, '_>) -> Result<(), ColliderError> {
-        *self = Self::new(self.joints.clone(), self.joint_from_mesh.clone(), hierarchy)?;
+        self.tree = Tree::new(&self.joints, hierarchy)?;
         Ok(())
     }
 
@@ -133,10 +106,10 @@ impl Rig {
         into: &mut Pose,
     ) -> Result<(), Changed> {
         into.transforms.clear();
-        for node in &self.nodes {
+        for node in &self.tree.nodes {
             let parent = match node.parent {
-                Some(parent) => Some(self.nodes[parent as usize].entity),
-                None => self.above.first().copied(),
+                Some(parent) => Some(self.tree.nodes[parent as usize].entity),
+                None => self.tree.above.first().copied(),
             };
             into.transforms.push(read(node.entity, parent, hierarchy)?);
         }
@@ -150,8 +123,8 @@ impl Rig {
         into: &mut Pose,
     ) -> Result<(), Changed> {
         into.transforms.clear();
-        for (index, entity) in self.above.iter().enumerate() {
-            let parent = self.above.get(index + 1).copied();
+        for (index, entity) in self.tree.above.iter().enumerate() {
+            let parent = self.tree.above.get(index + 1).copied();
             into.transforms.push(read(*entity, parent, hierarchy)?);
         }
         Ok(())
@@ -160,7 +133,7 @@ impl Rig {
     /// Where the creature stands, and its palette in model space, joint by joint.
     ///
     /// What of the placement is no similarity goes into the palette. `None` if the placement has no volume or is
-    /// not finite.
+    /// not finite, or if `locals` are of another hierarchy.
     pub(crate) fn compose(
         &self,
         locals: &Locals,
@@ -171,9 +144,18 @@ impl Rig {
         for transform in &locals.above.transforms {
             world_from_model = transform.to_affine() * world_from_model;
         }
-        let (similarity, rest) = split(&world_from_model)?;
+        let (mut similarity, mut rest) = split(&world_from_model)?;
+        if self.tree.above.is_empty()
+            && let Some(topmost) = locals.nodes.transforms.first()
+        {
+            similarity.translation = topmost.translation.as_dvec3();
+            rest.translation = -similarity.translation;
+        }
+        if locals.nodes.transforms.len() != self.tree.nodes.len() || !similarity.is_valid() {
+            return None;
+        }
         model_from_node.clear();
-        for (node, local) in self.nodes.iter().zip(&locals.nodes.transforms) {
+        for (node, local) in self.tree.nodes.iter().zip(&locals.nodes.transforms) {
             let parent = match node.parent {
                 Some(parent) => model_from_node[parent as usize],
                 None => rest,
@@ -181,12 +163,70 @@ impl Rig {
             model_from_node.push(parent * local.to_affine());
         }
         matrices.clear();
-        let joints = self.node_of_joint.iter().zip(&self.joint_from_mesh);
+        let joints = self.tree.node_of_joint.iter().zip(&self.joint_from_mesh);
         matrices.extend(joints.map(|(node, joint_from_mesh)| {
             Affine::from_f64(&(model_from_node[*node as usize] * *joint_from_mesh))
         }));
         Some(similarity)
     }
+}
+
+impl Tree {
+    /// Each entity is visited once, however deep joints hang.
+    fn new(joints: &[Entity], hierarchy: &Hierarchy<'_, '_>) -> Result<Self, ColliderError> {
+        let mut nodes: Vec<Node> = Vec::with_capacity(joints.len());
+        let mut known = EntityHashMap::<u32>::default();
+        let mut node_of_joint = Vec::with_capacity(joints.len());
+        let mut path = Vec::new();
+        for (joint, entity) in joints.iter().enumerate() {
+            let met = path_up(*entity, hierarchy, &known, &mut path);
+            let met = met.ok_or(ColliderError::Joint { joint })?;
+            if met.is_none() && joint > 0 {
+                return Err(ColliderError::Hierarchies { joint });
+            }
+            let mut parent = met;
+            for entity in path.drain(..).rev() {
+                let node = nodes.len() as u32;
+                nodes.push(Node { entity, parent });
+                known.insert(entity, node);
+                parent = Some(node);
+            }
+            node_of_joint.extend(parent);
+        }
+        let above = above_all(&nodes, &node_of_joint);
+        let beyond = above as u32;
+        for node in &mut nodes {
+            node.parent = node.parent.and_then(|parent| parent.checked_sub(beyond));
+        }
+        let mut above: Vec<Entity> = nodes.drain(..above).map(|node| node.entity).collect();
+        above.reverse();
+        for node in &mut node_of_joint {
+            *node -= beyond;
+        }
+        Ok(Self {
+            nodes,
+            node_of_joint,
+            above,
+        })
+    }
+}
+
+/// How many of the first nodes stand above all joints: from the top down to the first that forks, or before the
+/// first joint.
+fn above_all(nodes: &[Node], node_of_joint: &[u32]) -> usize {
+    let mut children = vec![0; nodes.len()];
+    for parent in nodes.iter().filter_map(|node| node.parent) {
+        children[parent as usize] += 1;
+    }
+    let mut is_joint = vec![false; nodes.len()];
+    for node in node_of_joint {
+        is_joint[*node as usize] = true;
+    }
+    // The first nodes are the path down to joint 0.
+    let joint = is_joint.iter().position(|is_joint| *is_joint);
+    let fork = children.iter().position(|children| *children > 1);
+    let joint = joint.unwrap_or(0);
+    fork.map_or(joint, |fork| joint.min(fork + 1))
 }
 
 /// One entity's transform, if it still hangs where it did.
@@ -206,18 +246,27 @@ fn read(
     })
 }
 
-/// An entity and all above it; `None` if one of them has no transform.
-fn path_up(entity: Entity, hierarchy: &Hierarchy<'_, '_>) -> Option<Vec<Entity>> {
-    let mut path = vec![entity];
-    let mut next = hierarchy.get(entity).ok()?.1;
-    while let Some(child_of) = next {
+/// An entity and what stands above it, up to what is known already: gives that, or none at the top of the hierarchy.
+/// `None` if one of them has no transform, or they hang in a circle.
+fn path_up(
+    entity: Entity,
+    hierarchy: &Hierarchy<'_, '_>,
+    known: &EntityHashMap<u32>,
+    path: &mut Vec<Entity>,
+) -> Option<Option<u32>> {
+    path.clear();
+    let mut next = Some(entity);
+    while let Some(entity) = next {
+        if let Some(node) = known.get(&entity) {
+            return Some(Some(*node));
+        }
         if path.len() > MAX_DEPTH {
             return None;
         }
-        path.push(child_of.parent());
-        next = hierarchy.get(child_of.parent()).ok()?.1;
+        path.push(entity);
+        next = hierarchy.get(entity).ok()?.1.map(ChildOf::parent);
     }
-    Some(path)
+    Some(None)
 }
 
 /// A placement as a similarity, and what stands before it: nothing, if it is one.

@@ -1,0 +1,433 @@
+//! Joints and what stands above them: moved, re-parented, gone, and nonsense.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod common;
+#[path = "common/oracle.rs"]
+mod oracle;
+
+use std::time::Instant;
+
+use bevy_app::{App, PreUpdate};
+use bevy_asset::{Assets, RenderAssetUsages};
+use bevy_clamber::ColliderError;
+use bevy_clamber::core::mesh::VertexId;
+use bevy_clamber::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::RunSystemOnce;
+use bevy_math::{Dir3, Quat, Vec3};
+use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
+use bevy_mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
+use bevy_shape::Ray3d;
+use bevy_transform::components::Transform;
+use common::{Limb, add_bindposes, add_mesh, app, bend, limb, limb_mesh, spawn_limb, wait};
+
+const EACH_TICK: SkinnedCollider = SkinnedCollider {
+    joints: PoseTiming::EachTick,
+    root: PoseTiming::EachTick,
+};
+const BOTH: [SkinnedCollider; 2] = [
+    EACH_TICK,
+    SkinnedCollider {
+        joints: PoseTiming::EachFrame,
+        root: PoseTiming::EachFrame,
+    },
+];
+
+fn surface(app: &App, entity: Entity) -> &PosedSurface {
+    app.world().get::<PosedSurface>(entity).unwrap()
+}
+
+fn transform(app: &mut App, entity: Entity) -> Mut<'_, Transform> {
+    app.world_mut().get_mut::<Transform>(entity).unwrap()
+}
+
+fn frames(app: &mut App, frames: usize) {
+    for _ in 0..frames {
+        app.update();
+    }
+}
+
+/// Every vertex in model space.
+fn in_model(app: &App, entity: Entity) -> Vec<Vec3> {
+    let surface = surface(app, entity);
+    let vertices = 0..surface.mesh().positions().len() as u32;
+    vertices
+        .map(|v| surface.position(VertexId(v)).unwrap())
+        .collect()
+}
+
+/// The farthest that any vertex is from where Bevy draws it. The limb's mesh is neither welded nor reordered.
+fn worst(app: &App, entity: Entity) -> f64 {
+    let posed = oracle::posed(app, entity);
+    let surface = surface(app, entity);
+    assert_eq!(posed.len(), surface.mesh().positions().len());
+    let found = in_model(app, entity);
+    let world = |p: &Vec3| surface.world_from_model().transform_point_f32(*p);
+    let apart = found
+        .iter()
+        .zip(&posed)
+        .map(|(p, q)| (world(p) - *q).length());
+    apart.fold(0.0, f64::max)
+}
+
+#[test]
+fn far_from_the_origin_the_pose_has_the_same_bits() {
+    for timing in BOTH {
+        let at = |place: Vec3| {
+            let mut app = app(64.0);
+            let limb = limb(&mut app, Transform::from_translation(place), timing);
+            transform(&mut app, limb.joints[1]).rotation = bend(0.7);
+            frames(&mut app, 5);
+            (in_model(&app, limb.mesh), worst(&app, limb.mesh))
+        };
+        let (here, error) = at(Vec3::ZERO);
+        assert!(error < 1e-6, "{error}");
+        let (there, error) = at(Vec3::new(1e5, -3e4, 7e4));
+        assert!(error < 1e-6, "{error}");
+        assert_eq!(here, there);
+    }
+}
+
+/// A limb whose lower joint hangs under nothing.
+fn rootless(app: &mut App, timing: SkinnedCollider) -> Limb {
+    let limb = limb(app, Transform::IDENTITY, timing);
+    app.world_mut()
+        .entity_mut(limb.joints[0])
+        .remove::<ChildOf>();
+    app.update();
+    limb
+}
+
+#[test]
+fn a_skeleton_without_a_parent_is_as_exact_far_away() {
+    for timing in BOTH {
+        let mut app = app(64.0);
+        let limb = rootless(&mut app, timing);
+        transform(&mut app, limb.joints[1]).rotation = bend(0.7);
+        transform(&mut app, limb.joints[0]).rotation = bend(0.1);
+        frames(&mut app, 5);
+        let here = in_model(&app, limb.mesh);
+        assert!(worst(&app, limb.mesh) < 1e-6);
+        transform(&mut app, limb.joints[0]).translation = Vec3::new(1e5, -3e4, 7e4);
+        frames(&mut app, 5);
+        assert!(worst(&app, limb.mesh) < 1e-6, "{}", worst(&app, limb.mesh));
+        assert_eq!(here, in_model(&app, limb.mesh));
+        // It moves as it is moved.
+        transform(&mut app, limb.joints[0]).translation.x += 0.5;
+        let mut travelled = 0.0;
+        for _ in 0..5 {
+            app.update();
+            let surface = surface(&app, limb.mesh);
+            let now = surface.position(VertexId(3)).unwrap();
+            let before = surface.previous_position(VertexId(3)).unwrap();
+            travelled += (now - before).length();
+        }
+        assert!((travelled - 0.5).abs() < 1e-5, "{travelled}");
+    }
+}
+
+#[test]
+fn scales_of_all_sorts_are_drawn_and_posed_alike() {
+    let turned = Quat::from_xyzw(0.5, -0.5, 0.5, 0.5);
+    let places = [
+        Transform::from_scale(Vec3::splat(40.0)),
+        Transform::from_scale(Vec3::splat(-1.0)),
+        Transform::from_scale(Vec3::new(1.0, -2.0, 1.0)).with_rotation(turned),
+        Transform::from_scale(Vec3::new(0.01, 3.0, 1.0)).with_rotation(turned),
+    ];
+    for place in places {
+        for timing in BOTH {
+            let mut app = app(64.0);
+            let limb = limb(&mut app, place, timing);
+            let above = Transform::from_xyz(1.0, 2.0, 3.0)
+                .with_rotation(bend(0.5))
+                .with_scale(Vec3::new(2.0, 0.5, 1.0));
+            let above = app.world_mut().spawn(above).id();
+            app.world_mut().entity_mut(limb.root).insert(ChildOf(above));
+            *transform(&mut app, limb.joints[1]) = Transform::from_xyz(0.0, 1.0, 0.0)
+                .with_rotation(bend(0.6))
+                .with_scale(Vec3::new(1.0, 0.7, -1.2));
+            frames(&mut app, 5);
+            let error = worst(&app, limb.mesh) / f64::from(place.scale.abs().max_element());
+            assert!(error < 2e-6, "{place:?} {timing:?}: {error}");
+            assert_eq!(surface(&app, limb.mesh).error(), None);
+        }
+    }
+}
+
+#[test]
+fn nonsense_keeps_the_last_pose_is_told_and_passes() {
+    type Spoil = fn(&mut Transform);
+    let spoils: [Spoil; 4] = [
+        |t| t.scale = Vec3::ZERO,
+        |t| t.translation.x = f32::NAN,
+        |t| t.rotation = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0),
+        |t| t.translation.y = f32::INFINITY,
+    ];
+    for timing in BOTH {
+        for (index, spoil) in spoils.iter().enumerate() {
+            for of_root in [true, false] {
+                if !of_root && index == 0 {
+                    // A joint may shrink to nothing: its skin is a point then.
+                    continue;
+                }
+                let case = format!("{index} {of_root} {timing:?}");
+                let mut app = app(64.0);
+                let place = Transform::from_xyz(4.0, 0.0, 0.0);
+                let limb = limb(&mut app, place, timing);
+                transform(&mut app, limb.joints[1]).rotation = bend(0.7);
+                frames(&mut app, 5);
+                let posed = in_model(&app, limb.mesh);
+                let whose = if of_root { limb.root } else { limb.joints[1] };
+                let sound = *transform(&mut app, whose);
+                spoil(&mut transform(&mut app, whose));
+                for frame in 0..5 {
+                    app.update();
+                    let surface = surface(&app, limb.mesh);
+                    // What frames show reaches ticks a frame later.
+                    let told = surface.error().is_some();
+                    assert!(told || frame == 0, "{case} {frame}");
+                    assert_eq!(surface.world_from_model().translation.x, 4.0, "{case}");
+                    assert_eq!(in_model(&app, limb.mesh), posed, "{case} {frame}");
+                }
+                *transform(&mut app, whose) = sound;
+                frames(&mut app, 3);
+                assert_eq!(surface(&app, limb.mesh).error(), None, "{case}");
+                transform(&mut app, limb.joints[1]).rotation = bend(0.2);
+                frames(&mut app, 3);
+                assert!(worst(&app, limb.mesh) < 1e-5, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_never_had_a_place_is_nowhere() {
+    for timing in BOTH {
+        let mut app = app(64.0);
+        let place = Transform::from_xyz(5.0, 0.0, 0.0).with_scale(Vec3::ZERO);
+        let limb = limb(&mut app, place, timing);
+        let seen = |app: &mut App, x: f32| {
+            let ray = Ray3d::new(Vec3::new(x, 9.0, 0.19), Dir3::NEG_Y);
+            let ray = Ray3d::new(ray.origin, Dir3::new(Vec3::new(0.01, -1.0, 0.0)).unwrap());
+            let ask = move |s: SurfaceQuery| {
+                s.cast_ray(ray, 20.0, &SurfaceFilter::default()).is_some()
+                    || s.closest_point(Vec3::X * x, 1.0, &SurfaceFilter::default())
+                        .is_some()
+            };
+            app.world_mut().run_system_once(ask).unwrap()
+        };
+        frames(&mut app, 3);
+        assert!(!seen(&mut app, 0.0), "{timing:?}");
+        transform(&mut app, limb.root).scale = Vec3::ONE;
+        frames(&mut app, 4);
+        assert!(seen(&mut app, 5.0), "{timing:?}");
+        let surface = surface(&app, limb.mesh);
+        assert_eq!(
+            surface.position(VertexId(0)),
+            surface.previous_position(VertexId(0)),
+            "it came without motion"
+        );
+    }
+}
+
+#[test]
+fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
+    for timing in BOTH {
+        let mut app = app(64.0);
+        let limb = limb(&mut app, Transform::IDENTITY, timing);
+        transform(&mut app, limb.joints[1]).rotation = bend(0.7);
+        frames(&mut app, 5);
+        let posed = in_model(&app, limb.mesh);
+        let taken = app
+            .world_mut()
+            .entity_mut(limb.joints[1])
+            .take::<Transform>();
+        for frame in 0..6 {
+            app.update();
+            let surface = surface(&app, limb.mesh);
+            let told = surface.error().is_some();
+            assert!(told || frame == 0, "{timing:?} {frame}");
+            assert_eq!(in_model(&app, limb.mesh), posed);
+        }
+        let joint = taken.unwrap();
+        app.world_mut().entity_mut(limb.joints[1]).insert(joint);
+        frames(&mut app, 3);
+        assert_eq!(surface(&app, limb.mesh).error(), None);
+        // Into another hierarchy, and back into this one, but elsewhere.
+        let elsewhere = app.world_mut().spawn(Transform::IDENTITY).id();
+        app.world_mut()
+            .entity_mut(limb.joints[1])
+            .insert(ChildOf(elsewhere));
+        frames(&mut app, 3);
+        let error = surface(&app, limb.mesh).error().cloned();
+        let expected = ColliderError::Hierarchies { joint: 1 };
+        assert_eq!(error, Some(bevy_clamber::PoseError::Hierarchy(expected)));
+        app.world_mut()
+            .entity_mut(limb.joints[1])
+            .insert(ChildOf(limb.root));
+        frames(&mut app, 4);
+        assert_eq!(surface(&app, limb.mesh).error(), None);
+        assert!(worst(&app, limb.mesh) < 1e-6);
+        app.world_mut().entity_mut(limb.joints[0]).despawn();
+        frames(&mut app, 4);
+        assert!(surface(&app, limb.mesh).error().is_some());
+    }
+}
+
+#[test]
+fn a_root_that_is_put_under_another_while_it_moves_is_followed() {
+    for timing in BOTH {
+        let mut app = app(64.0);
+        let limb = limb(&mut app, Transform::IDENTITY, timing);
+        let mut above = None;
+        for step in 0..60 {
+            transform(&mut app, limb.root).translation.x += 0.02;
+            if step % 7 == 3 {
+                let next = Transform::from_xyz(0.01 * step as f32, 0.0, 0.0);
+                let next = app.world_mut().spawn(next).id();
+                app.world_mut().entity_mut(limb.root).insert(ChildOf(next));
+                above = Some(next);
+            }
+            if step % 14 == 9 {
+                app.world_mut().entity_mut(limb.root).remove::<ChildOf>();
+                if let Some(above) = above {
+                    app.world_mut().entity_mut(above).despawn();
+                }
+            }
+            app.update();
+            assert_eq!(surface(&app, limb.mesh).error(), None, "{step}");
+        }
+        frames(&mut app, 2);
+        assert!(worst(&app, limb.mesh) < 1e-5);
+    }
+}
+
+/// A ribbon of so many joints, one under the other, some of them named twice.
+fn ribbon(app: &mut App, count: usize, place: Transform) -> Entity {
+    let (mut positions, mut joints, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+    for joint in 0..count {
+        for x in [0.0, 0.1] {
+            positions.push([x, joint as f32 * 0.01, 0.0]);
+            joints.push([joint as u16, 0, 0, 0]);
+            weights.push([1.0, 0.0, 0.0, 0.0]);
+        }
+    }
+    let indices = (0..2 * count as u32 - 2).flat_map(|i| [i, i + 1, i + 2]);
+    let mesh = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_attribute(
+        Mesh::ATTRIBUTE_JOINT_INDEX,
+        VertexAttributeValues::Uint16x4(joints),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights)
+    .with_inserted_indices(Indices::U32(indices.collect()));
+    let mesh = add_mesh(app, mesh);
+    let bind = |joint: usize| Transform::from_xyz(0.0, joint as f32 * -0.01, 0.0).to_matrix();
+    let bindposes: Vec<_> = (0..count).map(bind).collect();
+    let inverse_bindposes = app
+        .world_mut()
+        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
+        .add(SkinnedMeshInverseBindposes::from(bindposes));
+    let world = app.world_mut();
+    let mut parent = world.spawn(place).id();
+    let mut entities = Vec::new();
+    for joint in 0..count {
+        let up = Transform::from_xyz(0.0, if joint == 0 { 0.0 } else { 0.01 }, 0.0);
+        parent = world.spawn((up, ChildOf(parent))).id();
+        entities.push(parent);
+    }
+    let joints = entities;
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints,
+    };
+    let entity = world
+        .spawn((Mesh3d(mesh), skin, SkinnedCollider::default()))
+        .id();
+    wait(app, entity);
+    entity
+}
+
+#[test]
+fn a_thousand_joints_in_one_chain_take_no_time() {
+    let mut app = app(64.0);
+    let start = Instant::now();
+    let entity = ribbon(&mut app, 1000, Transform::from_xyz(9.0, 0.0, 0.0));
+    let built = start.elapsed();
+    frames(&mut app, 3);
+    assert!(worst(&app, entity) < 1e-4, "{}", worst(&app, entity));
+    // Its hierarchy changes in every frame.
+    let top = app.world().get::<SkinnedMesh>(entity).unwrap().joints[0];
+    let start = Instant::now();
+    for _ in 0..20 {
+        let above = app.world_mut().spawn(Transform::IDENTITY).id();
+        app.world_mut().entity_mut(top).insert(ChildOf(above));
+        app.update();
+    }
+    let followed = start.elapsed() / 20;
+    println!("built in {built:?}, followed in {followed:?}");
+    assert!(followed.as_millis() < 30, "{followed:?}");
+    assert_eq!(surface(&app, entity).error(), None);
+}
+
+#[test]
+fn joints_that_are_named_twice_and_none_at_all() {
+    let mut app = app(64.0);
+    let twice = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
+    let mut skin = app.world_mut().get_mut::<SkinnedMesh>(twice.mesh).unwrap();
+    let bindposes = skin.inverse_bindposes.clone();
+    skin.joints = vec![twice.joints[0]; 2];
+    frames(&mut app, 1);
+    wait(&mut app, twice.mesh);
+    frames(&mut app, 3);
+    assert!(worst(&app, twice.mesh) < 1e-6);
+    let mesh = app_mesh(&app, twice.mesh);
+    let none = app
+        .world_mut()
+        .spawn((
+            mesh,
+            SkinnedMesh {
+                inverse_bindposes: bindposes,
+                joints: Vec::new(),
+            },
+            SkinnedCollider::default(),
+        ))
+        .id();
+    wait(&mut app, none);
+    let status = app.world().get::<ColliderStatus>(none).unwrap();
+    assert!(matches!(status, ColliderStatus::Failed(_)), "{status:?}");
+}
+
+fn app_mesh(app: &App, entity: Entity) -> Mesh3d {
+    app.world().get::<Mesh3d>(entity).unwrap().clone()
+}
+
+#[test]
+fn joints_in_a_circle_are_told() {
+    let mut app = app(64.0);
+    let mesh = add_mesh(&mut app, limb_mesh());
+    let bindposes = add_bindposes(&mut app);
+    let limb = spawn_limb(&mut app, mesh, bindposes, Transform::IDENTITY);
+    app.world_mut()
+        .entity_mut(limb.joints[0])
+        .insert(ChildOf(limb.joints[1]));
+    app.world_mut()
+        .entity_mut(limb.mesh)
+        .insert(SkinnedCollider::default());
+    // No whole update: Bevy's own systems go round in such a circle forever.
+    for _ in 0..100_000 {
+        app.world_mut().run_schedule(PreUpdate);
+        std::thread::yield_now();
+        let status = app.world().get::<ColliderStatus>(limb.mesh).unwrap();
+        if let ColliderStatus::Failed(error) = status {
+            assert_eq!(**error, ColliderError::Joint { joint: 0 });
+            return;
+        }
+    }
+    panic!("it is never told");
+}
