@@ -23,10 +23,11 @@ pub(crate) fn tell_tick(
     tick: Res<Time<Fixed>>,
     frame: Res<Time<Virtual>>,
 ) {
-    let of_frame = |time: Duration| time.saturating_sub(clock.drawn).as_secs_f64();
-    let length = of_frame(frame.elapsed());
+    let length = frame.elapsed().saturating_sub(clock.drawn).as_secs_f64();
+    // What is left of the frame after this tick; so much of it, also where time was thrown away.
+    let left = tick.overstep().as_secs_f64();
     clock.fraction = if length > 0.0 {
-        (of_frame(tick.elapsed()) / length).min(1.0)
+        (1.0 - left / length).clamp(0.0, 1.0)
     } else {
         1.0
     };
