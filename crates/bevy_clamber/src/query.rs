@@ -285,7 +285,7 @@ impl SurfaceQuery<'_, '_> {
     fn seen(&self, filter: &SurfaceFilter<'_>) -> impl Iterator<Item = (Entity, &PosedSurface)> {
         self.surfaces
             .iter()
-            .filter(|(entity, _)| filter.sees(*entity))
+            .filter(|(entity, surface)| surface.is_placed() && filter.sees(*entity))
     }
 
     fn nearest(
@@ -371,9 +371,7 @@ fn world_sweep_hit(entity: Entity, surface: &PosedSurface, hit: &SweepHit) -> Wo
 }
 
 fn direction(world_from_model: &Similarity, v: Vec3) -> Vec3 {
-    (world_from_model.rotation * v.as_dvec3())
-        .normalize_or_zero()
-        .as_vec3()
+    (world_from_model.rotation * v.as_dvec3()).as_vec3()
 }
 
 fn local_point(surface: &PosedSurface, point: Vec3) -> Vec3 {

@@ -3,21 +3,39 @@ use bevy_ecs::prelude::*;
 use super::rig::Hierarchy;
 use super::{PoseClock, PosedSurface};
 
+/// So few surfaces are posed sooner than other threads wake up.
+const FEW: usize = 4;
+
 /// Once a tick.
 pub(crate) fn pose_surfaces(
     clock: Res<PoseClock>,
-    mut surfaces: Query<&mut PosedSurface>,
+    surfaces: Query<&mut PosedSurface>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
     let fraction = clock.fraction();
-    surfaces
-        .par_iter_mut()
-        .for_each(|mut surface| surface.pose(fraction, &hierarchy));
+    each(surfaces, |mut surface| {
+        let posed = surface.bypass_change_detection();
+        if posed.pose(fraction, &hierarchy) {
+            surface.set_changed();
+        }
+    });
 }
 
 /// Once a frame.
-pub(crate) fn sample_poses(mut surfaces: Query<&mut PosedSurface>, hierarchy: Hierarchy<'_, '_>) {
-    surfaces
-        .par_iter_mut()
-        .for_each(|mut surface| surface.bypass_change_detection().sample(&hierarchy));
+pub(crate) fn sample_poses(surfaces: Query<&mut PosedSurface>, hierarchy: Hierarchy<'_, '_>) {
+    each(surfaces, |mut surface| {
+        surface.bypass_change_detection().sample(&hierarchy);
+    });
+}
+
+/// On all cores where it pays.
+fn each(
+    mut surfaces: Query<&mut PosedSurface>,
+    run: impl Fn(Mut<'_, PosedSurface>) + Send + Sync + Clone,
+) {
+    if surfaces.iter().len() <= FEW {
+        surfaces.iter_mut().for_each(run);
+    } else {
+        surfaces.par_iter_mut().for_each(run);
+    }
 }

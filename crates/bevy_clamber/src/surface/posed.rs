@@ -46,12 +46,23 @@ pub struct PosedSurface {
     /// As the last two frames drew it.
     drawn: Locals,
     drawn_before: Locals,
-    /// As the last tick posed it.
+    /// Both are the same.
+    drawn_is_still: bool,
+    /// Why the last frame's pose is not known.
+    drawn_error: Option<ColliderError>,
+    /// As the last tick posed it, and by which palette.
     posed: Locals,
+    palette: Palette,
+    /// It has been posed.
+    is_placed: bool,
     /// Nothing moved in the last tick.
     still: bool,
     /// The next pose is no motion.
     restart: bool,
+    /// The next frame that is drawn is no motion.
+    restart_drawn: bool,
+    /// Somebody may have changed the surface since the last tick.
+    edited: bool,
     /// As drawn now, for those who ask.
     as_drawn: Option<SkinnedSurface>,
     /// `as_drawn` has the last frame's pose.
@@ -83,16 +94,22 @@ impl PosedSurface {
             timing,
             drawn: Locals::default(),
             drawn_before: Locals::default(),
+            drawn_is_still: false,
+            drawn_error: None,
             posed: Locals::default(),
+            palette: Palette::default(),
+            is_placed: false,
             still: false,
             restart: true,
+            restart_drawn: false,
+            edited: false,
             as_drawn: None,
             as_drawn_is_fresh: false,
             error: None,
             scratch: Scratch::default(),
         };
         posed.sample(hierarchy);
-        posed.drawn_before = posed.drawn.clone();
+        posed.drawn_before.clone_from(&posed.drawn);
         posed.pose(1.0, hierarchy);
         posed
     }
@@ -102,13 +119,20 @@ impl PosedSurface {
         self.error.as_ref()
     }
 
-    /// The next tick's pose is a place and no motion: after a teleport, which would else be a very fast way.
+    /// What moves it before the next tick, or the next frame, is a place and no motion: for a teleport, which would
+    /// else be a very fast way. To be called in the schedule that puts it elsewhere.
     pub fn forget_motion(&mut self) {
         self.restart = true;
+        self.restart_drawn = true;
     }
 
     /// For edits: disabled parts and triangles, holes. The next tick's pose overwrites any other.
+    ///
+    /// Where something sticks to the surface, what a frame draws is kept as a second surface, and copied anew
+    /// after each call.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
+        self.edited = true;
+        self.as_drawn = None;
         &mut self.surface
     }
 
@@ -124,24 +148,41 @@ impl PosedSurface {
         self.timing = timing;
     }
 
+    /// False if it had no pose yet that it could take: it is nowhere.
+    pub(crate) fn is_placed(&self) -> bool {
+        self.is_placed
+    }
+
     /// Notes the pose that a frame draws.
     pub(crate) fn sample(&mut self, hierarchy: &Hierarchy<'_, '_>) {
-        self.as_drawn_is_fresh = false;
         std::mem::swap(&mut self.drawn, &mut self.drawn_before);
-        if self.rig.read(hierarchy, &mut self.drawn).is_ok() {
-            return;
-        }
-        if let Err(error) = self.follow(hierarchy) {
+        self.drawn_error = None;
+        if self.rig.read(hierarchy, &mut self.drawn).is_err()
+            && let Err(error) = self.follow(hierarchy)
+        {
             // As it was.
             self.drawn.clone_from(&self.drawn_before);
-            self.tell(Err(error.into()));
+            self.drawn_error = Some(error);
+        }
+        self.drawn_is_still = self.drawn == self.drawn_before;
+        self.as_drawn_is_fresh &= self.drawn_is_still;
+        if std::mem::take(&mut self.restart_drawn) {
+            self.drawn_before.clone_from(&self.drawn);
+            self.drawn_is_still = true;
         }
     }
 
-    /// Takes the pose of a tick, `fraction` of the way from the last frame to this one.
-    pub(crate) fn pose(&mut self, fraction: f64, hierarchy: &Hierarchy<'_, '_>) {
-        let posed = self.try_pose(fraction, hierarchy);
-        self.tell(posed);
+    /// Takes the pose of a tick, `fraction` of the way from the last frame to this one. True if that changes
+    /// anything.
+    pub(crate) fn pose(&mut self, fraction: f64, hierarchy: &Hierarchy<'_, '_>) -> bool {
+        let mut next = std::mem::take(&mut self.scratch.next);
+        let posed = self.try_pose(fraction, hierarchy, &mut next);
+        self.scratch.next = next;
+        let moved = match &posed {
+            Ok(moved) => *moved,
+            Err(_) => self.rest(),
+        };
+        self.tell(posed.err()) || moved
     }
 
     /// Of both poses, the current and the one before, becomes what it is now.
@@ -150,27 +191,47 @@ impl PosedSurface {
         let read = self.rig.read(hierarchy, &mut self.drawn);
         read.map_err(|_| ColliderError::Joint { joint: 0 })?;
         self.drawn_before.clone_from(&self.drawn);
+        self.as_drawn_is_fresh = false;
         Ok(())
     }
 
-    fn try_pose(&mut self, fraction: f64, hierarchy: &Hierarchy<'_, '_>) -> Result<(), PoseError> {
-        let mut next = std::mem::take(&mut self.scratch.next);
-        if self.read_tick(fraction, hierarchy, &mut next)?.is_err() {
+    fn follows_frames(&self) -> bool {
+        let SkinnedCollider { joints, root } = self.timing;
+        [joints, root].contains(&PoseTiming::EachFrame)
+    }
+
+    fn follows_ticks(&self) -> bool {
+        let SkinnedCollider { joints, root } = self.timing;
+        [joints, root].contains(&PoseTiming::EachTick)
+    }
+
+    fn try_pose(
+        &mut self,
+        fraction: f64,
+        hierarchy: &Hierarchy<'_, '_>,
+        next: &mut Locals,
+    ) -> Result<bool, PoseError> {
+        if let Some(error) = &self.drawn_error
+            && self.follows_frames()
+        {
+            return Err(error.clone().into());
+        }
+        let at_rest = self.still && !self.restart && !self.edited;
+        if at_rest && self.drawn_is_still && !self.follows_ticks() && self.posed == self.drawn {
+            return Ok(false);
+        }
+        if self.read_tick(fraction, hierarchy, next)?.is_err() {
             self.follow(hierarchy)?;
             next.clone_from(&self.drawn);
         }
-        std::mem::swap(&mut self.posed, &mut next);
-        let same = self.posed == next;
-        self.scratch.next = next;
-        if same && self.still && !self.restart {
-            return Ok(());
+        let same = self.posed == *next;
+        if same && at_rest {
+            return Ok(false);
         }
         let scratch = &mut self.scratch;
-        let placed = self.rig.compose(
-            &self.posed,
-            &mut scratch.model_from_node,
-            &mut scratch.matrices,
-        );
+        let placed = self
+            .rig
+            .compose(next, &mut scratch.model_from_node, &mut scratch.matrices);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
         scratch.palette.set_matrices(&scratch.matrices);
         if self.restart {
@@ -178,9 +239,28 @@ impl PosedSurface {
         } else {
             self.surface.advance(&scratch.palette, world_from_model)?;
         }
+        std::mem::swap(&mut self.palette, &mut scratch.palette);
+        std::mem::swap(&mut self.posed, next);
+        self.is_placed = true;
+        self.edited = false;
         self.still = same || self.restart;
-        self.restart = false;
-        Ok(())
+        // What was told to be no motion may not be drawn yet.
+        self.restart = self.restart_drawn && self.follows_frames();
+        Ok(true)
+    }
+
+    /// Stands still in the last pose. True if it has moved until now.
+    fn rest(&mut self) -> bool {
+        if self.still || !self.is_placed {
+            return false;
+        }
+        let world_from_model = *self.surface.world_from_model();
+        // Both were taken before.
+        self.still = self
+            .surface
+            .advance(&self.palette, world_from_model)
+            .is_ok();
+        self.still
     }
 
     /// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
@@ -210,7 +290,8 @@ impl PosedSurface {
 
     /// Poses the surface as the last frame drew it.
     pub(crate) fn pose_as_drawn(&mut self) -> Option<&SkinnedSurface> {
-        if !self.as_drawn_is_fresh {
+        if self.as_drawn.is_none() || !self.as_drawn_is_fresh {
+            self.as_drawn_is_fresh = false;
             let scratch = &mut self.scratch;
             let placed = self.rig.compose(
                 &self.drawn,
@@ -218,11 +299,7 @@ impl PosedSurface {
                 &mut scratch.matrices,
             )?;
             scratch.palette.set_matrices(&scratch.matrices);
-            let mesh = self.surface.mesh();
-            let surface = match &mut self.as_drawn {
-                Some(surface) if Arc::ptr_eq(surface.mesh(), mesh) => surface,
-                other => other.insert(SkinnedSurface::new(Arc::clone(mesh))),
-            };
+            let surface = self.as_drawn.get_or_insert_with(|| self.surface.clone());
             surface.place(&scratch.palette, placed).ok()?;
             self.as_drawn_is_fresh = true;
         }
@@ -234,15 +311,18 @@ impl PosedSurface {
         self.as_drawn.as_ref().filter(|_| self.as_drawn_is_fresh)
     }
 
-    /// Keeps what went wrong; a line in the log when it begins.
-    fn tell(&mut self, result: Result<(), PoseError>) {
-        let error = result.err();
+    /// Keeps what went wrong; a line in the log when it begins. True if it is news.
+    fn tell(&mut self, error: Option<PoseError>) -> bool {
+        if self.error == error {
+            return false;
+        }
         if let Some(error) = &error
             && self.error.is_none()
         {
             tracing::warn!("a surface keeps its last pose: {error}");
         }
         self.error = error;
+        true
     }
 }
 

@@ -1,0 +1,104 @@
+//! What goes wrong is one line in the log, not one a frame. A process of its own: the log is everybody's.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod common;
+
+use std::sync::Mutex;
+
+use bevy_clamber::prelude::*;
+use bevy_math::Vec3;
+use bevy_mesh::Mesh;
+use bevy_transform::components::Transform;
+use common::{add_bindposes, add_mesh, app, limb, limb_mesh, spawn_limb, wait};
+use tracing::field::{Field, Visit};
+use tracing::{Event, Level, Metadata, Subscriber, span};
+
+static LINES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Keeps warnings and errors of this crate.
+struct Lines;
+
+struct Message(String);
+
+impl Visit for Message {
+    fn record_debug(&mut self, field: &Field, value: &dyn std::fmt::Debug) {
+        if field.name() == "message" {
+            self.0 = format!("{value:?}");
+        }
+    }
+}
+
+impl Subscriber for Lines {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        *metadata.level() <= Level::WARN
+    }
+    fn new_span(&self, _: &span::Attributes<'_>) -> span::Id {
+        span::Id::from_u64(1)
+    }
+    fn record(&self, _: &span::Id, _: &span::Record<'_>) {}
+    fn record_follows_from(&self, _: &span::Id, _: &span::Id) {}
+    fn event(&self, event: &Event<'_>) {
+        let mut message = Message(String::new());
+        event.record(&mut message);
+        if event.metadata().target().starts_with("bevy_clamber") {
+            LINES.lock().unwrap().push(message.0);
+        }
+    }
+    fn enter(&self, _: &span::Id) {}
+    fn exit(&self, _: &span::Id) {}
+}
+
+/// How many lines there were since this was asked last.
+fn lines() -> usize {
+    let lines = std::mem::take(&mut *LINES.lock().unwrap());
+    println!("{lines:#?}");
+    lines.len()
+}
+
+#[test]
+fn each_failure_is_one_line() {
+    tracing::subscriber::set_global_default(Lines).unwrap();
+    let mut app = app(64.0);
+    // A broken mesh that two show.
+    let mut broken = limb_mesh();
+    broken.insert_attribute(Mesh::ATTRIBUTE_POSITION, vec![[f32::NAN; 3]; 84]);
+    let mesh = add_mesh(&mut app, broken);
+    let bindposes = add_bindposes(&mut app);
+    for _ in 0..2 {
+        let limb = spawn_limb(
+            &mut app,
+            mesh.clone(),
+            bindposes.clone(),
+            Transform::IDENTITY,
+        );
+        app.world_mut()
+            .entity_mut(limb.mesh)
+            .insert(SkinnedCollider::default());
+        wait(&mut app, limb.mesh);
+    }
+    for _ in 0..9 {
+        app.update();
+    }
+    assert_eq!(lines(), 1);
+    for timing in [PoseTiming::EachFrame, PoseTiming::EachTick] {
+        let collider = SkinnedCollider {
+            joints: timing,
+            root: timing,
+        };
+        // A joint that is gone, and a root that is scaled to nothing.
+        let gone = limb(&mut app, Transform::IDENTITY, collider);
+        app.world_mut().entity_mut(gone.joints[1]).despawn();
+        for _ in 0..20 {
+            app.update();
+        }
+        assert_eq!(lines(), 1, "{timing:?}");
+        let flat = limb(&mut app, Transform::IDENTITY, collider);
+        let mut root = app.world_mut().get_mut::<Transform>(flat.root).unwrap();
+        root.scale = Vec3::ZERO;
+        for _ in 0..20 {
+            app.update();
+        }
+        assert_eq!(lines(), 1, "{timing:?}");
+    }
+}
