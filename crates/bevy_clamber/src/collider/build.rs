@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use bevy_asset::{AssetEvent, AssetId, Assets};
+use bevy_asset::{AssetEvent, Assets};
 use bevy_ecs::prelude::*;
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Mesh, Mesh3d};
@@ -28,23 +28,35 @@ pub(crate) fn forget_changed_assets(
         };
         colliders.forget(id);
         for (entity, mesh, _, mut status) in &mut entities {
-            if AssetId::from(mesh.clone()) != id {
-                continue;
-            }
-            wait(&mut status);
-            if gone {
-                commands.entity(entity).remove::<PosedSurface>();
+            if mesh.id() == id {
+                begin_anew(entity, &mut status, gone, &mut commands);
             }
         }
     }
     for event in bindposes.read() {
-        if let AssetEvent::Modified { id } = event {
-            for (_, _, skin, mut status) in &mut entities {
-                if skin.inverse_bindposes.id() == *id {
-                    wait(&mut status);
-                }
+        let (id, gone) = match event {
+            AssetEvent::Modified { id } => (*id, false),
+            AssetEvent::Removed { id } => (*id, true),
+            _ => continue,
+        };
+        for (entity, _, skin, mut status) in &mut entities {
+            if skin.inverse_bindposes.id() == id {
+                begin_anew(entity, &mut status, gone, &mut commands);
             }
         }
+    }
+}
+
+/// Waits for an asset that has changed. The surface serves until then, unless the asset is gone.
+fn begin_anew(
+    entity: Entity,
+    status: &mut Mut<'_, ColliderStatus>,
+    gone: bool,
+    commands: &mut Commands<'_, '_>,
+) {
+    wait(status);
+    if gone {
+        commands.entity(entity).try_remove::<PosedSurface>();
     }
 }
 
@@ -71,7 +83,7 @@ pub(crate) fn build_colliders(
     for (entity, collider, tag, mesh, skin, mut status, surface) in &mut sources {
         let (Some(mesh), Some(skin)) = (mesh, skin) else {
             if surface.is_some() {
-                commands.entity(entity).remove::<PosedSurface>();
+                commands.entity(entity).try_remove::<PosedSurface>();
             }
             wait(&mut status);
             continue;
@@ -115,11 +127,11 @@ pub(crate) fn build_colliders(
         });
         match surface {
             Ok(surface) => {
-                commands.entity(entity).insert(surface);
+                commands.entity(entity).try_insert(surface);
                 *status = ColliderStatus::Ready;
             }
             Err(error) => {
-                commands.entity(entity).remove::<PosedSurface>();
+                commands.entity(entity).try_remove::<PosedSurface>();
                 *status = ColliderStatus::Failed(error);
             }
         }

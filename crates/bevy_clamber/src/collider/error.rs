@@ -41,7 +41,7 @@ pub enum ColliderError {
     /// The triangles do not make a collider.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// `SkinnedMesh` and its inverse bind poses are of different lengths.
+    /// `SkinnedMesh` has more joints than inverse bind poses.
     #[error("{joints} joints, but {inverse_bindposes} inverse bind poses")]
     InverseBindposes {
         /// Joints of `SkinnedMesh`.

@@ -123,12 +123,19 @@ impl RawMesh {
             Some(Indices::U32(indices)) => indices.clone(),
             None => (0..vertices as u32).collect(),
         };
+        // The index that begins another strip.
+        let end = match &self.indices {
+            Some(Indices::U16(_)) => Some(u32::from(u16::MAX)),
+            Some(Indices::U32(_)) => Some(u32::MAX),
+            None => None,
+        };
         match self.topology {
             PrimitiveTopology::TriangleList => Ok(corners.as_chunks::<3>().0.to_vec()),
             PrimitiveTopology::TriangleStrip => {
-                let strip = corners.windows(3).enumerate();
+                let strips = corners.split(|corner| Some(*corner) == end);
+                let triangles = strips.flat_map(|strip| strip.windows(3).enumerate());
                 // Every other triangle of a strip is wound the other way.
-                Ok(strip
+                Ok(triangles
                     .map(|(index, corners)| match index % 2 {
                         0 => [corners[0], corners[1], corners[2]],
                         _ => [corners[1], corners[0], corners[2]],

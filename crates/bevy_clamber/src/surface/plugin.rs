@@ -70,6 +70,6 @@ impl Plugin for SurfacePlugin {
 /// Without the collider there is no surface.
 fn remove_surface(removed: On<Remove<SkinnedCollider>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
-        entity.try_remove::<(PosedSurface, ColliderStatus, ColliderTag)>();
+        entity.try_remove::<(PosedSurface, ColliderStatus)>();
     }
 }
