@@ -1,12 +1,12 @@
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
-use bevy_math::Quat;
+use bevy_math::{Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::rig;
 use clamber_surface::surface::Anchor;
-use glam::{DAffine3, DQuat};
+use glam::{DAffine3, DMat3, DQuat};
 
 use crate::{ClamberSystems, PosedSurface};
 
@@ -17,7 +17,10 @@ const MAX_DEPTH: usize = 4096;
 ///
 /// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, position
 /// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is left alone. When the
-/// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered.
+/// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered. Of skin that is only
+/// disabled it is not, nor where a collider is built anew that has a triangle of that number.
+///
+/// Under a parent that is scaled unevenly no rotation is exact: the position is, and where +Y points.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Component, Clone, Debug, PartialEq)]
@@ -78,17 +81,33 @@ fn pose_anchored_surfaces(anchors: Query<&SurfaceAnchor>, mut surfaces: Query<&m
     }
 }
 
+/// Parents before children, so that what hangs under an anchored entity finds it where it is now.
 fn follow(
     mut anchors: Query<(Entity, &mut SurfaceAnchor, Option<&ChildOf>)>,
     surfaces: Query<&PosedSurface>,
     mut transforms: Query<(&mut Transform, Option<&ChildOf>)>,
+    mut order: Local<Vec<(usize, Entity)>>,
     mut commands: Commands,
 ) {
-    for (entity, mut anchor, child_of) in &mut anchors {
+    order.clear();
+    order.extend(anchors.iter().map(|(entity, _, child_of)| {
+        let parent = child_of.map(ChildOf::parent);
+        (depth(parent, &transforms), entity)
+    }));
+    order.sort_unstable();
+    for (_, entity) in order.iter() {
+        let Ok((entity, mut anchor, child_of)) = anchors.get_mut(*entity) else {
+            continue;
+        };
         let Some(placed) = place(&anchor, &surfaces) else {
             let surface = anchor.surface;
-            commands.entity(entity).try_remove::<SurfaceAnchor>();
-            commands.trigger(AnchorLost { entity, surface });
+            // Unless it goes at the same time.
+            commands
+                .entity(entity)
+                .queue_silenced(move |mut entity: EntityWorldMut<'_>| {
+                    entity.remove::<SurfaceAnchor>();
+                    entity.trigger(|entity| AnchorLost { entity, surface });
+                });
             continue;
         };
         let Some((world, frame)) = placed else {
@@ -100,14 +119,16 @@ fn follow(
             None => world,
             Some(child_of) => parent(child_of.parent(), &transforms).inverse() * world,
         };
-        let (_, rotation, translation) = local.to_scale_rotation_translation();
+        let Some((rotation, translation)) = turned_and_moved(&local) else {
+            continue;
+        };
         if let Ok((mut transform, _)) = transforms.get_mut(entity) {
-            let moved = Transform {
-                translation: translation.as_vec3(),
-                rotation: rotation.as_quat(),
-                scale: transform.scale,
-            };
-            transform.set_if_neq(moved);
+            let scale = transform.scale;
+            transform.set_if_neq(Transform {
+                translation,
+                rotation,
+                scale,
+            });
         }
     }
 }
@@ -119,9 +140,7 @@ fn place(
     surfaces: &Query<&PosedSurface>,
 ) -> Option<Option<(DAffine3, Quat)>> {
     let surface = surfaces.get(anchor.surface).ok()?;
-    if !surface.is_enabled(anchor.anchor.triangle) {
-        return None;
-    }
+    surface.mesh().part_of(anchor.anchor.triangle)?;
     let Some(drawn) = surface.as_drawn() else {
         return Some(None);
     };
@@ -133,6 +152,36 @@ fn place(
     let position = world_from_model.transform_point_f32(motion.position);
     let world = DAffine3::from_rotation_translation(rotation, position);
     Some(Some((world, motion.frame)))
+}
+
+/// The rotation and translation of a map that may be sheared, as under a parent that is scaled unevenly: +Y is kept,
+/// where arrows point. `None` if there is none.
+fn turned_and_moved(map: &DAffine3) -> Option<(Quat, Vec3)> {
+    let y = map.matrix3.y_axis.try_normalize()?;
+    let z = map.matrix3.x_axis.cross(y).try_normalize()?;
+    let axes = DMat3::from_cols(y.cross(z), y, z);
+    let rotation = DQuat::from_mat3(&axes).normalize().as_quat();
+    let translation = map.translation.as_vec3();
+    (rotation.is_finite() && translation.is_finite()).then_some((rotation, translation))
+}
+
+/// How many entities stand above.
+fn depth(
+    mut next: Option<Entity>,
+    transforms: &Query<(&mut Transform, Option<&ChildOf>)>,
+) -> usize {
+    let mut depth = 0;
+    while let Some(entity) = next
+        && depth < MAX_DEPTH
+    {
+        depth += 1;
+        let child_of = transforms
+            .get(entity)
+            .ok()
+            .and_then(|(_, child_of)| child_of);
+        next = child_of.map(ChildOf::parent);
+    }
+    depth
 }
 
 /// Where a parent is in the world, from the transforms of this frame.
