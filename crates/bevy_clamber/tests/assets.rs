@@ -336,6 +336,7 @@ fn strips_wind_as_lists_do() {
 #[test]
 fn broken_meshes_are_told_apart() {
     type Break = fn(&mut Mesh);
+    type Wanted = fn(&ColliderError) -> bool;
     fn values(mesh: &mut Mesh, change: impl Fn(&mut Vec<[f32; 4]>)) {
         let weights = mesh.attribute_mut(Mesh::ATTRIBUTE_JOINT_WEIGHT).unwrap();
         let VertexAttributeValues::Float32x4(weights) = weights else {
@@ -343,7 +344,7 @@ fn broken_meshes_are_told_apart() {
         };
         change(weights);
     }
-    let cases: [(Break, fn(&ColliderError) -> bool); 9] = [
+    let cases: [(Break, Wanted); 9] = [
         (
             |mesh| mesh.insert_indices(Indices::U32(vec![0, 1, 900])),
             |e| matches!(e, ColliderError::Mesh(MeshError::VertexOutOfRange { .. })),

@@ -446,9 +446,7 @@ fn what_is_not_finite_finds_nothing() {
         assert!(s.closest_point(o, inf, &all()).is_some());
         for bad in [nan, inf, -inf] {
             let p = Vec3::new(0.0, bad, 0.0);
-            let skewed = Ray3d::new(o, Dir3::new_unchecked(Vec3::new(bad, 0.0, 1.0)));
             assert_eq!(ray(p, 9.0), None);
-            assert_eq!(s.cast_ray(skewed, 9.0, &all()), None);
             assert!(!s.intersects_ray(Ray3d::new(p, Dir3::Y), 9.0, &all()));
             assert!(
                 s.cast_ray_all(Ray3d::new(p, Dir3::Y), 9.0, &all())
