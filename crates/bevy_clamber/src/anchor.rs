@@ -5,7 +5,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::rig;
-use clamber_surface::surface::Anchor;
+use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DAffine3, DMat3, DQuat};
 
 use crate::{ClamberSystems, PosedSurface};
@@ -36,7 +36,7 @@ pub struct SurfaceAnchor {
 
 impl SurfaceAnchor {
     /// At a point of a surface as it is posed now, turned in the world as given.
-    pub fn new(entity: Entity, surface: &PosedSurface, anchor: Anchor, rotation: Quat) -> Self {
+    pub fn new(entity: Entity, surface: &SkinnedSurface, anchor: Anchor, rotation: Quat) -> Self {
         let skin = surface.world_from_model().rotation * anchor.frame.as_dquat();
         Self {
             surface: entity,
@@ -45,6 +45,19 @@ impl SurfaceAnchor {
                 .normalize()
                 .as_quat(),
         }
+    }
+
+    /// Where the entity belongs on a pose of the surface, in world space, and how the skin there is turned in model
+    /// space; `None` if the point is gone.
+    pub(crate) fn place_on(&self, surface: &SkinnedSurface) -> Option<(DAffine3, Quat)> {
+        // The motion is not asked for: any tick will do.
+        let motion = surface.motion(&self.anchor, 1.0).ok()?;
+        let world_from_model = surface.world_from_model();
+        let skin = world_from_model.rotation * motion.frame.as_dquat();
+        let rotation: DQuat = (skin * self.rotation.as_dquat()).normalize();
+        let position = world_from_model.transform_point_f32(motion.position);
+        let world = DAffine3::from_rotation_translation(rotation, position);
+        Some((world, motion.frame))
     }
 }
 
@@ -144,14 +157,7 @@ fn place(
     let Some(drawn) = surface.as_drawn() else {
         return Some(None);
     };
-    // The motion is not asked for: any tick will do.
-    let motion = drawn.motion(&anchor.anchor, 1.0).ok()?;
-    let world_from_model = drawn.world_from_model();
-    let skin = world_from_model.rotation * motion.frame.as_dquat();
-    let rotation: DQuat = (skin * anchor.rotation.as_dquat()).normalize();
-    let position = world_from_model.transform_point_f32(motion.position);
-    let world = DAffine3::from_rotation_translation(rotation, position);
-    Some(Some((world, motion.frame)))
+    anchor.place_on(drawn).map(Some)
 }
 
 /// The rotation and translation of a map that may be sheared, as under a parent that is scaled unevenly: +Y is kept,

@@ -4,7 +4,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
-use clamber_surface::surface::{Motion, SurfaceHit, SweepHit, TOLERANCE};
+use clamber_surface::surface::{Motion, SkinnedSurface, SurfaceHit, SweepHit, TOLERANCE};
 
 use crate::{PosedSurface, SurfaceAnchor};
 
@@ -337,7 +337,7 @@ fn by_distance(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
     by_distance.then_with(|| a.entity.cmp(&b.entity))
 }
 
-fn world_hit(entity: Entity, surface: &PosedSurface, hit: &SurfaceHit) -> WorldHit {
+pub(crate) fn world_hit(entity: Entity, surface: &SkinnedSurface, hit: &SurfaceHit) -> WorldHit {
     let world_from_model = surface.world_from_model();
     WorldHit {
         entity,
@@ -374,7 +374,7 @@ fn direction(world_from_model: &Similarity, v: Vec3) -> Vec3 {
     (world_from_model.rotation * v.as_dvec3()).as_vec3()
 }
 
-fn local_point(surface: &PosedSurface, point: Vec3) -> Vec3 {
+fn local_point(surface: &SkinnedSurface, point: Vec3) -> Vec3 {
     surface
         .world_from_model()
         .inverse_transform_point_f32(point.as_dvec3())
@@ -387,11 +387,15 @@ fn local_vector(surface: &PosedSurface, vector: Vec3) -> Vec3 {
         .as_vec3()
 }
 
-fn local_length(surface: &PosedSurface, length: f32) -> f32 {
+fn local_length(surface: &SkinnedSurface, length: f32) -> f32 {
     (f64::from(length) / surface.world_from_model().scale) as f32
 }
 
-fn local_ray(surface: &PosedSurface, ray: Ray3d, max_distance: f32) -> Option<(Ray, f32)> {
+pub(crate) fn local_ray(
+    surface: &SkinnedSurface,
+    ray: Ray3d,
+    max_distance: f32,
+) -> Option<(Ray, f32)> {
     let along = surface
         .world_from_model()
         .inverse_transform_vector(ray.direction.as_dvec3())

@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use bevy_app::{App, TaskPoolPlugin};
+use bevy_app::{App, Plugins, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, Assets, Handle, RenderAssetUsages};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
@@ -23,7 +23,7 @@ pub(crate) fn app(rate: f64) -> App {
     app_with(rate, ClamberPlugins::default())
 }
 
-pub(crate) fn app_with(rate: f64, plugins: ClamberPlugins) -> App {
+pub(crate) fn app_with<Marker>(rate: f64, plugins: impl Plugins<Marker>) -> App {
     let mut app = App::new();
     app.add_plugins((
         TaskPoolPlugin::default(),
