@@ -2,6 +2,8 @@
 
 mod anchor;
 mod collider;
+#[cfg(feature = "picking")]
+mod picking;
 mod plugins;
 pub mod prelude;
 mod query;
@@ -9,6 +11,8 @@ mod surface;
 
 pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider};
+#[cfg(feature = "picking")]
+pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};

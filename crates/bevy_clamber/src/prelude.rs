@@ -4,4 +4,6 @@ pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
     PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldHit,
 };
+#[cfg(feature = "picking")]
+pub use crate::{SurfacePick, SurfacePickingPlugin};
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};

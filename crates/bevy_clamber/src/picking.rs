@@ -1,0 +1,168 @@
+//! Pointers on skin: a backend of `bevy_picking`.
+
+use bevy_app::{App, Plugin, PreUpdate};
+use bevy_camera::Camera;
+use bevy_camera::visibility::{RenderLayers, ViewVisibility};
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_picking::backend::ray::RayMap;
+use bevy_picking::backend::{HitData, PointerHits};
+use bevy_picking::{Pickable, PickingSystems};
+use bevy_reflect::prelude::*;
+use bevy_shape::Ray3d;
+use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
+
+use crate::query::{local_ray, world_hit};
+use crate::{ClamberSystems, PosedSurface, SurfaceAnchor, WorldHit};
+
+/// Where a pointer meets skin: the extra data of its `HitData`, whose position and outward unit normal are in world
+/// space.
+///
+/// It names a point of the skin, not of space, so it holds as well in the frames after, as for a click, which Bevy
+/// tells where the pointer was a frame ago.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(opaque)]
+#[reflect(Clone, Debug, PartialEq)]
+pub struct SurfacePick {
+    /// The collider's triangle.
+    pub triangle: TriangleId,
+    /// Its index among the mesh asset's triangles, as they stand in its list or strip; `None` for a triangle that an
+    /// edit added.
+    pub source_triangle: Option<u32>,
+    /// Weights of its corners: not negative, sum 1.
+    pub barycentric: [f32; 3],
+    /// The part of the collider: the triangles that one joint moves most.
+    pub part: PartId,
+    /// What it is made of.
+    pub tag: SurfaceTag,
+    /// Sticks an entity there, its +Y along the skin's outward normal.
+    pub anchor: SurfaceAnchor,
+}
+
+/// Pointers hit skin where it is drawn, not where the mesh was modelled; beside
+/// [`ClamberPlugins`](crate::ClamberPlugins) and Bevy's `DefaultPickingPlugins`.
+///
+/// In `PreUpdate`, in `PickingSystems::Backend`, after [`ClamberSystems::Build`], it casts each ray of Bevy's
+/// `RayMap` at all surfaces in the pose that the last frame drew, which is what the user has pointed at, and writes
+/// `PointerHits` with [`SurfacePick`] as extra data. The hit entity is that with the
+/// [`PosedSurface`], from either side of its skin; the depth is the distance from the ray's
+/// origin, on the camera's near plane.
+///
+/// As Bevy's backend for meshes does, it leaves out what no view shows (`ViewVisibility`), what shares no
+/// `RenderLayers` with the camera, and what is `Pickable::IGNORE`d, and it gives the hits the camera's order. What
+/// lies behind a surface that blocks lower ones, as all do without a `Pickable`, is not told.
+///
+/// ```
+/// # use bevy_app::App;
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_picking::events::PointerClick;
+/// # use bevy_clamber::SurfacePick;
+/// /// Sticks something to where the user has clicked, whatever the skin does.
+/// fn stick(click: On<PointerClick>, mut commands: Commands) {
+///     let Some(pick) = click.hit.extra_as::<SurfacePick>() else {
+///         return;
+///     };
+///     // The click goes on to the parents of what was clicked.
+///     if pick.anchor.surface == click.entity {
+///         commands.spawn(pick.anchor);
+///     }
+/// }
+/// # let mut app = App::new();
+/// app.add_observer(stick);
+/// ```
+///
+/// Beside Bevy's `MeshPickingPlugin`, which picks skinned meshes in their bind pose, give the skinned ones
+/// `SimplifiedMesh(Handle::default())`: it finds no triangles of them then.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SurfacePickingPlugin;
+
+impl Plugin for SurfacePickingPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RayMap>()
+            .add_message::<PointerHits>()
+            .register_type::<SurfacePick>()
+            .add_systems(
+                PreUpdate,
+                pick.in_set(PickingSystems::Backend)
+                    .after(ClamberSystems::Build),
+            );
+    }
+}
+
+/// What a pointer may hit.
+type Target = (
+    Entity,
+    &'static mut PosedSurface,
+    Option<&'static Pickable>,
+    Option<&'static RenderLayers>,
+    Option<&'static ViewVisibility>,
+);
+
+fn pick(
+    rays: Res<RayMap>,
+    cameras: Query<(&Camera, Option<&RenderLayers>)>,
+    mut targets: Query<Target>,
+    mut hits: MessageWriter<PointerHits>,
+) {
+    for (id, ray) in rays.iter() {
+        let Ok((camera, seen_layers)) = cameras.get(id.camera) else {
+            continue;
+        };
+        let seen_layers = seen_layers.unwrap_or_default();
+        let mut picks = Vec::new();
+        let mut nearest_blocking = f32::INFINITY;
+        for (entity, mut surface, pickable, layers, visibility) in &mut targets {
+            let surface = surface.bypass_change_detection();
+            let ignored = pickable == Some(&Pickable::IGNORE);
+            let hidden = visibility.is_some_and(|visibility| !visibility.get());
+            if ignored || hidden || !seen_layers.intersects(layers.unwrap_or_default()) {
+                continue;
+            }
+            let Some((hit, pick)) = cast(entity, surface, *ray, nearest_blocking) else {
+                continue;
+            };
+            if pickable.is_none_or(|pickable| pickable.should_block_lower) {
+                nearest_blocking = hit.distance;
+            }
+            let (point, normal) = (Some(hit.point), Some(hit.normal));
+            let data = HitData::new_with_extra(id.camera, hit.distance, point, normal, pick);
+            picks.push((entity, data));
+        }
+        picks.retain(|(_, hit)| hit.depth <= nearest_blocking);
+        if !picks.is_empty() {
+            hits.write(PointerHits::new(id.pointer, picks, camera.order as f32));
+        }
+    }
+}
+
+/// The first point of skin along a ray, as the last frame drew it.
+fn cast(
+    entity: Entity,
+    surface: &mut PosedSurface,
+    ray: Ray3d,
+    max_distance: f32,
+) -> Option<(WorldHit, SurfacePick)> {
+    surface.pose_as_drawn()?;
+    let surface = &*surface;
+    let drawn = surface.as_drawn()?;
+    let (ray, max_distance) = local_ray(drawn, ray, max_distance)?;
+    let mut hit = drawn.cast_ray(&ray, max_distance).ok()??;
+    if !surface.is_enabled(hit.triangle) {
+        // What is drawn knows of no hidden triangles.
+        let mut all = Vec::new();
+        drawn.cast_ray_all(&ray, max_distance, &mut all).ok()?;
+        hit = *all.iter().find(|hit| surface.is_enabled(hit.triangle))?;
+    }
+    let world = world_hit(entity, drawn, &hit);
+    let normal = world.normal.try_normalize().unwrap_or(Vec3::Y);
+    let outward = Quat::from_rotation_arc(Vec3::Y, normal);
+    let pick = SurfacePick {
+        triangle: hit.triangle,
+        source_triangle: surface.source_triangle(hit.triangle),
+        barycentric: hit.barycentric,
+        part: hit.part,
+        tag: hit.tag,
+        anchor: SurfaceAnchor::new(entity, drawn, drawn.anchor_at(&hit), outward),
+    };
+    Some((world, pick))
+}
