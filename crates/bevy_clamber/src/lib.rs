@@ -2,6 +2,8 @@
 
 mod anchor;
 mod collider;
+#[cfg(feature = "gizmos")]
+mod gizmos;
 #[cfg(feature = "picking")]
 mod picking;
 mod plugins;
@@ -11,6 +13,8 @@ mod surface;
 
 pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider};
+#[cfg(feature = "gizmos")]
+pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};

@@ -4,6 +4,8 @@ pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
     PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldHit,
 };
+#[cfg(feature = "gizmos")]
+pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use crate::{SurfacePick, SurfacePickingPlugin};
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};

@@ -1,0 +1,209 @@
+use std::collections::BTreeMap;
+
+use bevy_color::Color;
+use bevy_ecs::prelude::*;
+use bevy_gizmos::gizmos::Gizmos;
+use bevy_gizmos::primitives::dim3::GizmoPrimitive3d;
+use bevy_math::{Isometry3d, Quat, Vec3};
+use bevy_shape::Capsule3d;
+use bevy_time::{Fixed, Time};
+use bevy_transform::components::Transform;
+use clamber_surface::geometry::{BoundingVolume, Similarity};
+use clamber_surface::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
+use clamber_surface::surface::{JointMaps, SkinnedSurface};
+
+use super::SurfaceGizmos;
+use super::part_bounds::PartBoundsCache;
+use super::touched::TouchedClusters;
+use crate::{PosedSurface, SurfaceAnchor};
+
+// After Okabe and Ito: told apart by the colour-blind too.
+const PART: Color = Color::srgba(0.34, 0.71, 0.91, 0.5);
+const CLUSTER: Color = Color::srgb(0.9, 0.62, 0.0);
+const CONTACT: Color = Color::srgba(0.0, 0.62, 0.45, 0.6);
+const VELOCITY: Color = Color::srgb(0.94, 0.89, 0.26);
+
+/// Seconds of motion that the arrow of a velocity is long: a walking creature's can be seen, a fast one's do not
+/// leave the picture.
+const VELOCITY_ARROW: f64 = 0.1;
+
+/// Length of an anchor's axes, of the creature's radius: seen on all of it, and smaller than its limbs.
+const ANCHOR_AXES: f64 = 0.03;
+
+/// Of a capsule's caps and sides; Bevy's default is 32, too dense around small parts.
+const CAPSULE_LINES: u32 = 12;
+
+/// Parts, clusters and contacts.
+pub(super) fn draw_surfaces(
+    mut surfaces: Query<(Entity, &mut PosedSurface)>,
+    touched: Res<TouchedClusters>,
+    mut bounds: Local<PartBoundsCache>,
+    mut gizmos: Gizmos<SurfaceGizmos>,
+) {
+    let show = *gizmos.config_ext;
+    if gizmos.config.enabled {
+        for (entity, mut surface) in &mut surfaces {
+            let surface = surface.bypass_change_detection();
+            if show.parts {
+                draw_parts(surface, &mut bounds, &mut gizmos);
+            }
+            if !(show.clusters || show.contacts) || surface.pose_as_drawn().is_none() {
+                continue;
+            }
+            let surface = &*surface;
+            let Some(drawn) = surface.as_drawn() else {
+                continue;
+            };
+            let clusters = surface.clusters().zip(touched.of(entity, surface));
+            for (cluster, _) in clusters.filter(|(_, touched)| *touched) {
+                if show.contacts {
+                    draw_triangles(drawn, cluster.triangles, &mut gizmos);
+                }
+                if show.clusters {
+                    draw_border(drawn, cluster.triangles, &mut gizmos);
+                }
+            }
+        }
+    }
+    bounds.forget_unwanted();
+}
+
+/// Anchors and velocities.
+pub(super) fn draw_anchors(
+    anchors: Query<&SurfaceAnchor>,
+    mut surfaces: Query<&mut PosedSurface>,
+    tick: Res<Time<Fixed>>,
+    mut gizmos: Gizmos<SurfaceGizmos>,
+) {
+    let show = *gizmos.config_ext;
+    if !gizmos.config.enabled || !(show.anchors || show.velocities) {
+        return;
+    }
+    for anchor in &anchors {
+        let Ok(mut surface) = surfaces.get_mut(anchor.surface) else {
+            continue;
+        };
+        let surface = surface.bypass_change_detection();
+        let Some(drawn) = surface.pose_as_drawn() else {
+            continue;
+        };
+        let Some((world_from_anchor, _)) = anchor.place_on(drawn) else {
+            continue;
+        };
+        let size = f64::from(drawn.mesh().radius()) * drawn.world_from_model().scale;
+        let (_, rotation, position) = world_from_anchor.to_scale_rotation_translation();
+        let start = position.as_vec3();
+        if show.anchors {
+            let axes = Transform::from_translation(start).with_rotation(rotation.as_quat());
+            gizmos.axes(axes, (size * ANCHOR_AXES) as f32);
+        }
+        let motion = surface.motion(&anchor.anchor, tick.timestep().as_secs_f64());
+        if let (true, Ok(motion)) = (show.velocities, motion) {
+            let velocity = motion.velocity.as_dvec3() * VELOCITY_ARROW;
+            let arrow = surface.world_from_model().transform_vector(velocity);
+            let arrow = arrow.as_vec3();
+            // The head of an arrow of no length has no direction.
+            if arrow.try_normalize().is_some() {
+                gizmos.arrow(start, start + arrow, VELOCITY);
+            }
+        }
+    }
+}
+
+fn draw_parts(
+    surface: &mut PosedSurface,
+    bounds: &mut PartBoundsCache,
+    gizmos: &mut Gizmos<SurfaceGizmos>,
+) {
+    let Some(drawn) = surface.pose_as_drawn() else {
+        return;
+    };
+    let (mesh, world_from_model) = (drawn.mesh().clone(), *drawn.world_from_model());
+    let palette = surface.palette_as_drawn();
+    let Some(Ok(maps)) = palette.map(|palette| JointMaps::new(&mesh, palette)) else {
+        return;
+    };
+    let bounds = bounds.get(&mesh);
+    for part in (0..bounds.part_count() as u32).map(PartId) {
+        if let Some(volume) = bounds.volume(part, &maps) {
+            draw_volume(volume, &world_from_model, gizmos);
+        }
+    }
+}
+
+fn draw_volume(
+    volume: BoundingVolume,
+    world_from_model: &Similarity,
+    gizmos: &mut Gizmos<SurfaceGizmos>,
+) {
+    let point = |point: Vec3| world_from_model.transform_point_f32(point).as_vec3();
+    let length = |length: f32| (f64::from(length) * world_from_model.scale) as f32;
+    match volume {
+        BoundingVolume::Sphere(sphere) => {
+            let (center, radius) = (point(sphere.center), length(sphere.radius));
+            gizmos.sphere(Isometry3d::from_translation(center), radius, PART);
+        }
+        BoundingVolume::Capsule(capsule) => {
+            let ([a, b], radius) = ([capsule.a, capsule.b].map(point), length(capsule.radius));
+            let up = (b - a).try_normalize().unwrap_or(Vec3::Y);
+            let along = Quat::from_rotation_arc(Vec3::Y, up);
+            gizmos
+                .primitive_3d(
+                    &Capsule3d::new(radius, (b - a).length()),
+                    Isometry3d::new((a + b) / 2.0, along),
+                    PART,
+                )
+                .resolution(CAPSULE_LINES);
+        }
+    }
+}
+
+fn draw_triangles(
+    drawn: &SkinnedSurface,
+    triangles: &[TriangleId],
+    gizmos: &mut Gizmos<SurfaceGizmos>,
+) {
+    for triangle in triangles {
+        let corners = corners(drawn.mesh(), *triangle);
+        if let Some([a, b, c]) = corners.and_then(|corners| positions(drawn, corners)) {
+            gizmos.linestrip([a, b, c, a], CONTACT);
+        }
+    }
+}
+
+/// The edges that one triangle alone has, of those given.
+fn draw_border(
+    drawn: &SkinnedSurface,
+    triangles: &[TriangleId],
+    gizmos: &mut Gizmos<SurfaceGizmos>,
+) {
+    let mut counts: BTreeMap<[VertexId; 2], u32> = BTreeMap::new();
+    for triangle in triangles {
+        let Some([a, b, c]) = corners(drawn.mesh(), *triangle) else {
+            continue;
+        };
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *counts.entry([from.min(to), from.max(to)]).or_default() += 1;
+        }
+    }
+    for (edge, _) in counts.into_iter().filter(|(_, count)| *count == 1) {
+        if let Some([from, to]) = positions(drawn, edge) {
+            gizmos.line(from, to, CLUSTER);
+        }
+    }
+}
+
+fn corners(mesh: &ColliderMesh, triangle: TriangleId) -> Option<[VertexId; 3]> {
+    mesh.triangles().get(triangle.index()).copied()
+}
+
+/// Of vertices, in the world.
+fn positions<const N: usize>(drawn: &SkinnedSurface, vertices: [VertexId; N]) -> Option<[Vec3; N]> {
+    let mut positions = [Vec3::ZERO; N];
+    for (position, vertex) in positions.iter_mut().zip(vertices) {
+        let in_model = drawn.position(vertex)?;
+        let in_world = drawn.world_from_model().transform_point_f32(in_model);
+        *position = in_world.as_vec3();
+    }
+    Some(positions)
+}
