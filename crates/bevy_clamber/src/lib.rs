@@ -2,6 +2,8 @@
 
 mod anchor;
 mod collider;
+#[cfg(feature = "diagnostics")]
+mod diagnostics;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 #[cfg(feature = "picking")]
@@ -13,6 +15,8 @@ mod surface;
 
 pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider};
+#[cfg(feature = "diagnostics")]
+pub use diagnostics::SurfaceDiagnosticsPlugin;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]

@@ -1,5 +1,7 @@
 //! What most apps need: `use bevy_clamber::prelude::*;`.
 
+#[cfg(feature = "diagnostics")]
+pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
     PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldHit,

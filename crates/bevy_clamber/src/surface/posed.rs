@@ -57,6 +57,8 @@ pub struct PosedSurface {
     is_placed: bool,
     /// Nothing moved in the last tick.
     still: bool,
+    /// The last tick posed the surface; else it had no need to.
+    posed_anew: bool,
     /// The next pose is no motion.
     restart: bool,
     /// The next frame that is drawn is no motion.
@@ -100,6 +102,7 @@ impl PosedSurface {
             palette: Palette::default(),
             is_placed: false,
             still: false,
+            posed_anew: false,
             restart: true,
             restart_drawn: false,
             edited: false,
@@ -144,6 +147,15 @@ impl PosedSurface {
             .copied()
     }
 
+    /// The last tick posed the surface, and so forgot what queries had touched.
+    #[cfg_attr(
+        not(feature = "diagnostics"),
+        expect(dead_code, reason = "only diagnostics ask")
+    )]
+    pub(crate) fn is_posed_anew(&self) -> bool {
+        self.posed_anew
+    }
+
     pub(crate) fn set_timing(&mut self, timing: SkinnedCollider) {
         self.timing = timing;
     }
@@ -182,6 +194,7 @@ impl PosedSurface {
             Ok(moved) => *moved,
             Err(_) => self.rest(),
         };
+        self.posed_anew = moved;
         self.tell(posed.err()) || moved
     }
 
