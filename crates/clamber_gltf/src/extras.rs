@@ -9,7 +9,7 @@ use gltf::{Material, Node};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use crate::{GltfErrorKind, LoadOptions};
+use crate::{GltfError, GltfErrorKind, LoadOptions};
 
 /// Extras of any tool's; only the key that is ours is read.
 #[derive(Deserialize)]
@@ -27,6 +27,20 @@ struct MaterialExtras {
     surface: Surface,
     #[serde(default)]
     ledge: Flag,
+}
+
+impl MaterialExtras {
+    fn tag(&self) -> SurfaceTag {
+        let kind = match self.surface {
+            Surface::Skin => SurfaceKind::Skin,
+            Surface::Fur => SurfaceKind::Fur,
+            Surface::Stone => SurfaceKind::Stone,
+        };
+        SurfaceTag {
+            kind,
+            ledge: self.ledge.0,
+        }
+    }
 }
 
 #[derive(Default, Deserialize)]
@@ -103,15 +117,30 @@ pub(crate) fn tag_of(
         format!("extras of material {name:?}")
     };
     let extras: MaterialExtras = ours(material.extras(), object)?;
-    let kind = match extras.surface {
-        Surface::Skin => SurfaceKind::Skin,
-        Surface::Fur => SurfaceKind::Fur,
-        Surface::Stone => SurfaceKind::Stone,
-    };
-    Ok(SurfaceTag {
-        kind,
-        ledge: extras.ledge.0,
-    })
+    Ok(extras.tag())
+}
+
+/// The tag that a material's extras give, for those who read files by other means: `extras` is their JSON. `None`
+/// without the key `clamber`.
+///
+/// ```
+/// let tag = clamber_gltf::tag_in_extras(r#"{"clamber": {"surface": "stone", "ledge": true}}"#)?;
+/// assert!(tag.is_some_and(|tag| tag.ledge));
+/// assert_eq!(clamber_gltf::tag_in_extras(r#"{"price": 3}"#)?, None);
+/// # Ok::<(), clamber_gltf::GltfError>(())
+/// ```
+///
+/// # Errors
+/// [`GltfErrorKind::Invalid`] for text that is no JSON, and for a word under that key which means nothing.
+pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
+    let ours: Result<Option<MaterialExtras>, _> = find(extras);
+    match ours {
+        Ok(ours) => Ok(ours.map(|extras| extras.tag())),
+        Err(reason) => Err(GltfError {
+            path: None,
+            kind: GltfErrorKind::invalid("extras of a material", reason),
+        }),
+    }
 }
 
 /// What each node says of itself; nothing if it says nothing. A mesh's own extras say its role where
@@ -170,12 +199,17 @@ fn ours<T: DeserializeOwned + Default>(
 }
 
 fn parse<T: DeserializeOwned + Default>(extras: &str) -> Result<T, serde_json::Error> {
+    Ok(find(extras)?.unwrap_or_default())
+}
+
+/// What stands under our key, if that is there.
+fn find<T: DeserializeOwned>(extras: &str) -> Result<Option<T>, serde_json::Error> {
     // Extras may be any JSON; only an object can hold our key.
     if !extras.trim_start().starts_with('{') {
-        return Ok(T::default());
+        return Ok(None);
     }
     let extras: Extras<T> = serde_json::from_str(extras)?;
-    Ok(extras.clamber.unwrap_or_default())
+    Ok(extras.clamber)
 }
 
 #[cfg(test)]
@@ -230,5 +264,23 @@ mod tests {
             "{role}"
         );
         assert!(parse::<NodeExtras>(r#"{"clamber": {"weak_point": {}}}"#).is_err());
+    }
+
+    #[test]
+    fn a_tag_is_told_from_none() {
+        let fur = tag_in_extras(r#"{"clamber": {"surface": "fur"}}"#).unwrap();
+        let expected = SurfaceTag {
+            kind: SurfaceKind::Fur,
+            ledge: false,
+        };
+        assert_eq!(fur, Some(expected));
+        let said = tag_in_extras(r#"{"clamber": {}}"#).unwrap();
+        assert_eq!(said, Some(SurfaceTag::default()));
+        for foreign in ["", "{}", "7", r#"{"surface": "fur"}"#] {
+            assert_eq!(tag_in_extras(foreign).unwrap(), None, "{foreign}");
+        }
+        let error = tag_in_extras(r#"{"clamber": {"surface": "furr"}}"#).unwrap_err();
+        assert!(error.to_string().contains("`fur`"), "{error}");
+        assert!(tag_in_extras("{").is_err());
     }
 }

@@ -20,6 +20,7 @@ mod visual;
 mod weak_point;
 
 pub use error::{GltfError, GltfErrorKind};
+pub use extras::tag_in_extras;
 pub use load::{
     ImportReport, LoadOptions, Rig, TagOfMaterial, load, load_all, load_slice, load_with,
 };
