@@ -14,13 +14,13 @@ mod query;
 mod surface;
 
 pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
-pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider};
 #[cfg(feature = "diagnostics")]
 pub use diagnostics::SurfaceDiagnosticsPlugin;
 #[cfg(feature = "gizmos")]
 pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
+pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};

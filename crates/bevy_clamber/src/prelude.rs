@@ -4,7 +4,8 @@
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
-    PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldHit,
+    PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, SurfaceTagger,
+    WorldHit,
 };
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};

@@ -2,12 +2,14 @@
 
 mod build;
 mod error;
+#[cfg(feature = "gltf")]
+mod gltf_tag;
 mod meshes;
 mod raw;
+mod tag;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
-use clamber_surface::mesh::SurfaceTag;
 use std::sync::Arc;
 
 use crate::PoseTiming;
@@ -15,6 +17,8 @@ use crate::PoseTiming;
 pub(crate) use build::{build_colliders, forget_changed_assets};
 pub use error::ColliderError;
 pub(crate) use meshes::{BuiltCollider, ColliderMeshes};
+pub(crate) use tag::tag_colliders;
+pub use tag::{ColliderTag, SurfaceTagger};
 
 /// Makes a surface of the skinned mesh on this entity: its `Mesh3d` and `SkinnedMesh`.
 ///
@@ -33,19 +37,13 @@ pub(crate) use meshes::{BuiltCollider, ColliderMeshes};
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
-#[require(ColliderStatus, ColliderTag)]
+#[require(ColliderStatus)]
 pub struct SkinnedCollider {
     /// When the joints are animated. Default: once a frame, as by Bevy's `AnimationPlugin`.
     pub joints: PoseTiming,
     /// When what stands above the joints is moved, as the root of a scene. Default: once a frame.
     pub root: PoseTiming,
 }
-
-/// What the triangles of a mesh are made of. Changing it builds the collider anew.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(opaque)]
-#[reflect(Component, Default, Clone, Debug, PartialEq)]
-pub struct ColliderTag(pub SurfaceTag);
 
 /// How far a [`SkinnedCollider`] is.
 #[derive(Component, Clone, Debug, Default, Reflect)]

@@ -6,7 +6,7 @@ use bevy_transform::TransformSystems;
 use super::clock::{tell_frame, tell_tick};
 use super::pose::{pose_surfaces, sample_poses};
 use super::{PoseClock, PoseTiming, PosedSurface};
-use crate::collider::{ColliderMeshes, build_colliders, forget_changed_assets};
+use crate::collider::{ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders};
 use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider};
 
 /// Builds colliders and poses surfaces; part of [`ClamberPlugins`](crate::ClamberPlugins).
@@ -50,7 +50,7 @@ impl Plugin for SurfacePlugin {
             )
             .add_systems(
                 PreUpdate,
-                (forget_changed_assets, build_colliders)
+                (forget_changed_assets, tag_colliders, build_colliders)
                     .chain()
                     .in_set(ClamberSystems::Build),
             )

@@ -1,0 +1,73 @@
+//! What a glTF file that Bevy has loaded says of its surfaces.
+
+use bevy_ecs::prelude::*;
+use bevy_gltf::GltfMaterialExtras;
+use clamber_surface::mesh::SurfaceTag;
+
+/// The tag that the extras of a mesh's material give, by the keys and words that `clamber_gltf` reads. What is
+/// misspelt is a line in the log, and no tag.
+pub(super) fn tag_of(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
+    let extras = mesh.get::<GltfMaterialExtras>()?;
+    clamber_gltf::tag_in_extras(&extras.value).unwrap_or_else(|error| {
+        tracing::error!("no tag for {}: {error}", mesh.id());
+        None
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collider::{ColliderTag, SkinnedCollider, SurfaceTagger, tag_colliders};
+    use bevy_ecs::system::RunSystemOnce;
+    use bevy_gltf::{GltfExtras, GltfMaterialName};
+    use bevy_mesh::Mesh3d;
+    use bevy_mesh::skinning::SkinnedMesh;
+    use clamber_surface::mesh::SurfaceKind;
+
+    const LEDGE: SurfaceTag = SurfaceTag {
+        kind: SurfaceKind::Stone,
+        ledge: true,
+    };
+
+    /// The tag that a mesh with these components is given.
+    fn tag(world: &mut World, components: impl Bundle) -> SurfaceTag {
+        let skinned = (Mesh3d::default(), SkinnedMesh::default());
+        let mesh = world.spawn((skinned, SkinnedCollider::default(), components));
+        let mesh = mesh.id();
+        world.run_system_once(tag_colliders).unwrap();
+        world.get::<ColliderTag>(mesh).unwrap().0
+    }
+
+    fn extras(value: &str) -> GltfMaterialExtras {
+        let value = value.to_owned();
+        GltfMaterialExtras { value }
+    }
+
+    #[test]
+    fn extras_of_a_material_tag_its_meshes() {
+        let mut world = World::new();
+        let ledge = r#"{"clamber": {"surface": "stone", "ledge": true}}"#;
+        assert_eq!(tag(&mut world, extras(ledge)), LEDGE);
+        // Of a node or a primitive they say nothing of the surface, as in `clamber_gltf`.
+        let value = ledge.to_owned();
+        let other = tag(&mut world, GltfExtras { value });
+        assert_eq!(other, SurfaceTag::default());
+        for text in ["{}", "7", "{", r#"{"clamber": {"surface": "stony"}}"#] {
+            let other = tag(&mut world, extras(text));
+            assert_eq!(other, SurfaceTag::default(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_function_of_the_materials_name_wins_over_extras() {
+        let mut world = World::new();
+        world.insert_resource(SurfaceTagger::new(|mesh| {
+            let name = mesh.get::<GltfMaterialName>()?;
+            (name.0 == "ledge").then_some(LEDGE)
+        }));
+        let fur = r#"{"clamber": {"surface": "fur"}}"#;
+        let named = |name: &str| (GltfMaterialName(name.to_owned()), extras(fur));
+        assert_eq!(tag(&mut world, named("ledge")), LEDGE);
+        assert_eq!(tag(&mut world, named("belly")).kind, SurfaceKind::Fur);
+    }
+}

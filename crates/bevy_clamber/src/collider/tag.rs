@@ -1,0 +1,64 @@
+//! What the triangles of a mesh are made of: said by a component, by a function, or by the file.
+
+use bevy_ecs::prelude::*;
+use bevy_mesh::Mesh3d;
+use bevy_mesh::skinning::SkinnedMesh;
+use bevy_reflect::prelude::*;
+use clamber_surface::mesh::SurfaceTag;
+
+use super::SkinnedCollider;
+
+/// What the triangles of a mesh are made of. Changing it builds the collider anew.
+///
+/// A [`SkinnedCollider`] without one is given one: what the [`SurfaceTagger`] says, else, with the feature `gltf`,
+/// what the extras of its glTF material say, else the default.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+pub struct ColliderTag(pub SurfaceTag);
+
+/// A function that tags meshes as they become colliders, by whatever is on their entity.
+///
+/// Asked once for each entity with a [`SkinnedCollider`] and no [`ColliderTag`], as soon as it has `Mesh3d` and
+/// `SkinnedMesh`. `None` leaves the answer to the file.
+///
+/// ```
+/// # use bevy_app::App;
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_clamber::prelude::*;
+/// # let mut app = App::new();
+/// // Of what `bevy_gltf` spawns, `GltfMaterialName` has the material's name alone.
+/// app.insert_resource(SurfaceTagger::new(|mesh| {
+///     let name = mesh.get::<Name>()?;
+///     let fur = SurfaceTag { kind: SurfaceKind::Fur, ledge: false };
+///     name.contains("fur").then_some(fur)
+/// }));
+/// ```
+#[derive(Resource)]
+pub struct SurfaceTagger(Box<dyn Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync>);
+
+impl SurfaceTagger {
+    /// By a function of a mesh's entity.
+    pub fn new(
+        tag_of: impl Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync + 'static,
+    ) -> Self {
+        Self(Box::new(tag_of))
+    }
+}
+
+type Untagged = (With<SkinnedCollider>, Without<ColliderTag>);
+
+/// Gives every collider a tag.
+pub(crate) fn tag_colliders(
+    untagged: Query<EntityRef, (Untagged, With<Mesh3d>, With<SkinnedMesh>)>,
+    tagger: Option<Res<SurfaceTagger>>,
+    mut commands: Commands,
+) {
+    for mesh in &untagged {
+        let said = tagger.as_ref().and_then(|tagger| (tagger.0)(mesh));
+        #[cfg(feature = "gltf")]
+        let said = said.or_else(|| super::gltf_tag::tag_of(mesh));
+        let tag = ColliderTag(said.unwrap_or_default());
+        commands.entity(mesh.id()).try_insert_if_new(tag);
+    }
+}

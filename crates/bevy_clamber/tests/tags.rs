@@ -1,0 +1,115 @@
+//! What the triangles of a mesh are made of: by component, by function, changed later.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+mod common;
+
+use bevy_app::App;
+use bevy_clamber::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::RunSystemOnce;
+use bevy_math::{Dir3, Vec3};
+use bevy_shape::Ray3d;
+use bevy_transform::components::Transform;
+use common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
+
+const FUR: SurfaceTag = SurfaceTag {
+    kind: SurfaceKind::Fur,
+    ledge: false,
+};
+const LEDGE: SurfaceTag = SurfaceTag {
+    kind: SurfaceKind::Stone,
+    ledge: true,
+};
+
+/// A limb with a name, without a collider.
+fn named(app: &mut App, name: &str, x: f32) -> Limb {
+    let (mesh, inverse_bindposes) = (add_mesh(app, limb_mesh()), add_bindposes(app));
+    let limb = spawn_limb(
+        app,
+        mesh,
+        inverse_bindposes,
+        Transform::from_xyz(x, 0.0, 0.0),
+    );
+    let mut mesh = app.world_mut().entity_mut(limb.mesh);
+    mesh.insert(Name::new(name.to_owned()));
+    limb
+}
+
+/// The tag that a ray along -Z finds there.
+fn tag_at(app: &mut App, x: f32) -> SurfaceTag {
+    let ray = Ray3d::new(Vec3::new(x + 0.03, 1.5, 9.0), Dir3::NEG_Z);
+    let ask = move |surfaces: SurfaceQuery| surfaces.cast_ray(ray, 20.0, &SurfaceFilter::default());
+    app.world_mut().run_system_once(ask).unwrap().unwrap().tag
+}
+
+fn by_name(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
+    mesh.get::<Name>()?.contains("fur").then_some(FUR)
+}
+
+#[test]
+fn a_function_tags_what_has_no_tag_of_its_own() {
+    let mut app = app(60.0);
+    app.insert_resource(SurfaceTagger::new(by_name));
+    let collider = SkinnedCollider::default();
+    let furry = named(&mut app, "furry", 0.0);
+    let bald = named(&mut app, "bald", 5.0);
+    let tagged = named(&mut app, "furry, but of stone", 10.0);
+    // In one command and in two.
+    let world = app.world_mut();
+    world
+        .entity_mut(tagged.mesh)
+        .insert((collider, ColliderTag(LEDGE)));
+    world.entity_mut(furry.mesh).insert(collider);
+    world.entity_mut(bald.mesh).insert(ColliderTag::default());
+    world.entity_mut(bald.mesh).insert(collider);
+    for limb in [furry, bald, tagged] {
+        wait(&mut app, limb.mesh);
+    }
+    assert_eq!(tag_at(&mut app, 0.0), FUR);
+    assert_eq!(tag_at(&mut app, 5.0), SurfaceTag::default());
+    assert_eq!(tag_at(&mut app, 10.0), LEDGE);
+}
+
+#[test]
+fn without_a_function_the_tag_is_the_default_until_it_is_changed() {
+    let mut app = app(60.0);
+    let limb = named(&mut app, "furry", 0.0);
+    app.world_mut()
+        .entity_mut(limb.mesh)
+        .insert(SkinnedCollider::default());
+    wait(&mut app, limb.mesh);
+    assert_eq!(tag_at(&mut app, 0.0), SurfaceTag::default());
+    app.world_mut()
+        .entity_mut(limb.mesh)
+        .insert(ColliderTag(FUR));
+    app.update();
+    wait(&mut app, limb.mesh);
+    assert_eq!(tag_at(&mut app, 0.0), FUR);
+}
+
+#[test]
+fn a_mesh_that_comes_after_its_collider_is_tagged_by_what_comes_with_it() {
+    let mut app = app(60.0);
+    app.insert_resource(SurfaceTagger::new(by_name));
+    let early = app.world_mut().spawn(SkinnedCollider::default()).id();
+    app.update();
+    assert!(app.world().get::<ColliderTag>(early).is_none());
+    let limb = named(&mut app, "furry", 0.0);
+    let world = app.world_mut();
+    let mesh = world
+        .entity(limb.mesh)
+        .get::<bevy_mesh::Mesh3d>()
+        .unwrap()
+        .clone();
+    let skin = world
+        .entity(limb.mesh)
+        .get::<bevy_mesh::skinning::SkinnedMesh>()
+        .unwrap()
+        .clone();
+    world
+        .entity_mut(early)
+        .insert((mesh, skin, Name::new("fur")));
+    wait(&mut app, early);
+    assert_eq!(tag_at(&mut app, 0.0), FUR);
+}
