@@ -13,7 +13,8 @@ use crate::run::cargo_output;
 pub(crate) const SELECTION: [&str; 3] = [
     "--workspace",
     "--features",
-    "clamber/parry,clamber/record,clamber/render",
+    "bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,bevy_clamber/picking,\
+        clamber/parry,clamber/record,clamber/render",
 ];
 
 /// The features that [`SELECTION`] turns on beside the default ones, as `package/feature`.

@@ -8,6 +8,8 @@ mod diagnostics;
 mod gizmos;
 #[cfg(feature = "picking")]
 mod picking;
+#[cfg(feature = "clamber_gltf")]
+mod creature;
 mod plugins;
 pub mod prelude;
 mod query;
@@ -21,8 +23,14 @@ pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
+#[cfg(feature = "clamber_gltf")]
+pub use creature::{
+    RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,
+};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};
 
+#[cfg(feature = "clamber_gltf")]
+pub use clamber_gltf;
 pub use clamber_surface as core;

@@ -42,11 +42,14 @@ impl PluginGroup for ClamberPlugins {
     }
 }
 
-/// When this crate's systems run, in this order within a frame.
+/// When this crate's systems run, in this order within a frame, unless plugins are given other schedules.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClamberSystems {
     /// In `PreUpdate`: colliders are built from mesh assets, surfaces appear and go.
     Build,
+    /// In the schedule of `RigPlayerPlugin`, `FixedUpdate` unless told otherwise, before [`ClamberSystems::Pose`]: rigs
+    /// that `clamber_gltf` loaded play their clips. Part of `AnimationSystems`.
+    Animate,
     /// In the plugins' schedule, `FixedPostUpdate` unless told otherwise: surfaces take this tick's pose.
     Pose,
     /// In `PostUpdate`, after `AnimationSystems`: the poses that this frame draws are noted.

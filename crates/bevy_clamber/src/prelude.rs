@@ -11,4 +11,6 @@ pub use crate::{
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use crate::{SurfacePick, SurfacePickingPlugin};
+#[cfg(feature = "clamber_gltf")]
+pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};

@@ -45,6 +45,16 @@ pub struct SkinnedCollider {
     pub root: PoseTiming,
 }
 
+impl SkinnedCollider {
+    /// For a creature that is animated and moved in the fixed loop: ticks see it without lag.
+    pub const fn each_tick() -> Self {
+        Self {
+            joints: PoseTiming::EachTick,
+            root: PoseTiming::EachTick,
+        }
+    }
+}
+
 /// How far a [`SkinnedCollider`] is.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(opaque)]
