@@ -9,7 +9,7 @@ use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, Assets};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::RunSystemOnce;
+use bevy_ecs::system::{RunSystemError, RunSystemOnce};
 use bevy_math::{Dir3, Vec3};
 use bevy_mesh::Mesh;
 use bevy_mesh::skinning::SkinnedMeshInverseBindposes;
@@ -66,6 +66,11 @@ fn main() -> ExitCode {
 
 type Error = Box<dyn std::error::Error>;
 
+/// Bevy's is no `std::error::Error`.
+fn not_run(error: RunSystemError) -> Error {
+    error.to_string().into()
+}
+
 fn run(arguments: &Arguments) -> Result<String, Error> {
     let rig = clamber_gltf::load(&arguments.file)?;
     let clip = clip(&rig, arguments.clip.as_deref())?;
@@ -77,7 +82,10 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
     let (low, high) = bounds(&app, &creature);
     let size = (high - low).length();
     let eye = (low + high) / 2.0 + Vec3::new(1.0, 0.3, 0.2) * size;
-    let (hit, arrow) = app.world_mut().run_system_once_with(shoot, eye)??;
+    let (hit, arrow) = app
+        .world_mut()
+        .run_system_once_with(shoot, eye)
+        .map_err(not_run)??;
     let mut seen = String::new();
     let clip = clip.as_deref().unwrap_or("nothing");
     writeln!(seen, "{}: plays {clip}", arguments.file.display())?;
@@ -99,7 +107,8 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
         let place = app.world().get::<GlobalTransform>(arrow);
         let place = place.ok_or("the arrow is gone")?.translation();
         // Each frame is one tick, so what is drawn is what is touched.
-        let skin = app.world_mut().run_system_once_with(nearest, place)?;
+        let skin = app.world_mut().run_system_once_with(nearest, place);
+        let skin = skin.map_err(not_run)?;
         worst = worst.max(skin.ok_or("the skin is gone")?.distance);
         way += (place - before).length();
         fastest = fastest.max((place - before).length() * RATE as f32);
@@ -167,7 +176,7 @@ fn spawn(app: &mut App, rig: Rig, clip: Option<String>) -> Result<SpawnedRig, Er
             }
             Ok::<_, bevy_clamber::TooManyJoints>(spawned)
         };
-    Ok(app.world_mut().run_system_once(add)??)
+    Ok(app.world_mut().run_system_once(add).map_err(not_run)??)
 }
 
 /// Until every surface is there.
