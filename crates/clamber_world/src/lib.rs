@@ -5,6 +5,8 @@ mod debris;
 mod obstacle;
 #[cfg(feature = "rapier")]
 mod rapier;
+#[cfg(feature = "parry")]
+pub mod shapes;
 mod surface;
 
 #[cfg(feature = "rapier")]

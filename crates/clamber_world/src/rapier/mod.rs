@@ -1,6 +1,5 @@
 //! A rapier world as an obstacle.
 
-mod narrow;
 mod poses;
 mod terrain;
 

@@ -1,7 +1,5 @@
-use std::cmp::Ordering;
-
 use clamber_surface::mesh::SurfaceTag;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{Aabb, BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, Ray};
 use rapier3d::math::{Pose, Vector};
@@ -9,15 +7,10 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
-use super::narrow::overlap;
+use crate::shapes::{RigidPose, closest_by_overlap, overlap_shape, sort_contacts};
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion};
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
-
-/// First radius, in metres, of the search for the closest point; it doubles until something lies
-/// within. Larger looks at more triangles where something is near, smaller searches longer where
-/// nothing is.
-const FIRST_REACH: f64 = 1.0;
 
 /// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
 /// without sensors.
@@ -121,23 +114,10 @@ impl Obstacle for RapierTerrain<'_> {
     }
 
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
-        if max_distance.is_nan() {
-            return None;
-        }
-        let limit = max_distance.min(self.reach_of_all(self.local(point)?) * 1.001);
-        let mut contacts = Vec::new();
-        let mut reach = FIRST_REACH.min(limit);
-        loop {
-            self.overlap_sphere(point, reach, &mut contacts);
-            let nearest = contacts.iter().copied().min_by(|a, b| {
-                let by_key = a.material.key.cmp(&b.material.key);
-                a.distance.total_cmp(&b.distance).then(by_key)
-            });
-            if nearest.is_some() || reach >= limit {
-                return nearest.filter(|contact| contact.distance <= max_distance);
-            }
-            reach = (reach * 2.0).min(limit);
-        }
+        let reach_of_all = self.reach_of_all(self.local(point)?);
+        closest_by_overlap(max_distance, reach_of_all, |radius, contacts| {
+            self.overlap_sphere(point, radius, contacts);
+        })
     }
 
     fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
@@ -154,21 +134,14 @@ impl Obstacle for RapierTerrain<'_> {
         for (handle, collider) in self.queries.intersect_aabb_conservative(near) {
             let pose = collider.position();
             let on_shape = pose.inverse_transform_point(local);
-            overlap(collider.shape(), on_shape, radius, &mut |found| {
+            overlap_shape(collider.shape(), on_shape, radius, &mut |found| {
                 let point = pose.transform_point(found.point);
                 let normal = pose.transform_vector(found.normal);
                 let distance = f64::from(found.distance);
                 contacts.push(self.contact(handle, collider, point, normal, distance));
             });
         }
-        // By place within one collider, so that the order of its tree does not matter; in place, so
-        // that a steady tick allocates nothing.
-        contacts[start..].sort_unstable_by(|a, b| {
-            let by_place = a.material.coordinates.iter().zip(&b.material.coordinates);
-            let by_place = by_place.map(|(a, b)| a.total_cmp(b));
-            let by_key = a.material.key.cmp(&b.material.key);
-            by_key.then(by_place.fold(Ordering::Equal, Ordering::then))
-        });
+        sort_contacts(&mut contacts[start..]);
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
@@ -178,53 +151,14 @@ impl Obstacle for RapierTerrain<'_> {
         if !collider.is_enabled() || !filter.test(bodies, handle, collider) {
             return None;
         }
-        let now = PoseF64::new(collider.position());
+        let pose = |pose: &Pose| RigidPose::new(pose.rotation, pose.translation);
+        let now = pose(collider.position());
         let before = collider.parent().and_then(|body| {
             let on_body = collider.position_wrt_parent()?;
-            let body = PoseF64::new(self.before.get(body)?);
-            Some(body.then(&PoseF64::new(on_body)))
+            Some(pose(self.before.get(body)?).then(&pose(on_body)))
         });
-        let before = before.unwrap_or(now);
         let local = DVec3::from_array(point.coordinates);
-        let position = now.transform(local) + self.origin;
-        let previous_position = before.transform(local) + self.origin;
-        let usable = dt > 0.0 && position.is_finite();
-        usable.then(|| PointMotion {
-            position,
-            previous_position,
-            velocity: (position - previous_position) / dt,
-            frame: Some(now.rotation),
-            turn: (now.rotation * before.rotation.conjugate()).normalize(),
-            area_ratio: 1.0,
-            stretches: [1.0, 1.0],
-        })
-    }
-}
-
-/// A rigid pose in f64: rapier's own rounds in f32 with every product.
-#[derive(Clone, Copy)]
-struct PoseF64 {
-    rotation: DQuat,
-    translation: DVec3,
-}
-
-impl PoseF64 {
-    fn new(pose: &Pose) -> Self {
-        Self {
-            rotation: pose.rotation.as_dquat().normalize(),
-            translation: pose.translation.as_dvec3(),
-        }
-    }
-
-    fn then(&self, inner: &Self) -> Self {
-        Self {
-            rotation: self.rotation * inner.rotation,
-            translation: self.transform(inner.translation),
-        }
-    }
-
-    fn transform(&self, p: DVec3) -> DVec3 {
-        self.rotation * p + self.translation
+        now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }
 }
 
