@@ -12,6 +12,9 @@ use crate::{Contact, MaterialPoint, Obstacle, PointMotion};
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
+/// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
+const LOOSE: f32 = 1e-4;
+
 /// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
 /// without sensors.
 ///
@@ -104,8 +107,11 @@ impl Obstacle for RapierTerrain<'_> {
             return None;
         }
         let ray = Ray::new(start, along.as_vec3());
-        let limit = (max_distance as f32).min(f32::MAX);
+        let limit = (max_distance as f32 * (1.0 + LOOSE) + LOOSE).min(f32::MAX);
         let (handle, hit) = self.queries.cast_ray_and_get_normal(&ray, limit, true)?;
+        if f64::from(hit.time_of_impact) > max_distance {
+            return None;
+        }
         let collider = self.queries.colliders.get(handle)?;
         let point = ray.point_at(hit.time_of_impact);
         // Rapier turns the normals of triangles towards the ray; both sides are solid to it.

@@ -61,6 +61,9 @@ fn height_fields_and_meshes_answer_per_triangle() {
             .cast_ray(p, DVec3::new(0.0, -3.0, 0.0), 2.0)
             .unwrap();
         assert!((hit.distance - 0.5).abs() < 1e-6, "{name}: {hit:?}");
+        let at_its_end = terrain.cast_ray(p, DVec3::NEG_Y, hit.distance);
+        assert_eq!(at_its_end, Some(hit), "{name}");
+        assert_eq!(terrain.cast_ray(p, DVec3::NEG_Y, 0.4999), None, "{name}");
         assert_eq!(terrain.cast_ray(p, DVec3::Y, f64::INFINITY), None, "{name}");
     }
 }
