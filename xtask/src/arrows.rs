@@ -52,7 +52,8 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 4] = [
 ];
 
 /// Crates outside the workspace that only one crate of it may know.
-const KEPT_TO: [(&str, &str); 8] = [
+const KEPT_TO: [(&str, &str); 9] = [
+    ("avian3d", "bevy_clamber"),
     ("rapier3d", "clamber_world"),
     ("parry3d", "clamber_surface"),
     ("gltf", "clamber_gltf"),

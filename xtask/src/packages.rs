@@ -4,7 +4,7 @@
 use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};
 
-use crate::run::{cargo, cargo_output, program};
+use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, program};
 
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
@@ -84,6 +84,7 @@ fn check_build(packages: &[&Package], folder: &Utf8Path) -> Result<(), String> {
         "--workspace",
         "--manifest-path",
         path.as_str(),
+        IGNORE_RUST_VERSION,
     ];
     let target = folder.parent().map_or("target", Utf8Path::as_str);
     cargo(&[&check[..], &["--target-dir", target, "--all-features"]].concat())

@@ -4,6 +4,10 @@ use std::process::{Command, Stdio};
 
 use cargo_metadata::camino::Utf8Path;
 
+/// Where all features are built: those of `bevy_clamber` that speak to other engines bring in Bevy's umbrella crate,
+/// which declares a newer Rust than ours and builds on ours.
+pub(crate) const IGNORE_RUST_VERSION: &str = "--ignore-rust-version";
+
 /// Runs cargo; an error if it fails.
 pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
     cargo_with(arguments, &[])

@@ -10,6 +10,8 @@ mod gizmos;
 mod picking;
 #[cfg(feature = "clamber_gltf")]
 mod creature;
+#[cfg(any(feature = "avian", feature = "rapier"))]
+mod obstacles;
 mod plugins;
 pub mod prelude;
 mod query;
@@ -27,6 +29,10 @@ pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, 
 pub use creature::{
     RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,
 };
+#[cfg(feature = "avian")]
+pub use obstacles::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
+#[cfg(feature = "rapier")]
+pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};

@@ -1,0 +1,87 @@
+//! Avian's world as an obstacle.
+
+mod moving;
+mod terrain;
+
+use avian3d::collider_tree::ColliderTrees;
+use avian3d::prelude::{
+    Collider, ColliderDisabled, CollisionLayers, PhysicsSystems, Position, Rotation, Sensor,
+    SpatialQueryFilter,
+};
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
+use bevy_ecs::system::SystemParam;
+
+use moving::{MovingColliders, note};
+pub use terrain::AvianTerrain;
+
+/// Notes where avian's moving colliders are after each step, and were before it.
+#[derive(Clone, Copy, Debug)]
+pub struct AvianObstaclesPlugin {
+    schedule: InternedScheduleLabel,
+}
+
+impl AvianObstaclesPlugin {
+    /// For `PhysicsPlugins` in this schedule: one that runs once a tick.
+    pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Default for AvianObstaclesPlugin {
+    /// In [`FixedPostUpdate`], as avian's own default.
+    fn default() -> Self {
+        Self::in_schedule(FixedPostUpdate)
+    }
+}
+
+impl Plugin for AvianObstaclesPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<MovingColliders>()
+            .add_systems(self.schedule, note.after(PhysicsSystems::Last));
+    }
+}
+
+/// What can be touched.
+type Solids<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static Position,
+        &'static Rotation,
+        &'static Collider,
+        Option<&'static CollisionLayers>,
+    ),
+    (Without<Sensor>, Without<ColliderDisabled>),
+>;
+
+/// Avian's world as an obstacle.
+///
+/// Needs [`AvianObstaclesPlugin`]. Reads only. What moves is seen as of the last step: query after
+/// `PhysicsSystems::Last` for no lag.
+///
+/// ```
+/// # use bevy_clamber::AvianObstacles;
+/// # use clamber_world::Obstacle;
+/// # use glam::DVec3;
+/// fn height_of_ground(avian: AvianObstacles) {
+///     let below = avian.terrain().cast_ray(DVec3::Y * 10.0, DVec3::NEG_Y, 100.0);
+///     println!("{:?}", below.map(|contact| contact.point.y));
+/// }
+/// ```
+#[derive(SystemParam)]
+pub struct AvianObstacles<'w, 's> {
+    solids: Solids<'w, 's>,
+    trees: Res<'w, ColliderTrees>,
+    moving: Res<'w, MovingColliders>,
+}
+
+impl AvianObstacles<'_, '_> {
+    /// All colliders but sensors; [`AvianTerrain::with_filter`] restricts them.
+    pub fn terrain(&self) -> AvianTerrain<'_> {
+        AvianTerrain::new(self, SpatialQueryFilter::DEFAULT)
+    }
+}

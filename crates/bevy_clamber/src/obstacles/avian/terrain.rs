@@ -1,0 +1,233 @@
+use avian3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use avian3d::parry::query::{Ray, RayCast};
+use avian3d::prelude::{Collider, ColliderAabb, SpatialQueryFilter};
+use bevy_ecs::prelude::*;
+use bevy_math::{Dir3, Vec3};
+use bevy_shape::Ray3d;
+use clamber_surface::mesh::SurfaceTag;
+use clamber_world::shapes::{RigidPose, closest_by_overlap, overlap_shape, sort_contacts};
+use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion};
+use glam::DVec3;
+
+use super::AvianObstacles;
+use super::moving::in_f32;
+
+/// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
+const LOOSE: f32 = 1e-4;
+
+/// An avian world as one obstacle: its colliders as of the last step, without sensors.
+///
+/// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle, from both sides;
+/// convex shapes are solid: as `RapierTerrain` answers for the same shapes. Rays are parry's own: one that meets an
+/// edge between two triangles exactly may slip through.
+///
+/// What stands still is found through avian's trees, what can move one by one: thousands of bodies cost
+/// microseconds a query.
+pub struct AvianTerrain<'a> {
+    world: &'a AvianObstacles<'a, 'a>,
+    filter: SpatialQueryFilter,
+    origin: DVec3,
+}
+
+/// What a ray met first.
+struct RayHit {
+    distance: f32,
+    entity: Entity,
+    normal: Vec3,
+    pose: RigidPose,
+}
+
+impl<'a> AvianTerrain<'a> {
+    pub(super) fn new(world: &'a AvianObstacles<'a, 'a>, filter: SpatialQueryFilter) -> Self {
+        Self {
+            world,
+            filter,
+            origin: DVec3::ZERO,
+        }
+    }
+
+    /// Where avian's origin stands in the world, for scenes that are far larger than f32 can resolve. Zero if not
+    /// said.
+    #[must_use]
+    pub fn with_origin(mut self, origin: DVec3) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// Restricts what is seen, to collision layers or to all but some entities.
+    #[must_use]
+    pub fn with_filter(mut self, filter: SpatialQueryFilter) -> Self {
+        self.filter = filter;
+        self
+    }
+
+    fn local(&self, point: DVec3) -> Option<Vec3> {
+        let local = (point - self.origin).as_vec3();
+        local.is_finite().then_some(local)
+    }
+
+    /// A collider that is seen, and where it is.
+    fn solid(&self, entity: Entity) -> Option<(&Collider, RigidPose)> {
+        let (position, rotation, collider, layers) = self.world.solids.get(entity).ok()?;
+        let layers = layers.copied().unwrap_or_default();
+        if !self.filter.test(entity, layers) {
+            return None;
+        }
+        let moving = self.world.moving.pose(entity);
+        let pose = moving.unwrap_or_else(|| RigidPose::new(rotation.0, position.0));
+        Some((collider, pose))
+    }
+
+    /// Calls `visit` with what may lie in a box.
+    fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
+        let trees = &self.world.trees;
+        let still = ColliderAabb::from_min_max(bounds.mins, bounds.maxs);
+        for tree in [&trees.static_tree, &trees.standalone_tree] {
+            tree.aabb_traverse(still.into(), |proxy| {
+                if let Some(proxy) = tree.get_proxy(proxy) {
+                    visit(proxy.collider);
+                }
+                true
+            });
+        }
+        for moving in self.world.moving.iter() {
+            if moving.bounds.intersects(bounds) {
+                visit(moving.entity);
+            }
+        }
+    }
+
+    /// Casts a ray at one collider; keeps the nearest hit, of equals that of the smaller entity.
+    fn meet(&self, entity: Entity, ray: &Ray, limit: f32, best: &mut Option<RayHit>) -> f32 {
+        let met = self.solid(entity).and_then(|(collider, pose)| {
+            let shape = collider.shape_scaled();
+            let hit = shape.cast_ray_and_get_normal(&in_f32(&pose), ray, limit, true)?;
+            Some(RayHit {
+                distance: hit.time_of_impact,
+                entity,
+                normal: hit.normal,
+                pose,
+            })
+        });
+        let Some(hit) = met else {
+            return f32::MAX;
+        };
+        let distance = hit.distance;
+        let nearer = |best: &RayHit| (distance, entity) < (best.distance, best.entity);
+        if best.as_ref().is_none_or(nearer) {
+            *best = Some(hit);
+        }
+        distance
+    }
+
+    fn contact(
+        &self,
+        entity: Entity,
+        pose: &RigidPose,
+        point: Vec3,
+        normal: Vec3,
+        distance: f64,
+    ) -> Contact {
+        let on_collider = pose.inverse_transform(point.as_dvec3());
+        Contact {
+            point: point.as_dvec3() + self.origin,
+            normal: normal.as_dvec3().normalize_or(DVec3::Y),
+            distance,
+            material: MaterialPoint {
+                key: entity.to_bits(),
+                coordinates: on_collider.to_array(),
+            },
+            tag: SurfaceTag::default(),
+        }
+    }
+
+    /// A radius about `point` that reaches everything.
+    fn reach_of_all(&self, point: Vec3) -> f64 {
+        let trees = &self.world.trees;
+        let trees = [&trees.static_tree, &trees.standalone_tree].into_iter();
+        let still = trees.filter_map(|tree| {
+            let all = tree.bvh.nodes.first()?.aabb();
+            Some((Vec3::from(all.min), Vec3::from(all.max)))
+        });
+        let moving = self.world.moving.iter();
+        let moving = moving.map(|moving| (moving.bounds.mins, moving.bounds.maxs));
+        let reaches = still.chain(moving).map(|(low, high)| {
+            let farthest = (high - point).abs().max((low - point).abs());
+            farthest.as_dvec3().length()
+        });
+        reaches.fold(0.0, f64::max)
+    }
+}
+
+impl Obstacle for AvianTerrain<'_> {
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        let start = self.local(origin)?;
+        let along = Dir3::new(direction.try_normalize()?.as_vec3()).ok()?;
+        if max_distance.is_nan() || max_distance < 0.0 {
+            return None;
+        }
+        let ray = Ray::new(start, *along);
+        let limit = (max_distance as f32).next_up().min(f32::MAX);
+        let search = (limit * (1.0 + LOOSE) + LOOSE).min(f32::MAX);
+        let trees = &self.world.trees;
+        let mut best = None;
+        for tree in [&trees.static_tree, &trees.standalone_tree] {
+            tree.ray_traverse_closest(Ray3d::new(start, along), search, |proxy| {
+                tree.get_proxy(proxy).map_or(f32::MAX, |proxy| {
+                    self.meet(proxy.collider, &ray, limit, &mut best)
+                })
+            });
+        }
+        for moving in self.world.moving.iter() {
+            if moving.bounds.intersects_local_ray(&ray, search) {
+                self.meet(moving.entity, &ray, limit, &mut best);
+            }
+        }
+        let hit = best?;
+        let distance = f64::from(hit.distance);
+        let point = ray.point_at(hit.distance);
+        let contact = self.contact(hit.entity, &hit.pose, point, hit.normal, distance);
+        (distance <= max_distance).then_some(contact)
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        let reach_of_all = self.reach_of_all(self.local(point)?);
+        closest_by_overlap(max_distance, reach_of_all, |radius, contacts| {
+            self.overlap_sphere(point, radius, contacts);
+        })
+    }
+
+    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
+        let Some(local) = self.local(center) else {
+            return;
+        };
+        let radius = radius as f32;
+        if radius.is_nan() || radius < 0.0 {
+            return;
+        }
+        let start = contacts.len();
+        let reach = Vec3::splat(radius);
+        self.near(&Aabb::new(local - reach, local + reach), &mut |entity| {
+            let Some((collider, pose)) = self.solid(entity) else {
+                return;
+            };
+            let on_shape = pose.inverse_transform(local.as_dvec3()).as_vec3();
+            let shape = &**collider.shape_scaled();
+            overlap_shape(shape, on_shape, radius, &mut |found| {
+                let point = pose.transform(found.point.as_dvec3()).as_vec3();
+                let normal = (pose.rotation * found.normal.as_dvec3()).as_vec3();
+                let distance = f64::from(found.distance);
+                contacts.push(self.contact(entity, &pose, point, normal, distance));
+            });
+        });
+        sort_contacts(&mut contacts[start..]);
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let entity = Entity::try_from_bits(point.key)?;
+        let (_, now) = self.solid(entity)?;
+        let before = self.world.moving.previous_pose(entity);
+        let local = DVec3::from_array(point.coordinates);
+        now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
+    }
+}

@@ -1,0 +1,97 @@
+use bevy_app::{App, FixedUpdate, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
+use bevy_ecs::system::SystemParam;
+use bevy_rapier3d::prelude::{DefaultRapierContext, PhysicsSet, RapierRigidBodySet};
+use bevy_rapier3d::prelude::{RapierContext, ReadRapierContext};
+use clamber_world::{BodyPoses, RapierTerrain};
+
+/// Notes where rapier's bodies were before each step, so that what stands on them can be carried.
+#[derive(Clone, Copy, Debug)]
+pub struct RapierObstaclesPlugin {
+    schedule: InternedScheduleLabel,
+}
+
+impl RapierObstaclesPlugin {
+    /// For a `RapierPhysicsPlugin` in this schedule: one that runs once a tick.
+    pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            schedule: schedule.intern(),
+        }
+    }
+}
+
+impl Default for RapierObstaclesPlugin {
+    /// For `RapierPhysicsPlugin::in_fixed_schedule`: in [`FixedUpdate`].
+    fn default() -> Self {
+        Self::in_schedule(FixedUpdate)
+    }
+}
+
+impl Plugin for RapierObstaclesPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<StepPoses>()
+            .add_systems(self.schedule, note.after(PhysicsSet::Writeback));
+    }
+}
+
+/// The default context of `bevy_rapier3d` as an obstacle.
+///
+/// Needs [`RapierObstaclesPlugin`]. Reads only. What moves is seen as of the last step: query after
+/// `PhysicsSet::Writeback` for no lag.
+///
+/// ```
+/// # use bevy_clamber::RapierObstacles;
+/// # use clamber_world::Obstacle;
+/// # use glam::DVec3;
+/// fn height_of_ground(rapier: RapierObstacles) {
+///     let Some(terrain) = rapier.terrain() else {
+///         return;
+///     };
+///     let below = terrain.cast_ray(DVec3::Y * 10.0, DVec3::NEG_Y, 100.0);
+///     println!("{:?}", below.map(|contact| contact.point.y));
+/// }
+/// ```
+#[derive(SystemParam)]
+pub struct RapierObstacles<'w, 's> {
+    context: ReadRapierContext<'w, 's>,
+    poses: Res<'w, StepPoses>,
+}
+
+impl RapierObstacles<'_, '_> {
+    /// All colliders but sensors; [`RapierTerrain::with_filter`] restricts them. `None` while there is no
+    /// default context.
+    pub fn terrain(&self) -> Option<RapierTerrain<'_>> {
+        let RapierContext {
+            simulation,
+            colliders,
+            rigidbody_set,
+            ..
+        } = self.context.single().ok()?;
+        Some(RapierTerrain::new(
+            &rigidbody_set.bodies,
+            &colliders.colliders,
+            &simulation.broad_phase,
+            &self.poses.before,
+        ))
+    }
+}
+
+/// Where bodies were before the last step, and after it.
+#[derive(Resource, Default)]
+struct StepPoses {
+    before: BodyPoses,
+    after: BodyPoses,
+}
+
+/// After a step. Not before one: what a game moves between two steps is motion, too.
+fn note(
+    mut poses: ResMut<StepPoses>,
+    bodies: Query<&RapierRigidBodySet, With<DefaultRapierContext>>,
+) {
+    let poses = &mut *poses;
+    std::mem::swap(&mut poses.before, &mut poses.after);
+    if let Ok(bodies) = bodies.single() {
+        poses.after.record(&bodies.bodies);
+    }
+}

@@ -1,0 +1,444 @@
+//! The same scene in avian and in rapier is the same obstacle.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use avian3d::parry::math::Pose;
+use avian3d::parry::shape::SharedShape;
+use bevy_app::{App, FixedUpdate, TaskPoolPlugin};
+use bevy_clamber::{AvianObstacles, AvianObstaclesPlugin, RapierObstacles, RapierObstaclesPlugin};
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::RunSystemOnce;
+use bevy_math::{Quat, Vec3};
+use bevy_rapier3d::prelude::{NoUserData, PhysicsSet, RapierPhysicsPlugin};
+use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
+use bevy_transform::TransformPlugin;
+use bevy_transform::components::Transform;
+use clamber_world::{Contact, Obstacle, PointMotion};
+use glam::{DQuat, DVec3};
+
+/// Ticks a second.
+const RATE: f64 = 64.0;
+
+/// Radians a second that the carousel turns: an eighth of a radian a tick, whose chord is no tangent.
+const SPIN: f64 = 8.0;
+
+/// Metres a second that it moves.
+const DRIFT: f64 = 3.0;
+
+/// How far apart two engines may be, metres.
+const SAME: f64 = 1e-5;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Fixed,
+    Carousel,
+    Sensor,
+}
+
+/// Moved by the game, in ticks.
+#[derive(Component)]
+struct Carousel;
+
+/// A tilted axis, so that a wrong order of turns shows.
+fn axis() -> DVec3 {
+    DVec3::new(0.28, 0.96, 0.0)
+}
+
+/// Where the carousel is at a time.
+fn carousel(seconds: f64) -> (DQuat, DVec3) {
+    let half = 0.5 * SPIN * seconds;
+    let (sin, cos) = (libm::sin(half), libm::cos(half));
+    let v = axis() * sin;
+    let place = DVec3::new(-6.0, 4.0, 1.0 + DRIFT * seconds);
+    (DQuat::from_xyzw(v.x, v.y, v.z, cos), place)
+}
+
+fn turn_carousel(time: Res<Time<Fixed>>, mut all: Query<&mut Transform, With<Carousel>>) {
+    for mut transform in &mut all {
+        let (rotation, place) = carousel(time.elapsed_secs_f64());
+        transform.rotation = rotation.as_quat();
+        transform.translation = place.as_vec3();
+    }
+}
+
+/// A rolling ground, and a shape of every kind on it.
+fn scene() -> Vec<(SharedShape, Transform, Kind)> {
+    let side = 13_u32;
+    let height = |x: u32, z: u32| 0.8 * ((x * 7 + z * 5) % 6) as f32 / 6.0;
+    let corners = (0..side * side).map(|index| {
+        let (x, z) = (index % side, index / side);
+        Vec3::new(x as f32 * 2.0 - 12.0, height(x, z), z as f32 * 2.0 - 12.0)
+    });
+    let cells = (0..side * side).filter(|i| i % side + 1 < side && i / side + 1 < side);
+    let triangles = cells.flat_map(|i| [[i, i + side, i + 1], [i + 1, i + side, i + side + 1]]);
+    let ground = SharedShape::trimesh(corners.collect(), triangles.collect()).unwrap();
+    let part = |x: f32, shape| (Pose::from_translation(Vec3::X * x), shape);
+    let dumbbell = SharedShape::compound(vec![
+        part(-1.0, SharedShape::ball(0.5)),
+        part(1.0, SharedShape::cuboid(0.4, 0.5, 0.6)),
+    ]);
+    let tilted = |x, y, z| {
+        Transform::from_xyz(x, y, z).with_rotation(Quat::from_xyzw(0.1, 0.7, -0.5, 0.5).normalize())
+    };
+    vec![
+        (ground, Transform::from_xyz(0.5, -0.25, 0.0), Kind::Fixed),
+        (
+            SharedShape::cuboid(1.0, 2.0, 0.5),
+            tilted(4.0, 2.0, 3.0),
+            Kind::Fixed,
+        ),
+        (SharedShape::ball(1.5), tilted(-3.0, 1.0, -5.0), Kind::Fixed),
+        (
+            SharedShape::capsule_y(1.0, 0.5),
+            tilted(6.0, 2.0, -4.0),
+            Kind::Fixed,
+        ),
+        (dumbbell, tilted(0.0, 3.0, 6.0), Kind::Fixed),
+        (
+            SharedShape::cuboid(3.0, 0.25, 3.0),
+            Transform::default(),
+            Kind::Carousel,
+        ),
+        (
+            SharedShape::ball(4.0),
+            Transform::from_xyz(1.0, 5.0, 0.0),
+            Kind::Sensor,
+        ),
+    ]
+}
+
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+        .insert_resource(Time::<Fixed>::from_hz(RATE))
+        .add_systems(FixedUpdate, turn_carousel.before(PhysicsSet::SyncBackend));
+    app
+}
+
+/// After some ticks.
+fn run(mut app: App) -> App {
+    app.finish();
+    app.cleanup();
+    for _ in 0..12 {
+        app.update();
+    }
+    app
+}
+
+fn avian() -> App {
+    use avian3d::prelude::{Collider, PhysicsPlugins, RigidBody, Sensor};
+    let mut app = app();
+    app.add_plugins((PhysicsPlugins::default(), AvianObstaclesPlugin::default()));
+    for (shape, place, kind) in scene() {
+        let mut entity = app.world_mut().spawn((Collider::from(shape), place));
+        match kind {
+            Kind::Fixed => entity.insert(RigidBody::Static),
+            Kind::Carousel => entity.insert((RigidBody::Kinematic, Carousel)),
+            Kind::Sensor => entity.insert((RigidBody::Static, Sensor)),
+        };
+    }
+    run(app)
+}
+
+fn rapier() -> App {
+    use bevy_rapier3d::prelude::{Collider, RigidBody, Sensor};
+    let mut app = app();
+    let physics = RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule();
+    app.add_plugins((physics, RapierObstaclesPlugin::default()));
+    for (shape, place, kind) in scene() {
+        let mut entity = app.world_mut().spawn((Collider::from(shape), place));
+        match kind {
+            Kind::Fixed => entity.insert(RigidBody::Fixed),
+            Kind::Carousel => entity.insert((RigidBody::KinematicPositionBased, Carousel)),
+            Kind::Sensor => entity.insert((RigidBody::Fixed, Sensor)),
+        };
+    }
+    run(app)
+}
+
+/// What an engine's obstacle says.
+fn ask_avian<R: 'static>(
+    app: &mut App,
+    ask: impl Fn(&dyn Obstacle) -> R + Send + Sync + 'static,
+) -> R {
+    let system = move |avian: AvianObstacles| ask(&avian.terrain());
+    app.world_mut().run_system_once(system).unwrap()
+}
+
+fn ask_rapier<R: 'static>(
+    app: &mut App,
+    ask: impl Fn(&dyn Obstacle) -> R + Send + Sync + 'static,
+) -> R {
+    let system = move |rapier: RapierObstacles| ask(&rapier.terrain().unwrap());
+    app.world_mut().run_system_once(system).unwrap()
+}
+
+/// A contact, and how its point moves.
+type Answer = (Contact, Option<PointMotion>);
+
+/// All answers to some hundreds of questions: rays, closest points, overlaps, each with motion.
+fn interrogate(obstacle: &dyn Obstacle) -> Vec<(String, Vec<Answer>)> {
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut vector = |size: f64| {
+        let mut one = || size * (2.0 * random.f64() - 1.0);
+        DVec3::new(one(), one(), one())
+    };
+    let with_motion = |contact: Contact| (contact, obstacle.motion(&contact.material, 1.0 / RATE));
+    let mut answers = Vec::new();
+    for _ in 0..400 {
+        let (from, along) = (vector(9.0), vector(3.0));
+        let hit = obstacle.cast_ray(from, along, 30.0);
+        let name = format!("ray from {from} along {along}");
+        answers.push((name, hit.into_iter().map(with_motion).collect()));
+        let reach = 0.5 + from.x.abs();
+        let near = obstacle.closest_point(from, reach);
+        // The normal of which triangle, where two meet, is not said.
+        let near = near.map(|contact| Contact {
+            normal: contact.away(from),
+            ..contact
+        });
+        let name = format!("closest to {from} within {reach}");
+        answers.push((name, near.into_iter().map(with_motion).collect()));
+        let mut all = Vec::new();
+        obstacle.overlap_sphere(from, 0.3 * reach, &mut all);
+        assert!(all.is_sorted_by_key(|contact| contact.material.key));
+        let name = format!("overlap of {from} with {}", 0.3 * reach);
+        answers.push((name, all.into_iter().map(with_motion).collect()));
+    }
+    answers
+}
+
+/// How far apart two answers are, metres; without end if they point elsewhere.
+fn apart(a: &Answer, b: &Answer) -> f64 {
+    let (a_motion, b_motion) = (a.1.unwrap(), b.1.unwrap());
+    let turned = (a_motion.turn * DVec3::X - b_motion.turn * DVec3::X).length();
+    if (a.0.normal - b.0.normal).length() > 1e-4 || turned > 1e-5 {
+        return f64::MAX;
+    }
+    let apart = [
+        (a.0.point - b.0.point).length(),
+        (a.0.distance - b.0.distance).abs(),
+        (a_motion.position - b_motion.position).length(),
+        (a_motion.previous_position - b_motion.previous_position).length(),
+    ];
+    apart.into_iter().fold(0.0, f64::max)
+}
+
+#[test]
+fn avian_answers_as_rapier_does() {
+    let avian = ask_avian(&mut avian(), interrogate);
+    let rapier = ask_rapier(&mut rapier(), interrogate);
+    let (mut contacts, mut carried, mut worst) = (0, 0, 0.0_f64);
+    for ((question, avian), (_, rapier)) in avian.iter().zip(&rapier) {
+        assert_eq!(
+            avian.len(),
+            rapier.len(),
+            "{question}: {avian:?} {rapier:?}"
+        );
+        for a in avian {
+            let apart = rapier.iter().map(|b| apart(a, b)).fold(f64::MAX, f64::min);
+            assert!(apart < SAME, "{question}: {a:?} {rapier:?}");
+            worst = worst.max(apart);
+            contacts += 1;
+            carried += usize::from(a.1.unwrap().velocity != DVec3::ZERO);
+        }
+    }
+    println!("{contacts} contacts, {carried} of them on what moves, at most {worst:.1e} m apart");
+    assert!(contacts > 500 && carried > 50, "{contacts} {carried}");
+}
+
+/// What the carousel's motion must be, whatever the engine.
+fn check_motion(obstacle: &dyn Obstacle, now: f64) -> usize {
+    let before = now - 1.0 / RATE;
+    let (rotation, place) = carousel(now);
+    let mut checked = 0;
+    for x in [-2.5, -1.0, 0.5, 2.0] {
+        for z in [-2.0, 0.25, 2.5] {
+            // From above, on its upper side.
+            let local = DVec3::new(x, 0.25, z);
+            let point = rotation * local + place;
+            let normal = rotation * DVec3::Y;
+            let hit = obstacle.cast_ray(point + normal * 0.5, -normal, 1.0);
+            let hit = hit.unwrap();
+            assert!((hit.distance - 0.5).abs() < SAME, "{hit:?}");
+            assert!((hit.normal - normal).length() < 1e-4, "{hit:?}");
+            let motion = obstacle.motion(&hit.material, 1.0 / RATE).unwrap();
+            let (was_turned, was) = carousel(before);
+            let previous = was_turned * local + was;
+            assert!(
+                (motion.position - point).length() < SAME,
+                "{motion:?} {point}"
+            );
+            assert!(
+                (motion.previous_position - previous).length() < SAME,
+                "{motion:?} {previous}"
+            );
+            let chord = (point - previous) * RATE;
+            assert!(
+                (motion.velocity - chord).length() < 2e-3,
+                "{motion:?} {chord}"
+            );
+            let tangent = axis().cross(point - place) * SPIN + DVec3::Z * DRIFT;
+            assert!(
+                (motion.velocity - tangent).length() > 0.1,
+                "{motion:?} {tangent}"
+            );
+            let turn = rotation * was_turned.conjugate();
+            let apart = (motion.turn * DVec3::X - turn * DVec3::X).length();
+            assert!(apart < 1e-5, "{motion:?} {turn}");
+            checked += 1;
+        }
+    }
+    checked
+}
+
+#[test]
+fn what_turns_moves_by_its_chord_and_not_by_its_tangent() {
+    let (mut avian, mut rapier) = (avian(), rapier());
+    for _ in 0..3 {
+        let now = avian.world().resource::<Time<Fixed>>().elapsed_secs_f64();
+        assert_eq!(ask_avian(&mut avian, move |o| check_motion(o, now)), 12);
+        let now = rapier.world().resource::<Time<Fixed>>().elapsed_secs_f64();
+        assert_eq!(ask_rapier(&mut rapier, move |o| check_motion(o, now)), 12);
+        avian.update();
+        rapier.update();
+    }
+}
+
+/// What the trait promises of bad input and of sizes without end.
+fn check_limits(obstacle: &dyn Obstacle) {
+    let mut contacts = Vec::new();
+    for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(1e300)] {
+        assert_eq!(obstacle.closest_point(bad, 1.0), None);
+        assert_eq!(obstacle.cast_ray(bad, DVec3::X, 1.0), None);
+        obstacle.overlap_sphere(bad, 1.0, &mut contacts);
+    }
+    let above = DVec3::new(0.1, 20.0, 0.2);
+    for bad in [f64::NAN, -1.0] {
+        assert_eq!(obstacle.closest_point(DVec3::ZERO, bad), None);
+        assert_eq!(obstacle.cast_ray(above, -DVec3::Y, bad), None);
+        obstacle.overlap_sphere(DVec3::ZERO, bad, &mut contacts);
+    }
+    for bad in [DVec3::NAN, DVec3::ZERO, DVec3::splat(f64::INFINITY)] {
+        assert_eq!(obstacle.cast_ray(above, bad, 99.0), None);
+    }
+    assert!(contacts.is_empty(), "{contacts:?}");
+
+    // Any length of direction; distances in metres. Up to the limit, and the limit with it.
+    let hit = obstacle
+        .cast_ray(above, DVec3::NEG_Y * 7.0, f64::INFINITY)
+        .unwrap();
+    assert!((hit.point - (above - DVec3::Y * hit.distance)).length() < SAME);
+    assert_eq!(obstacle.cast_ray(above, -DVec3::Y, hit.distance), Some(hit));
+    assert_eq!(
+        obstacle.cast_ray(above, -DVec3::Y, hit.distance * 0.999),
+        None
+    );
+    let far = DVec3::new(300.0, 40.0, -200.0);
+    let near = obstacle.closest_point(far, f64::INFINITY).unwrap();
+    assert_eq!(obstacle.closest_point(far, near.distance), Some(near));
+    assert_eq!(obstacle.closest_point(far, near.distance * 0.999), None);
+    obstacle.overlap_sphere(far, f64::INFINITY, &mut contacts);
+    assert_eq!(
+        contacts.len(),
+        288 + 3 + 2 + 1,
+        "every triangle, every convex part"
+    );
+    // Inside a solid: negative, and the way out is along the normal.
+    let inside = obstacle
+        .closest_point(DVec3::new(-3.0, 2.0, -5.0), 1.0)
+        .unwrap();
+    assert!((inside.distance + 0.5).abs() < SAME, "{inside:?}");
+    assert!((inside.normal - DVec3::Y).length() < 1e-5, "{inside:?}");
+    let moved = obstacle.motion(&hit.material, 0.0);
+    assert_eq!(moved, None, "no time, no motion");
+    let mut nobody = hit.material;
+    nobody.key = u64::MAX;
+    assert_eq!(obstacle.motion(&nobody, 0.1), None);
+}
+
+#[test]
+fn limits_and_bad_input_are_as_the_trait_says() {
+    ask_avian(&mut avian(), check_limits);
+    ask_rapier(&mut rapier(), check_limits);
+}
+
+#[test]
+fn what_stands_still_again_and_what_is_gone_says_so() {
+    let on_carousel = |obstacle: &dyn Obstacle, now| {
+        let (rotation, place) = carousel(now);
+        let normal = rotation * DVec3::Y;
+        let hit = obstacle.cast_ray(place + normal, -normal, 2.0).unwrap();
+        hit.material
+    };
+    let mut avian = avian();
+    let now = avian.world().resource::<Time<Fixed>>().elapsed_secs_f64();
+    let material = ask_avian(&mut avian, move |obstacle| on_carousel(obstacle, now));
+    let mut all = avian.world_mut().query_filtered::<Entity, With<Carousel>>();
+    let carousel = all.single(avian.world()).unwrap();
+    avian.world_mut().entity_mut(carousel).remove::<Carousel>();
+    for ticks in 0..2 {
+        avian.update();
+        let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
+        assert_eq!(motion.unwrap().velocity, DVec3::ZERO, "after {ticks} ticks");
+    }
+    avian
+        .world_mut()
+        .entity_mut(carousel)
+        .insert(avian3d::prelude::ColliderDisabled);
+    let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
+    assert_eq!(motion, None, "disabled");
+    avian.world_mut().despawn(carousel);
+    let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
+    assert_eq!(motion, None, "despawned");
+}
+
+#[test]
+fn what_avian_moves_by_velocity_is_met_where_it_is_with_its_children() {
+    use avian3d::prelude::{
+        AngularVelocity, Collider, LinearVelocity, PhysicsPlugins, Position, RigidBody, Rotation,
+    };
+    let mut app = app();
+    app.add_plugins((PhysicsPlugins::default(), AvianObstaclesPlugin::default()));
+    let velocity = LinearVelocity(Vec3::new(40.0, 0.0, 0.0));
+    let turning = AngularVelocity(Vec3::new(0.0, 9.0, 0.0));
+    let body = (
+        RigidBody::Kinematic,
+        velocity,
+        turning,
+        Transform::default(),
+    );
+    let body = app.world_mut().spawn(body).id();
+    let ball = Collider::from(SharedShape::ball(0.25));
+    let child = (ball, Transform::from_xyz(0.0, 2.0, 3.0), ChildOf(body));
+    app.world_mut().spawn(child);
+    let mut app = run(app);
+    let mut before = None;
+    for tick in 0..5 {
+        app.update();
+        let place = app.world().entity(body);
+        let (rotation, position) = (place.get::<Rotation>(), place.get::<Position>());
+        let rotation = rotation.unwrap().0.as_dquat().normalize();
+        let center = rotation * DVec3::new(0.0, 2.0, 3.0) + position.unwrap().0.as_dvec3();
+        let above = center + DVec3::Y;
+        let (contact, motion) = ask_avian(&mut app, move |obstacle| {
+            let ray = obstacle.cast_ray(above, DVec3::NEG_Y, 2.0).unwrap();
+            let near = obstacle.closest_point(above, 2.0).unwrap();
+            assert!((ray.point - near.point).length() < SAME, "{ray:?} {near:?}");
+            (ray, obstacle.motion(&ray.material, 1.0 / RATE).unwrap())
+        });
+        let top = center + DVec3::Y * 0.25;
+        // Far along the way, f32 resolves no more.
+        assert!(
+            (contact.point - top).length() < 3e-5,
+            "tick {tick}: {contact:?} {top}"
+        );
+        if let Some(before) = before {
+            let was: DVec3 = before;
+            let apart = (motion.previous_position - was).length();
+            assert!(apart < 3e-5, "tick {tick}: {motion:?} {was}");
+        }
+        before = Some(top);
+    }
+}
