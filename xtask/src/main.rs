@@ -1,6 +1,7 @@
 //! `cargo xtask ci` runs what CI runs, for a person as well: tests, format, lints, each feature, documentation,
 //! examples, benches, dependency arrows, packages.
 
+mod app;
 mod arrows;
 mod benches;
 mod build;
@@ -34,6 +35,9 @@ enum Task {
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
     },
+    /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
+    /// checks by itself, off-screen. A job of its own: a cold build of Bevy takes many minutes.
+    App,
 }
 
 /// A step of `ci`: what it is called and what it does.
@@ -69,7 +73,18 @@ const STEPS: [Step; 10] = [
 ];
 
 fn main() -> ExitCode {
-    let Task::Ci { only } = Arguments::parse().task;
+    let only = match Arguments::parse().task {
+        Task::Ci { only } => only,
+        Task::App => {
+            return match app::check() {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(reason) => {
+                    eprintln!("{reason}");
+                    ExitCode::FAILURE
+                }
+            };
+        }
+    };
     let metadata = match MetadataCommand::new().exec() {
         Ok(metadata) => metadata,
         Err(error) => {

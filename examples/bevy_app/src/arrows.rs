@@ -1,0 +1,94 @@
+//! Arrows: what they look like, and how one comes to stick in skin.
+
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+use bevy_clamber::prelude::*;
+
+use crate::creature::Creature;
+
+/// Length of an arrow, relative to half of the creature's height: giants are shot at with siege weapons.
+const LENGTH: f32 = 0.26;
+
+/// Meshes of an arrow of length 1, which flies along -Y and whose point is at the origin.
+#[derive(Resource)]
+struct Looks {
+    shaft: (Mesh3d, MeshMaterial3d<StandardMaterial>),
+    feather: (Mesh3d, MeshMaterial3d<StandardMaterial>),
+}
+
+/// An arrow, and where it hit.
+#[derive(Component)]
+pub struct Arrow {
+    pub hit: Vec3,
+}
+
+pub fn plugin(app: &mut App) {
+    app.add_systems(Startup, make_looks);
+}
+
+fn make_looks(
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut commands: Commands,
+) {
+    let mut matt = |color| {
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color: color,
+            perceptual_roughness: 0.9,
+            ..default()
+        }))
+    };
+    let (wood, red) = (Color::srgb(0.93, 0.76, 0.46), Color::srgb(0.95, 0.10, 0.07));
+    commands.insert_resource(Looks {
+        shaft: (Mesh3d(meshes.add(Cylinder::new(0.022, 1.0))), matt(wood)),
+        feather: (
+            Mesh3d(meshes.add(Cuboid::new(0.012, 0.28, 0.13))),
+            matt(red),
+        ),
+    });
+}
+
+/// Shoots arrows.
+#[derive(SystemParam)]
+pub struct Bow<'w, 's> {
+    surfaces: SurfaceQuery<'w, 's>,
+    creature: Option<Res<'w, Creature>>,
+    looks: Res<'w, Looks>,
+    commands: Commands<'w, 's>,
+}
+
+impl Bow<'_, '_> {
+    /// Sticks an arrow to the first skin along a ray; false if there is none.
+    pub fn shoot(&mut self, ray: Ray3d) -> bool {
+        let Some(creature) = &self.creature else {
+            return false;
+        };
+        let anywhere = SurfaceFilter::default();
+        let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere) else {
+            return false;
+        };
+        // As it flew, and not upright on the skin.
+        let rotation = Quat::from_rotation_arc(Vec3::Y, -*ray.direction);
+        let Some(anchor) = self.surfaces.anchor_with_rotation(&hit, rotation) else {
+            return false;
+        };
+        let arrow = (
+            anchor,
+            Arrow { hit: hit.point },
+            Transform::from_translation(hit.point)
+                .with_rotation(rotation)
+                .with_scale(Vec3::splat(LENGTH * creature.half_size.y)),
+            Visibility::default(),
+        );
+        self.commands.spawn(arrow).with_children(|parts| {
+            // A tenth of it is in the skin.
+            parts.spawn((self.looks.shaft.clone(), Transform::from_xyz(0.0, 0.4, 0.0)));
+            for side in 0..3 {
+                let around = Quat::from_rotation_y(side as f32 * core::f32::consts::FRAC_PI_3);
+                let at = Transform::from_xyz(0.0, 0.74, 0.0).with_rotation(around);
+                parts.spawn((self.looks.feather.clone(), at));
+            }
+        });
+        true
+    }
+}

@@ -1,0 +1,69 @@
+//! A window with an animated creature: click on it, and arrows stick to its skin and follow it.
+//!
+//! ```sh
+//! cargo run -- ../../assets/colossus.glb --clip walk
+//! cargo run -- --screenshot arrows.png
+//! ```
+
+mod aim;
+mod arrows;
+mod creature;
+mod orbit;
+mod picture;
+mod stage;
+
+use std::path::PathBuf;
+
+use bevy::asset::UnapprovedPathMode;
+use bevy::prelude::*;
+use bevy_clamber::prelude::*;
+use clap::Parser;
+
+/// Shows an animated creature to shoot arrows at: left button shoots, right button and wheel move the camera.
+#[derive(Parser)]
+struct Arguments {
+    /// The creature: any glTF or GLB file with a skinned mesh.
+    #[arg(default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb"))]
+    file: PathBuf,
+    /// Which animation it plays; its first if none is called so.
+    #[arg(long, default_value = "walk")]
+    clip: String,
+    /// Opens no window: shoots some arrows by itself, writes a picture here as PNG, and ends.
+    #[arg(long, value_name = "PNG")]
+    screenshot: Option<PathBuf>,
+}
+
+fn main() -> AppExit {
+    let arguments = Arguments::parse();
+    let file = match arguments.file.canonicalize() {
+        Ok(file) => file,
+        Err(error) => {
+            eprintln!("{}: {error}", arguments.file.display());
+            return AppExit::error();
+        }
+    };
+    // Bevy loads from one folder: the creature's, so that a glTF file finds what it refers to.
+    let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else {
+        eprintln!("{} is no file", file.display());
+        return AppExit::error();
+    };
+    let defaults = DefaultPlugins.set(AssetPlugin {
+        file_path: folder.to_string_lossy().into_owned(),
+        unapproved_path_mode: UnapprovedPathMode::Forbid,
+        ..default()
+    });
+    let mut app = App::new();
+    match &arguments.screenshot {
+        None => app.add_plugins((stage::window(defaults), aim::plugin, orbit::plugin)),
+        Some(picture) => app.add_plugins((
+            picture::no_window(defaults),
+            picture::plugin(picture.clone()),
+        )),
+    };
+    app.add_plugins((ClamberPlugins::default(), arrows::plugin, stage::plugin))
+        .add_plugins(creature::plugin(
+            name.to_string_lossy().into_owned(),
+            arguments.clip,
+        ))
+        .run()
+}
