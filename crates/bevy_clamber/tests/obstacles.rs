@@ -77,9 +77,8 @@ fn scene() -> Vec<(SharedShape, Transform, Kind)> {
         part(-1.0, SharedShape::ball(0.5)),
         part(1.0, SharedShape::cuboid(0.4, 0.5, 0.6)),
     ]);
-    let tilted = |x, y, z| {
-        Transform::from_xyz(x, y, z).with_rotation(Quat::from_xyzw(0.1, 0.7, -0.5, 0.5).normalize())
-    };
+    let tilted =
+        |x, y, z| Transform::from_xyz(x, y, z).with_rotation(Quat::from_xyzw(0.1, 0.7, -0.5, 0.5));
     vec![
         (ground, Transform::from_xyz(0.5, -0.25, 0.0), Kind::Fixed),
         (

@@ -1,7 +1,8 @@
 //! A camera that goes around the creature: dragged with the right button, nearer and farther with the wheel.
 
-use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
+use bevy::window::CursorMoved;
 
 use crate::creature::Creature;
 
@@ -25,15 +26,17 @@ fn orbit(
     mut camera: Single<&mut Transform, With<Camera3d>>,
     creature: Res<Creature>,
     buttons: Res<ButtonInput<MouseButton>>,
-    motion: Res<AccumulatedMouseMotion>,
+    mut moved: MessageReader<CursorMoved>,
     scroll: Res<AccumulatedMouseScroll>,
 ) {
     let lines = match scroll.unit {
         MouseScrollUnit::Line => scroll.delta.y,
         MouseScrollUnit::Pixel => scroll.delta.y / LINE,
     };
+    // The cursor's way: what the mouse itself reports is missing on remote desktops.
+    let way: Vec2 = moved.read().filter_map(|moved| moved.delta).sum();
     let dragged = if buttons.pressed(MouseButton::Right) {
-        motion.delta * TURN
+        way * TURN
     } else {
         Vec2::ZERO
     };

@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use crate::creature::Creature;
 
 /// Of the sky, and of what is far away.
-const SKY: Color = Color::srgb(0.56, 0.73, 0.92);
+const SKY: Color = Color::srgb(0.64, 0.80, 0.98);
 
 /// Stones that stand around, so that one sees how far the ground goes.
 const STONES: u32 = 70;
@@ -65,7 +65,7 @@ fn set(
         .entity(*camera)
         .insert((place.looking_at(creature.center, Vec3::Y), far, fog));
 
-    let sun = Transform::default().looking_to(Vec3::new(-0.75, -0.8, -0.35), Vec3::Y);
+    let sun = Transform::default().looking_to(Vec3::new(0.3, -0.75, -0.75), Vec3::Y);
     let cascades = CascadeShadowConfigBuilder {
         minimum_distance: 0.05 * radius,
         first_cascade_far_bound: 1.2 * distance,

@@ -21,8 +21,7 @@ const LOOSE: f32 = 1e-4;
 /// convex shapes are solid: as `RapierTerrain` answers for the same shapes. Rays are parry's own: one that meets an
 /// edge between two triangles exactly may slip through.
 ///
-/// What stands still is found through avian's trees, what can move one by one: thousands of bodies cost
-/// microseconds a query.
+/// What stands still is found through avian's trees, what can move by its bounds, one after the other.
 pub struct AvianTerrain<'a> {
     world: &'a AvianObstacles<'a, 'a>,
     filter: SpatialQueryFilter,
