@@ -149,7 +149,7 @@ fn walking(
             Ok(found)
         };
         // By turns, since the second finds warm caches.
-        let found = if tick % 2 == 0 {
+        let found = if tick.is_multiple_of(2) {
             in_bevy(&mut giants);
             in_core()?
         } else {
