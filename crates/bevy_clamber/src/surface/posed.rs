@@ -10,7 +10,8 @@ use glam::DAffine3;
 use thiserror::Error;
 
 use super::PoseTiming;
-use super::rig::{Hierarchy, Locals, Rig, set_between};
+use super::between::set_between;
+use super::rig::{Hierarchy, Locals, Rig};
 use crate::collider::BuiltCollider;
 use crate::{ColliderError, SkinnedCollider};
 

@@ -5,7 +5,7 @@ use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::{self, Pose, RigError};
+use clamber_surface::rig::{self, Pose};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::ColliderError;
@@ -297,18 +297,4 @@ fn split(map: &DAffine3) -> Option<(Similarity, DAffine3)> {
         DAffine3::from_mat3(axes.transpose() * linear * (1.0 / scale))
     };
     Some((similarity, rest))
-}
-
-/// Sets what lies between two, at a fraction from 0 to 1 of the way.
-pub(crate) fn set_between(
-    pose: &mut Pose,
-    from: &Pose,
-    to: &Pose,
-    fraction: f64,
-) -> Result<(), RigError> {
-    pose.transforms.clone_from(&from.transforms);
-    if from == to {
-        return Ok(());
-    }
-    pose.blend_in(to, fraction)
 }
