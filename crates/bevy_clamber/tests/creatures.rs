@@ -5,6 +5,7 @@
 mod common;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
 use bevy_asset::Assets;
@@ -21,7 +22,7 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use clamber_gltf::Rig;
 use clamber_scenes::test_data;
-use common::{app, wait};
+use common::{app, app_with};
 
 const COLOSSUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
 
@@ -44,11 +45,20 @@ fn surfaces(app: &mut App, spawned: &SpawnedRig, collider: SkinnedCollider) {
     for mesh in &spawned.meshes {
         app.world_mut().entity_mut(*mesh).insert(collider);
     }
-    for mesh in &spawned.meshes {
-        wait(app, *mesh);
+    let built = |app: &App, mesh: &Entity| {
         let status = app.world().get::<ColliderStatus>(*mesh).unwrap();
-        assert!(matches!(status, ColliderStatus::Ready), "{status:?}");
+        assert!(!matches!(status, ColliderStatus::Failed(_)), "{status:?}");
+        matches!(status, ColliderStatus::Ready)
+    };
+    // They are large, and built on other threads: a minute is enough.
+    for _ in 0..60_000 {
+        app.update();
+        if spawned.meshes.iter().all(|mesh| built(app, mesh)) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(1));
     }
+    panic!("colliders are never built");
 }
 
 /// Two creatures in an app whose frames take `1 / rate` seconds, whose first plays; what each tick showed of its
@@ -63,8 +73,10 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
         seen: usize,
     }
     let rig = clamber_gltf::load(file).unwrap();
-    let mut app = app(rate);
-    app.add_plugins(RigPlayerPlugin::default());
+    let mut app = app_with(
+        rate,
+        (ClamberPlugins::default(), RigPlayerPlugin::default()),
+    );
     let assets = assets(&mut app, rig.clone()).unwrap();
     let place = Transform::from_xyz(500.0, -20.0, 70.0).with_scale(Vec3::splat(2.0));
     let [played, still] = [place, Transform::IDENTITY].map(|at| spawn(&mut app, &assets, at));
@@ -157,8 +169,8 @@ fn meshes_have_the_tags_and_materials_of_the_file() {
 
 /// The transform of the joint that a clip moves most, after some frames of 1/64 s with a player.
 fn play(player: RigPlayer, frames: usize) -> (Vec<Transform>, RigPlayer) {
-    let mut app = app(64.0);
-    app.add_plugins(RigPlayerPlugin::in_schedule(PostUpdate));
+    let player_plugin = RigPlayerPlugin::in_schedule(PostUpdate);
+    let mut app = app_with(64.0, (ClamberPlugins::default(), player_plugin));
     let assets = assets(&mut app, clamber_gltf::load(COLOSSUS).unwrap()).unwrap();
     let spawned = spawn(&mut app, &assets, Transform::IDENTITY);
     // The first frame has no length.
@@ -220,8 +232,10 @@ fn what_cannot_be_played_moves_nothing() {
 
 #[test]
 fn joints_and_roots_that_are_gone_take_nothing_along() {
-    let mut app = app(60.0);
-    app.add_plugins(RigPlayerPlugin::default());
+    let mut app = app_with(
+        60.0,
+        (ClamberPlugins::default(), RigPlayerPlugin::default()),
+    );
     let assets = assets(&mut app, clamber_gltf::load(COLOSSUS).unwrap()).unwrap();
     let spawned = spawn(&mut app, &assets, Transform::IDENTITY);
     surfaces(&mut app, &spawned, SkinnedCollider::each_tick());
