@@ -2,37 +2,37 @@
 
 mod anchor;
 mod collider;
+#[cfg(feature = "clamber_gltf")]
+mod creature;
 #[cfg(feature = "diagnostics")]
 mod diagnostics;
 #[cfg(feature = "gizmos")]
 mod gizmos;
-#[cfg(feature = "picking")]
-mod picking;
-#[cfg(feature = "clamber_gltf")]
-mod creature;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 mod obstacles;
+#[cfg(feature = "picking")]
+mod picking;
 mod plugins;
 pub mod prelude;
 mod query;
 mod surface;
 
 pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
-#[cfg(feature = "diagnostics")]
-pub use diagnostics::SurfaceDiagnosticsPlugin;
-#[cfg(feature = "gizmos")]
-pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
-#[cfg(feature = "picking")]
-pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
     RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,
 };
+#[cfg(feature = "diagnostics")]
+pub use diagnostics::SurfaceDiagnosticsPlugin;
+#[cfg(feature = "gizmos")]
+pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "avian")]
 pub use obstacles::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
 #[cfg(feature = "rapier")]
 pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
+#[cfg(feature = "picking")]
+pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};

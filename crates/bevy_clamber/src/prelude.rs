@@ -7,10 +7,10 @@ pub use crate::{
     PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, SurfaceTagger,
     WorldHit,
 };
+#[cfg(feature = "clamber_gltf")]
+pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use crate::{SurfacePick, SurfacePickingPlugin};
-#[cfg(feature = "clamber_gltf")]
-pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};

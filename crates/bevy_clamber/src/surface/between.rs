@@ -98,7 +98,7 @@ mod tests {
         for angle in [0.0, 1e-6, 0.01, 0.3, 0.39, 0.41, 0.9, 2.5] {
             for (sign, fraction) in [(1.0, 0.0), (1.0, 0.3), (-1.0, 0.5), (-1.0, 0.9), (1.0, 1.0)] {
                 let (from, mut to) = (turned(0.4), turned(0.4 + angle));
-                to.rotation = to.rotation * sign;
+                to.rotation *= sign;
                 let pose = |t| Pose {
                     transforms: vec![t],
                 };
