@@ -2,8 +2,8 @@
 //!
 //! The giant walks, with climbers on its skin who ask what climbers ask: what is within reach of the body, what it
 //! meets on its way, what is nearest, what a ray meets, and how the point it holds moves. Beside it the core does the
-//! same by itself: it composes the palette, advances, and answers in model space. Both take turns, tick by tick,
-//! within one process. Then a hundred giants stand still, and nothing is asked, beside reading their joints'
+//! same by itself: it mixes the poses of two frames where the app animates in frames, composes the palette, advances,
+//! and answers in model space. Both take turns, tick by tick, within one process. Then a hundred giants stand still, and nothing is asked, beside reading their joints'
 //! `Transform`s alone. Schedules run on one thread: with Bevy's executor on more, waking those up costs more than a
 //! climber does, whatever its systems are. Times are medians. Prints a table and writes it to `target/measure/bevy.csv`: name, value,
 //! bound, holds. Fails if both do not answer alike.
@@ -124,16 +124,19 @@ fn walking(
     let entity = giants.surfaces[0];
     let mesh = giants.mesh();
     let mut surface = SkinnedSurface::new(mesh.clone());
-    let mut palette = Palette::default();
+    let (mut mixed, mut palette) = (Pose::default(), Palette::default());
     let mut hits = Vec::new();
     let asked: Vec<Vec<Rider>> = riders::over(&mesh, creature, &posed, riders)?;
     let (mut core, mut bevy) = (Vec::new(), Vec::new());
     giants.pose(last);
     let _ = time(&mut giants.app, PostUpdate);
     for tick in 0..ticks {
-        let pose = &posed[tick % posed.len()];
         let now = &asked[tick % posed.len()];
-        giants.pose(&drawn[tick % drawn.len()]);
+        let (before, now_drawn) = (
+            &drawn[(tick + drawn.len() - 1) % drawn.len()],
+            &drawn[tick % drawn.len()],
+        );
+        giants.pose(now_drawn);
         let _ = time(&mut giants.app, PostUpdate);
         pass_frame(&mut giants.app);
         let mut in_bevy = |giants: &mut Giants| {
@@ -142,7 +145,13 @@ fn walking(
         };
         let mut in_core = || -> Result<usize, Box<dyn Error>> {
             let start = Instant::now();
-            creature.skeleton.palette_into(pose, &mut palette)?;
+            if timing == PoseTiming::EachFrame {
+                mixed.clone_from(before);
+                mixed.blend_in(now_drawn, 0.5)?;
+            } else {
+                mixed.clone_from(now_drawn);
+            }
+            creature.skeleton.palette_into(&mixed, &mut palette)?;
             surface.advance(&palette, Similarity::IDENTITY)?;
             let found = riders::answer(&surface, now, &mut hits);
             core.push(start.elapsed().as_secs_f64() * 1e6);

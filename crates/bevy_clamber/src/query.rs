@@ -8,6 +8,10 @@ use clamber_surface::surface::{Motion, SkinnedSurface, SurfaceHit, SweepHit, TOL
 
 use crate::{PosedSurface, SurfaceAnchor};
 
+/// How far, as a factor, to look for what is no farther, in the units of another surface: each way rounds to f32
+/// once or twice.
+const EQUAL: f32 = 1.0 + 8.0 * f32::EPSILON;
+
 /// All surfaces of the world, in world space, as posed in the last tick.
 ///
 /// Nearest first; of equal distances the smaller entity. What is not finite, or negative where it must not be,
@@ -104,10 +108,9 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldHit> {
-        self.nearest(filter, |entity, surface| {
+        self.nearest(filter, max_distance, |surface, max_distance| {
             let (local, length) = local_ray(surface, ray, max_distance)?;
-            let hit = surface.cast_ray(&local, length).ok()??;
-            Some(world_hit(entity, surface, &hit))
+            surface.cast_ray(&local, length).ok()?
         })
     }
 
@@ -125,19 +128,23 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// Every triangle along a ray.
+    /// Every triangle along a ray. `hits` is cleared first and keeps its memory.
     pub fn cast_ray_all(
         &self,
         ray: Ray3d,
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
-    ) -> Vec<WorldHit> {
-        self.all(filter, |surface, hits| {
-            if let Some((local, length)) = local_ray(surface, ray, max_distance) {
-                // An error leaves the hits as they were: none.
-                let _ = surface.cast_ray_all(&local, length, hits);
-            }
-        })
+        hits: &mut Vec<WorldHit>,
+    ) {
+        let mut found = Vec::new();
+        self.all(filter, hits, |surface, visit| {
+            let (local, length) = local_ray(surface, ray, max_distance)?;
+            surface.cast_ray_all(&local, length, &mut found).ok()?;
+            found.iter().for_each(visit);
+            Some(())
+        });
+        // Stable: within a surface the core's order stands.
+        hits.sort_by(by_distance);
     }
 
     /// The skin nearest to a point.
@@ -147,37 +154,47 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldHit> {
-        self.nearest(filter, |entity, surface| {
+        self.nearest(filter, max_distance, |surface, max_distance| {
             let local = local_point(surface, point);
-            let hit = surface
-                .closest_point(local, local_length(surface, max_distance))
-                .ok()??;
-            Some(world_hit(entity, surface, &hit))
+            let length = local_length(surface, max_distance);
+            surface.closest_point(local, length).ok()?
         })
     }
 
-    /// Every triangle within a sphere, each with its own point nearest to the centre.
+    /// Every triangle within a sphere, each with its own point nearest to the centre. `hits` is cleared first and
+    /// keeps its memory.
     pub fn overlap_sphere(
         &self,
         center: Vec3,
         radius: f32,
         filter: &SurfaceFilter<'_>,
-    ) -> Vec<WorldHit> {
-        self.all(filter, |surface, hits| {
-            let _ = surface.overlap_sphere(&local_sphere(surface, center, radius), hits);
-        })
+        hits: &mut Vec<WorldHit>,
+    ) {
+        self.all(filter, hits, |surface, visit| {
+            let sphere = local_sphere(surface, center, radius);
+            surface
+                .visit_overlap_sphere(&sphere, |hit| visit(&hit))
+                .ok()
+        });
+        hits.sort_unstable_by(by_distance_and_triangle);
     }
 
-    /// Every triangle within a capsule around a segment, each with its own point nearest to the segment.
+    /// Every triangle within a capsule around a segment, each with its own point nearest to the segment. `hits` is
+    /// cleared first and keeps its memory.
     pub fn overlap_capsule(
         &self,
         ends: [Vec3; 2],
         radius: f32,
         filter: &SurfaceFilter<'_>,
-    ) -> Vec<WorldHit> {
-        self.all(filter, |surface, hits| {
-            let _ = surface.overlap_capsule(&local_capsule(surface, ends, radius), hits);
-        })
+        hits: &mut Vec<WorldHit>,
+    ) {
+        self.all(filter, hits, |surface, visit| {
+            let capsule = local_capsule(surface, ends, radius);
+            surface
+                .visit_overlap_capsule(&capsule, |hit| visit(&hit))
+                .ok()
+        });
+        hits.sort_unstable_by(by_distance_and_triangle);
     }
 
     /// The first contact of a sphere that moves by `motion`, with all skin standing still.
@@ -288,31 +305,40 @@ impl SurfaceQuery<'_, '_> {
             .filter(|(entity, surface)| surface.is_placed() && filter.sees(*entity))
     }
 
+    /// The nearest that `find` finds up to a distance, which shrinks as something is found.
     fn nearest(
         &self,
         filter: &SurfaceFilter<'_>,
-        find: impl Fn(Entity, &PosedSurface) -> Option<WorldHit>,
+        mut max_distance: f32,
+        find: impl Fn(&PosedSurface, f32) -> Option<SurfaceHit>,
     ) -> Option<WorldHit> {
-        let hits = self
-            .seen(filter)
-            .filter_map(|(entity, surface)| find(entity, surface));
-        hits.min_by(by_distance)
+        let mut nearest: Option<WorldHit> = None;
+        for (entity, surface) in self.seen(filter) {
+            let Some(hit) = find(surface, max_distance) else {
+                continue;
+            };
+            let hit = world_hit(entity, surface, &hit);
+            if nearest.is_none_or(|nearest| by_distance(&hit, &nearest).is_lt()) {
+                max_distance = max_distance.min(hit.distance * EQUAL + f32::MIN_POSITIVE);
+                nearest = Some(hit);
+            }
+        }
+        nearest
     }
 
+    /// What `visit` finds in each surface; where it gives `None`, that is nothing.
     fn all(
         &self,
         filter: &SurfaceFilter<'_>,
-        find: impl Fn(&PosedSurface, &mut Vec<SurfaceHit>),
-    ) -> Vec<WorldHit> {
-        let (mut found, mut local) = (Vec::new(), Vec::new());
+        hits: &mut Vec<WorldHit>,
+        mut visit: impl FnMut(&PosedSurface, &mut dyn FnMut(&SurfaceHit)) -> Option<()>,
+    ) {
+        hits.clear();
         for (entity, surface) in self.seen(filter) {
-            local.clear();
-            find(surface, &mut local);
-            found.extend(local.iter().map(|hit| world_hit(entity, surface, hit)));
+            let _ = visit(surface, &mut |hit| {
+                hits.push(world_hit(entity, surface, hit));
+            });
         }
-        // Stable: within a surface the order stands.
-        found.sort_by(by_distance);
-        found
     }
 
     fn first(
@@ -335,6 +361,10 @@ impl SurfaceQuery<'_, '_> {
 fn by_distance(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
     let by_distance = a.distance.total_cmp(&b.distance);
     by_distance.then_with(|| a.entity.cmp(&b.entity))
+}
+
+fn by_distance_and_triangle(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
+    by_distance(a, b).then_with(|| a.triangle.cmp(&b.triangle))
 }
 
 pub(crate) fn world_hit(entity: Entity, surface: &SkinnedSurface, hit: &SurfaceHit) -> WorldHit {

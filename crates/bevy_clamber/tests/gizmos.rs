@@ -162,7 +162,8 @@ fn nothing_is_touched_where_nobody_asks() {
 fn contacts_lie_on_the_skin_as_it_is_drawn() {
     let (mut app, limb, _) = scene();
     app.add_systems(FixedUpdate, |surfaces: SurfaceQuery| {
-        let all = surfaces.overlap_sphere(Vec3::Y, 9.0, &SurfaceFilter::default());
+        let mut all = Vec::new();
+        surfaces.overlap_sphere(Vec3::Y, 9.0, &SurfaceFilter::default(), &mut all);
         assert!(!all.is_empty());
     });
     show(

@@ -81,6 +81,14 @@ fn all() -> SurfaceFilter<'static> {
     SurfaceFilter::default()
 }
 
+/// What a query puts into a vector, whatever it held.
+fn every(query: impl Fn(&mut Vec<WorldHit>)) -> Vec<WorldHit> {
+    let mut hits = Vec::new();
+    query(&mut hits);
+    query(&mut hits);
+    hits
+}
+
 /// Each limb with its triangles.
 fn posed(app: &App, limbs: &[Limb]) -> Vec<(Entity, Vec<Corners>)> {
     let of = |limb: &Limb| (limb.mesh, oracle::triangles(app, limb.mesh));
@@ -139,7 +147,7 @@ fn rays() {
             (
                 s.cast_ray(ray, max, &all()),
                 s.intersects_ray(ray, max, &all()),
-                s.cast_ray_all(ray, max, &all()),
+                every(|hits| s.cast_ray_all(ray, max, &all(), hits)),
             )
         });
         assert_eq!(any, !expected.is_empty(), "case {case}");
@@ -202,8 +210,8 @@ fn nearest_points_and_overlaps() {
         let (closest, sphere, capsule) = ask(&mut app, move |s| {
             (
                 s.closest_point(a, radius, &all()),
-                s.overlap_sphere(a, radius, &all()),
-                s.overlap_capsule([a, b], radius, &all()),
+                every(|hits| s.overlap_sphere(a, radius, &all(), hits)),
+                every(|hits| s.overlap_capsule([a, b], radius, &all(), hits)),
             )
         });
         let skin: Vec<Corners> = posed.iter().flat_map(|(_, t)| t.clone()).collect();
@@ -389,22 +397,22 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
         limb.mesh
     };
     let mut entities = [0; 4].map(|_| spawn(&mut app));
-    // Out of the order in which they are stored.
-    app.world_mut()
-        .entity_mut(entities[0])
-        .insert(Name::new("moved"));
     for entity in entities {
         wait(&mut app, entity);
     }
+    // Out of the order in which they are stored: the smallest comes last.
+    app.world_mut()
+        .entity_mut(entities[0])
+        .insert(Name::new("moved"));
     entities.sort();
     let ray = Ray3d::new(Vec3::new(9.0, 0.53, 0.07), Dir3::NEG_X);
     let at = Vec3::new(1.0, 0.52, 0.03);
     let first = ask(&mut app, move |s| {
         [
             s.cast_ray(ray, 20.0, &all()).unwrap().entity,
-            s.cast_ray_all(ray, 20.0, &all())[0].entity,
+            every(|hits| s.cast_ray_all(ray, 20.0, &all(), hits))[0].entity,
             s.closest_point(at, 9.0, &all()).unwrap().entity,
-            s.overlap_sphere(at, 0.9, &all())[0].entity,
+            every(|hits| s.overlap_sphere(at, 0.9, &all(), hits))[0].entity,
             s.cast_sphere(at, 0.1, Vec3::NEG_X, &all())
                 .unwrap()
                 .hit
@@ -424,7 +432,10 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
         let none = |_: Entity| false;
         assert_eq!(s.cast_ray(ray, 20.0, &SurfaceFilter::only(&none)), None);
         assert!(!s.intersects_ray(ray, 20.0, &SurfaceFilter::only(&none)));
-        assert_eq!(s.cast_ray_all(ray, 20.0, &only).len(), 2);
+        assert_eq!(
+            every(|hits| s.cast_ray_all(ray, 20.0, &only, hits)).len(),
+            2
+        );
         [
             s.cast_ray(ray, 20.0, &except).unwrap().entity,
             s.closest_point(at, 9.0, &except).unwrap().entity,
@@ -449,12 +460,11 @@ fn what_is_not_finite_finds_nothing() {
             assert_eq!(ray(p, 9.0), None);
             assert!(!s.intersects_ray(Ray3d::new(p, Dir3::Y), 9.0, &all()));
             assert!(
-                s.cast_ray_all(Ray3d::new(p, Dir3::Y), 9.0, &all())
-                    .is_empty()
+                every(|hits| s.cast_ray_all(Ray3d::new(p, Dir3::Y), 9.0, &all(), hits)).is_empty()
             );
             assert_eq!(s.closest_point(p, 9.0, &all()), None);
-            assert!(s.overlap_sphere(p, 9.0, &all()).is_empty());
-            assert!(s.overlap_capsule([o, p], 9.0, &all()).is_empty());
+            assert!(every(|hits| s.overlap_sphere(p, 9.0, &all(), hits)).is_empty());
+            assert!(every(|hits| s.overlap_capsule([o, p], 9.0, &all(), hits)).is_empty());
             assert_eq!(s.cast_sphere(p, 9.0, Vec3::Y, &all()), None);
             assert_eq!(s.cast_sphere(o, 9.0, p, &all()), None);
             assert_eq!(s.cast_capsule([p, o], 9.0, [o, o], &all()), None);
@@ -464,8 +474,8 @@ fn what_is_not_finite_finds_nothing() {
         for bad in [nan, -1.0, -inf] {
             assert_eq!(ray(o, bad), None);
             assert_eq!(s.closest_point(o, bad, &all()), None);
-            assert!(s.overlap_sphere(o, bad, &all()).is_empty());
-            assert!(s.overlap_capsule([o, o], bad, &all()).is_empty());
+            assert!(every(|hits| s.overlap_sphere(o, bad, &all(), hits)).is_empty());
+            assert!(every(|hits| s.overlap_capsule([o, o], bad, &all(), hits)).is_empty());
             assert_eq!(s.cast_sphere(o, bad, Vec3::Y, &all()), None);
             assert_eq!(s.sweep_capsule([o, o], bad, [o, o], &all()), None);
         }

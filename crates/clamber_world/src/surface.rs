@@ -57,7 +57,7 @@ impl Obstacle for SkinnedSurface {
             radius: length_in_model(self, radius),
         };
         let start = contacts.len();
-        let visited = self.visit_overlaps(&sphere, |hit| {
+        let visited = self.visit_overlap_sphere(&sphere, |hit| {
             contacts.push(contact(self, &hit, center));
         });
         // A sphere that is not finite touches nothing.

@@ -122,13 +122,17 @@ impl Asked {
 pub(crate) struct Answers(pub(crate) usize);
 
 /// The same questions, in world space.
-pub(crate) fn ask(asked: Res<Asked>, surfaces: SurfaceQuery, mut answers: ResMut<Answers>) {
+pub(crate) fn ask(
+    asked: Res<Asked>,
+    surfaces: SurfaceQuery,
+    mut answers: ResMut<Answers>,
+    mut hits: Local<Vec<WorldHit>>,
+) {
     let all = SurfaceFilter::default();
     answers.0 = 0;
     for (rider, anchor) in &asked.0 {
-        answers.0 += surfaces
-            .overlap_capsule(rider.ends, RADIUS + REACH, &all)
-            .len();
+        surfaces.overlap_capsule(rider.ends, RADIUS + REACH, &all, &mut hits);
+        answers.0 += hits.len();
         let motions = [rider.step(); 2];
         let swept = surfaces.sweep_capsule(rider.ends, RADIUS, motions, &all);
         answers.0 += usize::from(swept.is_some());

@@ -1,6 +1,5 @@
 //! Surfaces on entities: which entities pose them, when their poses are read, and how they get to ticks.
 
-mod between;
 mod clock;
 mod plugin;
 mod pose;

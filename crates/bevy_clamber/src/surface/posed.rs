@@ -2,7 +2,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Palette, RigError};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
@@ -10,7 +10,6 @@ use glam::DAffine3;
 use thiserror::Error;
 
 use super::PoseTiming;
-use super::between::set_between;
 use super::rig::{Hierarchy, Locals, Rig};
 use crate::collider::BuiltCollider;
 use crate::{ColliderError, SkinnedCollider};
@@ -79,7 +78,6 @@ pub struct PosedSurface {
 struct Scratch {
     next: Locals,
     model_from_node: Vec<DAffine3>,
-    matrices: Vec<Affine>,
     palette: Palette,
 }
 
@@ -245,9 +243,8 @@ impl PosedSurface {
         let scratch = &mut self.scratch;
         let placed = self
             .rig
-            .compose(next, &mut scratch.model_from_node, &mut scratch.matrices);
+            .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
-        scratch.palette.set_matrices(&scratch.matrices);
         if self.restart {
             self.surface.place(&scratch.palette, world_from_model)?;
         } else {
@@ -288,14 +285,16 @@ impl PosedSurface {
         let joints = match self.timing.joints {
             PoseTiming::EachTick => self.rig.read_joints(hierarchy, &mut into.nodes),
             PoseTiming::EachFrame => {
-                set_between(&mut into.nodes, &before.nodes, &drawn.nodes, fraction)?;
+                into.nodes.clone_from(&before.nodes);
+                into.nodes.blend_in(&drawn.nodes, fraction)?;
                 Ok(())
             }
         };
         let root = match self.timing.root {
             PoseTiming::EachTick => self.rig.read_root(hierarchy, &mut into.above),
             PoseTiming::EachFrame => {
-                set_between(&mut into.above, &before.above, &drawn.above, fraction)?;
+                into.above.clone_from(&before.above);
+                into.above.blend_in(&drawn.above, fraction)?;
                 Ok(())
             }
         };
@@ -324,13 +323,11 @@ impl PosedSurface {
     /// Puts the palette that the last frame drew into `scratch`, and gives where the creature stood.
     fn compose_drawn(&mut self) -> Option<Similarity> {
         let scratch = &mut self.scratch;
-        let placed = self.rig.compose(
+        self.rig.compose(
             &self.drawn,
             &mut scratch.model_from_node,
-            &mut scratch.matrices,
-        )?;
-        scratch.palette.set_matrices(&scratch.matrices);
-        Some(placed)
+            &mut scratch.palette,
+        )
     }
 
     /// As the last frame drew it, if anyone asked for that since.

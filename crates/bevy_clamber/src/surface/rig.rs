@@ -5,7 +5,7 @@ use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::{self, Pose};
+use clamber_surface::rig::{self, Palette, Pose};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::ColliderError;
@@ -138,7 +138,7 @@ impl Rig {
         &self,
         locals: &Locals,
         model_from_node: &mut Vec<DAffine3>,
-        matrices: &mut Vec<Affine>,
+        palette: &mut Palette,
     ) -> Option<Similarity> {
         let mut world_from_model = DAffine3::IDENTITY;
         for transform in &locals.above.transforms {
@@ -154,17 +154,17 @@ impl Rig {
         if locals.nodes.transforms.len() != self.tree.nodes.len() || !similarity.is_valid() {
             return None;
         }
-        model_from_node.clear();
-        for (node, local) in self.tree.nodes.iter().zip(&locals.nodes.transforms) {
+        model_from_node.resize(self.tree.nodes.len(), DAffine3::IDENTITY);
+        let nodes = self.tree.nodes.iter().zip(&locals.nodes.transforms);
+        for (index, (node, local)) in nodes.enumerate() {
             let parent = match node.parent {
-                Some(parent) => model_from_node[parent as usize],
-                None => rest,
+                Some(parent) => &model_from_node[parent as usize],
+                None => &rest,
             };
-            model_from_node.push(parent * local.to_affine());
+            model_from_node[index] = *parent * local.to_affine();
         }
-        matrices.clear();
         let joints = self.tree.node_of_joint.iter().zip(&self.joint_from_mesh);
-        matrices.extend(joints.map(|(node, joint_from_mesh)| {
+        palette.set_matrices(joints.map(|(node, joint_from_mesh)| {
             Affine::from_f64(&(model_from_node[*node as usize] * *joint_from_mesh))
         }));
         Some(similarity)

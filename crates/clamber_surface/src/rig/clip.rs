@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
-use super::transform::{lerp, rotation_f32, rotation_f64};
+use super::transform::{lerp, rotation_f32, rotation_f64, unit_rotation};
 use super::{JointId, Pose, RigError};
 use crate::geometry::{round_to_f32, slerp, widen};
 
@@ -176,13 +176,10 @@ impl Channel {
     fn rotation(&self, values: &[Quat], at: Moment) -> DQuat {
         let next = |key: usize| key + usize::from(at.interval > 0.0);
         let value = |index: usize| rotation_f64(values[index]);
+        let unit = |index: usize| unit_rotation(values[index]);
         match self.interpolation {
-            Interpolation::Step => value(at.key).normalize(),
-            Interpolation::Linear => slerp(
-                value(at.key).normalize(),
-                value(next(at.key)).normalize(),
-                at.part,
-            ),
+            Interpolation::Step => unit(at.key),
+            Interpolation::Linear => slerp(unit(at.key), unit(next(at.key)), at.part),
             Interpolation::CubicSpline => {
                 let [v0, b0, a1, v1] = hermite_indices(at.key, next(at.key));
                 let [w0, wb, wa, w1] = at.hermite_weights();
@@ -191,7 +188,7 @@ impl Channel {
                 if sum.length_squared() > 1e-24 {
                     sum.normalize()
                 } else {
-                    value(if at.part < 0.5 { v0 } else { v1 }).normalize()
+                    unit(if at.part < 0.5 { v0 } else { v1 })
                 }
             }
         }

@@ -24,9 +24,9 @@ impl Palette {
     }
 
     /// Becomes [`Palette::from_matrices`] of others, and keeps its memory.
-    pub fn set_matrices(&mut self, matrices: &[Affine]) {
+    pub fn set_matrices(&mut self, matrices: impl IntoIterator<Item = Affine>) {
         self.matrices.clear();
-        self.matrices.extend_from_slice(matrices);
+        self.matrices.extend(matrices);
         self.model_from_joint.clear();
     }
 

@@ -1,6 +1,6 @@
-use super::transform::{lerp, rotation_f32, rotation_f64};
+use super::transform::{lerp, rotation_f32, unit_rotation};
 use super::{JointId, RigError, Transform};
-use crate::geometry::{round_to_f32, slerp};
+use crate::geometry::{Slerp, round_to_f32};
 
 /// The local transform of every joint of a skeleton, in joint order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,7 +11,8 @@ pub struct Pose {
 
 impl Pose {
     /// Mixes `self` (at weight 0) with `other` (at weight 1): translations and scales linearly,
-    /// rotations along the shorter arc. Weights outside 0 to 1 are clamped.
+    /// rotations along the shorter arc. A transform that is the same in both stays as it is, bit for
+    /// bit. Weights outside 0 to 1 are clamped.
     ///
     /// # Errors
     /// [`RigError::JointCount`] if the poses differ in length, [`RigError::NotFinite`] if the
@@ -41,12 +42,16 @@ impl Pose {
         self.validate()?;
         other.validate()?;
         let t = weight.clamp(0.0, 1.0);
+        let slerp = Slerp::new(t);
         for (mine, theirs) in self.transforms.iter_mut().zip(&other.transforms) {
+            if mine == theirs {
+                continue;
+            }
             mine.translation = round_to_f32(lerp(mine.translation, theirs.translation, t));
             mine.scale = round_to_f32(lerp(mine.scale, theirs.scale, t));
-            let from = rotation_f64(mine.rotation).normalize();
-            let to = rotation_f64(theirs.rotation).normalize();
-            mine.rotation = rotation_f32(slerp(from, to, t));
+            let from = unit_rotation(mine.rotation);
+            let to = unit_rotation(theirs.rotation);
+            mine.rotation = rotation_f32(slerp.between(from, to));
         }
         Ok(())
     }
@@ -66,6 +71,7 @@ impl Pose {
 mod tests {
     use super::*;
     use crate::geometry::{rotation_from_axis_angle, rotation_vector};
+    use crate::rig::rotation_f64;
     use glam::{DVec3, Quat, Vec3};
 
     fn pose(angle: f64, x: f32) -> Pose {
@@ -83,6 +89,7 @@ mod tests {
         let (a, b) = (pose(0.2, 1.0), pose(1.0, 3.0));
         assert_eq!(a.blend(&b, 0.0).unwrap().transforms[0].translation.x, 1.0);
         assert_eq!(a.blend(&b, 7.0).unwrap(), a.blend(&b, 1.0).unwrap());
+        assert_eq!(a.blend(&a, 0.3).unwrap(), a);
         let middle = a.blend(&b, 0.5).unwrap().transforms[0];
         assert_eq!(middle.translation.x, 2.0);
         let turned = rotation_vector(rotation_f64(middle.rotation));

@@ -42,13 +42,28 @@ impl SkinnedSurface {
     ///
     /// # Errors
     /// As [`SkinnedSurface::overlap_sphere`]; nothing is visited then.
-    pub fn visit_overlaps(
+    pub fn visit_overlap_sphere(
         &self,
         sphere: &Sphere,
         visit: impl FnMut(SurfaceHit),
     ) -> Result<(), SurfaceError> {
         let radius = sphere.check()?;
         self.visit_region(sphere, radius, visit);
+        Ok(())
+    }
+
+    /// [`SkinnedSurface::overlap_capsule`] for callers with a place of their own for the hits, which
+    /// come in no promised order.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::overlap_capsule`]; nothing is visited then.
+    pub fn visit_overlap_capsule(
+        &self,
+        capsule: &Capsule,
+        visit: impl FnMut(SurfaceHit),
+    ) -> Result<(), SurfaceError> {
+        let radius = capsule.check()?;
+        self.visit_region(capsule, radius, visit);
         Ok(())
     }
 
