@@ -10,7 +10,7 @@ use clamber::world::rapier3d::parry::query::{PointQuery, Ray as ParryRay, RayCas
 use clamber::world::rapier3d::parry::shape::TriMesh;
 use glam::Vec3;
 
-use crate::workload::{RAY, Tick};
+use clamber_scenes::riders::Tick;
 
 /// Answers all queries of a tick; gives how many triangles they hit.
 pub(crate) trait Contender {
@@ -50,7 +50,7 @@ impl Lazy {
                 assert_eq!(answered, Ok(()));
                 found += self.hits.len();
             }
-            let hit = self.surface.cast_ray(&rider.ray, RAY);
+            let hit = self.surface.cast_ray(&rider.ray, rider.reach);
             found += usize::from(hit.is_ok_and(|hit| hit.is_some()));
             let motion = self.surface.motion(&rider.anchor, 1.0 / 60.0);
             found += usize::from(motion.is_ok());
@@ -119,7 +119,9 @@ impl Contender for Parry {
         for rider in &tick.riders {
             found += self.overlaps(&rider.body) + self.overlaps(&rider.foot);
             let ray = ParryRay::new(rider.ray.origin(), rider.ray.direction());
-            let hit = self.shape.cast_local_ray_and_get_normal(&ray, RAY, false);
+            let hit = self
+                .shape
+                .cast_local_ray_and_get_normal(&ray, rider.reach, false);
             found += usize::from(hit.is_some());
             // Its anchor's point and velocity, without frame and stretch.
             let corners = self.mesh.triangles()[rider.anchor.triangle.index()];

@@ -10,18 +10,18 @@
 mod contender;
 mod kernel;
 mod timing;
-mod workload;
 
 use std::error::Error;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use clamber::prelude::*;
-use clamber_scenes::measure::{Bound, Cells, is_brief, median_us};
+use clamber_scenes::giant::giant_of;
+use clamber_scenes::measure::{Bound, Caches, Cells, Stream, is_brief, median_us};
+use clamber_scenes::riders::Workload;
 use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
-use timing::{Caches, Lap, Stream, race};
-use workload::{Workload, giant, nowhere};
+use timing::{Lap, race};
 
 /// How long the bench may take.
 struct Effort {
@@ -64,10 +64,10 @@ fn main() -> ExitCode {
 
 fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     let mut cells = Cells::default();
-    let mut stream = Stream::new();
+    let mut stream = Stream::default();
     let mut lazy_warm = Vec::new();
     for vertices in [effort.small, effort.middle, effort.large] {
-        let creature = giant(vertices)?;
+        let creature = giant_of(vertices)?;
         let label = format!("{}k vertices", vertices / 1000);
         let workload = Workload::new(&creature, 1, effort.ticks)?;
         let mut field = Field::new(&workload)?;
@@ -194,7 +194,7 @@ fn everything(
 fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let mut surface = SkinnedSurface::new(workload.mesh.clone());
     surface.advance(&workload.ticks[0].palette, Similarity::IDENTITY)?;
-    let place = nowhere(&workload.mesh);
+    let place = Vec3::splat(100.0 * workload.mesh.radius());
     let sphere = Sphere {
         center: place,
         radius: 1.0,

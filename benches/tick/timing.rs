@@ -3,36 +3,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use clamber_scenes::measure::quantile;
+use clamber_scenes::measure::{Caches, Stream, quantile};
+use clamber_scenes::riders::Tick;
 
 use crate::contender::Contender;
-use crate::workload::Tick;
-
-/// Streamed between cold ticks, as the rest of a game would: more than the caches hold.
-const STREAM: usize = 64 << 20;
-
-/// Whether a tick finds its data in the caches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Caches {
-    Warm,
-    Cold,
-}
-
-/// Memory that cold ticks stream.
-pub(crate) struct Stream(Vec<u64>);
-
-impl Stream {
-    pub(crate) fn new() -> Self {
-        Self(vec![1; STREAM / 8])
-    }
-
-    fn run(&mut self) {
-        for number in &mut self.0 {
-            *number = number.wrapping_mul(3);
-        }
-        black_box(&self.0);
-    }
-}
 
 /// Median microseconds a tick of each contender, and how many hits each had in all.
 pub(crate) fn race(

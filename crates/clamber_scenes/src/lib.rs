@@ -4,6 +4,7 @@
 //! - [`giant`]: the project's own giant, from its file, at any number of vertices.
 //! - [`resample`]: any mesh at any number of vertices.
 //! - [`Creature`]: what a scene needs of a creature, from code or from a file.
+//! - [`riders`]: what riders on a walking giant ask in a tick.
 //! - [`rocks`]: rocks on a shaking giant.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
@@ -26,6 +27,7 @@ pub mod measure;
 #[cfg(feature = "render")]
 pub mod picture;
 pub mod resample;
+pub mod riders;
 pub mod rocks;
 pub mod solid_angle;
 pub mod test_data;

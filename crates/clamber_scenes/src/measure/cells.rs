@@ -78,7 +78,8 @@ impl Cells {
     }
 }
 
-fn measure_folder() -> PathBuf {
+/// Where benches put their results: `measure` in cargo's target folder.
+pub fn measure_folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);
     let target = target.or_else(|| Some(workspace?.join("target")));

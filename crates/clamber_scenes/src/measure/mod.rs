@@ -1,10 +1,14 @@
-//! What benches share: tables, quantiles, times, and the smallest ball as a yardstick.
+//! What benches share: tables, plots, quantiles, times, cold caches, and the smallest ball as a yardstick.
 
+mod caches;
 mod cells;
+mod plot;
 mod smallest_ball;
 mod table;
 
-pub use cells::{Bound, Cells};
+pub use caches::{Caches, Stream};
+pub use cells::{Bound, Cells, measure_folder};
+pub use plot::{Plot, Series};
 pub use smallest_ball::{Ball, smallest_ball};
 pub use table::Table;
 

@@ -3,17 +3,15 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber::mesh::VertexId;
-use clamber::prelude::*;
-use clamber_scenes::Creature;
-use clamber_scenes::giant::giant_of;
-use glam::Vec3;
+use clamber_surface::geometry::{Ray, Similarity, Sphere};
+use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
+use clamber_surface::rig::{Palette, Playback};
+use clamber_surface::surface::{Anchor, SkinnedSurface};
+
+use crate::Creature;
 
 /// Ticks a second.
 const RATE: f64 = 60.0;
-
-/// Length of every rider's ray, metres.
-pub(crate) const RAY: f32 = 5.0;
 
 /// How deep a rider's spheres stand in the skin, as a share of the radius: a skin width of 10 mm for a
 /// sphere of 0.5 m.
@@ -26,25 +24,33 @@ const TOUCHED: usize = 30;
 const LOOKS: usize = 8;
 
 /// One rider's queries of one tick, in model space.
-pub(crate) struct Rider {
+pub struct Rider {
     /// Ten mean edge lengths in radius.
-    pub(crate) body: Sphere,
+    pub body: Sphere,
     /// One mean edge length in radius.
-    pub(crate) foot: Sphere,
-    pub(crate) ray: Ray,
-    pub(crate) anchor: Anchor,
+    pub foot: Sphere,
+    /// From the middle of the body to the skin.
+    pub ray: Ray,
+    /// How far it looks: twice the body's radius.
+    pub reach: f32,
+    /// What the rider stands on.
+    pub anchor: Anchor,
 }
 
 /// One tick: the pose, and all riders' queries.
-pub(crate) struct Tick {
-    pub(crate) palette: Palette,
-    pub(crate) riders: Vec<Rider>,
+pub struct Tick {
+    /// In model space, which is the world's.
+    pub palette: Palette,
+    /// In one order in all ticks.
+    pub riders: Vec<Rider>,
 }
 
 /// A giant with its ticks.
-pub(crate) struct Workload {
-    pub(crate) mesh: Arc<ColliderMesh>,
-    pub(crate) ticks: Vec<Tick>,
+pub struct Workload {
+    /// What is ridden.
+    pub mesh: Arc<ColliderMesh>,
+    /// Of the walk, from its beginning.
+    pub ticks: Vec<Tick>,
 }
 
 impl Workload {
@@ -52,11 +58,10 @@ impl Workload {
     /// of the skin where their spheres fit at rest. A single rider takes the one of [`CHOICES`] points
     /// where it touches nearest to [`TOUCHED`] triangles in the mean over the walk, so that riders on
     /// giants of different resolution have as much to answer.
-    pub(crate) fn new(
-        creature: &Creature,
-        riders: usize,
-        ticks: usize,
-    ) -> Result<Self, Box<dyn Error>> {
+    ///
+    /// # Errors
+    /// If the creature has no clip `walk`, or one that does not fit it.
+    pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, Box<dyn Error>> {
         let mesh = creature.collider.clone();
         let mut surface = SkinnedSurface::new(mesh.clone());
         let edge = mean_edge(&mesh);
@@ -122,27 +127,18 @@ fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Bo
     Ok(Rider {
         body,
         foot: above(edge),
+        reach: 2.0 * body.radius,
         ray: Ray::new(body.center, -motion.normal).ok_or("a normal without length")?,
         anchor: *seat,
     })
 }
 
 /// Mean length of the edges at rest.
-pub(crate) fn mean_edge(mesh: &ColliderMesh) -> f32 {
+pub fn mean_edge(mesh: &ColliderMesh) -> f32 {
     let place = |v: VertexId| mesh.positions()[v.index()];
     let lengths = mesh.triangles().iter().flat_map(|&[a, b, c]| {
         [(a, b), (b, c), (c, a)].map(|(from, to)| f64::from(place(from).distance(place(to))))
     });
     let sum: f64 = lengths.sum();
     (sum / (3 * mesh.triangles().len()) as f64) as f32
-}
-
-/// A place where nothing is.
-pub(crate) fn nowhere(mesh: &ColliderMesh) -> Vec3 {
-    Vec3::splat(100.0 * mesh.radius())
-}
-
-/// The giant with so many vertices.
-pub(crate) fn giant(vertices: usize) -> Result<Creature, Box<dyn Error>> {
-    Ok(giant_of(vertices)?)
 }

@@ -1,0 +1,158 @@
+//! Table and plots.
+
+use std::error::Error;
+
+use clamber_scenes::measure::{Plot, Series, Table, measure_folder};
+use clamber_surface::mesh::ColliderMesh;
+
+use crate::race::{Entrant, Lap};
+
+const COLUMNS: [&str; 14] = [
+    "method",
+    "vertices",
+    "triangles",
+    "riders",
+    "update, us",
+    "ray, us",
+    "overlap, us",
+    "closest point, us",
+    "sphere cast, us",
+    "whole tick, us",
+    "quartiles, us",
+    "tick / clamber's",
+    "hits / clamber's",
+    "memory, MB",
+];
+
+/// What was measured, a row for each method, size and number of riders.
+pub(crate) struct Report {
+    table: Table,
+    rows: Vec<Row>,
+}
+
+struct Row {
+    name: &'static str,
+    vertices: usize,
+    riders: usize,
+    tick: f64,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self {
+            table: Table::new(&COLUMNS),
+            rows: Vec::new(),
+        }
+    }
+}
+
+impl Report {
+    /// Adds a race. Ours comes first in it, and skinned ahead second.
+    pub(crate) fn add(
+        &mut self,
+        mesh: &ColliderMesh,
+        riders: usize,
+        entrants: &[Entrant],
+        laps: Vec<Lap>,
+    ) -> Result<(), Box<dyn Error>> {
+        let (ours, eager) = (&laps[0], &laps[1]);
+        if ours.hits != eager.hits {
+            return Err(format!("{} lazy hits a tick, {} eager", ours.hits, eager.hits).into());
+        }
+        let vertices = mesh.positions().len();
+        for (entrant, lap) in entrants.iter().zip(&laps) {
+            let [low, high] = lap.tick_quartiles;
+            let mut row = vec![
+                entrant.name.to_owned(),
+                vertices.to_string(),
+                mesh.triangles().len().to_string(),
+                riders.to_string(),
+                digits(lap.update),
+            ];
+            let queries = lap.queries.iter();
+            row.extend(queries.map(|us| us.map_or("cannot".to_owned(), digits)));
+            row.extend([
+                digits(lap.tick),
+                format!("{} to {}", digits(low), digits(high)),
+                digits(lap.tick / ours.tick),
+                format!("{:.4}", lap.hits / ours.hits),
+                digits(entrant.bytes as f64 / 1e6),
+            ]);
+            println!("{}", row.join(", "));
+            self.table.push(row);
+            self.rows.push(Row {
+                name: entrant.name,
+                vertices,
+                riders,
+                tick: lap.tick,
+            });
+        }
+        Ok(())
+    }
+
+    pub(crate) fn finish(self, brief: bool) -> Result<(), Box<dyn Error>> {
+        println!("\n{}", self.table);
+        let brief = if brief { "_brief" } else { "" };
+        let folder = measure_folder();
+        let path = folder.join(format!("peers{brief}.csv"));
+        self.table.write_csv(&path)?;
+        println!("written to {}", path.display());
+        for riders in [1, 100] {
+            let title = format!("A whole tick, {riders} riders");
+            let plot = self.plot(
+                &title,
+                "vertices",
+                |row| row.riders == riders,
+                |row| row.vertices,
+            );
+            plot.write_svg(&folder.join(format!("peers_{riders}_riders{brief}.svg")))?;
+        }
+        let largest = self.rows.iter().map(|row| row.vertices).max().unwrap_or(0);
+        let title = format!("A whole tick, {largest} vertices");
+        let plot = self.plot(
+            &title,
+            "riders",
+            |row| row.vertices == largest,
+            |row| row.riders,
+        );
+        plot.write_svg(&folder.join(format!("peers_by_riders{brief}.svg")))
+    }
+
+    fn plot(
+        &self,
+        title: &str,
+        x: &str,
+        shown: impl Fn(&Row) -> bool,
+        place: impl Fn(&Row) -> usize,
+    ) -> Plot {
+        let mut series: Vec<Series> = Vec::new();
+        for row in self.rows.iter().filter(|row| shown(row)) {
+            let point = (place(row) as f64, row.tick);
+            match series.iter_mut().find(|series| series.name == row.name) {
+                Some(series) => series.points.push(point),
+                None => series.push(Series {
+                    name: row.name.to_owned(),
+                    points: vec![point],
+                    joined: true,
+                }),
+            }
+        }
+        Plot {
+            title: title.to_owned(),
+            x: x.to_owned(),
+            y: "us".to_owned(),
+            series,
+        }
+    }
+}
+
+/// Three significant digits.
+fn digits(value: f64) -> String {
+    let decimals = match value.abs() {
+        size if size >= 100.0 => 0,
+        size if size >= 10.0 => 1,
+        size if size >= 1.0 => 2,
+        _ => 3,
+    };
+    format!("{value:.decimals$}")
+}

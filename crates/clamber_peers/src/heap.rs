@@ -1,0 +1,32 @@
+/// What `make` makes, and how many more bytes the heap holds since: Rust's and C++'s are one. 0 bytes where the C library
+/// is not glibc, which alone tells.
+pub fn taken_from_heap<T>(make: impl FnOnce() -> T) -> (T, usize) {
+    let before = held();
+    let made = make();
+    (made, held().saturating_sub(before))
+}
+
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn held() -> usize {
+    #[expect(unsafe_code, reason = "a call into the C library")]
+    // SAFETY: it takes no argument, and may be called at any time.
+    let heap = unsafe { libc::mallinfo2() };
+    heap.uordblks + heap.hblkhd
+}
+
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+fn held() -> usize {
+    0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    fn a_megabyte_is_seen() {
+        let (made, bytes) = taken_from_heap(|| vec![1u8; 1 << 20]);
+        assert!(bytes >= made.len(), "{bytes}");
+    }
+}

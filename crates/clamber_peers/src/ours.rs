@@ -1,0 +1,111 @@
+//! Ours: lazily, and all at once.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use clamber_surface::geometry::{Ray, Similarity, Sphere};
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::{SkinnedSurface, SurfaceHit, TOLERANCE};
+use glam::{DVec3, Vec3};
+
+use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
+
+pub(crate) const ENTRIES: &[Entry] = &[
+    Entry {
+        name: "clamber",
+        make: |mesh| Ok(Box::new(Ours::new(mesh, false))),
+    },
+    Entry {
+        name: "clamber, all skinned ahead",
+        make: |mesh| Ok(Box::new(Ours::new(mesh, true))),
+    },
+];
+
+/// Its creature's place is kept in f64 and queries are brought there, as clamber's users do.
+struct Ours {
+    surface: SkinnedSurface,
+    ahead: bool,
+    hits: Vec<SurfaceHit>,
+}
+
+impl Ours {
+    fn new(mesh: &Arc<ColliderMesh>, ahead: bool) -> Self {
+        Self {
+            surface: SkinnedSurface::new(Arc::clone(mesh)),
+            ahead,
+            hits: Vec::new(),
+        }
+    }
+
+    fn local(&self, point: Vec3) -> Vec3 {
+        let placed = self.surface.world_from_model();
+        placed.inverse_transform_point_f32(point.as_dvec3())
+    }
+}
+
+impl Peer for Ours {
+    fn update(&mut self, palette: &Palette, place: DVec3) -> Result<(), Box<dyn Error>> {
+        let world_from_model = Similarity {
+            translation: place,
+            ..Similarity::IDENTITY
+        };
+        self.surface.advance(palette, world_from_model)?;
+        if self.ahead {
+            self.surface.skin_ahead();
+        }
+        Ok(())
+    }
+
+    fn cast_ray(&mut self, ray: &Ray, max_distance: f32) -> Answer<Option<RayHit>> {
+        let local = Ray::new(self.local(ray.origin()), ray.direction());
+        let hit = local.and_then(|ray| self.surface.cast_ray(&ray, max_distance).ok()?);
+        Ok(hit.map(|hit| RayHit {
+            distance: hit.distance,
+            triangle: hit.triangle,
+        }))
+    }
+
+    fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
+        let local = Sphere {
+            center: self.local(sphere.center),
+            ..*sphere
+        };
+        // Refused only if not finite, and then nothing is within.
+        self.hits.clear();
+        let _ = self.surface.overlap_sphere(&local, &mut self.hits);
+        Ok(self.hits.len())
+    }
+
+    fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>> {
+        let hit = self.surface.closest_point(self.local(point), max_distance);
+        let placed = self.surface.world_from_model();
+        Ok(hit.ok().flatten().map(|hit| Nearest {
+            point: placed.transform_point_f32(hit.point).as_vec3(),
+            distance: hit.distance,
+        }))
+    }
+
+    fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
+        let local = Sphere {
+            center: self.local(sphere.center),
+            ..*sphere
+        };
+        let hit = self.surface.cast_sphere(&local, motion, TOLERANCE);
+        Ok(hit.ok().flatten().map(|hit| hit.time as f32))
+    }
+
+    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
+        let anchor = self.surface.anchor(triangle, barycentric);
+        let motion = anchor.and_then(|anchor| self.surface.motion(&anchor, 1.0));
+        let placed = self.surface.world_from_model();
+        motion.map_or((Vec3::NAN, Vec3::NAN), |motion| {
+            let point = placed.transform_point_f32(motion.position).as_vec3();
+            (point, motion.velocity)
+        })
+    }
+
+    fn bytes(&self, _: usize) -> usize {
+        self.surface.memory()
+    }
+}

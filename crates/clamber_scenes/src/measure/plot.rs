@@ -1,0 +1,149 @@
+use std::error::Error;
+use std::ops::Range;
+use std::path::Path;
+
+use plotters::coord::combinators::IntoLogRange;
+use plotters::prelude::*;
+
+/// Measured points on two logarithmic axes, as an SVG.
+#[derive(Clone, Debug, Default)]
+pub struct Plot {
+    /// Above it.
+    pub title: String,
+    /// What the horizontal axis shows, with its unit.
+    pub x: String,
+    /// What the vertical axis shows, with its unit.
+    pub y: String,
+    /// Each in a colour of its own.
+    pub series: Vec<Series>,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// In the legend.
+    pub name: String,
+    /// What is not finite and above 0 has no place on such axes, and is left out.
+    pub points: Vec<(f64, f64)>,
+    /// Points are joined, in their order.
+    pub joined: bool,
+}
+
+const COLORS: [RGBColor; 12] = [
+    RGBColor(200, 40, 40),
+    RGBColor(31, 119, 180),
+    RGBColor(44, 130, 44),
+    RGBColor(148, 103, 189),
+    RGBColor(230, 120, 20),
+    RGBColor(23, 160, 175),
+    RGBColor(120, 80, 60),
+    RGBColor(220, 110, 180),
+    RGBColor(110, 110, 110),
+    RGBColor(150, 160, 30),
+    RGBColor(20, 50, 120),
+    RGBColor(0, 0, 0),
+];
+
+impl Plot {
+    /// Draws it, and makes the folder if need be. Without a point there is nothing to draw, and no file.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn write_svg(&self, path: &Path) -> Result<(), Box<dyn Error>> {
+        let points = || self.series.iter().flat_map(Series::drawable);
+        let (Some(x), Some(y)) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)))
+        else {
+            return Ok(());
+        };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let root = SVGBackend::new(path, (1000, 620)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (area, legend) = root.split_horizontally(740);
+        let mut chart = ChartBuilder::on(&area)
+            .caption(&self.title, ("sans-serif", 20))
+            .margin(8)
+            .x_label_area_size(44)
+            .y_label_area_size(72)
+            .build_cartesian_2d(x.log_scale(), y.log_scale())?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.x)
+            .y_desc(&self.y)
+            .x_label_formatter(&number)
+            .y_label_formatter(&number)
+            .light_line_style(TRANSPARENT)
+            .draw()?;
+        for (index, series) in self.series.iter().enumerate() {
+            let color = COLORS[index % COLORS.len()];
+            let points: Vec<(f64, f64)> = series.drawable().collect();
+            if series.joined {
+                let style = color.stroke_width(2);
+                chart.draw_series(std::iter::once(PathElement::new(points.clone(), style)))?;
+            }
+            let dots = points.iter().map(|p| Circle::new(*p, 4, color.filled()));
+            chart.draw_series(dots)?;
+            let height = 50 + 24 * index as i32;
+            legend.draw(&Circle::new((10, height), 5, color.filled()))?;
+            let text = ("sans-serif", 15).into_font();
+            legend.draw(&Text::new(series.name.clone(), (24, height - 8), text))?;
+        }
+        root.present()?;
+        Ok(())
+    }
+}
+
+impl Series {
+    fn drawable(&self) -> impl Iterator<Item = (f64, f64)> {
+        let shown = |value: f64| value.is_finite() && value > 0.0;
+        let points = self.points.iter().copied();
+        points.filter(move |(x, y)| shown(*x) && shown(*y))
+    }
+}
+
+/// Somewhat more than what holds all values; none without values.
+fn range(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    (low <= high).then_some(low / 1.5..high * 1.5)
+}
+
+fn number(value: &f64) -> String {
+    match value.abs() {
+        size if size >= 1e6 => format!("{:.0} M", value / 1e6),
+        size if size >= 1e3 => format!("{:.0} k", value / 1e3),
+        size if size >= 1.0 => format!("{value:.0}"),
+        size if size >= 1e-3 => format!("{value}"),
+        _ => format!("{value:.0e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_a_place_is_drawn_and_the_rest_left_out() {
+        let folder = std::env::temp_dir().join(format!("clamber-plot-{}", std::process::id()));
+        let path = folder.join("plot.svg");
+        let mut plot = Plot {
+            series: vec![Series {
+                name: "one".into(),
+                points: vec![(1.0, 2.0), (0.0, 1.0), (10.0, f64::NAN), (100.0, 3e-9)],
+                joined: true,
+            }],
+            ..Plot::default()
+        };
+        plot.write_svg(&path).unwrap();
+        let drawn = std::fs::read_to_string(&path).unwrap();
+        // Two points, and the legend's.
+        assert_eq!(drawn.matches("<circle").count(), 3, "{drawn}");
+        assert!(drawn.contains("one"));
+        std::fs::remove_dir_all(&folder).unwrap();
+        plot.series.clear();
+        plot.write_svg(&path).unwrap();
+        assert!(!path.exists());
+    }
+}
