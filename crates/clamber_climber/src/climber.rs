@@ -1,6 +1,7 @@
 use clamber_world::Contact;
 use glam::DVec3;
 
+use crate::surroundings::Surroundings;
 use crate::{ClimberConfig, ClimberError, ClimberMode, ClimberState};
 
 /// What a player wants of a climber this tick.
@@ -22,6 +23,8 @@ pub struct Climber {
     pub(crate) contacts: Vec<Contact>,
     /// Direction away from each contact, and its velocity; kept for its memory.
     pub(crate) planes: Vec<(DVec3, DVec3)>,
+    /// Obstacles of the current step; kept for its memory.
+    pub(crate) surroundings: Surroundings,
 }
 
 impl Climber {
@@ -46,6 +49,7 @@ impl Climber {
             state,
             contacts: Vec::new(),
             planes: Vec::new(),
+            surroundings: Surroundings::default(),
         })
     }
 

@@ -40,6 +40,11 @@ impl ClimberConfig {
         (-self.gravity).normalize_or(DVec3::Y)
     }
 
+    /// Angle of a unit vector from up, radians.
+    pub(crate) fn slope(&self, away: DVec3) -> f64 {
+        libm::acos(away.dot(self.up()).clamp(-1.0, 1.0))
+    }
+
     pub(crate) fn validate(&self) -> Result<(), ClimberError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let not_negative = |x: f64| x >= 0.0 && x.is_finite();

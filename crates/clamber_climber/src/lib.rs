@@ -6,6 +6,7 @@ mod discrete;
 mod error;
 mod state;
 mod step;
+mod surroundings;
 
 pub use climber::{Climber, ClimberInput};
 pub use config::ClimberConfig;

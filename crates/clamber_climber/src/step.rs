@@ -87,6 +87,7 @@ impl Climber {
         }
         let before = self.state;
         let tick = Tick { obstacles, dt };
+        self.surroundings.forget();
         let mut report = StepReport::default();
         match self.state.mode {
             ClimberMode::Standing => self.stand(input, &tick, &mut report),
@@ -118,7 +119,7 @@ impl Climber {
         footing.contact = motion.position;
         self.state.footing = Some(footing);
         self.turn_heading(&motion);
-        if self.slope(support) > self.config.max_slope + SLOPE_HYSTERESIS {
+        if self.config.slope(support) > self.config.max_slope + SLOPE_HYSTERESIS {
             self.leave(ClimberEvent::Slipped, report);
             return;
         }
@@ -165,7 +166,8 @@ impl Climber {
         } else {
             // Over the edge of level ground, the ground ends; a slope that tips is slipped on.
             let nearest = self.ground(tick, reach, core::f64::consts::PI, |_| true);
-            let tipped = nearest.is_some_and(|ground| self.slope(ground.contact.normal) > limit);
+            let tipped =
+                nearest.is_some_and(|ground| self.config.slope(ground.contact.normal) > limit);
             self.state.velocity += walk;
             let event = if tipped {
                 ClimberEvent::Slipped
@@ -210,7 +212,8 @@ impl Climber {
     fn stop_at_contacts(&mut self, tick: &Tick<'_>, reach: f64) {
         let center = self.state.position;
         self.planes.clear();
-        for (id, obstacle) in tick.sorted() {
+        let near = self.surroundings.near(tick.obstacles, center, reach);
+        for (id, obstacle) in near {
             self.contacts.clear();
             obstacle.overlap_sphere(center, reach, &mut self.contacts);
             self.planes.extend(self.contacts.iter().map(|contact| {
@@ -240,8 +243,9 @@ impl Climber {
         }
         let mut allowed = length;
         let margin = 0.5 * self.config.radius;
-        for (_, obstacle) in tick.sorted() {
-            let hit = obstacle.cast_ray(self.state.position, displacement, length + margin);
+        let (start, reach) = (self.state.position, length + margin);
+        for (_, obstacle) in self.surroundings.near(tick.obstacles, start, reach) {
+            let hit = obstacle.cast_ray(start, displacement, reach);
             if let Some(hit) = hit.filter(|hit| hit.distance.is_finite()) {
                 allowed = allowed.min((hit.distance - margin).max(0.0));
             }
@@ -252,10 +256,11 @@ impl Climber {
     /// The mean push-out of everything that the sphere overlaps.
     fn push_out(&mut self, tick: &Tick<'_>) -> PushOut {
         self.contacts.clear();
-        for (_, obstacle) in tick.sorted() {
-            obstacle.overlap_sphere(self.state.position, self.config.radius, &mut self.contacts);
+        let (center, radius) = (self.state.position, self.config.radius);
+        for (_, obstacle) in self.surroundings.near(tick.obstacles, center, radius) {
+            obstacle.overlap_sphere(center, radius, &mut self.contacts);
         }
-        average_push_out(&self.contacts, self.state.position, self.config.radius)
+        average_push_out(&self.contacts, center, radius)
     }
 
     /// The nearest contact within `reach` that is no steeper than `max_slope`.
@@ -268,7 +273,8 @@ impl Climber {
     ) -> Option<Ground> {
         let center = self.state.position;
         let mut best: Option<Ground> = None;
-        for (id, obstacle) in tick.sorted() {
+        let near = self.surroundings.near(tick.obstacles, center, reach);
+        for (id, obstacle) in near {
             self.contacts.clear();
             obstacle.overlap_sphere(center, reach, &mut self.contacts);
             for contact in &self.contacts {
@@ -278,7 +284,7 @@ impl Climber {
                 };
                 // In ascending order of obstacle and material: the first of equals stays.
                 let nearer = contact.distance < best.map_or(f64::INFINITY, |b| b.contact.distance);
-                let stands = || self.slope(contact.away(center)) <= max_slope;
+                let stands = || self.config.slope(contact.away(center)) <= max_slope;
                 if nearer && stands() && accept(&ground) {
                     best = Some(ground);
                 }
@@ -315,11 +321,6 @@ impl Climber {
         report.events.push(event);
     }
 
-    /// Angle between up and the direction from a contact to the climber, radians.
-    fn slope(&self, support: DVec3) -> f64 {
-        libm::acos(support.dot(self.config.up()).clamp(-1.0, 1.0))
-    }
-
     /// What the input asks for, along the surface.
     fn walk_velocity(&self, walk: DVec3, support: DVec3) -> DVec3 {
         let up = self.config.up();
@@ -338,20 +339,6 @@ impl Climber {
 }
 
 impl<'a> Tick<'a> {
-    /// Obstacles by ascending id, without memory: scenes hold few.
-    fn sorted(&self) -> impl Iterator<Item = (ObstacleId, &'a dyn Obstacle)> + use<'a> {
-        let obstacles = self.obstacles;
-        let mut last: Option<ObstacleId> = None;
-        std::iter::from_fn(move || {
-            let (id, obstacle) = obstacles
-                .iter()
-                .filter(|(id, _)| last.is_none_or(|last| *id > last))
-                .min_by_key(|(id, _)| *id)?;
-            last = Some(*id);
-            Some((*id, *obstacle))
-        })
-    }
-
     fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
         let (_, obstacle) = self.obstacles.iter().find(|(id, _)| *id == obstacle)?;
         obstacle.motion(point, self.dt).filter(|motion| {

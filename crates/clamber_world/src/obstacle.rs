@@ -73,6 +73,12 @@ pub struct PointMotion {
 /// that is not finite finds nothing, and neither does a length that is NaN or negative; lengths may
 /// be infinite.
 pub trait Obstacle {
+    /// Centre and radius of a ball in world space that holds all that queries of this tick can touch; `None` for what
+    /// has no bounds, or does not know them. What is out of its reach is not asked.
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        None
+    }
+
     /// The first point along a ray from `origin`, up to `max_distance`. `direction` may have any
     /// length but zero; distances are in metres along it.
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact>;

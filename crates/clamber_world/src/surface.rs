@@ -30,6 +30,10 @@ fn length_in_model(surface: &SkinnedSurface, length: f64) -> f32 {
 }
 
 impl Obstacle for SkinnedSurface {
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        self.bounding_ball()
+    }
+
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
         let world_from_model = self.world_from_model();
         let start = world_from_model.inverse_transform_point_f32(origin);

@@ -522,3 +522,56 @@ fn an_obstacle_that_answers_nonsense_does_not_spread_it() {
         climber.state()
     );
 }
+
+/// An obstacle that must not be asked, since its bounds say that it is elsewhere.
+struct Elsewhere(DVec3);
+
+impl Obstacle for Elsewhere {
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        Some((self.0, 20.0))
+    }
+
+    fn cast_ray(&self, _: DVec3, _: DVec3, _: f64) -> Option<Contact> {
+        panic!("asked for a ray at {}", self.0)
+    }
+
+    fn closest_point(&self, _: DVec3, _: f64) -> Option<Contact> {
+        panic!("asked for the nearest point at {}", self.0)
+    }
+
+    fn overlap_sphere(&self, _: DVec3, _: f64, _: &mut Vec<Contact>) {
+        panic!("asked for contacts at {}", self.0)
+    }
+
+    fn motion(&self, _: &MaterialPoint, _: f64) -> Option<PointMotion> {
+        panic!("asked for motion at {}", self.0)
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_is_not_asked_and_changes_no_bit() {
+    let ground = level();
+    let far: Vec<Elsewhere> = (0..40)
+        .map(|k| Elsewhere(DVec3::new(60.0 + 50.0 * f64::from(k), 0.0, 0.0)))
+        .collect();
+    let mut crowd: Vec<(ObstacleId, &dyn Obstacle)> = vec![(ObstacleId(20), &ground)];
+    for (k, one) in far.iter().enumerate() {
+        let id = if k < 20 { 39 - k } else { k + 1 };
+        crowd.push((ObstacleId(id as u32), one as &dyn Obstacle));
+    }
+    // Of two with one id the first counts: the ground stays it.
+    crowd.push((ObstacleId(20), &far[0]));
+    let (mut alone, mut among) = (climber_at(0.0, 1.0, 0.0), climber_at(0.0, 1.0, 0.0));
+    for tick in 0..240 {
+        let input = ClimberInput {
+            walk: DVec3::new(1.0, 0.0, 0.3),
+            jump: tick % 50 == 49,
+        };
+        alone
+            .step(&input, &[(ObstacleId(20), &ground)], DT)
+            .unwrap();
+        among.step(&input, &crowd, DT).unwrap();
+        assert_eq!(alone.state(), among.state(), "tick {tick}");
+    }
+    assert!(alone.state().position.x > 5.0, "{:?}", alone.state());
+}

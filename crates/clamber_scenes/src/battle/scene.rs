@@ -6,8 +6,8 @@ use clamber_climber::{
 };
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
+use clamber_world::rapier3d::geometry::{Collider, ColliderHandle};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
-use clamber_world::rapier3d::pipeline::QueryFilter;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
 
@@ -135,8 +135,12 @@ impl<'a> Battle<'a> {
     /// The rest of a tick that began at `start`, once the creature is posed.
     fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
         // The climber and the rocks pass through each other.
-        let terrain = RapierTerrain::of_world(&self.world, &self.before)
-            .with_filter(QueryFilter::only_fixed());
+        let bodies = &self.world.bodies;
+        let fixed = |_: ColliderHandle, collider: &Collider| {
+            let body = collider.parent().and_then(|body| bodies.get(body));
+            body.is_none_or(|body| body.is_fixed())
+        };
+        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(TERRAIN, &terrain), (CREATURE, &self.surface)];
         let report = self.climber.step(&input, &obstacles, TICK)?;

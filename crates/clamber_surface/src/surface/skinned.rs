@@ -1,7 +1,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::SurfaceError;
 use super::pose::Pose;
@@ -53,6 +53,8 @@ pub struct SkinnedSurface {
     /// That of the previous tick, expressed in the current model frame.
     pub(super) previous: Pose,
     world_from_model: Similarity,
+    /// [`SkinnedSurface::bounding_ball`].
+    ball: Option<(DVec3, f64)>,
     pub(super) simd_level: SimdLevel,
     pub(super) part_enabled: Vec<bool>,
     /// True for removed triangles.
@@ -72,10 +74,11 @@ impl SkinnedSurface {
     /// [`SkinnedSurface::new`] on a given instruction set: for measurements and tests, since the
     /// results are the same.
     pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
-        Self {
+        let mut surface = Self {
             current: Pose::at_rest(&mesh, simd_level),
             previous: Pose::at_rest(&mesh, simd_level),
             world_from_model: Similarity::IDENTITY,
+            ball: None,
             simd_level,
             part_enabled: vec![true; mesh.parts().len()],
             triangle_enabled: vec![true; mesh.triangles().len()],
@@ -83,7 +86,9 @@ impl SkinnedSurface {
             triangles_tested: AtomicU64::new(0),
             most_sweep_steps: AtomicU32::new(0),
             mesh,
-        }
+        };
+        surface.bound();
+        surface
     }
 
     /// The next tick: what is current becomes previous, and the given pose becomes current. Costs
@@ -133,6 +138,37 @@ impl SkinnedSurface {
         let ahead = self.touched_nearly_everything();
         self.pose(palette, world_from_model.normalized(), ahead);
         Ok(())
+    }
+
+    /// Falls asleep: from now on the surface stands still as it is posed, without motion, until it is placed or
+    /// advanced again. For a creature that nobody touches or draws: its clips, palette and
+    /// [`SkinnedSurface::advance`] can be left out, and queries that come near all the same are still answered.
+    /// Costs O(joints), once.
+    ///
+    /// To wake it, [`SkinnedSurface::place`] it where it is by then: `advance` would take all the way since for
+    /// the motion of one tick.
+    pub fn sleep(&mut self) {
+        let palette = self.current.palette().iter().copied();
+        self.previous.set(&self.mesh, palette);
+        self.bound();
+    }
+
+    /// Centre and radius of a ball in world space that holds all skin over the tick that ends now, from its start to
+    /// its end. Follows from the palettes alone: a ball about a box about the joints' balls. `None` without vertices, or
+    /// if it is not finite.
+    pub fn bounding_ball(&self) -> Option<(DVec3, f64)> {
+        self.ball
+    }
+
+    /// Finds the ball anew, after both poses have changed.
+    pub(super) fn bound(&mut self) {
+        let root = self.current.root().union(self.previous.root());
+        let (low, high) = (root.min.as_dvec3(), root.max.as_dvec3());
+        let center = self.world_from_model.transform_point((low + high) * 0.5);
+        let radius = (high - low).length() * 0.5 * self.world_from_model.scale;
+        let size = radius + center.length();
+        let is_there = low.cmple(high).all() && size.is_finite();
+        self.ball = is_there.then_some((center, radius + BALL_SLACK * size));
     }
 
     /// Skins everything now and refits every bound to it, where queries would skin and bound what
@@ -208,6 +244,7 @@ impl SkinnedSurface {
         self.current
             .set(&self.mesh, palette.matrices().iter().copied());
         self.world_from_model = world_from_model;
+        self.bound();
         *self.triangles_tested.get_mut() = 0;
         *self.most_sweep_steps.get_mut() = 0;
         if ahead {
@@ -249,6 +286,10 @@ pub(super) fn keeps(matrix: &Affine, radius: f32) -> bool {
     matrix.reach(f64::from(radius)) <= MAX_COORDINATE
 }
 
+/// How much larger the ball about a surface is made than its box asks for, as a share of its size and distance: some
+/// twenty roundings of f64 come to less.
+const BALL_SLACK: f64 = 1e-14;
+
 /// 2^40: a size of matrix elements and creatures that needs no closer look.
 const USUAL_COORDINATE: f32 = (1u64 << 40) as f32;
 
@@ -260,6 +301,7 @@ impl Clone for SkinnedSurface {
             current: self.current.renewed(&self.mesh),
             previous: self.previous.renewed(&self.mesh),
             world_from_model: self.world_from_model,
+            ball: self.ball,
             simd_level: self.simd_level,
             part_enabled: self.part_enabled.clone(),
             triangle_enabled: self.triangle_enabled.clone(),

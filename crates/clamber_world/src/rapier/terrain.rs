@@ -15,6 +15,9 @@ static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 /// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
 const LOOSE: f32 = 1e-4;
 
+/// Whether a collider is seen. Terrain is asked from many threads at once, so this is too; `QueryFilter` need not be.
+type Filter<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync);
+
 /// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
 /// without sensors.
 ///
@@ -22,7 +25,10 @@ const LOOSE: f32 = 1e-4;
 /// from both sides; convex shapes are solid. Rays are rapier's own: one that meets an edge between
 /// two of its triangles exactly may slip through.
 pub struct RapierTerrain<'a> {
-    queries: QueryPipeline<'a>,
+    bodies: &'a RigidBodySet,
+    colliders: &'a ColliderSet,
+    broad_phase: &'a BroadPhaseBvh,
+    filter: Option<Filter<'a>>,
     before: &'a BodyPoses,
     origin: DVec3,
 }
@@ -36,9 +42,11 @@ impl<'a> RapierTerrain<'a> {
         broad_phase: &'a BroadPhaseBvh,
         before: &'a BodyPoses,
     ) -> Self {
-        let filter = QueryFilter::new().exclude_sensors();
         Self {
-            queries: broad_phase.as_query_pipeline(&DISPATCHER, bodies, colliders, filter),
+            bodies,
+            colliders,
+            broad_phase,
+            filter: None,
             before,
             origin: DVec3::ZERO,
         }
@@ -57,11 +65,23 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    /// Restricts what is seen, to groups or by a predicate of one's own.
+    /// Restricts what is seen to colliders that a function says yes to.
     #[must_use]
-    pub fn with_filter(mut self, filter: QueryFilter<'a>) -> Self {
-        self.queries = self.queries.with_filter(filter.exclude_sensors());
+    pub fn with_filter(
+        mut self,
+        filter: &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync),
+    ) -> Self {
+        self.filter = Some(filter);
         self
+    }
+
+    fn queries(&self) -> QueryPipeline<'_> {
+        let filter = QueryFilter {
+            predicate: self.filter.map(|filter| filter as &_),
+            ..QueryFilter::new().exclude_sensors()
+        };
+        self.broad_phase
+            .as_query_pipeline(&DISPATCHER, self.bodies, self.colliders, filter)
     }
 
     fn local(&self, point: DVec3) -> Option<Vector> {
@@ -93,7 +113,7 @@ impl<'a> RapierTerrain<'a> {
 
     /// A radius about `point` that reaches everything.
     fn reach_of_all(&self, point: Vector) -> f64 {
-        let all = self.queries.bvh.root_aabb();
+        let all = self.queries().bvh.root_aabb();
         let farthest = (all.maxs - point).abs().max((all.mins - point).abs());
         farthest.as_dvec3().length()
     }
@@ -108,11 +128,11 @@ impl Obstacle for RapierTerrain<'_> {
         }
         let ray = Ray::new(start, along.as_vec3());
         let limit = (max_distance as f32 * (1.0 + LOOSE) + LOOSE).min(f32::MAX);
-        let (handle, hit) = self.queries.cast_ray_and_get_normal(&ray, limit, true)?;
+        let (handle, hit) = self.queries().cast_ray_and_get_normal(&ray, limit, true)?;
         if f64::from(hit.time_of_impact) > max_distance {
             return None;
         }
-        let collider = self.queries.colliders.get(handle)?;
+        let collider = self.colliders.get(handle)?;
         let point = ray.point_at(hit.time_of_impact);
         // Rapier turns the normals of triangles towards the ray; both sides are solid to it.
         let distance = f64::from(hit.time_of_impact);
@@ -137,7 +157,7 @@ impl Obstacle for RapierTerrain<'_> {
         let start = contacts.len();
         let reach = Vector::splat(radius);
         let near = Aabb::new(local - reach, local + reach);
-        for (handle, collider) in self.queries.intersect_aabb_conservative(near) {
+        for (handle, collider) in self.queries().intersect_aabb_conservative(near) {
             let pose = collider.position();
             let on_shape = pose.inverse_transform_point(local);
             overlap_shape(collider.shape(), on_shape, radius, &mut |found| {
@@ -152,9 +172,9 @@ impl Obstacle for RapierTerrain<'_> {
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let handle = ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32);
-        let collider = self.queries.colliders.get(handle)?;
-        let (filter, bodies) = (&self.queries.filter, self.queries.bodies);
-        if !collider.is_enabled() || !filter.test(bodies, handle, collider) {
+        let collider = self.colliders.get(handle)?;
+        let seen = self.queries().filter.test(self.bodies, handle, collider);
+        if !collider.is_enabled() || !seen {
             return None;
         }
         let pose = |pose: &Pose| RigidPose::new(pose.rotation, pose.translation);

@@ -136,3 +136,29 @@ fn what_is_not_finite_or_gone_finds_nothing() {
     surface.edit(|edit| edit.remove_triangle(triangle)).unwrap();
     assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
 }
+
+#[test]
+fn bounds_hold_the_creature_over_the_tick_and_little_more() {
+    let (mut surface, world_from_model) = placed();
+    let moved = Similarity {
+        translation: world_from_model.translation + DVec3::X * 40.0,
+        ..world_from_model
+    };
+    let palette = Palette::from_matrices([Affine::IDENTITY]);
+    surface.advance(&palette, moved).unwrap();
+    let (center, radius) = Obstacle::bounds(&surface).unwrap();
+    // A corner then and now.
+    for from in [&world_from_model, &moved] {
+        for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)] {
+            let corner = from.transform_point(DVec3::new(x, 0.0, z));
+            let apart = corner.distance(center);
+            assert!(apart <= radius, "{corner}: {apart} of {radius}");
+        }
+    }
+    // The box is that of a ball about the square, 14.2 m in radius, at both places.
+    assert!(radius < 40.0, "{radius}");
+    surface.sleep();
+    let (center, radius) = Obstacle::bounds(&surface).unwrap();
+    assert!((center - moved.translation).length() < 1e-3, "{center}");
+    assert!(radius < 24.7, "{radius}");
+}

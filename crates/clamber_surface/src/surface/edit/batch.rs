@@ -137,5 +137,6 @@ impl Drop for SurfaceEdit<'_> {
                 Reclustered::Parts(dead) => pose.follow(&surface.mesh, dead),
             }
         }
+        surface.bound();
     }
 }

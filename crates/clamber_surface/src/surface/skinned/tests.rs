@@ -213,6 +213,62 @@ fn place_leaves_no_motion_behind() {
 }
 
 #[test]
+fn a_sleeping_surface_answers_and_does_not_move() {
+    let (mut surface, mut awake) = (surface(), surface());
+    let bent = |angle: f64| bend(JOINTS, DVec3::Z, angle);
+    let world = |x: f64| Similarity::from_translation(DVec3::new(x, 0.0, 0.0));
+    for surface in [&mut surface, &mut awake] {
+        surface.place(&bent(0.1), world(0.0)).unwrap();
+        surface.advance(&bent(0.3), world(2.0)).unwrap();
+    }
+    assert_ne!(
+        surface.previous_position(VertexId(0)),
+        surface.position(VertexId(0))
+    );
+    surface.sleep();
+    for (v, position) in positions_of(&awake).iter().enumerate() {
+        let v = VertexId(v as u32);
+        assert_eq!(surface.position(v), Some(*position));
+        assert_eq!(surface.previous_position(v), Some(*position));
+    }
+    let ray = Ray::new(Vec3::new(1.0, 4.0, 0.2), -Vec3::Y).unwrap();
+    let hit = surface.cast_ray(&ray, 10.0).unwrap();
+    assert!(hit.is_some());
+    assert_eq!(hit, awake.cast_ray(&ray, 10.0).unwrap());
+    // Far away by now: no motion.
+    surface.place(&bent(0.9), world(50.0)).unwrap();
+    let v = VertexId(3);
+    assert_eq!(surface.previous_position(v), surface.position(v));
+}
+
+#[test]
+fn the_ball_holds_all_skin_over_the_tick() {
+    let mut surface = surface();
+    for tick in 0..8 {
+        let world = Similarity::from_translation(DVec3::Y * f64::from(tick) * 0.3);
+        let bent = bend(JOINTS, DVec3::Z, 0.2 * f64::from(tick));
+        surface.advance(&bent, world).unwrap();
+        let (center, radius) = surface.bounding_ball().unwrap();
+        let place = *surface.world_from_model();
+        let mut farthest = 0.0_f64;
+        for v in 0..surface.mesh().positions().len() as u32 {
+            let (now, before) = (
+                surface.position(VertexId(v)),
+                surface.previous_position(VertexId(v)),
+            );
+            for at in [now, before] {
+                let at = place.transform_point_f32(at.unwrap());
+                farthest = farthest.max(at.distance(center));
+            }
+        }
+        assert!(
+            farthest <= radius && radius < 3.0 * farthest,
+            "tick {tick}: {farthest} {radius}"
+        );
+    }
+}
+
+#[test]
 fn a_creature_far_away_answers_like_one_at_the_origin() {
     let palette = bend(JOINTS, DVec3::Z, 0.7);
     let (mut near, mut far) = (surface(), surface());

@@ -163,16 +163,24 @@ fn libm_cos(x: f64) -> f64 {
 }
 
 #[test]
+fn threads_may_share_it() {
+    fn shared<T: Sync>(_: &T) {}
+    let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
+    shared(&RapierTerrain::of_world(&world, &NO_POSES));
+}
+
+#[test]
 fn sensors_and_what_a_filter_excludes_are_not_there() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0).sensor(true));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
     // A filter of the caller's does not bring sensors back.
-    let terrain = terrain.with_filter(QueryFilter::new());
+    let terrain = terrain.with_filter(&|_, _| true);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
-    let filter = QueryFilter::exclude_fixed();
-    let terrain = RapierTerrain::of_world(&world, &NO_POSES).with_filter(filter);
+    let terrain = RapierTerrain::of_world(&world, &NO_POSES);
+    assert!(terrain.closest_point(DVec3::ZERO, 9.0).is_some());
+    let terrain = terrain.with_filter(&|_, collider| !collider.shape().is_convex());
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
 }
 

@@ -8,7 +8,7 @@ use crate::mesh::{ColliderMesh, TriangleId, VertexId};
 use crate::skin::{ClusterPositions, skin_scalar};
 use crate::surface::SkinnedSurface;
 use crate::surface::pose::Pose;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Living clusters by how often the hierarchy leads to them.
 fn reached(mesh: &ColliderMesh) -> BTreeMap<u32, usize> {
@@ -80,6 +80,12 @@ pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
         for p in &skinned {
             let inside = p.cmpge(root.min).all() && p.cmple(root.max).all();
             assert!(inside, "{case}: {p} outside {root:?}");
+            let place = surface.world_from_model();
+            let within = |(center, radius): (DVec3, f64)| {
+                place.transform_point_f32(*p).distance(center) <= radius
+            };
+            let ball = surface.bounding_ball();
+            assert!(ball.is_some_and(within), "{case}: {p} outside {ball:?}");
         }
     }
 }

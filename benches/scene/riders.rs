@@ -1,0 +1,133 @@
+//! Climbers on the giants.
+
+use std::error::Error;
+
+use clamber::climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, ClimberState};
+use clamber::prelude::*;
+use clamber::world::{Obstacle, ObstacleId};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::herd::{Herd, RATE};
+
+/// Least part along Y of the normal that a seat may have, so that one stands there while the giant walks.
+const LEVEL: f32 = 0.85;
+
+/// How far a climber may get from its seat before it is put back, metres.
+const AWAY: f64 = 4.0;
+
+pub(crate) struct Riders {
+    climbers: Vec<Climber>,
+    seats: Vec<Seat>,
+}
+
+struct Seat {
+    giant: usize,
+    anchor: Anchor,
+}
+
+impl Riders {
+    /// Seats on level skin of the first `mounts` giants, in turn.
+    pub(crate) fn new(herd: &Herd, count: usize, mounts: usize) -> Result<Self, Box<dyn Error>> {
+        let mut rng = fastrand::Rng::with_seed(9);
+        let mut seats = Vec::with_capacity(count);
+        while seats.len() < count {
+            let giant = seats.len() % mounts;
+            let surface = &herd.giants[giant].surface;
+            let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
+            let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+            if surface.motion(&anchor, 1.0 / RATE)?.normal.y > LEVEL {
+                seats.push(Seat { giant, anchor });
+            }
+        }
+        let climber = || Climber::new(ClimberConfig::default(), DVec3::Y * 1e4);
+        let climbers = (0..count).map(|_| climber()).collect::<Result<_, _>>()?;
+        Ok(Self { climbers, seats })
+    }
+
+    /// Puts those back that fell or walked off: just above their seats.
+    pub(crate) fn sit(&mut self, herd: &Herd) -> Result<(), Box<dyn Error>> {
+        for (climber, seat) in self.climbers.iter_mut().zip(&self.seats) {
+            let surface = &herd.giants[seat.giant].surface;
+            let motion = surface.motion(&seat.anchor, 1.0 / RATE)?;
+            let place = surface.world_from_model();
+            let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
+            let point = place.transform_point_f32(motion.position);
+            let position = point + normal * (climber.config().radius * 1.01);
+            if (climber.state().position - position).length() > AWAY {
+                climber.restore(ClimberState {
+                    position,
+                    velocity: place.transform_vector(motion.velocity.as_dvec3()),
+                    mode: ClimberMode::Falling,
+                    footing: None,
+                    ..*climber.state()
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One tick of all of them.
+    pub(crate) fn step(
+        &mut self,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), Box<dyn Error>> {
+        for (index, climber) in self.climbers.iter_mut().enumerate() {
+            climber.step(&input(index), obstacles, 1.0 / RATE)?;
+        }
+        Ok(())
+    }
+
+    /// As [`Riders::step`], on rayon's threads.
+    pub(crate) fn step_in_parallel(
+        &mut self,
+        obstacles: &[(ObstacleId, &(dyn Obstacle + Sync))],
+    ) -> Result<(), Box<dyn Error>> {
+        let stepped = self.climbers.par_iter_mut().enumerate();
+        let stepped = stepped.try_for_each_init(
+            || -> Vec<(ObstacleId, &dyn Obstacle)> {
+                let all = obstacles.iter();
+                all.map(|(id, obstacle)| (*id, *obstacle as &dyn Obstacle))
+                    .collect()
+            },
+            |obstacles, (index, climber)| {
+                climber.step(&input(index), obstacles, 1.0 / RATE).map(drop)
+            },
+        );
+        Ok(stepped?)
+    }
+
+    pub(crate) fn states(&self) -> Vec<ClimberState> {
+        self.climbers
+            .iter()
+            .map(|climber| *climber.state())
+            .collect()
+    }
+
+    /// Share of them that stands.
+    pub(crate) fn standing(&self) -> f64 {
+        let modes = self.climbers.iter().map(|climber| climber.state().mode);
+        let standing = modes.filter(|mode| *mode == ClimberMode::Standing).count();
+        standing as f64 / self.climbers.len() as f64
+    }
+}
+
+/// Every other one walks, in one of eight directions.
+fn input(index: usize) -> ClimberInput {
+    let direction = [
+        (1, 0),
+        (1, 1),
+        (0, 1),
+        (-1, 1),
+        (-1, 0),
+        (-1, -1),
+        (0, -1),
+        (1, -1),
+    ];
+    let (x, z) = direction[index / 2 % 8];
+    let walk = DVec3::new(f64::from(x), 0.0, f64::from(z)).normalize();
+    ClimberInput {
+        walk: walk * (index % 2) as f64,
+        jump: false,
+    }
+}
