@@ -1,29 +1,35 @@
-//! Where the mouse points. With a picking backend that knows posed skin, this whole file becomes an observer of
-//! `Pointer<Click>`, whose hit already has the point.
+//! From the mouse to an arrow, through the picking backend of `bevy_clamber`: a press of the button comes with the
+//! point of skin that the pointer is on, in the pose that the last frame drew. That is what was aimed at.
 
+use bevy::picking::events::PointerPress;
+use bevy::picking::pointer::PointerButton;
 use bevy::prelude::*;
-use bevy::window::PrimaryWindow;
+use bevy_clamber::prelude::*;
 
 use crate::arrows::Bow;
 
 pub fn plugin(app: &mut App) {
-    app.add_systems(Update, shoot_where_clicked);
+    app.add_plugins(SurfacePickingPlugin)
+        .add_observer(shoot_where_pressed);
 }
 
-fn shoot_where_clicked(
-    buttons: Res<ButtonInput<MouseButton>>,
-    window: Single<&Window, With<PrimaryWindow>>,
-    camera: Single<(&Camera, &GlobalTransform)>,
+/// A press, not a click: a click would need the button to be released over the same mesh, which walks on.
+fn shoot_where_pressed(
+    press: On<PointerPress>,
+    cameras: Query<&GlobalTransform, With<Camera>>,
     mut bow: Bow,
 ) {
-    if !buttons.just_pressed(MouseButton::Left) {
-        return;
-    }
-    let Some(cursor) = window.cursor_position() else {
+    let (Some(pick), Some(point)) = (press.hit.extra_as::<SurfacePick>(), press.hit.position)
+    else {
         return;
     };
-    let (camera, place) = *camera;
-    if let Ok(ray) = camera.viewport_to_world(place, cursor) {
-        bow.shoot(ray);
+    // It goes on to the parents of what was pressed.
+    if press.button != PointerButton::Primary || press.entity != pick.anchor.surface {
+        return;
+    }
+    if let Ok(camera) = cameras.get(press.hit.camera)
+        && let Ok(direction) = Dir3::new(point - camera.translation())
+    {
+        bow.stick(&pick.anchor, point, direction);
     }
 }

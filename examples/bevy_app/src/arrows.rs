@@ -9,6 +9,9 @@ use crate::creature::Creature;
 /// Length of an arrow, relative to half of the creature's height: giants are shot at with siege weapons.
 const LENGTH: f32 = 0.26;
 
+/// What lies flat is taken for so high, relative to its radius.
+const LOWEST: f32 = 0.3;
+
 /// Meshes of an arrow of length 1, which flies along -Y and whose point is at the origin.
 #[derive(Resource)]
 struct Looks {
@@ -58,26 +61,30 @@ pub struct Bow<'w, 's> {
 }
 
 impl Bow<'_, '_> {
-    /// Sticks an arrow to the first skin along a ray; false if there is none.
-    pub fn shoot(&mut self, ray: Ray3d) -> bool {
-        let Some(creature) = &self.creature else {
-            return false;
-        };
+    /// Sticks an arrow to the first skin along a ray.
+    pub fn shoot(&mut self, ray: Ray3d) {
         let anywhere = SurfaceFilter::default();
-        let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere) else {
-            return false;
+        if let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere)
+            && let Some(anchor) = self.surfaces.anchor_at(&hit)
+        {
+            self.stick(&anchor, hit.point, ray.direction);
+        }
+    }
+
+    /// Sticks an arrow to a point of skin, which is at `point` in the world, as it flew: not upright on the skin.
+    pub fn stick(&mut self, there: &SurfaceAnchor, point: Vec3, direction: Dir3) {
+        let (Some(creature), Some(surface)) = (&self.creature, self.surfaces.get(there.surface))
+        else {
+            return;
         };
-        // As it flew, and not upright on the skin.
-        let rotation = Quat::from_rotation_arc(Vec3::Y, -*ray.direction);
-        let Some(anchor) = self.surfaces.anchor_with_rotation(&hit, rotation) else {
-            return false;
-        };
+        let rotation = Quat::from_rotation_arc(Vec3::Y, -*direction);
+        let half_height = creature.half_size.y.max(LOWEST * creature.radius());
         let arrow = (
-            anchor,
-            Arrow { hit: hit.point },
-            Transform::from_translation(hit.point)
+            SurfaceAnchor::new(there.surface, surface, there.anchor, rotation),
+            Arrow { hit: point },
+            Transform::from_translation(point)
                 .with_rotation(rotation)
-                .with_scale(Vec3::splat(LENGTH * creature.half_size.y)),
+                .with_scale(Vec3::splat(LENGTH * half_height)),
             Visibility::default(),
         );
         self.commands.spawn(arrow).with_children(|parts| {
@@ -89,6 +96,5 @@ impl Bow<'_, '_> {
                 parts.spawn((self.looks.feather.clone(), at));
             }
         });
-        true
     }
 }
