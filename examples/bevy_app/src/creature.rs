@@ -1,10 +1,23 @@
 //! Loads the creature, makes its skin a surface, plays a clip, and measures it.
 
+use std::path::PathBuf;
+use std::time::Duration;
+
+use bevy::asset::{AssetPath, LoadState};
 use bevy::gltf::{Gltf, GltfExtras};
 use bevy::mesh::skinning::SkinnedMesh;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
 use bevy_clamber::prelude::*;
+
+use crate::trouble::Trouble;
+
+/// Seconds to wait for the creature before it is given up. The giant of this project takes some seconds where
+/// nothing is optimised.
+const PATIENCE: u64 = 120;
+
+/// What to do about a file.
+const ANOTHER: &str = "give a glTF or GLB file with a skinned mesh";
 
 /// How large the creature is and where it stands; there once its surfaces are.
 #[derive(Resource, Clone, Copy, Debug)]
@@ -30,7 +43,8 @@ impl Creature {
 /// What to show.
 #[derive(Resource)]
 struct Wanted {
-    file: String,
+    /// Relative to the folder that assets are loaded from.
+    file: PathBuf,
     clip: String,
 }
 
@@ -38,7 +52,7 @@ struct Wanted {
 #[derive(Resource)]
 struct Loading(Handle<Gltf>);
 
-pub fn plugin(file: String, clip: String) -> impl Plugin {
+pub fn plugin(file: PathBuf, clip: String) -> impl Plugin {
     move |app: &mut App| {
         app.insert_resource(Wanted {
             file: file.clone(),
@@ -50,14 +64,16 @@ pub fn plugin(file: String, clip: String) -> impl Plugin {
             Update,
             (
                 spawn.run_if(resource_exists::<Loading>),
-                measure.run_if(not(resource_exists::<Creature>)),
+                (measure, give_up).run_if(not(resource_exists::<Creature>)),
             ),
         );
     }
 }
 
 fn load(wanted: Res<Wanted>, assets: Res<AssetServer>, mut commands: Commands) {
-    commands.insert_resource(Loading(assets.load(wanted.file.clone())));
+    // Not as text, in which `#` would begin a label.
+    let path = AssetPath::from_path_buf(wanted.file.clone());
+    commands.insert_resource(Loading(assets.load(path)));
 }
 
 /// Spawns the first scene once the file is loaded.
@@ -68,11 +84,14 @@ fn spawn(
     files: Res<Assets<Gltf>>,
     mut graphs: ResMut<Assets<AnimationGraph>>,
     mut commands: Commands,
-    mut exit: MessageWriter<AppExit>,
+    mut trouble: Trouble,
 ) {
-    if assets.load_state(&loading.0).is_failed() {
-        // Bevy has said why.
-        exit.write(AppExit::error());
+    if let LoadState::Failed(error) = assets.load_state(&loading.0) {
+        commands.remove_resource::<Loading>();
+        // After the first line comes a backtrace.
+        let error = error.to_string();
+        let error = error.lines().next().unwrap_or_default();
+        trouble.end(format_args!("cannot be loaded: {error}; {ANOTHER}"));
         return;
     }
     let Some(file) = files.get(&loading.0) else {
@@ -80,8 +99,7 @@ fn spawn(
     };
     commands.remove_resource::<Loading>();
     let Some(scene) = file.default_scene.as_ref().or(file.scenes.first()) else {
-        error!("{} has no scene", wanted.file);
-        exit.write(AppExit::error());
+        trouble.end(format_args!("has no scene; {ANOTHER}"));
         return;
     };
     let mut creature = commands.spawn(WorldAssetRoot(scene.clone()));
@@ -113,7 +131,9 @@ fn add_colliders(
     skins: Query<&ChildOf, With<SkinnedMesh>>,
     extras: Query<&GltfExtras>,
     mut commands: Commands,
+    mut trouble: Trouble,
 ) {
+    let mut surfaces = 0;
     for entity in children.iter_descendants(ready.entity) {
         let Ok(child_of) = skins.get(entity) else {
             continue;
@@ -122,7 +142,11 @@ fn add_colliders(
             commands.entity(entity).insert(Visibility::Hidden);
         } else {
             commands.entity(entity).insert(SkinnedCollider::default());
+            surfaces += 1;
         }
+    }
+    if surfaces == 0 {
+        trouble.end(format_args!("its scene shows no skinned mesh; {ANOTHER}"));
     }
 }
 
@@ -133,19 +157,26 @@ fn for_collision_only(extras: &GltfExtras) -> bool {
 
 /// Waits for all surfaces, then takes their bounds.
 fn measure(
-    colliders: Query<(&ColliderStatus, Option<&PosedSurface>)>,
+    colliders: Query<(NameOrEntity, &ColliderStatus, Option<&PosedSurface>)>,
     mut commands: Commands,
-    mut exit: MessageWriter<AppExit>,
+    mut trouble: Trouble,
 ) {
     let done = |status: &ColliderStatus| {
         matches!(status, ColliderStatus::Ready | ColliderStatus::Failed(_))
     };
-    if colliders.is_empty() || !colliders.iter().all(|(status, _)| done(status)) {
+    if colliders.is_empty() || !colliders.iter().all(|(_, status, _)| done(status)) {
         return;
     }
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let mut positions = Vec::new();
-    for surface in colliders.iter().filter_map(|(_, surface)| surface) {
+    let mut failed = Vec::new();
+    for (mesh, status, surface) in &colliders {
+        if let ColliderStatus::Failed(error) = status {
+            failed.push(format!("{mesh}: {error}"));
+        }
+        let Some(surface) = surface else {
+            continue;
+        };
         surface.skin_all(&mut positions);
         for position in &positions {
             let place = surface.world_from_model();
@@ -153,13 +184,37 @@ fn measure(
             (low, high) = (low.min(in_world), high.max(in_world));
         }
     }
-    if low.x > high.x {
-        error!("nothing of the creature can be a surface");
-        exit.write(AppExit::error());
-        return;
-    }
-    commands.insert_resource(Creature {
+    let creature = Creature {
         center: 0.5 * (low + high),
         half_size: 0.5 * (high - low),
-    });
+    };
+    let why = failed.join("; ");
+    if failed.len() == colliders.iter().count() {
+        trouble.end(format_args!("no mesh can be a surface ({why}); {ANOTHER}"));
+    } else if !(creature.radius().is_finite() && creature.radius() > 0.0) {
+        trouble.end(format_args!("its skin has no size; {ANOTHER}"));
+    } else {
+        if !failed.is_empty() {
+            trouble.go_on(format_args!("arrows do not stick to all of it ({why})"));
+        }
+        commands.insert_resource(creature);
+    }
+}
+
+fn give_up(
+    time: Res<Time<Real>>,
+    colliders: Query<(NameOrEntity, &ColliderStatus)>,
+    mut trouble: Trouble,
+) {
+    if time.elapsed() < Duration::from_secs(PATIENCE) {
+        return;
+    }
+    let stages: Vec<_> = colliders
+        .iter()
+        .map(|(mesh, status)| format!("{mesh}: {status:?}"))
+        .collect();
+    let stages = stages.join(", ");
+    trouble.end(format_args!(
+        "not ready after {PATIENCE} s [{stages}]; {ANOTHER}"
+    ));
 }

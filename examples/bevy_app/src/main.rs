@@ -11,6 +11,7 @@ mod creature;
 mod orbit;
 mod picture;
 mod stage;
+mod trouble;
 
 use std::path::PathBuf;
 
@@ -35,16 +36,17 @@ struct Arguments {
 
 fn main() -> AppExit {
     let arguments = Arguments::parse();
+    let called = arguments.file.display().to_string();
     let file = match arguments.file.canonicalize() {
         Ok(file) => file,
         Err(error) => {
-            eprintln!("{}: {error}", arguments.file.display());
+            eprintln!("{called}: {error}; give a glTF or GLB file with a skinned mesh");
             return AppExit::error();
         }
     };
     // Bevy loads from one folder: the creature's, so that a glTF file finds what it refers to.
     let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else {
-        eprintln!("{} is no file", file.display());
+        eprintln!("{called} is no file; give a glTF or GLB file with a skinned mesh");
         return AppExit::error();
     };
     let defaults = DefaultPlugins.set(AssetPlugin {
@@ -54,16 +56,14 @@ fn main() -> AppExit {
     });
     let mut app = App::new();
     match &arguments.screenshot {
-        None => app.add_plugins((stage::window(defaults), aim::plugin, orbit::plugin)),
+        None => app.add_plugins((stage::window(defaults), orbit::plugin)),
         Some(picture) => app.add_plugins((
             picture::no_window(defaults),
             picture::plugin(picture.clone()),
         )),
     };
     app.add_plugins((ClamberPlugins::default(), arrows::plugin, stage::plugin))
-        .add_plugins(creature::plugin(
-            name.to_string_lossy().into_owned(),
-            arguments.clip,
-        ))
+        .add_plugins((aim::plugin, trouble::plugin(called)))
+        .add_plugins(creature::plugin(name.into(), arguments.clip))
         .run()
 }
