@@ -10,6 +10,7 @@ mod arrows;
 mod creature;
 mod orbit;
 mod picture;
+mod proof;
 mod stage;
 mod trouble;
 

@@ -1,10 +1,12 @@
-//! Without a window: arrows fly by themselves, and what a camera sees becomes a PNG.
+//! Without a window: arrows fly by themselves, a pointer presses once, and what a camera sees becomes a PNG, if it
+//! is what it should be.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use bevy::app::{PluginGroupBuilder, ScheduleRunnerPlugin};
-use bevy::camera::RenderTarget;
+use bevy::camera::{NormalizedRenderTarget, RenderTarget};
+use bevy::picking::pointer::{Location, PointerAction, PointerButton, PointerId, PointerInput};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::render_resource::TextureFormat;
@@ -12,10 +14,11 @@ use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
-use bevy_clamber::prelude::*;
 
 use crate::arrows::{Arrow, Bow};
 use crate::creature::Creature;
+use crate::proof::Proof;
+use crate::trouble::Trouble;
 
 /// Pixels.
 const SIZE: UVec2 = UVec2::new(1280, 720);
@@ -32,13 +35,18 @@ const AFTER: u32 = 45;
 /// Frames that are drawn; what uploads late is there in the last.
 const DRAWN: u32 = 6;
 
-/// Seconds to wait for the creature before it is given up.
-const PATIENCE: u64 = 300;
+/// The frame in which a pointer presses, drawn as the one before must be: what no camera sees cannot be pointed at.
+/// One later the arrow is there.
+const PRESS: u32 = SHOTS + AFTER - 3;
+
+/// Frames to wait for the picture: the renderer is a few behind.
+const PATIENCE: u32 = 600;
 
 pub fn no_window(defaults: impl PluginGroup) -> PluginGroupBuilder {
     defaults
         .set(WindowPlugin {
-            primary_window: None,
+            // Nobody opens it, but without one Bevy's picking has no rays.
+            primary_window: Some(Window::default()),
             exit_condition: ExitCondition::DontExit,
             ..default()
         })
@@ -57,6 +65,8 @@ struct Picture {
     path: PathBuf,
     target: Handle<Image>,
     frame: u32,
+    /// Where the pointer has pressed, pixels, and the arrow that came of it.
+    pressed: Option<(Vec2, Option<Entity>)>,
 }
 
 pub fn plugin(path: PathBuf) -> impl Plugin {
@@ -68,6 +78,7 @@ pub fn plugin(path: PathBuf) -> impl Plugin {
             path: path.clone(),
             target,
             frame: 0,
+            pressed: None,
         })
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(
             FRAME,
@@ -75,10 +86,7 @@ pub fn plugin(path: PathBuf) -> impl Plugin {
         .add_systems(PostStartup, draw_into_picture)
         .add_systems(
             Update,
-            (
-                give_up.run_if(not(resource_exists::<Creature>)),
-                play.run_if(resource_exists::<Creature>),
-            ),
+            (play, press).chain().run_if(resource_exists::<Creature>),
         );
     }
 }
@@ -95,13 +103,6 @@ fn draw_into_picture(
     commands.entity(entity).insert(target);
 }
 
-fn give_up(time: Res<Time<Real>>, mut exit: MessageWriter<AppExit>) {
-    if time.elapsed() > Duration::from_secs(PATIENCE) {
-        error!("no creature after {PATIENCE} s");
-        exit.write(AppExit::error());
-    }
-}
-
 /// A shot each frame, some time for the skin to move on, then the picture.
 fn play(
     mut picture: ResMut<Picture>,
@@ -109,6 +110,7 @@ fn play(
     creature: Res<Creature>,
     mut bow: Bow,
     mut commands: Commands,
+    mut trouble: Trouble,
 ) {
     let frame = picture.frame;
     picture.frame += 1;
@@ -121,6 +123,56 @@ fn play(
         commands
             .spawn(Screenshot::image(picture.target.clone()))
             .observe(write);
+    }
+    if frame == last + PATIENCE {
+        trouble.end("the renderer gives no picture");
+    }
+}
+
+/// Presses where an arrow is seen to stick, the one nearest to the middle of the picture: there is skin.
+fn press(
+    mut picture: ResMut<Picture>,
+    camera: Single<(&Camera, &GlobalTransform)>,
+    arrows: Query<&GlobalTransform, With<Arrow>>,
+    news: Query<Entity, Added<Arrow>>,
+    mut step: ResMut<TimeUpdateStrategy>,
+    mut pointer: MessageWriter<PointerInput>,
+) {
+    // `play` has counted already.
+    let frame = picture.frame - 1;
+    if frame == PRESS + 1
+        && let Some((_, arrow)) = &mut picture.pressed
+    {
+        *arrow = news.iter().next();
+    }
+    if frame != PRESS {
+        return;
+    }
+    let (camera, place) = *camera;
+    let middle = 0.5 * SIZE.as_vec2();
+    let seen = arrows
+        .iter()
+        .filter_map(|arrow| camera.world_to_viewport(place, arrow.translation()).ok())
+        .min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle)));
+    let Some(position) = seen else {
+        return;
+    };
+    picture.pressed = Some((position, None));
+    // From here the scene stands still: where the pointer was the arrow must be.
+    *step = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
+    let location = Location {
+        target: NormalizedRenderTarget::Image(picture.target.clone().into()),
+        position,
+    };
+    for action in [
+        PointerAction::Move { delta: Vec2::ZERO },
+        PointerAction::Press(PointerButton::Primary),
+    ] {
+        pointer.write(PointerInput::new(
+            PointerId::Mouse,
+            location.clone(),
+            action,
+        ));
     }
 }
 
@@ -137,35 +189,27 @@ fn shot(index: u32, creature: &Creature) -> Ray3d {
     Ray3d::new(archer, toward)
 }
 
-/// Writes the picture, and checks what it shows: arrows that stick, and went along with the skin.
+/// Writes the picture, and checks what it shows.
 fn write(
     captured: On<ScreenshotCaptured>,
     picture: Res<Picture>,
-    arrows: Query<(&Arrow, &GlobalTransform), With<SurfaceAnchor>>,
+    proof: Proof,
     mut exit: MessageWriter<AppExit>,
+    mut trouble: Trouble,
 ) {
-    let carried =
-        |(arrow, place): (&Arrow, &GlobalTransform)| place.translation().distance(arrow.hit);
-    let farthest = arrows.iter().map(carried).fold(0.0, f32::max);
-    println!(
-        "{} arrows of {SHOTS} stick; the skin carried one of them {farthest:.2} m",
-        arrows.iter().count()
-    );
     let image = match captured.image.clone().try_into_dynamic() {
         Ok(image) => image.to_rgb8(),
-        Err(error) => {
-            error!("{error}");
-            exit.write(AppExit::error());
-            return;
-        }
+        Err(error) => return trouble.end(error),
     };
     if let Err(error) = image.save(&picture.path) {
-        error!("{}: {error}", picture.path.display());
-        exit.write(AppExit::error());
-    } else if arrows.is_empty() || farthest == 0.0 {
-        error!("no arrow went along with the skin");
-        exit.write(AppExit::error());
-    } else {
-        exit.write(AppExit::Success);
+        return trouble.end(format_args!("{}: {error}", picture.path.display()));
+    }
+    let pixels = image.pixels().map(|pixel| pixel.0);
+    match proof.check(pixels, picture.pressed) {
+        Ok(shown) => {
+            println!("{}: {shown}", picture.path.display());
+            exit.write(AppExit::Success);
+        }
+        Err(what) => trouble.end(what),
     }
 }
