@@ -48,6 +48,26 @@ pub(crate) fn cargo_output(arguments: &[&str]) -> Result<String, String> {
     }
 }
 
+/// Runs cargo for a program that must end with an error of its own, not a panic; gives what it prints on standard
+/// error.
+pub(crate) fn cargo_refuses(arguments: &[&str]) -> Result<String, String> {
+    println!("   cargo {}", arguments.join(" "));
+    let output = command(arguments)
+        .stdout(Stdio::null())
+        .output()
+        .map_err(|error| format!("cannot start cargo: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    if output.status.code() == Some(1) {
+        Ok(said)
+    } else {
+        Err(format!(
+            "`cargo {}` ended with {} where 1 was due:\n{said}",
+            arguments.join(" "),
+            output.status
+        ))
+    }
+}
+
 /// Runs a program in the workspace's root; an error if it fails.
 pub(crate) fn program(binary: &Utf8Path, arguments: &[&str]) -> Result<(), String> {
     let name = binary.file_name().unwrap_or(binary.as_str());
