@@ -8,8 +8,8 @@ use crate::arrows::Arrow;
 use crate::creature::Creature;
 
 /// How far an arrow may be from the skin, relative to the creature's radius. It lies on the skin as this frame draws
-/// it, and a query finds the skin a frame earlier.
-const SKIN: f32 = 0.02;
+/// it, and a query finds the skin a frame earlier: a foot that swings is some hundredths farther.
+const SKIN: f32 = 0.1;
 
 /// How far from the pointer its arrow may be, pixels. The scene stands still since, so nothing but rounding is in it;
 /// a hit in the pose of the tick, not of the frame that was seen, would be off by what the skin moves in a frame.
