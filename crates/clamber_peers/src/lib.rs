@@ -5,6 +5,8 @@
 //! and `accuracy` hold them against each other; README.md says how to run them and what each peer is asked.
 
 mod heap;
+#[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
+mod native;
 mod obvhs;
 mod ours;
 mod parry;
@@ -23,6 +25,8 @@ pub fn all() -> Vec<Entry> {
         thesis::ENTRIES,
         parry::ENTRIES,
         obvhs::ENTRIES,
+        #[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
+        native::ENTRIES,
     ]
     .concat()
 }

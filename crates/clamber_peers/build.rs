@@ -1,0 +1,83 @@
+//! Compiles `cpp`, a file for each library whose feature is on.
+
+fn main() {
+    println!("cargo::rerun-if-changed=cpp");
+    #[cfg(feature = "bullet")]
+    native::bullet();
+    #[cfg(feature = "embree")]
+    native::embree();
+    #[cfg(feature = "fcl")]
+    native::fcl();
+}
+
+#[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
+#[expect(clippy::panic, reason = "how a build script says what is missing")]
+mod native {
+    use std::path::{Path, PathBuf};
+
+    #[cfg(feature = "bullet")]
+    pub(super) fn bullet() {
+        let found = probe("bullet", "libbullet-dev");
+        compile("bullet", &found.include_paths);
+        // The two of its libraries that are called.
+        println!("cargo::rustc-link-lib=BulletCollision");
+        println!("cargo::rustc-link-lib=LinearMath");
+    }
+
+    #[cfg(feature = "embree")]
+    pub(super) fn embree() {
+        // It has no file for pkg-config.
+        if !Path::new("/usr/include/embree3/rtcore.h").exists() {
+            missing(
+                "embree",
+                "libembree-dev",
+                "no /usr/include/embree3/rtcore.h",
+            );
+        }
+        compile("embree", &[]);
+        println!("cargo::rustc-link-lib=embree3");
+    }
+
+    #[cfg(feature = "fcl")]
+    pub(super) fn fcl() {
+        let found = probe("fcl", "libfcl-dev");
+        compile("fcl", &found.include_paths);
+        println!("cargo::rustc-link-lib=fcl");
+        println!("cargo::rustc-link-lib=ccd");
+    }
+
+    /// Where the library is. What to link is left to the callers: they are linked after our own archive.
+    #[cfg(any(feature = "bullet", feature = "fcl"))]
+    fn probe(library: &str, package: &str) -> pkg_config::Library {
+        let found = pkg_config::Config::new()
+            .cargo_metadata(false)
+            .probe(library);
+        match found {
+            Ok(found) => found,
+            Err(error) => missing(library, package, &error.to_string()),
+        }
+    }
+
+    fn missing(library: &str, package: &str, why: &str) -> ! {
+        panic!("feature `{library}` needs a library of Debian's: apt-get install {package}\n{why}");
+    }
+
+    /// Optimised in every profile: what a debug build measures of a library should be the library.
+    fn compile(library: &str, headers: &[PathBuf]) {
+        let mut build = cc::Build::new();
+        build
+            .cpp(true)
+            .std("c++17")
+            .opt_level(2)
+            // Of FCL's contacts, which it inlines.
+            .flag_if_supported("-Wno-maybe-uninitialized")
+            .file(format!("cpp/{library}.cpp"));
+        // Searched in any case, and as `-isystem` before the compiler's own headers, which look for it after them.
+        let searched = Path::new("/usr/include");
+        for folder in headers.iter().filter(|folder| *folder != searched) {
+            // As the system's, whose warnings are not ours.
+            build.flag("-isystem").flag(folder.display().to_string());
+        }
+        build.compile(&format!("clamber_peers_{library}"));
+    }
+}

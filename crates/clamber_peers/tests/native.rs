@@ -1,0 +1,374 @@
+//! The libraries in C++ against all triangles in f64, posed several ways.
+
+#![cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use std::sync::Arc;
+
+use clamber_peers::{Peer, Unsupported, all};
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::skin::skin_into;
+use glam::{DAffine3, DVec3, Vec3};
+
+const RINGS: u32 = 24;
+const SEGMENTS: u32 = 32;
+const QUERIES: usize = 300;
+
+/// A closed ball with bumps of about 10 m across, half of it on another joint.
+fn bumpy_ball() -> ColliderMesh {
+    let turn = core::f64::consts::TAU;
+    let at = |ring: u32, segment: u32| {
+        let (a, b) = (
+            turn / 2.0 * f64::from(ring) / f64::from(RINGS),
+            turn * f64::from(segment) / f64::from(SEGMENTS),
+        );
+        let r = 5.0 + 0.8 * libm::sin(3.0 * b) * libm::sin(4.0 * a) * libm::sin(a);
+        let (sin, cos) = (libm::sin(a), libm::cos(a));
+        (DVec3::new(sin * libm::cos(b), cos, sin * libm::sin(b)) * r).as_vec3()
+    };
+    let mut positions = vec![at(0, 0), at(RINGS, 0)];
+    for ring in 1..RINGS {
+        positions.extend((0..SEGMENTS).map(|segment| at(ring, segment)));
+    }
+    let vertex = |ring: u32, segment: u32| match ring {
+        0 => 0,
+        RINGS => 1,
+        _ => 2 + (ring - 1) * SEGMENTS + segment % SEGMENTS,
+    };
+    let mut triangles = Vec::new();
+    for ring in 0..RINGS {
+        for segment in 0..SEGMENTS {
+            let [a, b] = [0, 1].map(|k| vertex(ring, segment + k));
+            let [c, d] = [0, 1].map(|k| vertex(ring + 1, segment + k));
+            if ring > 0 {
+                triangles.push([a, b, c]);
+            }
+            if ring + 1 < RINGS {
+                triangles.push([b, d, c]);
+            }
+        }
+    }
+    let influences: Vec<Influence> = positions
+        .iter()
+        .flat_map(|p| {
+            let upper = (p.y / 4.0 + 0.5).clamp(0.0, 1.0);
+            [(0, 1.0 - upper), (1, upper)].map(|(joint, weight)| Influence {
+                joint: JointId(joint),
+                weight,
+            })
+        })
+        .collect();
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &influences,
+        joint_count: 2,
+        ..MeshSource::default()
+    };
+    ColliderMesh::build(&source, &BuildOptions::default())
+        .unwrap()
+        .0
+}
+
+/// The lower half still, the upper one turned and moved.
+fn palette(angle: f64, by: DVec3) -> Palette {
+    let upper = DAffine3::from_rotation_translation(
+        rotation_from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle),
+        by,
+    );
+    Palette::from_matrices([Affine::IDENTITY, Affine::from_f64(&upper)])
+}
+
+/// All triangles of a pose.
+struct Truth {
+    corners: Vec<[DVec3; 3]>,
+    /// What f32 may be off by, some ten units of the largest coordinate's last place.
+    slack: f64,
+}
+
+impl Truth {
+    fn new(mesh: &ColliderMesh, palette: &Palette, place: DVec3) -> Self {
+        let moved: Vec<Affine> = palette
+            .matrices()
+            .iter()
+            .map(|m| Affine::from_f64(&(DAffine3::from_translation(place) * m.to_f64())))
+            .collect();
+        let mut positions = vec![Vec3::ZERO; mesh.positions().len()];
+        skin_into(mesh, &moved, SimdLevel::best(), &mut positions).unwrap();
+        let corners = mesh.triangles().iter();
+        Self {
+            corners: corners
+                .map(|t| t.map(|v| positions[v.index()].as_dvec3()))
+                .collect(),
+            slack: (place.length() + 10.0) * 2e-6,
+        }
+    }
+
+    /// Where a ray meets a triangle grown by a share of its size, or shrunk where that is negative.
+    fn cast(&self, ray: &Ray, triangle: usize, grown: f64) -> Option<f64> {
+        let [a, b, c] = self.corners[triangle];
+        let direction = ray.direction().as_dvec3();
+        let (ab, ac) = (b - a, c - a);
+        let across = direction.cross(ac);
+        let inverse = 1.0 / ab.dot(across);
+        let from = ray.origin().as_dvec3() - a;
+        let u = from.dot(across) * inverse;
+        let along = from.cross(ab);
+        let v = direction.dot(along) * inverse;
+        let t = ac.dot(along) * inverse;
+        let least = u.min(v).min(1.0 - u - v);
+        (least >= -grown && t >= -self.slack).then_some(t)
+    }
+
+    fn distances(&self, point: DVec3) -> impl Iterator<Item = f64> {
+        let corners = self.corners.iter();
+        corners.map(move |corners| distance(point, *corners))
+    }
+
+    fn distance(&self, point: DVec3) -> f64 {
+        self.distances(point).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The share of its motion that a sphere makes, by going as far as is free over and over.
+    fn cast_sphere(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
+        let mut time = 0.0;
+        while time <= 1.0 {
+            let free = self.distance(center + motion * time) - radius;
+            if free < 1e-5 {
+                return Some(time);
+            }
+            time += free / motion.length();
+        }
+        None
+    }
+}
+
+/// Of a point from a triangle: from its plane if it stands over it, else from the nearest edge.
+fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let inside = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) >= 0.0;
+    if inside(a, b) && inside(b, c) && inside(c, a) {
+        return ((p - a).dot(normal) / normal.length()).abs();
+    }
+    let from_edge = |from: DVec3, to: DVec3| {
+        let edge = to - from;
+        let share = (p - from).dot(edge) / edge.length_squared();
+        (p - from - edge * share.clamp(0.0, 1.0)).length()
+    };
+    from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a))
+}
+
+struct Queries {
+    rng: fastrand::Rng,
+    around: Vec3,
+}
+
+impl Queries {
+    fn vector(&mut self, size: f32) -> Vec3 {
+        let mut coordinate = || (self.rng.f32() * 2.0 - 1.0) * size;
+        Vec3::new(coordinate(), coordinate(), coordinate())
+    }
+
+    fn point(&mut self) -> Vec3 {
+        self.around + self.vector(8.0)
+    }
+}
+
+fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
+    /// Bullet takes a triangle for larger by a ten-thousandth.
+    const GROWN: f64 = 3e-4;
+    let mut hits = 0;
+    for _ in 0..QUERIES {
+        let origin = queries.point();
+        let target = queries.around + queries.vector(4.0);
+        let ray = Ray::new(origin, target - origin).unwrap();
+        let max_distance = queries.rng.f32() * 20.0;
+        let most = f64::from(max_distance);
+        let context = format!("{name}: {ray:?}, {max_distance}");
+        let all = 0..truth.corners.len();
+        let surely = all.filter_map(|k| truth.cast(&ray, k, -GROWN));
+        let first = surely
+            .filter(|t| (truth.slack..most - truth.slack).contains(t))
+            .fold(f64::INFINITY, f64::min);
+        let hit = match peer.cast_ray(&ray, max_distance) {
+            Err(Unsupported) => return,
+            Ok(hit) => hit,
+        };
+        let Some(hit) = hit else {
+            assert!(first.is_infinite(), "{context}: missed {first}");
+            continue;
+        };
+        let found = f64::from(hit.distance);
+        let there = truth.cast(&ray, hit.triangle.index(), GROWN);
+        let there = there.unwrap_or_else(|| panic!("{context}: {hit:?} is not there"));
+        let slack = truth.slack * 20.0;
+        assert!((there - found).abs() < slack, "{context}: {hit:?}, {there}");
+        assert!(found < first + slack, "{context}: {hit:?} after {first}");
+        assert!(found < most + slack, "{context}: {hit:?} beyond the end");
+        hits += 1;
+    }
+    assert!(hits > QUERIES / 4, "{name}: the rays hit something: {hits}");
+}
+
+fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
+    let mut touched = 0;
+    for _ in 0..QUERIES {
+        let sphere = Sphere {
+            center: queries.point(),
+            radius: 0.1 + queries.rng.f32() * 2.0,
+        };
+        let center = sphere.center.as_dvec3();
+        let within = |radius: f64| truth.distances(center).filter(|d| *d <= radius).count();
+        let radius = f64::from(sphere.radius);
+        let (least, most) = (within(radius - truth.slack), within(radius + truth.slack));
+        let found = match peer.overlap_sphere(&sphere) {
+            Err(Unsupported) => return,
+            Ok(found) => found,
+        };
+        assert!(
+            (least..=most).contains(&found),
+            "{name}: {sphere:?}: {found}, not {least} to {most}"
+        );
+        touched += found;
+    }
+    assert!(
+        touched > QUERIES,
+        "{name}: the spheres touch something: {touched}"
+    );
+}
+
+fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
+    for k in 0..QUERIES {
+        let point = queries.point();
+        let max_distance = match k % 3 {
+            0 => f32::INFINITY,
+            1 => 100.0,
+            _ => queries.rng.f32() * 4.0,
+        };
+        let context = format!("{name}: {point}, {max_distance}");
+        let distance = truth.distance(point.as_dvec3());
+        let found = match peer.closest_point(point, max_distance) {
+            Err(Unsupported) => return,
+            Ok(found) => found,
+        };
+        let Some(found) = found else {
+            assert!(
+                distance > f64::from(max_distance) - truth.slack,
+                "{context}: missed one at {distance}"
+            );
+            continue;
+        };
+        let off = f64::from(found.distance) - distance;
+        assert!(off.abs() < truth.slack, "{context}: {found:?}, {distance}");
+        let off = truth.distance(found.point.as_dvec3());
+        assert!(
+            off < truth.slack,
+            "{context}: {found:?} is {off} off the skin"
+        );
+    }
+}
+
+fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
+    /// Bullet ends at a gap of a millimetre, whatever the size.
+    const GAP: f64 = 2e-3;
+    let mut hits = 0;
+    for _ in 0..QUERIES {
+        let sphere = Sphere {
+            center: queries.point(),
+            radius: 0.1 + queries.rng.f32(),
+        };
+        let motion = queries.vector(10.0);
+        let cast = |radius| truth.cast_sphere(sphere.center.as_dvec3(), radius, motion.as_dvec3());
+        let radius = f64::from(sphere.radius);
+        let (earliest, latest) = (cast(radius + GAP), cast(radius - GAP));
+        if earliest == Some(0.0) {
+            // For Bullet one that starts in touch and moves away is no hit.
+            continue;
+        }
+        let found = match peer.cast_sphere(&sphere, motion) {
+            Err(Unsupported) => return,
+            Ok(found) => found.map(f64::from),
+        };
+        let context = format!("{name}: {sphere:?}, {motion}: {found:?}");
+        let Some(found) = found else {
+            assert!(latest.is_none(), "{context}, not {latest:?}");
+            continue;
+        };
+        let earliest = earliest.unwrap_or_else(|| panic!("{context}: nothing is there"));
+        let latest = latest.unwrap_or(1.0);
+        assert!(
+            (earliest - 1e-4..=latest + 1e-4).contains(&found),
+            "{context}, not {earliest} to {latest}"
+        );
+        hits += 1;
+    }
+    assert!(
+        hits > QUERIES / 10,
+        "{name}: the spheres hit something: {hits}"
+    );
+}
+
+#[test]
+fn libraries_answer_as_all_triangles_do_after_each_update() {
+    let mesh = Arc::new(bumpy_ball());
+    let poses = [
+        (palette(0.0, DVec3::ZERO), DVec3::ZERO),
+        (palette(1.2, DVec3::new(0.5, 1.0, 0.0)), DVec3::ZERO),
+        (
+            palette(-0.7, DVec3::new(-1.0, 2.0, 1.0)),
+            DVec3::new(40.0, -3.0, 7.0),
+        ),
+        (palette(0.3, DVec3::new(0.0, -1.0, 0.0)), DVec3::ZERO),
+    ];
+    let native = |name: &str| {
+        ["Embree", "Bullet", "FCL"]
+            .iter()
+            .any(|n| name.starts_with(n))
+    };
+    let entries = all().into_iter().filter(|entry| native(entry.name));
+    let mut tested = 0;
+    for entry in entries {
+        let mut peer = (entry.make)(&mesh).unwrap();
+        for (k, (palette, place)) in poses.iter().enumerate() {
+            peer.update(palette, *place).unwrap();
+            let truth = Truth::new(&mesh, palette, *place);
+            let mut queries = Queries {
+                rng: fastrand::Rng::with_seed(k as u64),
+                around: place.as_vec3(),
+            };
+            let name = format!("{} in pose {k}", entry.name);
+            rays_agree(&name, &mut *peer, &truth, &mut queries);
+            overlaps_agree(&name, &mut *peer, &truth, &mut queries);
+            closest_points_agree(&name, &mut *peer, &truth, &mut queries);
+            sphere_casts_agree(&name, &mut *peer, &truth, &mut queries);
+        }
+        tested += 1;
+    }
+    assert!(tested > 0, "no library is compiled in");
+}
+
+#[test]
+fn what_a_library_lacks_it_says() {
+    let mesh = Arc::new(bumpy_ball());
+    let ray = Ray::new(Vec3::ZERO, Vec3::X).unwrap();
+    let sphere = Sphere {
+        center: Vec3::X * 9.0,
+        radius: 0.5,
+    };
+    for entry in all() {
+        let mut peer = (entry.make)(&mesh).unwrap();
+        let lacks = [
+            peer.cast_ray(&ray, 20.0).is_err(),
+            peer.cast_sphere(&sphere, Vec3::X * -9.0).is_err(),
+        ];
+        match entry.name {
+            "Embree 3" | "Embree 3 robust" => assert_eq!(lacks, [false, true]),
+            "Bullet 3" => assert_eq!(lacks, [false, false]),
+            "FCL 0.7" => assert_eq!(lacks, [true, true]),
+            _ => {}
+        }
+    }
+}
