@@ -47,9 +47,15 @@ pub(crate) struct Lap {
     pub(crate) update: f64,
     /// Of one query, by kind; `None` for what the peer cannot do.
     pub(crate) queries: [Option<f64>; 4],
-    pub(crate) tick: f64,
-    pub(crate) tick_quartiles: [f64; 2],
-    /// Answers of whole ticks, per tick.
+    /// `None` where it lacks one of a tick's queries.
+    pub(crate) tick: Option<Whole>,
+}
+
+/// Whole ticks; microseconds.
+pub(crate) struct Whole {
+    pub(crate) median: f64,
+    pub(crate) quartiles: [f64; 2],
+    /// Answers per tick.
     pub(crate) hits: f64,
 }
 
@@ -90,9 +96,11 @@ pub(crate) fn race(
             let times = &mut times.queries[kind];
             (!times.is_empty()).then(|| quantile(times, 0.5))
         }),
-        tick: quantile(&mut times.tick, 0.5),
-        tick_quartiles: [0.25, 0.75].map(|part| quantile(&mut times.tick, part)),
-        hits: times.hits as f64 / run as f64,
+        tick: (!times.tick.is_empty()).then(|| Whole {
+            median: quantile(&mut times.tick, 0.5),
+            quartiles: [0.25, 0.75].map(|part| quantile(&mut times.tick, part)),
+            hits: times.hits as f64 / run as f64,
+        }),
     };
     Ok(times.iter_mut().map(lap).collect())
 }
@@ -104,10 +112,15 @@ fn whole(peer: &mut dyn Peer, tick: &Tick, times: &mut Times) -> Result<(), Box<
     times.update.push(micros(start));
     for rider in &tick.riders {
         for sphere in [&rider.body, &rider.foot] {
-            times.hits += peer.overlap_sphere(sphere).unwrap_or_default();
+            let Ok(hits) = peer.overlap_sphere(sphere) else {
+                return Ok(());
+            };
+            times.hits += hits;
         }
-        let hit = peer.cast_ray(&rider.ray, rider.reach);
-        times.hits += usize::from(hit.is_ok_and(|hit| hit.is_some()));
+        let Ok(hit) = peer.cast_ray(&rider.ray, rider.reach) else {
+            return Ok(());
+        };
+        times.hits += usize::from(hit.is_some());
         let (_, motion) = peer.motion(rider.anchor.triangle, rider.anchor.barycentric);
         times.hits += usize::from(motion.is_finite());
     }

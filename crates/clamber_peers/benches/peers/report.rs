@@ -24,6 +24,9 @@ const COLUMNS: [&str; 14] = [
     "memory, MB",
 ];
 
+/// What a peer has no query for.
+const CANNOT: &str = "cannot";
+
 /// What was measured, a row for each method, size and number of riders.
 pub(crate) struct Report {
     table: Table,
@@ -34,7 +37,7 @@ struct Row {
     name: &'static str,
     vertices: usize,
     riders: usize,
-    tick: f64,
+    tick: Option<f64>,
 }
 
 impl Default for Report {
@@ -55,13 +58,14 @@ impl Report {
         entrants: &[Entrant],
         laps: Vec<Lap>,
     ) -> Result<(), Box<dyn Error>> {
-        let (ours, eager) = (&laps[0], &laps[1]);
+        let [Some(ours), Some(eager)] = [0, 1].map(|index: usize| laps[index].tick.as_ref()) else {
+            return Err("ours has not answered".into());
+        };
         if ours.hits != eager.hits {
             return Err(format!("{} lazy hits a tick, {} eager", ours.hits, eager.hits).into());
         }
         let vertices = mesh.positions().len();
         for (entrant, lap) in entrants.iter().zip(&laps) {
-            let [low, high] = lap.tick_quartiles;
             let mut row = vec![
                 entrant.name.to_owned(),
                 vertices.to_string(),
@@ -70,21 +74,27 @@ impl Report {
                 digits(lap.update),
             ];
             let queries = lap.queries.iter();
-            row.extend(queries.map(|us| us.map_or("cannot".to_owned(), digits)));
-            row.extend([
-                digits(lap.tick),
-                format!("{} to {}", digits(low), digits(high)),
-                digits(lap.tick / ours.tick),
-                format!("{:.4}", lap.hits / ours.hits),
-                digits(entrant.bytes as f64 / 1e6),
-            ]);
+            row.extend(queries.map(|us| us.map_or(CANNOT.to_owned(), digits)));
+            match &lap.tick {
+                Some(tick) => {
+                    let [low, high] = tick.quartiles.map(digits);
+                    row.extend([
+                        digits(tick.median),
+                        format!("{low} to {high}"),
+                        digits(tick.median / ours.median),
+                        format!("{:.4}", tick.hits / ours.hits),
+                    ]);
+                }
+                None => row.extend([CANNOT; 4].map(str::to_owned)),
+            }
+            row.push(digits(entrant.bytes as f64 / 1e6));
             println!("{}", row.join(", "));
             self.table.push(row);
             self.rows.push(Row {
                 name: entrant.name,
                 vertices,
                 riders,
-                tick: lap.tick,
+                tick: lap.tick.as_ref().map(|tick| tick.median),
             });
         }
         Ok(())
@@ -127,7 +137,8 @@ impl Report {
     ) -> Plot {
         let mut series: Vec<Series> = Vec::new();
         for row in self.rows.iter().filter(|row| shown(row)) {
-            let point = (place(row) as f64, row.tick);
+            let Some(tick) = row.tick else { continue };
+            let point = (place(row) as f64, tick);
             match series.iter_mut().find(|series| series.name == row.name) {
                 Some(series) => series.points.push(point),
                 None => series.push(Series {

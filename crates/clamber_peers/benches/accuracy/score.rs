@@ -1,0 +1,160 @@
+//! Errors of one peer's answers to one set, and what is told of them.
+
+use std::error::Error;
+
+use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
+
+use crate::{KINDS, Kind};
+
+/// Beyond this share of a query's reach a wrong distance is no error but a leak, or a hit where nothing is.
+const LEAK: f64 = 0.01;
+
+/// Errors below this, metres, are drawn as this: f32 holds no less of a metre.
+const FLOOR: f64 = 1e-9;
+
+const COLUMNS: [&str; 11] = [
+    "queries",
+    "query",
+    "method",
+    "ns",
+    "median error, m",
+    "99 %, m",
+    "worst, m",
+    "latest, m",
+    "leaks",
+    "false hits",
+    "of",
+];
+
+/// What came of one peer's answers.
+#[derive(Default)]
+pub(crate) struct Score {
+    pub(crate) nanoseconds: f64,
+    errors: Vec<f64>,
+    /// Most that an answer was beyond the true distance.
+    latest: f64,
+    /// What is there and was not found, or only far behind it.
+    leaks: usize,
+    /// What was found and is not there.
+    false_hits: usize,
+    count: usize,
+}
+
+impl Score {
+    pub(crate) fn add(
+        &mut self,
+        kind: Kind,
+        expected: Option<f64>,
+        more: usize,
+        scale: f64,
+        found: Option<f64>,
+    ) {
+        self.count += 1;
+        match (expected, found) {
+            (None, None) => {}
+            (None, Some(_)) => self.false_hits += 1,
+            (Some(_), None) => self.leaks += 1,
+            (Some(expected), Some(found)) if kind == Kind::Overlap => {
+                self.leaks += usize::from(found < expected);
+                self.false_hits += usize::from(found > expected + more as f64);
+            }
+            (Some(expected), Some(found)) => {
+                let late = found - expected;
+                if late > LEAK * scale {
+                    self.leaks += 1;
+                } else if late < -LEAK * scale {
+                    self.false_hits += 1;
+                } else {
+                    self.errors.push(late.abs());
+                    self.latest = self.latest.max(late);
+                }
+            }
+        }
+    }
+}
+
+/// Table and plots.
+pub(crate) struct Report {
+    table: Table,
+    /// By kind of query.
+    plots: Vec<Vec<Series>>,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self {
+            table: Table::new(&COLUMNS),
+            plots: vec![Vec::new(); KINDS.len()],
+        }
+    }
+}
+
+impl Report {
+    /// Adds a peer's score; `None` for what it cannot do. Fails if ours leaks.
+    pub(crate) fn add(
+        &mut self,
+        set: &str,
+        method: &'static str,
+        kind: Kind,
+        score: Option<Score>,
+    ) -> Result<(), Box<dyn Error>> {
+        let index = KINDS.iter().position(|(known, _)| *known == kind);
+        let index = index.unwrap_or_default();
+        let mut row = [set, KINDS[index].1, method].map(str::to_owned).to_vec();
+        let Some(mut score) = score else {
+            row.extend(["cannot"; 8].map(str::to_owned));
+            self.table.push(row);
+            return Ok(());
+        };
+        if method.starts_with("clamber") && score.leaks + score.false_hits > 0 {
+            let (leaks, wrong) = (score.leaks, score.false_hits);
+            return Err(format!(
+                "{set}, {}: {method}: {leaks} leaks, {wrong} false hits",
+                row[1]
+            )
+            .into());
+        }
+        row.push(format!("{:.0}", score.nanoseconds));
+        if kind == Kind::Overlap {
+            row.extend(["", "", "", ""].map(str::to_owned));
+        } else {
+            let parts = [0.5, 0.99, 1.0].map(|part| quantile(&mut score.errors, part));
+            row.extend(parts.map(|error| format!("{error:.1e}")));
+            row.push(format!("{:.1e}", score.latest));
+            let point = (score.nanoseconds, parts[1].max(FLOOR));
+            let series = &mut self.plots[index];
+            match series.iter_mut().find(|series| series.name == method) {
+                Some(series) => series.points.push(point),
+                None => series.push(Series {
+                    name: method.to_owned(),
+                    points: vec![point],
+                    joined: false,
+                }),
+            }
+        }
+        row.extend([score.leaks, score.false_hits, score.count].map(|count| count.to_string()));
+        println!("{}", row.join(", "));
+        self.table.push(row);
+        Ok(())
+    }
+
+    pub(crate) fn finish(self, brief: bool) -> Result<(), Box<dyn Error>> {
+        println!("\n{}", self.table);
+        let brief = if brief { "_brief" } else { "" };
+        let folder = measure_folder();
+        let path = folder.join(format!("accuracy{brief}.csv"));
+        self.table.write_csv(&path)?;
+        println!("written to {}", path.display());
+        for ((_, name), series) in KINDS.iter().zip(self.plots) {
+            let plot = Plot {
+                title: format!("{name}: error against time, a dot for each set of queries"),
+                x: "ns a query".to_owned(),
+                y: "error that 99 % stay below, m".to_owned(),
+                series,
+            };
+            let name = name.replace(' ', "_");
+            plot.write_svg(&folder.join(format!("accuracy_{name}{brief}.svg")))?;
+        }
+        Ok(())
+    }
+}

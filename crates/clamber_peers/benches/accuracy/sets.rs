@@ -1,0 +1,222 @@
+//! What is asked: seeded sets of queries, ordinary and nasty.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use clamber_scenes::giant::giant;
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette, Playback};
+use clamber_surface::skin::skin_into;
+use glam::{DVec3, Vec3};
+
+use crate::truth::{Corners, Truth};
+
+/// How far out the set is that is not at the origin, metres.
+const FAR: DVec3 = DVec3::new(1_000.0, 0.0, -1_000.0);
+
+/// A skin, posed and placed, and what is asked of it.
+pub(crate) struct Set {
+    pub(crate) name: &'static str,
+    pub(crate) mesh: Arc<ColliderMesh>,
+    pub(crate) palette: Palette,
+    pub(crate) place: DVec3,
+    pub(crate) truth: Truth,
+    pub(crate) queries: Vec<Query>,
+}
+
+/// A ray that meets the skin, and beside it the point and the sphere that the other queries take.
+pub(crate) struct Query {
+    pub(crate) ray: Ray,
+    pub(crate) reach: f32,
+    pub(crate) sphere: Sphere,
+    pub(crate) motion: Vec3,
+}
+
+/// How rays are aimed.
+#[derive(Clone, Copy, PartialEq)]
+enum Aim {
+    /// At points inside of triangles, from the front.
+    Inside,
+    /// So flatly that the skin is met at some thousandth of a radian.
+    Grazing,
+    /// At points of edges.
+    Edges,
+    /// At vertices.
+    Vertices,
+}
+
+pub(crate) fn sets(queries: usize) -> Result<Vec<Set>, Box<dyn Error>> {
+    let giant = giant()?;
+    let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
+    let pose = walk.sample(&giant.skeleton.rest_pose(), 0.4, Playback::Loop)?;
+    let palette = giant.skeleton.palette(&pose)?;
+    let needles = Arc::new(needles()?);
+    let still = Palette::from_matrices([Affine::IDENTITY]);
+    let set = |name, mesh: &Arc<ColliderMesh>, palette: &Palette, place, aim| {
+        Set::new(name, mesh, palette, place, aim, queries)
+    };
+    let (skin, origin) = (&giant.collider, DVec3::ZERO);
+    Ok(vec![
+        set("ordinary", skin, &palette, origin, Aim::Inside)?,
+        set("grazing", skin, &palette, origin, Aim::Grazing)?,
+        set("slivers", &needles, &still, origin, Aim::Inside)?,
+        set("1.4 km out", skin, &palette, FAR, Aim::Inside)?,
+        set("aimed at edges", skin, &palette, origin, Aim::Edges)?,
+        set("aimed at vertices", skin, &palette, origin, Aim::Vertices)?,
+    ])
+}
+
+impl Set {
+    fn new(
+        name: &'static str,
+        mesh: &Arc<ColliderMesh>,
+        palette: &Palette,
+        place: DVec3,
+        aim: Aim,
+        count: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let mut positions = Vec::new();
+        skin_into(mesh, palette.matrices(), SimdLevel::best(), &mut positions)?;
+        let corners = mesh.triangles().iter();
+        let truth = corners.map(|t| t.map(|v| positions[v.index()].as_dvec3() + place));
+        let truth = Truth(truth.collect());
+        let mut rng = fastrand::Rng::with_seed(11);
+        let mut queries = Vec::with_capacity(count);
+        let around = around(mesh);
+        while queries.len() < count {
+            let triangle = rng.usize(0..truth.0.len());
+            let Some(query) = query(&truth.0[triangle], aim, &mut rng) else {
+                continue;
+            };
+            // Where a triangle turns away, a ray at the edge may pass by: there all are right.
+            let corners = mesh.triangles()[triangle];
+            let at = |v: usize| around[corners[v].index()].iter().copied();
+            let along = query.ray.direction().as_dvec3();
+            let faces = |triangle: usize| faces(&truth.0[triangle], along);
+            let passes = match aim {
+                Aim::Inside | Aim::Grazing => false,
+                Aim::Edges => !at(0).filter(|t| at(1).any(|other| other == *t)).all(faces),
+                Aim::Vertices => !at(0).all(faces),
+            };
+            if !passes {
+                queries.push(query);
+            }
+        }
+        Ok(Self {
+            name,
+            mesh: Arc::clone(mesh),
+            palette: palette.clone(),
+            place,
+            truth,
+            queries,
+        })
+    }
+}
+
+/// By vertex, the triangles that have it.
+fn around(mesh: &ColliderMesh) -> Vec<Vec<usize>> {
+    let mut around = vec![Vec::new(); mesh.positions().len()];
+    for (index, corners) in mesh.triangles().iter().enumerate() {
+        for vertex in corners {
+            around[vertex.index()].push(index);
+        }
+    }
+    around
+}
+
+/// True if a triangle clearly shows its front to a direction.
+fn faces(&[a, b, c]: &Corners, along: DVec3) -> bool {
+    (b - a).cross(c - a).normalize_or_zero().dot(along) < -0.05
+}
+
+/// Towards a triangle, from at most some metres away.
+fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Query> {
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let target = match aim {
+        Aim::Inside | Aim::Grazing => {
+            let (u, v) = (rng.f64(), rng.f64());
+            let (u, v) = if u + v > 1.0 {
+                (1.0 - u, 1.0 - v)
+            } else {
+                (u, v)
+            };
+            a + (b - a) * (0.02 + 0.94 * u) + (c - a) * (0.02 + 0.94 * v)
+        }
+        Aim::Edges => a.lerp(b, rng.f64()),
+        Aim::Vertices => a,
+    };
+    let (mut sideways, _) = normal.any_orthonormal_pair();
+    sideways = rotation_from_axis_angle(normal, rng.f64() * core::f64::consts::TAU) * sideways;
+    let steep = match aim {
+        Aim::Grazing => 1e-3,
+        _ => 0.3 + rng.f64(),
+    };
+    let back = (normal * steep + sideways).normalize();
+    let length = 0.2 + 2.0 * rng.f64();
+    // The query is what f32 holds of it; from there the direction is aimed anew.
+    let origin = (target + back * length).as_vec3();
+    let direction = (target - origin.as_dvec3()).normalize().as_vec3();
+    let radius = 0.05 + 0.4 * rng.f32();
+    Some(Query {
+        ray: Ray::new(origin, direction)?,
+        reach: 2.0 * length as f32 + 1.0,
+        sphere: Sphere {
+            center: origin,
+            radius,
+        },
+        motion: direction * (length as f32 + radius),
+    })
+}
+
+/// A closed ball of 6 rings and 2,048 segments, 10 m across: its triangles are hundreds of times as long as wide.
+fn needles() -> Result<ColliderMesh, Box<dyn Error>> {
+    const RINGS: u32 = 6;
+    const SEGMENTS: u32 = 2_048;
+    let angle = |part: u32, of: u32| core::f64::consts::PI * f64::from(part) / f64::from(of);
+    let at = |ring: u32, segment: u32| {
+        let (a, b) = (angle(ring, RINGS), 2.0 * angle(segment, SEGMENTS));
+        let across = 5.0 * libm::sin(a);
+        DVec3::new(
+            across * libm::cos(b),
+            5.0 * libm::cos(a),
+            across * libm::sin(b),
+        )
+        .as_vec3()
+    };
+    let mut positions = vec![at(0, 0), at(RINGS, 0)];
+    for ring in 1..RINGS {
+        positions.extend((0..SEGMENTS).map(|segment| at(ring, segment)));
+    }
+    let vertex = |ring: u32, segment: u32| match ring {
+        0 => 0,
+        RINGS => 1,
+        _ => 2 + (ring - 1) * SEGMENTS + segment % SEGMENTS,
+    };
+    let mut triangles = Vec::new();
+    for ring in 0..RINGS {
+        for segment in 0..SEGMENTS {
+            let [a, b] = [0, 1].map(|k| vertex(ring, segment + k));
+            let [c, d] = [0, 1].map(|k| vertex(ring + 1, segment + k));
+            if ring > 0 {
+                triangles.push([a, b, c]);
+            }
+            if ring + 1 < RINGS {
+                triangles.push([b, d, c]);
+            }
+        }
+    }
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![influence; positions.len()],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
+}
