@@ -6,27 +6,39 @@ use std::collections::{BTreeMap, BTreeSet};
 use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Message, Metadata, TargetKind};
 
-use crate::run::cargo_output;
+use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 
-/// The whole workspace, with what is not on by default but needed by an example, a test or a bench, or only adds to
-/// what there is.
-pub(crate) const SELECTION: [&str; 3] = [
-    "--workspace",
-    "--features",
-    "bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,bevy_clamber/picking,\
-        clamber/parry,clamber/record,clamber/render",
-];
+/// What is not on by default but needed by an example, a test or a bench, or only adds to what there is.
+const FEATURES: &str = "\
+    bevy_clamber/avian,bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,\
+    bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,\
+    clamber/parry,clamber/record,clamber/render";
 
-/// The features that [`SELECTION`] turns on beside the default ones, as `package/feature`.
+/// The whole workspace, with [`FEATURES`].
+pub(crate) const SELECTION: [&str; 4] =
+    ["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES];
+
+/// The features that are on with [`SELECTION`], as `package/feature`: those named, those on by default, and what
+/// they turn on in turn.
 pub(crate) fn selected(metadata: &Metadata) -> BTreeSet<String> {
+    let packages = metadata.workspace_packages();
+    let default = packages
+        .iter()
+        .map(|package| format!("{}/default", package.name));
+    let named = FEATURES.split(',').map(str::to_owned);
+    let mut next: Vec<String> = named.chain(default).collect();
     let mut selected = BTreeSet::new();
-    let mut next: Vec<String> = SELECTION[2].split(',').map(str::to_owned).collect();
     while let Some(feature) = next.pop() {
         let (package, name) = feature.split_once('/').unwrap_or_default();
-        let packages = metadata.workspace_packages();
-        let package = packages.iter().find(|known| known.name == package);
-        let implied = package.and_then(|package| package.features.get(name));
-        next.extend(implied.into_iter().flatten().cloned());
+        let known = packages.iter().find(|known| known.name == package);
+        let implied = known.and_then(|known| known.features.get(name));
+        for implied in implied.into_iter().flatten() {
+            next.push(if implied.contains('/') || implied.starts_with("dep:") {
+                implied.clone()
+            } else {
+                format!("{package}/{implied}")
+            });
+        }
         selected.insert(feature);
     }
     selected

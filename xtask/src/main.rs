@@ -7,7 +7,6 @@ mod benches;
 mod build;
 mod examples;
 mod features;
-mod obstacles;
 mod packages;
 mod run;
 
@@ -43,7 +42,7 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 9] = [
     ("tests", |_| {
         cargo(&[&["test"][..], &build::SELECTION].concat())
     }),
@@ -54,7 +53,6 @@ const STEPS: [Step; 10] = [
         cargo(&[&all[..], &strict].concat())
     }),
     ("features", features::check),
-    ("obstacles", obstacles::check),
     ("documentation", |_| {
         let doc = [
             "doc",
