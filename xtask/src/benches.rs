@@ -1,4 +1,5 @@
-//! Every bench once, briefly: it runs, and what it checks beside measuring holds.
+//! Every bench once, briefly: it runs, and what it checks beside measuring holds. In the profile of tests, whose
+//! builds are there; the release profile would build all of Bevy again. What is released runs among the examples.
 
 use cargo_metadata::{Metadata, TargetKind};
 
@@ -12,6 +13,6 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     // By name: all of them would be the libraries' tests as well.
     let named = benches.flat_map(|bench| ["--bench", bench.name.as_str()]);
     let named: Vec<&str> = named.collect();
-    let bench = ["bench", "--quiet"];
-    cargo(&[&bench[..], &SELECTION, &named, &["--", "--test"]].concat())
+    let test = ["test", "--quiet"];
+    cargo(&[&test[..], &SELECTION, &named, &["--", "--test"]].concat())
 }
