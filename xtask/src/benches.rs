@@ -3,7 +3,7 @@
 
 use cargo_metadata::{Metadata, TargetKind};
 
-use crate::build::SELECTION;
+use crate::build::selection;
 use crate::run::cargo;
 
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
@@ -14,5 +14,5 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     let named = benches.flat_map(|bench| ["--bench", bench.name.as_str()]);
     let named: Vec<&str> = named.collect();
     let test = ["test", "--quiet"];
-    cargo(&[&test[..], &SELECTION, &named, &["--", "--test"]].concat())
+    cargo(&[&test[..], &selection(), &named, &["--", "--test"]].concat())
 }

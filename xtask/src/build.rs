@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Message, Metadata, TargetKind};
 
+use crate::peers;
 use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 
 /// What is not on by default but needed by an example, a test or a bench, or only adds to what there is.
@@ -14,19 +15,24 @@ const FEATURES: &str = "\
     bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,\
     clamber/parry,clamber/record,clamber/render";
 
-/// The whole workspace, with [`FEATURES`].
-pub(crate) const SELECTION: [&str; 4] =
-    ["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES];
+/// The whole workspace, with [`FEATURES`] and the peers whose libraries are here.
+pub(crate) fn selection() -> Vec<&'static str> {
+    let mut selection = vec!["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES];
+    for peer in peers::installed() {
+        selection.extend(["--features", peer]);
+    }
+    selection
+}
 
-/// The features that are on with [`SELECTION`], as `package/feature`: those named, those on by default, and what
+/// The features that are on with [`selection`], as `package/feature`: those named, those on by default, and what
 /// they turn on in turn.
 pub(crate) fn selected(metadata: &Metadata) -> BTreeSet<String> {
     let packages = metadata.workspace_packages();
     let default = packages
         .iter()
         .map(|package| format!("{}/default", package.name));
-    let named = FEATURES.split(',').map(str::to_owned);
-    let mut next: Vec<String> = named.chain(default).collect();
+    let named = FEATURES.split(',').chain(peers::installed());
+    let mut next: Vec<String> = named.map(str::to_owned).chain(default).collect();
     let mut selected = BTreeSet::new();
     while let Some(feature) = next.pop() {
         let (package, name) = feature.split_once('/').unwrap_or_default();
@@ -52,7 +58,7 @@ pub(crate) fn examples(which: &[&str]) -> Result<BTreeMap<String, Utf8PathBuf>, 
         "--message-format",
         "json-render-diagnostics",
     ];
-    let messages = cargo_output(&[&build[..], &SELECTION, which].concat())?;
+    let messages = cargo_output(&[&build[..], &selection(), which].concat())?;
     let mut examples = BTreeMap::new();
     for message in Message::parse_stream(messages.as_bytes()) {
         let message = message.map_err(|error| format!("what cargo says of its build: {error}"))?;

@@ -5,6 +5,7 @@
 use cargo_metadata::Metadata;
 
 use crate::build::selected;
+use crate::peers;
 use crate::run::{IGNORE_RUST_VERSION, cargo};
 
 /// Features that bring in crates which declare a newer Rust than ours, and build on ours.
@@ -17,7 +18,10 @@ const NEWER_RUST: [&str; 3] = [
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let selected = selected(metadata);
     for package in metadata.workspace_packages() {
-        let features = || package.features.keys().filter(|name| *name != "default");
+        let here = |name: &&String| {
+            *name != "default" && !peers::lacks(&format!("{}/{name}", package.name))
+        };
+        let features = || package.features.keys().filter(here);
         let lint = ["clippy", "--quiet", "-p", &package.name, "--all-targets"];
         let bare = ["--no-default-features"];
         let strict = ["--", "-D", "warnings"];

@@ -8,6 +8,7 @@ mod build;
 mod examples;
 mod features;
 mod packages;
+mod peers;
 mod run;
 
 use std::process::ExitCode;
@@ -44,19 +45,31 @@ type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
 const STEPS: [Step; 9] = [
     ("tests", |_| {
-        cargo(&[&["test"][..], &build::SELECTION].concat())
+        peers::check()?;
+        cargo(&[&["test"][..], &build::selection()].concat())
     }),
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
-        let all = ["clippy", "--workspace", "--all-targets", "--all-features"];
-        let strict = [IGNORE_RUST_VERSION, "--quiet", "--", "-D", "warnings"];
-        cargo(&[&all[..], &strict].concat())
+        let lint = ["clippy", "--all-targets", "--quiet"];
+        let all = [
+            "--workspace",
+            "--exclude",
+            "clamber_peers",
+            "--all-features",
+        ];
+        let strict = ["--", "-D", "warnings"];
+        cargo(&[&lint[..], &all, &[IGNORE_RUST_VERSION], &strict].concat())?;
+        let installed = peers::installed().join(",");
+        let peers = ["-p", "clamber_peers", "--features", &installed];
+        cargo(&[&lint[..], &peers, &strict].concat())
     }),
     ("features", features::check),
     ("documentation", |_| {
         let doc = [
             "doc",
             "--workspace",
+            "--exclude",
+            "clamber_peers",
             "--no-deps",
             "--all-features",
             IGNORE_RUST_VERSION,

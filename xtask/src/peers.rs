@@ -1,0 +1,49 @@
+//! Libraries that peers need and Debian packages: what is installed is built, and on CI all of it must be.
+
+use std::path::Path;
+
+/// Features, where their headers are, and in which package.
+const LIBRARIES: [(&str, &str, &str); 3] = [
+    (
+        "clamber_peers/bullet",
+        "/usr/include/bullet",
+        "libbullet-dev",
+    ),
+    (
+        "clamber_peers/embree",
+        "/usr/include/embree3",
+        "libembree-dev",
+    ),
+    ("clamber_peers/fcl", "/usr/include/fcl", "libfcl-dev"),
+];
+
+/// The features whose libraries are here.
+pub(crate) fn installed() -> Vec<&'static str> {
+    let here = LIBRARIES
+        .iter()
+        .filter(|(_, headers, _)| Path::new(headers).exists());
+    here.map(|(feature, ..)| *feature).collect()
+}
+
+/// True for a feature, `package/feature`, that needs a library which is not here.
+pub(crate) fn lacks(feature: &str) -> bool {
+    let known = LIBRARIES.iter().any(|(known, ..)| *known == feature);
+    known && !installed().contains(&feature)
+}
+
+/// Says what is missing; on CI that is an error.
+pub(crate) fn check() -> Result<(), String> {
+    let missing = LIBRARIES
+        .iter()
+        .filter(|(_, headers, _)| !Path::new(headers).exists());
+    let missing: Vec<&str> = missing.map(|(.., package)| *package).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let missing = format!("peers are left out: apt-get install {}", missing.join(" "));
+    if std::env::var_os("CI").is_some() {
+        return Err(missing);
+    }
+    eprintln!("WARNING: {missing}");
+    Ok(())
+}
