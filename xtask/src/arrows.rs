@@ -45,10 +45,12 @@ const ALLOWED: [(&str, &[&str]); 12] = [
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 5] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 7] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
+    ("clamber_peers", "clamber_climber"),
     ("clamber_peers", "clamber_scenes"),
+    ("clamber_peers", "clamber_world"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
 ];

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
 
-use crate::{KINDS, Kind};
+use super::{KINDS, Kind};
 
 /// Beyond this share of a query's reach a wrong distance is no error but a leak, or a hit where nothing is.
 const LEAK: f64 = 0.01;
@@ -142,7 +142,7 @@ impl Report {
         println!("\n{}", self.table);
         let brief = if brief { "_brief" } else { "" };
         let folder = measure_folder();
-        let path = folder.join(format!("accuracy{brief}.csv"));
+        let path = folder.join(format!("accuracy_queries{brief}.csv"));
         self.table.write_csv(&path)?;
         println!("written to {}", path.display());
         for ((_, name), series) in KINDS.iter().zip(self.plots) {

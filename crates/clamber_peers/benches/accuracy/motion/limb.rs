@@ -1,0 +1,114 @@
+//! A limb on one joint, and how it moves.
+
+use std::sync::Arc;
+
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::skin::skin_into;
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+
+use crate::truth::Truth;
+
+/// Metres: the limb lies along X from the joint on.
+pub(crate) const LENGTH: f64 = 10.0;
+pub(crate) const RADIUS: f64 = 0.5;
+
+/// Where along it a speed is meant, metres from the joint.
+pub(crate) const AT: f64 = 8.0;
+
+/// Vertices around it and along it.
+const SIDES: u32 = 32;
+const RINGS: u32 = 80;
+
+/// How a limb moves.
+#[derive(Clone, Copy)]
+pub(crate) enum Course {
+    /// It turns about Z, so fast that [`AT`] makes so many metres a second, from `from` radians on.
+    Swing { speed: f64, from: f64 },
+    /// It goes up and down, its fastest at so many metres a second, once a second.
+    Heave { speed: f64 },
+}
+
+impl Course {
+    /// Where the joint is, so many seconds on.
+    pub(crate) fn model_from_joint(&self, time: f64) -> DAffine3 {
+        match self {
+            Self::Swing { speed, from } => {
+                let turn = rotation_from_axis_angle(DVec3::Z, from + speed / AT * time);
+                DAffine3::from_rotation_translation(turn, DVec3::ZERO)
+            }
+            Self::Heave { speed } => {
+                let angle = core::f64::consts::TAU * time;
+                let height = speed / core::f64::consts::TAU * libm::sin(angle);
+                // It rolls a little as it goes.
+                let roll = rotation_from_axis_angle(DVec3::X, 0.1 * libm::sin(angle));
+                let tilt = rotation_from_axis_angle(DVec3::Z, 0.05 * libm::cos(angle));
+                let turn: DQuat = tilt * roll;
+                DAffine3::from_rotation_translation(turn, DVec3::Y * height)
+            }
+        }
+    }
+
+    /// The palette, so many seconds on.
+    pub(crate) fn palette(&self, time: f64) -> Palette {
+        Palette::from_matrices([Affine::from_f64(&self.model_from_joint(time))])
+    }
+}
+
+/// A closed tube.
+pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
+    let mut positions = Vec::new();
+    for ring in 0..=RINGS {
+        let x = LENGTH * f64::from(ring) / f64::from(RINGS);
+        for side in 0..SIDES {
+            let angle = core::f64::consts::TAU * f64::from(side) / f64::from(SIDES);
+            let (y, z) = (RADIUS * libm::cos(angle), RADIUS * libm::sin(angle));
+            positions.push(DVec3::new(x, y, z).as_vec3());
+        }
+    }
+    let (first, last) = (positions.len() as u32, positions.len() as u32 + 1);
+    positions.extend([Vec3::ZERO, Vec3::X * LENGTH as f32]);
+    let mut triangles = Vec::new();
+    for side in 0..SIDES {
+        let next = (side + 1) % SIDES;
+        for ring in 0..RINGS {
+            let (a, b) = (ring * SIDES + side, ring * SIDES + next);
+            triangles.push([a, b, a + SIDES]);
+            triangles.push([b, b + SIDES, a + SIDES]);
+        }
+        let end = RINGS * SIDES;
+        triangles.push([first, next, side]);
+        triangles.push([last, end + side, end + next]);
+    }
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![influence; positions.len()],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    Ok(Arc::new(
+        ColliderMesh::build(&source, &BuildOptions::default())?.0,
+    ))
+}
+
+/// How far a point is from the skin, in f64 over all triangles; negative inside.
+pub(crate) fn signed_distance(mesh: &ColliderMesh, palette: &Palette, point: DVec3) -> f64 {
+    let mut positions = Vec::new();
+    // One joint, as the mesh has.
+    let _ = skin_into(mesh, palette.matrices(), SimdLevel::best(), &mut positions);
+    let triangles = mesh.triangles().iter();
+    let triangles = triangles.map(|t| t.map(|v| positions[v.index()].as_dvec3()));
+    let distance = Truth(triangles.collect()).distance(point);
+    if clamber_scenes::solid_angle::is_inside(&positions, mesh, point) {
+        -distance
+    } else {
+        distance
+    }
+}

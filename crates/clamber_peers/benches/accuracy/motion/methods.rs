@@ -1,0 +1,228 @@
+//! Ways to keep a sphere out of a limb that moves.
+
+use std::sync::Arc;
+
+use clamber_climber::average_push_out;
+use clamber_surface::geometry::{Similarity, Sphere};
+use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceError, SurfaceHit, TOLERANCE};
+use clamber_world::{Contact, Obstacle};
+use glam::{DVec3, Vec3};
+
+use super::limb::Course;
+
+/// Sweeps, and rounds over speculative planes, in a tick.
+const ROUNDS: usize = 8;
+
+/// How a tick's collisions are resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Method {
+    /// The mean of all push-outs at so many poses within the tick; the thesis's with one.
+    PushOut { steps: u32 },
+    /// Planes of what is near at the start of the tick, each moving as its point does; then a push-out.
+    Speculative,
+    /// Sweeps against the moving skin, each contact a plane that moves with it; then a push-out.
+    Sweep,
+}
+
+pub(crate) const METHODS: [(Method, &str); 6] = [
+    (Method::PushOut { steps: 1 }, "averaged push-out"),
+    (Method::PushOut { steps: 2 }, "2 sub-steps"),
+    (Method::PushOut { steps: 4 }, "4 sub-steps"),
+    (Method::PushOut { steps: 8 }, "8 sub-steps"),
+    (Method::Speculative, "speculative contacts"),
+    (Method::Sweep, "sweeps"),
+];
+
+/// A sphere beside a limb.
+pub(crate) struct Body {
+    pub(crate) center: DVec3,
+    radius: f64,
+    /// It rests on a material point.
+    anchor: Option<Anchor>,
+    method: Method,
+    surface: SkinnedSurface,
+    /// As the limb was a tick ago, for what looks ahead from there.
+    before: SkinnedSurface,
+    contacts: Vec<Contact>,
+    hits: Vec<SurfaceHit>,
+}
+
+impl Body {
+    pub(crate) fn new(
+        mesh: &Arc<ColliderMesh>,
+        method: Method,
+        course: &Course,
+        center: DVec3,
+        radius: f64,
+    ) -> Result<Self, SurfaceError> {
+        let mut body = Self {
+            center,
+            radius,
+            anchor: None,
+            method,
+            surface: SkinnedSurface::new(Arc::clone(mesh)),
+            before: SkinnedSurface::new(Arc::clone(mesh)),
+            contacts: Vec::new(),
+            hits: Vec::new(),
+        };
+        let palette = course.palette(0.0);
+        body.surface.place(&palette, Similarity::IDENTITY)?;
+        body.before.place(&palette, Similarity::IDENTITY)?;
+        Ok(body)
+    }
+
+    /// Rests on the nearest skin from now on.
+    pub(crate) fn rest(&mut self) -> Result<(), SurfaceError> {
+        let hit = self
+            .surface
+            .closest_point(self.center.as_vec3(), f32::INFINITY)?;
+        self.anchor = hit.map(|hit| self.surface.anchor_at(&hit));
+        Ok(())
+    }
+
+    /// The tick from `time` on.
+    pub(crate) fn tick(&mut self, course: &Course, time: f64, dt: f64) -> Result<(), SurfaceError> {
+        match self.method {
+            Method::PushOut { steps } => {
+                let step = dt / f64::from(steps);
+                for k in 1..=steps {
+                    let palette = course.palette(time + step * f64::from(k));
+                    self.pose(&palette)?;
+                    self.center += self.carried(step)?;
+                    self.push_out();
+                }
+            }
+            Method::Speculative => {
+                self.pose(&course.palette(time + dt))?;
+                let wanted = self.carried(dt)?;
+                let motion = self.look_ahead(wanted)?;
+                self.center += motion;
+                self.push_out();
+            }
+            Method::Sweep => {
+                self.pose(&course.palette(time + dt))?;
+                let wanted = self.carried(dt)?;
+                let motion = self.sweep(wanted)?;
+                self.center += motion;
+                self.push_out();
+            }
+        }
+        Ok(())
+    }
+
+    fn pose(&mut self, palette: &Palette) -> Result<(), SurfaceError> {
+        self.surface.advance(palette, Similarity::IDENTITY)
+    }
+
+    /// How far its anchor takes it, turned with it.
+    fn carried(&self, dt: f64) -> Result<DVec3, SurfaceError> {
+        let Some(anchor) = &self.anchor else {
+            return Ok(DVec3::ZERO);
+        };
+        let motion = self.surface.motion(anchor, dt)?;
+        let (now, before) = (
+            motion.position.as_dvec3(),
+            motion.previous_position.as_dvec3(),
+        );
+        let spin = motion.angular_velocity.as_dvec3() * dt;
+        let angle = spin.length();
+        let arm = self.center - before;
+        let turned = if angle > 0.0 {
+            clamber_surface::geometry::rotation_from_axis_angle(spin / angle, angle) * arm
+        } else {
+            arm
+        };
+        Ok(now + turned - self.center)
+    }
+
+    fn push_out(&mut self) {
+        self.contacts.clear();
+        let surface: &dyn Obstacle = &self.surface;
+        surface.overlap_sphere(self.center, self.radius, &mut self.contacts);
+        self.center += average_push_out(&self.contacts, self.center, self.radius).displacement;
+    }
+
+    /// A motion that stays in front of all planes of what the sphere may meet.
+    fn look_ahead(&mut self, wanted: DVec3) -> Result<DVec3, SurfaceError> {
+        // Nothing comes from farther than the fastest skin near here moves.
+        let reach = self.radius + self.fastest()? + wanted.length();
+        let sphere = Sphere {
+            center: self.center.as_vec3(),
+            radius: reach as f32,
+        };
+        let mut hits = std::mem::take(&mut self.hits);
+        self.before.overlap_sphere(&sphere, &mut hits)?;
+        let mut planes = Vec::with_capacity(hits.len());
+        for hit in &hits {
+            let anchor = self.surface.anchor(hit.triangle, hit.barycentric)?;
+            let motion = self.surface.motion(&anchor, 1.0)?;
+            let away = (self.center - hit.point.as_dvec3()).normalize_or(hit.normal.as_dvec3());
+            // From behind the skin there is no way out ahead.
+            if away.dot(hit.normal.as_dvec3()) > 0.0 {
+                let gap = f64::from(hit.distance) - self.radius;
+                planes.push((away, motion.velocity.as_dvec3().dot(away) - gap));
+            }
+        }
+        self.hits = hits;
+        let mut motion = wanted;
+        for _ in 0..ROUNDS {
+            for (away, least) in &planes {
+                motion += *away * (least - motion.dot(*away)).max(0.0);
+            }
+        }
+        Ok(motion)
+    }
+
+    /// The most that a point of the limb nearby moves in this tick.
+    fn fastest(&self) -> Result<f64, SurfaceError> {
+        let mut fastest = 0.0_f64;
+        // The limb is straight and stiff: its ends are its fastest.
+        for vertex in [0, self.surface.mesh().positions().len() - 1] {
+            let vertex = clamber_surface::mesh::VertexId(vertex as u32);
+            let ends = (
+                self.surface.position(vertex),
+                self.surface.previous_position(vertex),
+            );
+            if let (Some(now), Some(before)) = ends {
+                fastest = fastest.max(f64::from(now.distance(before)));
+            }
+        }
+        Ok(fastest)
+    }
+
+    /// A motion that sweeps find free, or that keeps touching what it met.
+    fn sweep(&self, wanted: DVec3) -> Result<DVec3, SurfaceError> {
+        let sphere = Sphere {
+            center: self.center.as_vec3(),
+            radius: self.radius as f32,
+        };
+        let mut motion = wanted;
+        for _ in 0..ROUNDS {
+            let hit = self
+                .surface
+                .sweep_sphere(&sphere, motion.as_vec3(), TOLERANCE)?;
+            let Some(hit) = hit else { break };
+            let anchor = self.surface.anchor(hit.triangle, hit.barycentric)?;
+            let way: Vec3 = self.surface.motion(&anchor, 1.0)?.velocity;
+            let normal = hit.normal.as_dvec3();
+            let closing = (way.as_dvec3() - motion).dot(normal);
+            if closing <= 0.0 {
+                break;
+            }
+            // From the contact on it goes with the skin; spread over the tick, so that it is linear.
+            motion += normal * (closing * (1.0 - hit.time) + f64::from(TOLERANCE));
+        }
+        Ok(motion)
+    }
+
+    /// Ends a tick: what is now was a tick ago in the next.
+    pub(crate) fn end(&mut self, course: &Course, time: f64) -> Result<(), SurfaceError> {
+        if self.method == Method::Speculative {
+            self.before
+                .advance(&course.palette(time), Similarity::IDENTITY)?;
+        }
+        Ok(())
+    }
+}

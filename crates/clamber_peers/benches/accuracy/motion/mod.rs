@@ -1,0 +1,230 @@
+//! A sphere and a limb that moves: what each way of keeping them apart costs, and what it lets through.
+
+mod limb;
+mod methods;
+
+use std::error::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
+use clamber_surface::mesh::ColliderMesh;
+use glam::DVec3;
+use limb::{AT, Course, LENGTH, RADIUS, limb, signed_distance};
+use methods::{Body, METHODS, Method};
+
+/// Of the sphere, metres.
+const SPHERE: f64 = 0.4;
+
+/// The limb has passed the sphere by when it has swung so far beyond its place, radians.
+const BEYOND: f64 = 0.35;
+
+/// Behind the limb and nearer to its axis than this share of both radii, the sphere has come through it, not around.
+const THROUGH: f64 = 0.9;
+
+const COLUMNS: [&str; 10] = [
+    "scene",
+    "m/s",
+    "Hz",
+    "method",
+    "us a tick",
+    "median depth, m",
+    "99 %, m",
+    "worst, m",
+    "passed through",
+    "drift, m",
+];
+
+/// What came of one method in one scene.
+#[derive(Default)]
+struct Outcome {
+    microseconds: Vec<f64>,
+    depths: Vec<f64>,
+    /// Trials in which the limb passed through the sphere.
+    passed: usize,
+    trials: usize,
+    drift: f64,
+}
+
+/// Measures all methods in all scenes.
+pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mesh = limb()?;
+    let (trials, seconds) = if brief { (2, 0.2) } else { (100, 10.0) };
+    let mut table = Table::new(&COLUMNS);
+    let mut series: Vec<Series> = Vec::new();
+    for rate in [30.0, 60.0, 120.0] {
+        for speed in [5.0, 20.0, 60.0, 100.0] {
+            for (method, name) in METHODS {
+                let swung = swing(&mesh, method, speed, rate, trials)?;
+                report(
+                    &mut table,
+                    &mut series,
+                    ["a limb swings", name],
+                    [speed, rate],
+                    swung,
+                );
+            }
+        }
+        for speed in [1.0, 5.0] {
+            for (method, name) in METHODS {
+                let rode = ride(&mesh, method, speed, rate, seconds)?;
+                report(
+                    &mut table,
+                    &mut series,
+                    ["riding on a limb", name],
+                    [speed, rate],
+                    rode,
+                );
+            }
+        }
+    }
+    println!("\n{table}");
+    let brief = if brief { "_brief" } else { "" };
+    let folder = measure_folder();
+    let path = folder.join(format!("accuracy_motion{brief}.csv"));
+    table.write_csv(&path)?;
+    println!("written to {}", path.display());
+    let plot = Plot {
+        title: "A limb swings into a sphere: depth against cost, a dot for each speed and rate"
+            .into(),
+        x: "us a tick".into(),
+        y: "worst depth at the end of a tick, m".into(),
+        series,
+    };
+    plot.write_svg(&folder.join(format!("accuracy_motion{brief}.svg")))
+}
+
+/// A limb swings through where a sphere is, at most half beside the middle of it.
+fn swing(
+    mesh: &Arc<ColliderMesh>,
+    method: Method,
+    speed: f64,
+    rate: f64,
+    trials: usize,
+) -> Result<Outcome, Box<dyn Error>> {
+    let mut rng = fastrand::Rng::with_seed(12);
+    let dt = 1.0 / rate;
+    let mut outcome = Outcome::default();
+    for _ in 0..trials {
+        // It starts anywhere within a tick's way before the sphere.
+        let before = 0.3 + speed / AT * dt * rng.f64();
+        let course = Course::Swing {
+            speed,
+            from: -before,
+        };
+        let beside = 0.5 * (RADIUS + SPHERE) * (2.0 * rng.f64() - 1.0);
+        let along = AT + rng.f64() - 0.5;
+        let place = DVec3::new(along, 0.0, beside);
+        let mut body = Body::new(mesh, method, &course, place, SPHERE)?;
+        let (mut was_before, mut passed) = (true, false);
+        let ticks = ((before + BEYOND) * AT / speed / dt).ceil() as usize;
+        for tick in 0..ticks {
+            let time = tick as f64 * dt;
+            let start = Instant::now();
+            body.tick(&course, time, dt)?;
+            outcome
+                .microseconds
+                .push(start.elapsed().as_secs_f64() * 1e6);
+            body.end(&course, time + dt)?;
+            let palette = course.palette(time + dt);
+            let at = course
+                .model_from_joint(time + dt)
+                .inverse()
+                .transform_point3(body.center);
+            // Beyond the tip there is nothing to be deep in.
+            if at.x < LENGTH {
+                let depth = SPHERE - signed_distance(mesh, &palette, body.center);
+                outcome.depths.push(depth.max(0.0));
+            }
+            // The limb swings towards its Y.
+            if at.y < 0.0 && was_before {
+                was_before = false;
+                passed |= at.z.abs() < THROUGH * (RADIUS + SPHERE) && at.x < LENGTH;
+            }
+        }
+        outcome.trials += 1;
+        outcome.passed += usize::from(passed);
+    }
+    Ok(outcome)
+}
+
+/// A sphere that rests on a limb which goes up and down and rolls.
+fn ride(
+    mesh: &Arc<ColliderMesh>,
+    method: Method,
+    speed: f64,
+    rate: f64,
+    seconds: f64,
+) -> Result<Outcome, Box<dyn Error>> {
+    let dt = 1.0 / rate;
+    let course = Course::Heave { speed };
+    // On the top of the limb as it is at first.
+    let top = DVec3::new(5.0, RADIUS + SPHERE, 0.0);
+    let place = course.model_from_joint(0.0).transform_point3(top);
+    let mut body = Body::new(mesh, method, &course, place, SPHERE)?;
+    body.rest()?;
+    let from_joint = |time: f64, point: DVec3| {
+        course
+            .model_from_joint(time)
+            .inverse()
+            .transform_point3(point)
+    };
+    let start = from_joint(0.0, body.center);
+    let mut outcome = Outcome {
+        trials: 1,
+        ..Outcome::default()
+    };
+    for tick in 0..(seconds * rate) as usize {
+        let time = tick as f64 * dt;
+        let begin = Instant::now();
+        body.tick(&course, time, dt)?;
+        outcome
+            .microseconds
+            .push(begin.elapsed().as_secs_f64() * 1e6);
+        body.end(&course, time + dt)?;
+        let depth = SPHERE - signed_distance(mesh, &course.palette(time + dt), body.center);
+        outcome.depths.push(depth.max(0.0));
+        // Against the limb itself; what it is lifted off counts too.
+        let drift = from_joint(time + dt, body.center).distance(start);
+        outcome.drift = outcome.drift.max(drift);
+    }
+    outcome.passed = usize::from(!outcome.drift.is_finite() || outcome.drift > SPHERE);
+    Ok(outcome)
+}
+
+fn report(
+    table: &mut Table,
+    series: &mut Vec<Series>,
+    [scene, method]: [&str; 2],
+    [speed, rate]: [f64; 2],
+    mut outcome: Outcome,
+) {
+    // The mean: most ticks have nothing near, and those that have are what is paid for.
+    let cost = outcome.microseconds.iter().sum::<f64>() / outcome.microseconds.len() as f64;
+    let depths = [0.5, 0.99, 1.0].map(|part| quantile(&mut outcome.depths, part));
+    let mut row = [scene, &format!("{speed}"), &format!("{rate}"), method]
+        .map(str::to_owned)
+        .to_vec();
+    row.push(format!("{cost:.1}"));
+    row.extend(depths.map(|depth| format!("{depth:.4}")));
+    row.push(format!("{} of {}", outcome.passed, outcome.trials));
+    let rides = scene.starts_with("riding");
+    row.push(if rides {
+        format!("{:.4}", outcome.drift)
+    } else {
+        String::new()
+    });
+    println!("{}", row.join(", "));
+    table.push(row);
+    if !rides {
+        let point = (cost, depths[2].max(1e-6));
+        match series.iter_mut().find(|series| series.name == method) {
+            Some(series) => series.points.push(point),
+            None => series.push(Series {
+                name: method.to_owned(),
+                points: vec![point],
+                joined: false,
+            }),
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! Skinning with less: fewer influences, weights and positions of fewer bits. What each loses, and what it saves.
+//!
+//! One plain kernel for all, which differs in the types that it reads alone: clusters of 64 vertices that share a list of
+//! joints, a row of weights for each, as our own has them, but without its dispatch to wider instructions. The error is
+//! that of a vertex against f64 with all influences, over the walk.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Duration;
+
+use clamber_scenes::giant::giant_of;
+use clamber_scenes::measure::{Table, measure_folder, median_us, quantile};
+use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::{ColliderMesh, VertexId};
+use clamber_surface::rig::{Palette, Playback};
+use glam::{DVec3, Vec3};
+
+/// Vertices of a cluster.
+const SLOTS: usize = 64;
+
+/// Poses of the walk that errors are of.
+const POSES: usize = 8;
+
+const COLUMNS: [&str; 8] = [
+    "vertices",
+    "influences",
+    "weights",
+    "positions",
+    "us",
+    "bytes a vertex",
+    "99 % error, m",
+    "worst error, m",
+];
+
+/// How a number of a vertex is kept.
+trait Stored: Copy + Default {
+    const NAME: &'static str;
+    /// What stands for 1.
+    const ONE: f32;
+
+    /// From -1 to 1, or 0 to 1 for weights.
+    fn store(value: f32) -> Self;
+
+    fn load(self) -> f32;
+}
+
+impl Stored for f32 {
+    const NAME: &'static str = "f32";
+    const ONE: f32 = 1.0;
+
+    fn store(value: f32) -> Self {
+        value
+    }
+
+    fn load(self) -> f32 {
+        self
+    }
+}
+
+macro_rules! stored {
+    ($number:ty, $name:literal) => {
+        impl Stored for $number {
+            const NAME: &'static str = $name;
+            const ONE: f32 = <$number>::MAX as f32;
+
+            fn store(value: f32) -> Self {
+                (value * Self::ONE).round() as $number
+            }
+
+            fn load(self) -> f32 {
+                f32::from(self)
+            }
+        }
+    };
+}
+
+stored!(u8, "8 bits");
+stored!(u16, "16 bits");
+stored!(i16, "16 bits");
+
+/// A mesh to be skinned, of weights `W` and positions `P`.
+struct Mesh<W, P> {
+    clusters: Vec<Cluster>,
+    positions: Vec<[P; 3 * SLOTS]>,
+    weights: Vec<[W; SLOTS]>,
+    /// By slot; the last cluster repeats its last vertex.
+    vertices: Vec<u32>,
+}
+
+struct Cluster {
+    /// With a row of weights each.
+    joints: Vec<u32>,
+    /// Where its rows begin.
+    row: usize,
+    center: [f32; 3],
+    /// Of a step of a stored position.
+    step: f32,
+}
+
+/// Of each vertex, its joints and weights, the heaviest first, cut to so many and made to sum to 1.
+fn influences(mesh: &ColliderMesh, most: usize) -> Vec<Vec<(u32, f32)>> {
+    let of = |v: usize| {
+        let all = mesh.influences(VertexId(v as u32));
+        let mut all: Vec<(u32, f32)> = all.map(|(joint, weight)| (joint.0, weight)).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        all.truncate(most);
+        let sum: f32 = all.iter().map(|(_, weight)| weight).sum();
+        all.iter()
+            .map(|(joint, weight)| (*joint, weight / sum))
+            .collect()
+    };
+    (0..mesh.positions().len()).map(of).collect()
+}
+
+impl<W: Stored, P: Stored> Mesh<W, P> {
+    fn new(mesh: &ColliderMesh, influences: &[Vec<(u32, f32)>]) -> Self {
+        let mut order: Vec<u32> = (0..mesh.positions().len() as u32).collect();
+        // Neighbours in the file that have the same joints are near each other.
+        let joints = |v: u32| -> Vec<u32> {
+            let mut joints: Vec<u32> = influences[v as usize].iter().map(|(j, _)| *j).collect();
+            joints.sort_unstable();
+            joints
+        };
+        order.sort_by_cached_key(|v| (joints(*v), *v));
+        let mut new = Self {
+            clusters: Vec::new(),
+            positions: Vec::new(),
+            weights: Vec::new(),
+            vertices: Vec::new(),
+        };
+        for members in order.chunks(SLOTS) {
+            new.add(mesh, influences, members);
+        }
+        new
+    }
+
+    fn add(&mut self, mesh: &ColliderMesh, influences: &[Vec<(u32, f32)>], members: &[u32]) {
+        let place = |v: u32| mesh.positions()[v as usize];
+        let low = members
+            .iter()
+            .map(|v| place(*v))
+            .fold(Vec3::INFINITY, Vec3::min);
+        let high = members
+            .iter()
+            .map(|v| place(*v))
+            .fold(Vec3::NEG_INFINITY, Vec3::max);
+        // Full precision needs no centre.
+        let exact = P::ONE == 1.0;
+        let center = if exact {
+            Vec3::ZERO
+        } else {
+            (low + high) * 0.5
+        };
+        let half = if exact {
+            1.0
+        } else {
+            ((high - low) * 0.5).max_element().max(1e-6)
+        };
+        let mut joints: Vec<u32> = members
+            .iter()
+            .flat_map(|v| influences[*v as usize].iter().map(|(joint, _)| *joint))
+            .collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let row = self.weights.len();
+        let mut positions = [P::default(); 3 * SLOTS];
+        let mut rows = vec![[W::default(); SLOTS]; joints.len()];
+        for slot in 0..SLOTS {
+            let v = members[slot.min(members.len() - 1)];
+            let at = ((place(v) - center) / half).to_array();
+            for axis in 0..3 {
+                positions[axis * SLOTS + slot] = P::store(at[axis]);
+            }
+            // What rounding took, the heaviest gets, so that weights sum to 1.
+            let mut left = W::ONE;
+            for (joint, weight) in influences[v as usize].iter().skip(1) {
+                let stored = W::store(*weight);
+                left -= stored.load();
+                let index = joints.binary_search(joint).unwrap_or_default();
+                rows[index][slot] = stored;
+            }
+            let heaviest = influences[v as usize]
+                .first()
+                .map_or(0, |(joint, _)| *joint);
+            let index = joints.binary_search(&heaviest).unwrap_or_default();
+            rows[index][slot] = W::store(left / W::ONE);
+            self.vertices.push(v);
+        }
+        self.positions.push(positions);
+        self.weights.extend(rows);
+        self.clusters.push(Cluster {
+            joints,
+            row,
+            center: center.to_array(),
+            step: half / P::ONE,
+        });
+    }
+
+    fn skin(&self, palette: &[Affine], out: &mut Vec<[f32; 3 * SLOTS]>) {
+        out.resize(self.clusters.len(), [0.0; 3 * SLOTS]);
+        for (index, cluster) in self.clusters.iter().enumerate() {
+            let mut p = [[0.0; SLOTS]; 3];
+            let (stored, into) = (&self.positions[index], &mut out[index]);
+            for (axis, p) in p.iter_mut().enumerate() {
+                let stored = &stored[axis * SLOTS..][..SLOTS];
+                for (p, stored) in p.iter_mut().zip(stored) {
+                    *p = cluster.center[axis] + stored.load() * cluster.step;
+                }
+            }
+            let mut sum = [[0.0; SLOTS]; 3];
+            let rows = &self.weights[cluster.row..];
+            for (joint, weights) in cluster.joints.iter().zip(rows) {
+                let matrix = &palette[*joint as usize].rows;
+                let mut shares = [0.0; SLOTS];
+                for (share, weight) in shares.iter_mut().zip(weights) {
+                    *share = weight.load() * (1.0 / W::ONE);
+                }
+                for (sum, m) in sum.iter_mut().zip(matrix) {
+                    for slot in 0..SLOTS {
+                        let moved =
+                            (m[0] * p[0][slot] + m[1] * p[1][slot]) + (m[2] * p[2][slot] + m[3]);
+                        sum[slot] += shares[slot] * moved;
+                    }
+                }
+            }
+            for (axis, sum) in sum.iter().enumerate() {
+                into[axis * SLOTS..][..SLOTS].copy_from_slice(sum);
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        let joints = self
+            .clusters
+            .iter()
+            .map(|cluster| cluster.joints.len() * 4 + 24);
+        size_of_val(&self.positions[..]) + size_of_val(&self.weights[..]) + joints.sum::<usize>()
+    }
+
+    /// Errors of all vertices against true positions.
+    fn errors(&self, palette: &[Affine], truth: &[DVec3], into: &mut Vec<f64>) {
+        let mut out = Vec::new();
+        self.skin(palette, &mut out);
+        for (slot, v) in self.vertices.iter().enumerate() {
+            let (cluster, slot) = (&out[slot / SLOTS], slot % SLOTS);
+            let at = [0, 1, 2].map(|axis| f64::from(cluster[axis * SLOTS + slot]));
+            into.push(DVec3::from_array(at).distance(truth[*v as usize]));
+        }
+    }
+}
+
+/// All influences, in f64.
+fn truth(mesh: &ColliderMesh, palette: &Palette) -> Vec<DVec3> {
+    let matrices: Vec<_> = palette.matrices().iter().map(Affine::to_f64).collect();
+    let vertex = |v: usize| {
+        let p = mesh.positions()[v].as_dvec3();
+        let influences = mesh.influences(VertexId(v as u32));
+        influences.fold(DVec3::ZERO, |sum, (joint, weight)| {
+            sum + matrices[joint.0 as usize].transform_point3(p) * f64::from(weight)
+        })
+    };
+    (0..mesh.positions().len()).map(vertex).collect()
+}
+
+/// Measures all ways.
+pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut table = Table::new(&COLUMNS);
+    let sizes: &[usize] = if brief { &[2_000] } else { &[10_000, 500_000] };
+    for &vertices in sizes {
+        let giant = giant_of(vertices)?;
+        let mesh = &giant.collider;
+        let walk = giant.clip_like(&["walk"]).ok_or("the giant cannot walk")?;
+        let mut poses = Vec::new();
+        for pose in 0..POSES {
+            let time = walk.duration() * pose as f64 / POSES as f64;
+            let pose = walk.sample(&giant.skeleton.rest_pose(), time, Playback::Loop)?;
+            let palette = giant.skeleton.palette(&pose)?;
+            let truth = truth(mesh, &palette);
+            poses.push((palette, truth));
+        }
+        let all = mesh.max_influences();
+        let fewer = [4, 2, 1].into_iter().filter(|fewer| *fewer < all);
+        for most in std::iter::once(all).chain(fewer) {
+            way::<f32, f32>(mesh, most, &poses, brief, &mut table);
+        }
+        way::<u16, f32>(mesh, all, &poses, brief, &mut table);
+        way::<u8, f32>(mesh, all, &poses, brief, &mut table);
+        way::<f32, i16>(mesh, all, &poses, brief, &mut table);
+        way::<u16, i16>(mesh, all, &poses, brief, &mut table);
+        way::<u8, i16>(mesh, all, &poses, brief, &mut table);
+    }
+    println!("\n{table}");
+    let brief = if brief { "_brief" } else { "" };
+    let path = measure_folder().join(format!("accuracy_skinning{brief}.csv"));
+    table.write_csv(&path)?;
+    println!("written to {}", path.display());
+    Ok(())
+}
+
+fn way<W: Stored, P: Stored>(
+    mesh: &ColliderMesh,
+    most: usize,
+    poses: &[(Palette, Vec<DVec3>)],
+    brief: bool,
+    table: &mut Table,
+) {
+    let made = Mesh::<W, P>::new(mesh, &influences(mesh, most));
+    let mut errors = Vec::new();
+    for (palette, truth) in poses {
+        made.errors(palette.matrices(), truth, &mut errors);
+    }
+    let mut out = Vec::new();
+    let budget = Duration::from_millis(if brief { 1 } else { 500 });
+    let mut turn = poses.iter().cycle();
+    let us = median_us(budget, || {
+        if let Some((palette, _)) = turn.next() {
+            made.skin(black_box(palette.matrices()), &mut out);
+            black_box(&out);
+        }
+    });
+    let vertices = mesh.positions().len();
+    let row = vec![
+        vertices.to_string(),
+        most.to_string(),
+        W::NAME.to_owned(),
+        P::NAME.to_owned(),
+        format!("{us:.0}"),
+        format!("{:.1}", made.bytes() as f64 / vertices as f64),
+        format!("{:.1e}", quantile(&mut errors, 0.99)),
+        format!("{:.1e}", quantile(&mut errors, 1.0)),
+    ];
+    println!("{}", row.join(", "));
+    table.push(row);
+}
