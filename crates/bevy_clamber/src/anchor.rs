@@ -18,7 +18,8 @@ const MAX_DEPTH: usize = 4096;
 /// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, position
 /// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is left alone. When the
 /// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered. Of skin that is only
-/// disabled it is not, nor where a collider is built anew that has a triangle of that number.
+/// disabled it is not, nor where a collider is built anew that has a triangle of that number. An entity that is
+/// `Disabled` is gone, as for all of Bevy's queries.
 ///
 /// Under a parent that is scaled unevenly no rotation is exact: the position is, and where +Y points.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -27,6 +28,7 @@ const MAX_DEPTH: usize = 4096;
 #[require(Transform)]
 pub struct SurfaceAnchor {
     /// The entity with the [`PosedSurface`].
+    #[entities]
     pub surface: Entity,
     /// The point, and how the skin around it is turned.
     pub anchor: Anchor,

@@ -50,7 +50,7 @@ pub struct SurfacePick {
 ///
 /// As Bevy's backend for meshes does, it leaves out what no view shows (`ViewVisibility`), what shares no
 /// `RenderLayers` with the camera, and what is `Pickable::IGNORE`d, and it gives the hits the camera's order. What
-/// lies behind a surface that blocks lower ones, as all do without a `Pickable`, is not told.
+/// lies behind a surface that blocks lower ones, as all do without a `Pickable`, is not told, be it hoverable or not.
 ///
 /// ```
 /// # use bevy_app::App;
@@ -146,13 +146,7 @@ fn cast(
     let surface = &*surface;
     let drawn = surface.as_drawn()?;
     let (ray, max_distance) = local_ray(drawn, ray, max_distance)?;
-    let mut hit = drawn.cast_ray(&ray, max_distance).ok()??;
-    if !surface.is_enabled(hit.triangle) {
-        // What is drawn knows of no hidden triangles.
-        let mut all = Vec::new();
-        drawn.cast_ray_all(&ray, max_distance, &mut all).ok()?;
-        hit = *all.iter().find(|hit| surface.is_enabled(hit.triangle))?;
-    }
+    let hit = drawn.cast_ray(&ray, max_distance).ok()??;
     let world = world_hit(entity, drawn, &hit);
     let normal = world.normal.try_normalize().unwrap_or(Vec3::Y);
     let outward = Quat::from_rotation_arc(Vec3::Y, normal);

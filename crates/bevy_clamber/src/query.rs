@@ -281,28 +281,29 @@ impl SurfaceQuery<'_, '_> {
         Some(SurfaceAnchor::new(entity, surface, anchor, rotation))
     }
 
-    /// How an anchored point moves over the last tick of `dt` seconds, in the creature's model space; `None` if
-    /// its surface or triangle is gone.
+    /// How an anchored point moves over the last tick of `dt` seconds, in the creature's model space, and where that is;
+    /// `None` if its surface or triangle is gone. The velocity in the world is
+    /// `world_from_model.transform_vector(motion.velocity.as_dvec3())`.
     pub fn motion(&self, anchor: &SurfaceAnchor, dt: f64) -> Option<(Motion, Similarity)> {
         let (_, surface) = self.surfaces.get(anchor.surface).ok()?;
         let motion = surface.motion(&anchor.anchor, dt).ok()?;
         Some((motion, *surface.world_from_model()))
     }
 
-    /// One surface.
+    /// One surface; `None` while it has had no pose that it could take, and is nowhere.
     pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
-        self.surfaces.get(entity).ok().map(|(_, surface)| surface)
+        let (_, surface) = self.surfaces.get(entity).ok()?;
+        surface.is_placed().then_some(surface)
     }
 
-    /// All surfaces, in no promised order.
+    /// All surfaces that are somewhere, in no promised order.
     pub fn iter(&self) -> impl Iterator<Item = (Entity, &PosedSurface)> {
-        self.surfaces.iter()
+        let all = self.surfaces.iter();
+        all.filter(|(_, surface)| surface.is_placed())
     }
 
     fn seen(&self, filter: &SurfaceFilter<'_>) -> impl Iterator<Item = (Entity, &PosedSurface)> {
-        self.surfaces
-            .iter()
-            .filter(|(entity, surface)| surface.is_placed() && filter.sees(*entity))
+        self.iter().filter(|(entity, _)| filter.sees(*entity))
     }
 
     /// The nearest that `find` finds up to a distance, which shrinks as something is found.

@@ -232,6 +232,34 @@ fn what_never_had_a_place_is_nowhere() {
     }
 }
 
+/// A creature that is hidden by scaling it to nothing, taken elsewhere, and shown again.
+#[test]
+fn what_is_found_again_elsewhere_has_not_flown_there() {
+    for timing in BOTH {
+        let mut app = app(64.0);
+        let limb = limb(&mut app, Transform::IDENTITY, timing);
+        frames(&mut app, 4);
+        transform(&mut app, limb.root).scale = Vec3::ZERO;
+        frames(&mut app, 10);
+        assert!(surface(&app, limb.mesh).error().is_some());
+        transform(&mut app, limb.root).translation.x += 96.0;
+        frames(&mut app, 10);
+        transform(&mut app, limb.root).scale = Vec3::ONE;
+        for frame in 0..6 {
+            app.update();
+            let surface = surface(&app, limb.mesh);
+            for v in (0..surface.mesh().positions().len() as u32).map(VertexId) {
+                let (now, before) = (surface.position(v), surface.previous_position(v));
+                let moved = now.unwrap().distance(before.unwrap());
+                assert!(moved < 5.0, "{timing:?} frame {frame}: {moved}");
+            }
+        }
+        let place = surface(&app, limb.mesh).world_from_model().translation;
+        assert!((place.x - 96.0).abs() < 1e-3, "{timing:?}: {place}");
+        assert!(worst(&app, limb.mesh) < 1e-4, "{timing:?}");
+    }
+}
+
 #[test]
 fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
     for timing in BOTH {
@@ -255,7 +283,9 @@ fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
         app.world_mut().entity_mut(limb.joints[1]).insert(joint);
         frames(&mut app, 3);
         assert_eq!(surface(&app, limb.mesh).error(), None);
-        // Into another hierarchy, and back into this one, but elsewhere.
+        // Into another hierarchy, and back into this one, but elsewhere: not under joint 0, which is off the root.
+        transform(&mut app, limb.joints[0]).translation.y += 0.3;
+        frames(&mut app, 4);
         let elsewhere = app.world_mut().spawn(Transform::IDENTITY).id();
         app.world_mut()
             .entity_mut(limb.joints[1])
@@ -269,6 +299,12 @@ fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
             .insert(ChildOf(limb.root));
         frames(&mut app, 4);
         assert_eq!(surface(&app, limb.mesh).error(), None);
+        assert!(worst(&app, limb.mesh) < 1e-6);
+        // Under another joint, in the same hierarchy, while nothing moves.
+        app.world_mut()
+            .entity_mut(limb.joints[1])
+            .insert(ChildOf(limb.joints[0]));
+        frames(&mut app, 4);
         assert!(worst(&app, limb.mesh) < 1e-6);
         app.world_mut().entity_mut(limb.joints[0]).despawn();
         frames(&mut app, 4);

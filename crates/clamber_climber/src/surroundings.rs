@@ -49,16 +49,17 @@ impl Surroundings {
     fn look(&mut self, obstacles: &[(ObstacleId, &dyn Obstacle)], center: DVec3, radius: f64) {
         (self.center, self.radius) = (center, Some(radius));
         self.near.clear();
-        for (index, (id, obstacle)) in obstacles.iter().enumerate() {
-            let reached = obstacle.bounds().is_none_or(|(middle, reach)| {
-                let sum = reach + radius;
-                middle.distance(center) <= sum + SLACK * (sum + middle.length())
-            });
-            if reached {
-                self.near.push((*id, index as u32));
-            }
-        }
+        let all = obstacles.iter().enumerate();
+        self.near
+            .extend(all.map(|(index, (id, _))| (*id, index as u32)));
         self.near.sort_unstable();
         self.near.dedup_by_key(|(id, _)| *id);
+        self.near.retain(|(_, index)| {
+            let (_, obstacle) = obstacles[*index as usize];
+            obstacle.bounds().is_none_or(|(middle, reach)| {
+                let sum = reach + radius;
+                middle.distance(center) <= sum + SLACK * (sum + middle.length())
+            })
+        });
     }
 }

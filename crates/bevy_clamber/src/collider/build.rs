@@ -8,7 +8,7 @@ use clamber_surface::geometry::Affine;
 use glam::DAffine3;
 
 use super::meshes::ColliderKey;
-use super::{ColliderMeshes, ColliderStatus, ColliderTag, SkinnedCollider};
+use super::{ColliderError, ColliderMeshes, ColliderStatus, ColliderTag, SkinnedCollider};
 use crate::PosedSurface;
 use crate::surface::{Hierarchy, Rig};
 
@@ -96,7 +96,13 @@ pub(crate) fn build_colliders(
         {
             surface.set_timing(*collider);
         }
-        if !matches!(*status, ColliderStatus::Waiting | ColliderStatus::Building) {
+        let wanted = match &*status {
+            ColliderStatus::Waiting | ColliderStatus::Building => true,
+            // Parents and transforms may come a frame later than the mesh, and no asset tells of it.
+            ColliderStatus::Failed(error) => error.is_of_hierarchy(),
+            ColliderStatus::Ready => false,
+        };
+        if !wanted {
             continue;
         }
         let (Some(asset), Some(inverse_bindposes)) = (
@@ -119,18 +125,27 @@ pub(crate) fn build_colliders(
         let surface = built.and_then(|built| {
             let inverse = inverse_bindposes.iter().map(|m| widen(&m.to_cols_array()));
             let rig = Rig::new(skin.joints.clone(), inverse.collect(), &hierarchy);
-            let rig = rig.map_err(|error| {
-                tracing::error!("no surface for {entity}: {error}");
-                Arc::new(error)
-            })?;
-            Ok(PosedSurface::new(built, rig, *collider, &hierarchy))
+            Ok(PosedSurface::new(
+                entity,
+                built,
+                rig.map_err(Arc::new)?,
+                *collider,
+                &hierarchy,
+            ))
         });
         match surface {
             Ok(surface) => {
                 commands.entity(entity).try_insert(surface);
                 *status = ColliderStatus::Ready;
             }
+            // As before: told already.
+            Err(error) if matches!(&*status, ColliderStatus::Failed(known) if *known == error) => {}
             Err(error) => {
+                if error.is_of_hierarchy()
+                    || matches!(*error, ColliderError::InverseBindposes { .. })
+                {
+                    tracing::error!("no surface for {entity}: {error}");
+                }
                 commands.entity(entity).try_remove::<PosedSurface>();
                 *status = ColliderStatus::Failed(error);
             }

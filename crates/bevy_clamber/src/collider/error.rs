@@ -62,3 +62,10 @@ pub enum ColliderError {
         joint: usize,
     },
 }
+
+impl ColliderError {
+    /// It may go away as entities get their transforms and parents.
+    pub(crate) fn is_of_hierarchy(&self) -> bool {
+        matches!(self, Self::Joint { .. } | Self::Hierarchies { .. })
+    }
+}

@@ -64,6 +64,7 @@ pub struct RigMaterial(pub usize);
 #[derive(Component, Clone, Debug)]
 pub struct RigJoints {
     pub(super) rig: Arc<Rig>,
+    #[entities]
     pub(super) joints: Vec<Entity>,
     pub(super) rest: Pose,
     pub(super) pose: Pose,

@@ -39,6 +39,8 @@ pub enum PoseError {
 /// [`SkinnedSurface`] that it dereferences to.
 #[derive(Component, Debug)]
 pub struct PosedSurface {
+    /// Whose it is.
+    entity: Entity,
     surface: SkinnedSurface,
     collider: Arc<BuiltCollider>,
     rig: Rig,
@@ -83,12 +85,14 @@ struct Scratch {
 
 impl PosedSurface {
     pub(crate) fn new(
+        entity: Entity,
         collider: Arc<BuiltCollider>,
         rig: Rig,
         timing: SkinnedCollider,
         hierarchy: &Hierarchy<'_, '_>,
     ) -> Self {
         let mut posed = Self {
+            entity,
             surface: SkinnedSurface::new(Arc::clone(&collider.mesh)),
             collider,
             rig,
@@ -129,6 +133,10 @@ impl PosedSurface {
     }
 
     /// For edits: disabled parts and triangles, holes. The next tick's pose overwrites any other.
+    ///
+    /// Edits are gone where the collider is built anew, which a change of its mesh, skin or
+    /// [`ColliderTag`](crate::ColliderTag) does: a new component is inserted then, so an observer of
+    /// `On<Insert, PosedSurface>` can make them again.
     ///
     /// Where something sticks to the surface, what a frame draws is kept as a second surface, and copied anew
     /// after each call.
@@ -191,7 +199,12 @@ impl PosedSurface {
         self.scratch.next = next;
         let moved = match &posed {
             Ok(moved) => *moved,
-            Err(_) => self.rest(),
+            Err(_) => {
+                let moved = self.rest();
+                // Where it is found again it has not come to in one tick.
+                self.forget_motion();
+                moved
+            }
         };
         self.posed_anew = moved;
         self.tell(posed.err()) || moved
@@ -204,6 +217,8 @@ impl PosedSurface {
         read.map_err(|_| ColliderError::Joint { joint: 0 })?;
         self.drawn_before.clone_from(&self.drawn);
         self.as_drawn_is_fresh = false;
+        // The same transforms in another order are another pose.
+        self.still = false;
         Ok(())
     }
 
@@ -343,7 +358,8 @@ impl PosedSurface {
         if let Some(error) = &error
             && self.error.is_none()
         {
-            tracing::warn!("a surface keeps its last pose: {error}");
+            let entity = self.entity;
+            tracing::warn!("the surface of {entity} keeps its last pose: {error}");
         }
         self.error = error;
         true

@@ -559,8 +559,9 @@ fn what_is_out_of_reach_is_not_asked_and_changes_no_bit() {
         let id = if k < 20 { 39 - k } else { k + 1 };
         crowd.push((ObstacleId(id as u32), one as &dyn Obstacle));
     }
-    // Of two with one id the first counts: the ground stays it.
+    // Of two with one id the first counts, wherever they are: here the ground, there what is far away.
     crowd.push((ObstacleId(20), &far[0]));
+    crowd.push((ObstacleId(30), &ground));
     let (mut alone, mut among) = (climber_at(0.0, 1.0, 0.0), climber_at(0.0, 1.0, 0.0));
     for tick in 0..240 {
         let input = ClimberInput {

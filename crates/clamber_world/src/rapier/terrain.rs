@@ -65,7 +65,8 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    /// Restricts what is seen to colliders that a function says yes to.
+    /// Restricts what is seen to colliders that a function says yes to: those of groups, or all but a body's own, as
+    /// `|_, collider| collider.parent() != Some(body)`.
     #[must_use]
     pub fn with_filter(
         mut self,

@@ -13,6 +13,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_ecs::system::SystemParam;
 
+use crate::ClamberSystems;
 use moving::{MovingColliders, note};
 pub use terrain::AvianTerrain;
 
@@ -41,7 +42,12 @@ impl Default for AvianObstaclesPlugin {
 impl Plugin for AvianObstaclesPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<MovingColliders>()
-            .add_systems(self.schedule, note.after(PhysicsSystems::Last));
+            .add_systems(self.schedule, note.after(PhysicsSystems::Last))
+            // A creature whose root is a body stands where the step has put it.
+            .configure_sets(
+                self.schedule,
+                ClamberSystems::Pose.after(PhysicsSystems::Writeback),
+            );
     }
 }
 
