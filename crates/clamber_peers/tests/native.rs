@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use clamber_peers::{Peer, Unsupported, all};
+use clamber_scenes::ball::ball;
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
@@ -19,38 +20,8 @@ const QUERIES: usize = 300;
 
 /// A closed ball with bumps of about 10 m across, half of it on another joint.
 fn bumpy_ball() -> ColliderMesh {
-    let turn = core::f64::consts::TAU;
-    let at = |ring: u32, segment: u32| {
-        let (a, b) = (
-            turn / 2.0 * f64::from(ring) / f64::from(RINGS),
-            turn * f64::from(segment) / f64::from(SEGMENTS),
-        );
-        let r = 5.0 + 0.8 * libm::sin(3.0 * b) * libm::sin(4.0 * a) * libm::sin(a);
-        let (sin, cos) = (libm::sin(a), libm::cos(a));
-        (DVec3::new(sin * libm::cos(b), cos, sin * libm::sin(b)) * r).as_vec3()
-    };
-    let mut positions = vec![at(0, 0), at(RINGS, 0)];
-    for ring in 1..RINGS {
-        positions.extend((0..SEGMENTS).map(|segment| at(ring, segment)));
-    }
-    let vertex = |ring: u32, segment: u32| match ring {
-        0 => 0,
-        RINGS => 1,
-        _ => 2 + (ring - 1) * SEGMENTS + segment % SEGMENTS,
-    };
-    let mut triangles = Vec::new();
-    for ring in 0..RINGS {
-        for segment in 0..SEGMENTS {
-            let [a, b] = [0, 1].map(|k| vertex(ring, segment + k));
-            let [c, d] = [0, 1].map(|k| vertex(ring + 1, segment + k));
-            if ring > 0 {
-                triangles.push([a, b, c]);
-            }
-            if ring + 1 < RINGS {
-                triangles.push([b, d, c]);
-            }
-        }
-    }
+    let bumps = |a: f64, b: f64| libm::sin(3.0 * b) * libm::sin(4.0 * a) * libm::sin(a);
+    let (positions, triangles) = ball(RINGS, SEGMENTS, |a, b| 5.0 + 0.8 * bumps(a, b));
     let influences: Vec<Influence> = positions
         .iter()
         .flat_map(|p| {

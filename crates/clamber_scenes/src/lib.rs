@@ -1,5 +1,6 @@
 //! Creatures and scenes that clamber's tests, benches and examples share. Not published.
 //!
+//! - [`ball`]: closed balls of plain triangles.
 //! - [`beast`]: a quadruped built in code, of any number of vertices.
 //! - [`giant`]: the project's own giant, from its file, at any number of vertices.
 //! - [`resample`]: any mesh at any number of vertices.
@@ -16,6 +17,7 @@
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
 
+pub mod ball;
 pub mod battle;
 pub mod beast;
 pub mod ccd;

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
+use clamber_scenes::ball::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
@@ -172,41 +173,7 @@ fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Quer
 
 /// A closed ball of 6 rings and 2,048 segments, 10 m across: its triangles are hundreds of times as long as wide.
 fn needles() -> Result<ColliderMesh, Box<dyn Error>> {
-    const RINGS: u32 = 6;
-    const SEGMENTS: u32 = 2_048;
-    let angle = |part: u32, of: u32| core::f64::consts::PI * f64::from(part) / f64::from(of);
-    let at = |ring: u32, segment: u32| {
-        let (a, b) = (angle(ring, RINGS), 2.0 * angle(segment, SEGMENTS));
-        let across = 5.0 * libm::sin(a);
-        DVec3::new(
-            across * libm::cos(b),
-            5.0 * libm::cos(a),
-            across * libm::sin(b),
-        )
-        .as_vec3()
-    };
-    let mut positions = vec![at(0, 0), at(RINGS, 0)];
-    for ring in 1..RINGS {
-        positions.extend((0..SEGMENTS).map(|segment| at(ring, segment)));
-    }
-    let vertex = |ring: u32, segment: u32| match ring {
-        0 => 0,
-        RINGS => 1,
-        _ => 2 + (ring - 1) * SEGMENTS + segment % SEGMENTS,
-    };
-    let mut triangles = Vec::new();
-    for ring in 0..RINGS {
-        for segment in 0..SEGMENTS {
-            let [a, b] = [0, 1].map(|k| vertex(ring, segment + k));
-            let [c, d] = [0, 1].map(|k| vertex(ring + 1, segment + k));
-            if ring > 0 {
-                triangles.push([a, b, c]);
-            }
-            if ring + 1 < RINGS {
-                triangles.push([b, d, c]);
-            }
-        }
-    }
+    let (positions, triangles) = ball(6, 2_048, |_, _| 5.0);
     let influence = Influence {
         joint: JointId(0),
         weight: 1.0,
