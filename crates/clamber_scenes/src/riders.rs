@@ -55,8 +55,8 @@ pub struct Workload {
 
 impl Workload {
     /// The giant walks for so many ticks, ridden by so many riders, who stand on seeded random points
-    /// of the skin where their spheres fit at rest. A single rider takes the one of [`CHOICES`] points
-    /// where it touches nearest to [`TOUCHED`] triangles in the mean over the walk, so that riders on
+    /// of the skin where their spheres fit at rest. A single rider takes the one of 64 points
+    /// where it touches nearest to 30 triangles in the mean over the walk, so that riders on
     /// giants of different resolution have as much to answer.
     ///
     /// # Errors
