@@ -27,12 +27,13 @@ struct Seat {
 }
 
 impl Riders {
-    /// Seats on level skin of the first `mounts` giants, in turn.
+    /// Seats on level skin of the first `mounts` giants.
     pub(crate) fn new(herd: &Herd, count: usize, mounts: usize) -> Result<Self, Box<dyn Error>> {
         let mut rng = fastrand::Rng::with_seed(9);
         let mut seats = Vec::with_capacity(count);
         while seats.len() < count {
-            let giant = seats.len() % mounts;
+            // Those of one giant side by side, so that threads share few.
+            let giant = seats.len() * mounts / count;
             let surface = &herd.giants[giant].surface;
             let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
             let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;

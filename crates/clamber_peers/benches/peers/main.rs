@@ -38,7 +38,7 @@ const FULL: Effort = Effort {
     riders: &[1, 10, 100, 1_000],
     ticks: 40,
     least_ticks: 3,
-    each: Duration::from_secs(40),
+    each: Duration::from_secs(20),
 };
 
 const BRIEF: Effort = Effort {
