@@ -108,7 +108,10 @@ impl Report {
         self.table.write_csv(&path)?;
         println!("written to {}", path.display());
         for riders in [1, 100] {
-            let title = format!("A whole tick, {riders} rider{}", if riders == 1 { "" } else { "s" });
+            let title = format!(
+                "A whole tick, {riders} rider{}",
+                if riders == 1 { "" } else { "s" }
+            );
             let plot = self.plot(
                 &title,
                 "vertices",
