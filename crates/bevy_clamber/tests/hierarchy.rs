@@ -232,6 +232,33 @@ fn what_never_had_a_place_is_nowhere() {
     }
 }
 
+/// As where entities come over a network, in any order.
+#[test]
+fn a_joint_that_comes_late_makes_a_surface_all_the_same() {
+    let mut app = app(64.0);
+    let (mesh, bindposes) = (add_mesh(&mut app, limb_mesh()), add_bindposes(&mut app));
+    let limb = spawn_limb(&mut app, mesh, bindposes, Transform::IDENTITY);
+    let mut joint = app.world_mut().entity_mut(limb.joints[1]);
+    let late = joint.take::<Transform>().unwrap();
+    let collider = SkinnedCollider::default();
+    app.world_mut().entity_mut(limb.mesh).insert(collider);
+    let failed = |app: &App| {
+        let status = app.world().get::<ColliderStatus>(limb.mesh);
+        matches!(status, Some(ColliderStatus::Failed(_)))
+    };
+    let begin = Instant::now();
+    while !failed(&app) {
+        assert!(begin.elapsed().as_secs() < 30);
+        app.update();
+    }
+    frames(&mut app, 3);
+    assert!(failed(&app));
+    app.world_mut().entity_mut(limb.joints[1]).insert(late);
+    wait(&mut app, limb.mesh);
+    frames(&mut app, 2);
+    assert!(worst(&app, limb.mesh) < 1e-6);
+}
+
 /// A creature that is hidden by scaling it to nothing, taken elsewhere, and shown again.
 #[test]
 fn what_is_found_again_elsewhere_has_not_flown_there() {

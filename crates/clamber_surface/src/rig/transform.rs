@@ -86,3 +86,25 @@ pub(crate) fn rotation_f32(q: DQuat) -> Quat {
 pub(crate) fn lerp(a: Vec3, b: Vec3, t: f64) -> DVec3 {
     widen(a) * (1.0 - t) + widen(b) * t
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec4;
+
+    /// As far as the step is used, and beyond it.
+    #[test]
+    fn rotations_become_units_as_closely_as_they_say() {
+        let direction = DVec4::new(0.3, -0.5, 0.1, 0.8).normalize();
+        for step in -400..=400 {
+            let length = 1.0 + f64::from(step) * 2e-9;
+            let q = DQuat::from_vec4(direction * length).as_quat();
+            let unit = unit_rotation(q);
+            let off = (unit.length() - 1.0).abs();
+            assert!(off < 4e-13, "{length}: {off:e}");
+            let apart = unit - rotation_f64(q).normalize();
+            assert!(apart.length() < 4e-13, "{length}: {apart}");
+        }
+        assert!(!unit_rotation(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)).is_finite());
+    }
+}
