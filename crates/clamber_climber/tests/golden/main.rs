@@ -1,0 +1,40 @@
+//! One fixed run on an animated skin, and the hash of every bit that came of it: clips, palettes, skinning, every kind
+//! of query, anchors, climbers. The same in every build, on any number of threads, at every SIMD level, on every
+//! platform that runs this test. `cargo xtask ci --only golden` runs it optimised, and for the very processor at hand.
+//!
+//! [`RUN`] changes whenever a result does, if only by one bit: then see that it should have, and put the new one in.
+
+mod bits;
+mod creature;
+mod run;
+
+use clamber_surface::SimdLevel;
+
+/// Of what queries and anchors gave, and of the climbers.
+const RUN: [u64; 2] = [0xc12e_450b_8148_f243, 0x234c_4a93_87fc_c189];
+
+/// Runs in a build with `threads` and at a level; fails with the hashes in the form of [`RUN`].
+fn assert_golden(level: SimdLevel, threads: usize) {
+    let found = run::run(level, threads);
+    assert!(
+        found == RUN,
+        "{} on {threads} threads gave [{:#018x}, {:#018x}]",
+        level.name(),
+        found[0],
+        found[1],
+    );
+}
+
+#[test]
+fn the_run_has_the_same_bits_at_every_simd_level() {
+    for level in SimdLevel::available() {
+        assert_golden(level, 1);
+    }
+}
+
+#[test]
+fn the_run_has_the_same_bits_on_any_number_of_threads() {
+    for threads in [1, 2, 4] {
+        assert_golden(SimdLevel::best(), threads);
+    }
+}

@@ -1,0 +1,169 @@
+//! The run: the tube crawls through the world, 100 km from its origin, with climbers on it and queries all over it.
+
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberState};
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::{
+    Affine, Capsule, Ray, Similarity, Sphere, rotation_from_axis_angle,
+};
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::rig::{Palette, Playback};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::bits::Bits;
+use crate::creature::{JOINTS, clip, ground, skeleton, tube};
+
+const TICKS: u32 = 150;
+const TICK: f64 = 1.0 / 60.0;
+const CLIMBERS: u32 = 24;
+const QUERIES: u64 = 96;
+
+/// The tube, as an obstacle.
+const TUBE: ObstacleId = ObstacleId(1);
+
+/// Where the run takes place.
+const PLACE: DVec3 = DVec3::new(1e5, 40.0, -3e4);
+
+/// Metres of a unit of the model.
+const SCALE: f64 = 4.0;
+
+/// Hashes of queries and anchors, and of climbers.
+pub(crate) fn run(level: SimdLevel, threads: usize) -> [u64; 2] {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build()
+        .unwrap()
+        .install(|| run_on_these_threads(level))
+}
+
+fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
+    let (skeleton, clip) = (skeleton(), clip());
+    let mut surface = SkinnedSurface::with_simd_level(tube(), level);
+    let mut floor = SkinnedSurface::with_simd_level(ground(), level);
+    let under = Similarity::from_translation(PLACE - DVec3::Y * 7.0);
+    floor
+        .place(&Palette::from_matrices([Affine::IDENTITY]), under)
+        .unwrap();
+    let mut climbers: Vec<Climber> = (0..CLIMBERS).map(climber).collect();
+    let (mut answers, mut riders) = (Bits::default(), Bits::default());
+    let mut carried = 0;
+    for tick in 0..TICKS {
+        let time = f64::from(tick) * TICK;
+        let pose = clip
+            .sample(&skeleton.rest_pose(), time, Playback::Loop)
+            .unwrap();
+        let palette = skeleton.palette(&pose).unwrap();
+        if tick == 0 {
+            surface.place(&palette, place(time)).unwrap();
+        } else {
+            surface.advance(&palette, place(time)).unwrap();
+        }
+        let asked: Vec<u64> = (0..QUERIES)
+            .into_par_iter()
+            .map(|index| ask(&surface, u64::from(tick) * QUERIES + index))
+            .collect();
+        asked.into_iter().for_each(|bits| answers.word(bits));
+        let states = climbers.par_iter_mut().enumerate().map(|(index, climber)| {
+            let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+                [(ObstacleId(0), &floor), (TUBE, &surface)];
+            climber.step(&input(index, tick), &obstacles, TICK).unwrap();
+            *climber.state()
+        });
+        let states: Vec<_> = states.collect();
+        states.iter().for_each(|state| riders.climber(state));
+        let on_tube = |state: &&ClimberState| state.footing.is_some_and(|f| f.obstacle == TUBE);
+        carried += states.iter().filter(on_tube).count();
+    }
+    // Or the hashes are of little.
+    assert!(carried > 500, "{carried} ticks of climbers on the tube");
+    // What queries did not touch.
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    answers.positions(&positions);
+    [answers.finish(), riders.finish()]
+}
+
+/// The tube crawls, turns and rolls.
+fn place(time: f64) -> Similarity {
+    let turn = rotation_from_axis_angle(DVec3::Y, 0.2 * time);
+    let roll = rotation_from_axis_angle(DVec3::X, 0.1 * libm::sin(3.0 * time));
+    Similarity {
+        rotation: turn * roll,
+        scale: SCALE,
+        translation: PLACE + DVec3::X * (2.0 * time),
+    }
+}
+
+/// Above the tube.
+fn climber(index: u32) -> Climber {
+    let along = (f64::from(index) + 0.5) / f64::from(CLIMBERS) * f64::from(JOINTS - 1);
+    let above = DVec3::new(SCALE * along, 7.0, 0.1 * f64::from(index % 5));
+    Climber::new(ClimberConfig::default(), PLACE + above).unwrap()
+}
+
+/// Half of them stand still; the others walk about, and jump at times.
+fn input(index: usize, tick: u32) -> ClimberInput {
+    let index = index as u32;
+    if index % 2 == 0 {
+        return ClimberInput::default();
+    }
+    let angle = f64::from(index + tick / 40);
+    ClimberInput {
+        walk: DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)),
+        jump: (tick + 7 * index) % 50 == 0,
+    }
+}
+
+/// One question of each kind, made up by its number.
+fn ask(surface: &SkinnedSurface, number: u64) -> u64 {
+    let mut rng = fastrand::Rng::with_seed(number);
+    let mut point = |size: f32| {
+        let mut share = || size * (2.0 * rng.f32() - 1.0);
+        Vec3::new(7.5 + 7.0 * share(), share(), share())
+    };
+    let (from, to) = (point(3.0), point(1.2));
+    let mut bits = Bits::default();
+    let ray = Ray::new(from, to - from).unwrap();
+    bits.hits(&surface.cast_ray(&ray, 20.0).unwrap());
+    let (mut hits, mut sweeps) = (Vec::new(), Vec::new());
+    surface.cast_ray_all(&ray, 20.0, &mut hits).unwrap();
+    bits.hits(&hits);
+    bits.hits(&surface.closest_point(from, 5.0).unwrap());
+    let sphere = Sphere {
+        center: to,
+        radius: 0.2,
+    };
+    surface.overlap_sphere(&sphere, &mut hits).unwrap();
+    bits.hits(&hits);
+    let capsule = Capsule {
+        a: to,
+        b: to + Vec3::Y * 0.3,
+        radius: 0.1,
+    };
+    surface.overlap_capsule(&capsule, &mut hits).unwrap();
+    bits.hits(&hits);
+    let sphere = Sphere {
+        center: from,
+        radius: 0.1,
+    };
+    bits.sweeps(&surface.cast_sphere(&sphere, to - from, 1e-4).unwrap());
+    surface
+        .sweep_sphere_all(&sphere, to - from, 1e-4, &mut sweeps)
+        .unwrap();
+    bits.sweeps(&sweeps);
+    let capsule = Capsule {
+        a: from,
+        b: from + Vec3::Y * 0.3,
+        radius: 0.1,
+    };
+    bits.sweeps(
+        &surface
+            .sweep_capsule(&capsule, [to - from, Vec3::Y], 1e-4)
+            .unwrap(),
+    );
+    let triangle = TriangleId((number % surface.mesh().triangles().len() as u64) as u32);
+    let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25]).unwrap();
+    bits.motion(&surface.motion(&anchor, TICK).unwrap());
+    bits.finish()
+}
