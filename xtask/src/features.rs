@@ -19,7 +19,7 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let selected = selected(metadata);
     for package in metadata.workspace_packages() {
         let here = |name: &&String| {
-            *name != "default" && !peers::lacks(&format!("{}/{name}", package.name))
+            *name != "default" && !peers::left_out(&format!("{}/{name}", package.name))
         };
         let features = || package.features.keys().filter(here);
         let lint = ["clippy", "--quiet", "-p", &package.name, "--all-targets"];

@@ -1,8 +1,8 @@
 //! Other ways of answering queries on an animated skin, beside clamber's: the same creature, the same poses, the same
 //! queries, and for all that skin the whole mesh the same positions, from our fastest kernel. Not published.
 //!
-//! [`all`] lists what is compiled in; the features `bullet`, `embree` and `fcl` add libraries in C++. Benches `peers`
-//! and `accuracy` hold them against each other; README.md says how to run them and what each peer is asked.
+//! [`all`] lists what is compiled in; the features `bullet`, `embree`, `fcl` and `physx` add libraries in C++. Benches
+//! `peers` and `accuracy` hold them against each other; README.md says how to run them and what each peer is asked.
 
 mod heap;
 #[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
@@ -11,6 +11,8 @@ mod obvhs;
 mod ours;
 mod parry;
 mod peer;
+#[cfg(feature = "physx")]
+mod physx;
 mod skin;
 mod thesis;
 mod triangle;
@@ -27,6 +29,8 @@ pub fn all() -> Vec<Entry> {
         obvhs::ENTRIES,
         #[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
         native::ENTRIES,
+        #[cfg(feature = "physx")]
+        physx::ENTRIES,
     ]
     .concat()
 }

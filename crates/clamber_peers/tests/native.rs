@@ -1,6 +1,11 @@
 //! The libraries in C++ against all triangles in f64, posed several ways.
 
-#![cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
+#![cfg(any(
+    feature = "bullet",
+    feature = "embree",
+    feature = "fcl",
+    feature = "physx"
+))]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::sync::Arc;
@@ -310,7 +315,7 @@ fn libraries_answer_as_all_triangles_do_after_each_update() {
         (palette(0.3, DVec3::new(0.0, -1.0, 0.0)), DVec3::ZERO),
     ];
     let native = |name: &str| {
-        ["Embree", "Bullet", "FCL"]
+        ["Embree", "Bullet", "FCL", "PhysX"]
             .iter()
             .any(|n| name.starts_with(n))
     };
@@ -352,7 +357,7 @@ fn what_a_library_lacks_it_says() {
         ];
         match entry.name {
             "Embree 3" | "Embree 3 robust" => assert_eq!(lacks, [false, true]),
-            "Bullet 3" => assert_eq!(lacks, [false, false]),
+            "Bullet 3" | "PhysX 5.1" => assert_eq!(lacks, [false, false]),
             "FCL 0.7" => assert_eq!(lacks, [true, true]),
             _ => {}
         }

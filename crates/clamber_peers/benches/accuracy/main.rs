@@ -16,8 +16,8 @@
 //!
 //! Prints tables and writes them to `target/measure/accuracy_*.csv`, with plots beside them.
 //!
-//! `cargo bench -p clamber_peers --bench accuracy`, with `--features bullet,embree,fcl` for those that are installed; one
-//! part with `-- motion`, brief with `-- --test`.
+//! `cargo bench -p clamber_peers --bench accuracy`, with `--features bullet,embree,fcl,physx` for those that are installed;
+//! one part with `-- motion`, brief with `-- --test`.
 
 mod motion;
 mod queries;

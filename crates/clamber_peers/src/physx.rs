@@ -1,0 +1,235 @@
+//! PhysX 5.1: a triangle mesh without scene or actor, refitted.
+
+#![allow(unsafe_code, reason = "calls PhysX")]
+
+mod mesh;
+
+use std::error::Error;
+use std::mem::MaybeUninit;
+use std::ptr::null_mut;
+use std::sync::Arc;
+
+use clamber_surface::geometry::{Ray, Sphere};
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::rig::Palette;
+use glam::{DVec3, Vec3};
+use physx_sys::{
+    PxGeomRaycastHit, PxGeomSweepHit, PxGeometry, PxGeometryQuery_pointDistance,
+    PxGeometryQuery_raycast, PxGeometryQuery_sweep, PxGeometryQueryFlags, PxHitFlags,
+    PxMeshGeometryFlags, PxMeshQuery_findOverlapTriangleMesh, PxMeshScale, PxQuat,
+    PxSphereGeometry_new, PxTransform, PxTriangleMeshGeometry, PxTriangleMeshGeometry_new, PxVec3,
+};
+
+use self::mesh::Mesh;
+use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
+use crate::skin::Skin;
+
+pub(crate) const ENTRIES: &[Entry] = &[Entry {
+    name: "PhysX 5.1",
+    make: |mesh| Ok(Box::new(PhysX::new(mesh)?)),
+}];
+
+const NO_ROTATION: PxQuat = PxQuat {
+    x: 0.0,
+    y: 0.0,
+    z: 0.0,
+    w: 1.0,
+};
+
+/// The guard would save, set and restore the processor's rounding and flushing at every query: Rust leaves them as
+/// PhysX wants them but for denormal numbers, which are then exact.
+const NO_GUARD: PxGeometryQueryFlags = PxGeometryQueryFlags::empty();
+
+struct PhysX {
+    mesh: Mesh,
+    /// Of `mesh`.
+    geometry: PxTriangleMeshGeometry,
+    /// What an overlap found: grows to what was needed most.
+    found: Vec<u32>,
+    skin: Skin,
+}
+
+impl PhysX {
+    fn new(mesh: &Arc<ColliderMesh>) -> Result<Self, Box<dyn Error>> {
+        let skin = Skin::new(mesh);
+        let mesh = Mesh::new(&skin.positions, &skin.triangles())?;
+        let scale = PxMeshScale {
+            scale: vector(Vec3::ONE),
+            rotation: NO_ROTATION,
+        };
+        // SAFETY: all it does is set the fields: the pointer, and a copy of the scale.
+        let geometry = unsafe {
+            PxTriangleMeshGeometry_new(
+                mesh.as_ptr(),
+                &raw const scale,
+                PxMeshGeometryFlags::DoubleSided,
+            )
+        };
+        Ok(Self {
+            mesh,
+            geometry,
+            found: vec![0; 256],
+            skin,
+        })
+    }
+
+    fn shape(&self) -> *const PxGeometry {
+        (&raw const self.geometry).cast()
+    }
+}
+
+fn vector(v: Vec3) -> PxVec3 {
+    PxVec3 {
+        x: v.x,
+        y: v.y,
+        z: v.z,
+    }
+}
+
+fn at(position: Vec3) -> PxTransform {
+    PxTransform {
+        q: NO_ROTATION,
+        p: vector(position),
+    }
+}
+
+impl Peer for PhysX {
+    fn update(&mut self, palette: &Palette, place: DVec3) -> Result<(), Box<dyn Error>> {
+        self.skin.update(palette, place)?;
+        self.mesh.refit(&self.skin.positions)
+    }
+
+    fn cast_ray(&mut self, ray: &Ray, max_distance: f32) -> Answer<Option<RayHit>> {
+        let (origin, direction) = (vector(ray.origin()), vector(ray.direction()));
+        let mesh = at(Vec3::ZERO);
+        let mut hit = MaybeUninit::<PxGeomRaycastHit>::zeroed();
+        // SAFETY: all pointers are of values that live, the mesh until drop, and only `hit` is written to, which is
+        // room for the one hit that is asked for.
+        let hits = unsafe {
+            PxGeometryQuery_raycast(
+                &raw const origin,
+                &raw const direction,
+                self.shape(),
+                &raw const mesh,
+                max_distance.min(f32::MAX),
+                PxHitFlags::FaceIndex,
+                1,
+                hit.as_mut_ptr(),
+                size_of::<PxGeomRaycastHit>() as u32,
+                NO_GUARD,
+                null_mut(),
+            )
+        };
+        if hits == 0 {
+            return Ok(None);
+        }
+        // SAFETY: numbers and flags, zero or written by PhysX.
+        let hit = unsafe { hit.assume_init() };
+        Ok(Some(RayHit {
+            distance: hit.distance,
+            triangle: self.mesh.triangle(hit.faceIndex),
+        }))
+    }
+
+    fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
+        // SAFETY: all it does is set the fields.
+        let ball = unsafe { PxSphereGeometry_new(sphere.radius) };
+        let (center, mesh) = (at(sphere.center), at(Vec3::ZERO));
+        loop {
+            let mut overflow = false;
+            // SAFETY: all pointers are of values that live, the mesh until drop; written to are `overflow` and `found`,
+            // whose length is told.
+            let count = unsafe {
+                PxMeshQuery_findOverlapTriangleMesh(
+                    (&raw const ball).cast(),
+                    &raw const center,
+                    &raw const self.geometry,
+                    &raw const mesh,
+                    self.found.as_mut_ptr(),
+                    self.found.len() as u32,
+                    0,
+                    &raw mut overflow,
+                    NO_GUARD,
+                )
+            };
+            if !overflow {
+                return Ok(count as usize);
+            }
+            self.found.resize(self.found.len() * 2, 0);
+        }
+    }
+
+    /// PhysX takes no distance to look within: it finds the nearest point of all.
+    fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>> {
+        let (from, mesh) = (vector(point), at(Vec3::ZERO));
+        let mut nearest = vector(Vec3::NAN);
+        // SAFETY: all pointers are of values that live, the mesh until drop, and only `nearest` is written to; nobody
+        // asks for the triangle.
+        unsafe {
+            PxGeometryQuery_pointDistance(
+                &raw const from,
+                self.shape(),
+                &raw const mesh,
+                &raw mut nearest,
+                null_mut(),
+                NO_GUARD,
+            );
+        }
+        let nearest = Vec3::new(nearest.x, nearest.y, nearest.z);
+        let distance = nearest.distance(point);
+        Ok((distance <= max_distance).then_some(Nearest {
+            point: nearest,
+            distance,
+        }))
+    }
+
+    fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
+        let length = motion.length();
+        // One that stands still needs a direction, too.
+        let direction = if length > 0.0 {
+            motion / length
+        } else {
+            Vec3::X
+        };
+        let direction = vector(direction);
+        // SAFETY: all it does is set the fields.
+        let ball = unsafe { PxSphereGeometry_new(sphere.radius) };
+        let (center, mesh) = (at(sphere.center), at(Vec3::ZERO));
+        let mut hit = MaybeUninit::<PxGeomSweepHit>::zeroed();
+        // SAFETY: all pointers are of values that live, the mesh until drop, and only `hit` is written to.
+        let found = unsafe {
+            PxGeometryQuery_sweep(
+                &raw const direction,
+                length,
+                (&raw const ball).cast(),
+                &raw const center,
+                self.shape(),
+                &raw const mesh,
+                hit.as_mut_ptr(),
+                PxHitFlags::empty(),
+                0.0,
+                NO_GUARD,
+                null_mut(),
+            )
+        };
+        if !found {
+            return Ok(None);
+        }
+        // SAFETY: numbers and flags, zero or written by PhysX.
+        let hit = unsafe { hit.assume_init() };
+        Ok(Some(if length > 0.0 {
+            hit.distance / length
+        } else {
+            0.0
+        }))
+    }
+
+    fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
+        self.skin.motion(triangle, barycentric)
+    }
+
+    /// PhysX allocates by the C library, so the heap knows of all.
+    fn bytes(&self, from_heap: usize) -> usize {
+        from_heap + self.skin.bytes_at_rest()
+    }
+}
