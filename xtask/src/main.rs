@@ -1,5 +1,5 @@
-//! `cargo xtask ci` runs what CI runs, for a person as well: tests, format, lints, each feature, documentation,
-//! examples, benches, dependency arrows, packages.
+//! `cargo xtask ci` runs what CI runs, for a person as well: tests, the golden run in other builds, format, lints, each
+//! feature, documentation, examples, benches, dependency arrows, packages.
 
 mod app;
 mod arrows;
@@ -7,6 +7,7 @@ mod benches;
 mod build;
 mod examples;
 mod features;
+mod golden;
 mod packages;
 mod peers;
 mod run;
@@ -43,11 +44,12 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     ("tests", |_| {
         peers::check()?;
         cargo(&[&["test"][..], &build::selection()].concat())
     }),
+    ("golden", golden::run),
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
         let lint = ["clippy", "--all-targets", "--quiet"];

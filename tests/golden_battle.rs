@@ -1,0 +1,29 @@
+//! A battle with rapier in it, and the hash of every bit that came of it: creature, climber, rocks. The same in every
+//! build and on every platform with the feature `deterministic`. What needs no rapier is as golden without it:
+//! `crates/clamber_climber/tests/golden`.
+//!
+//! `cargo test --release --features deterministic --test golden_battle`
+
+use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
+use clamber_scenes::giant::giant;
+
+/// Changes whenever a result does, if only by one bit, or rapier: then see that it should have, and put the new one in.
+const BATTLE: u64 = 0xc5d2_cedc_59f7_c6b3;
+
+#[test]
+fn a_battle_has_the_same_bits_in_every_build() {
+    let creature = giant().unwrap();
+    let options = BattleOptions::default();
+    let rocks = options.rocks as usize;
+    let mut battle = Battle::new(&creature, options.height(), options.seed, rocks).unwrap();
+    let mut carried = 0;
+    for tick in 0..1_200 {
+        battle.step(options.input_at(tick)).unwrap();
+        let footing = battle.climber().state().footing;
+        carried += usize::from(footing.is_some_and(|footing| footing.obstacle == CREATURE));
+    }
+    // Or the hash is of little.
+    assert!(carried > 600, "{carried} ticks on the creature");
+    let found = battle.recording().hash();
+    assert!(found == BATTLE, "the hash is {found:#018x}");
+}
