@@ -39,15 +39,19 @@ const ALLOWED: [(&str, &[&str]); 12] = [
         "bevy_clamber",
         &["clamber_surface", "clamber_world", "clamber_gltf"],
     ),
-    ("clamber_fuzz", &["clamber_surface", "clamber_gltf"]),
+    (
+        "clamber_fuzz",
+        &["clamber_surface", "clamber_world", "clamber_gltf"],
+    ),
     ("clamber_peers", &["clamber_surface"]),
     ("xtask", &[]),
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 7] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 8] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
+    ("clamber_fuzz", "clamber_scenes"),
     ("clamber_peers", "clamber_climber"),
     ("clamber_peers", "clamber_scenes"),
     ("clamber_peers", "clamber_world"),

@@ -4,6 +4,9 @@
 //! has the library deal with it, checks what must hold, and says how much there was to check. **A
 //! panic is a finding.** `fuzz/` hands them to libFuzzer; `tests/seeded.rs` runs them on seeded
 //! random bytes, with the other tests.
+//!
+//! [`stress`] makes cases that are hard in known ways, at sizes as creatures have them. `cargo xtask soak` runs all of it
+//! for as long as it is told.
 
 #![expect(clippy::panic, reason = "a finding is a panic")]
 
@@ -16,6 +19,7 @@ mod poses;
 mod queries;
 mod same;
 mod seed;
+pub mod stress;
 mod sweeps;
 
 pub use builder::builder;

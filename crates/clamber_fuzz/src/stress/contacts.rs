@@ -1,0 +1,181 @@
+//! No contact is missed, reported late, or reported where nothing is: casts and sweeps against skin whose way is known,
+//! in f64.
+
+use clamber_surface::geometry::{Capsule, Sphere};
+use clamber_surface::surface::SweepHit;
+use glam::DVec3;
+
+use super::aims::Aims;
+use super::posed::{Posed, nearest_in, point_of, random_weights};
+use super::questions::{Answer, Question};
+use super::soups::random_direction;
+
+/// Times at which all triangles are looked at.
+const TIMES: usize = 6;
+
+/// Points of a capsule's segment that are looked at.
+const ALONG: usize = 5;
+
+/// What moves, in f64: both ends of a segment, one and the same for a sphere.
+#[derive(Clone, Copy, Debug)]
+struct Mover {
+    start: [DVec3; 2],
+    ways: [DVec3; 2],
+    radius: f64,
+    tolerance: f64,
+    /// True if the skin moves, too.
+    sweeps: bool,
+}
+
+impl Mover {
+    /// Its segment at a time.
+    fn at(&self, time: f64) -> [DVec3; 2] {
+        [0, 1].map(|k| self.start[k] + self.ways[k] * time)
+    }
+
+    /// A point of the segment about nearest to `p`.
+    fn facing(&self, time: f64, p: DVec3) -> DVec3 {
+        let [a, b] = self.at(time);
+        let along = (p - a).dot(b - a) / (b - a).length_squared();
+        let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
+        a + (b - a) * along
+    }
+
+    /// What f64 may lose of a distance, with room to spare.
+    fn lost(&self, posed: &Posed<'_>) -> f64 {
+        let size = self.start[0].length() + self.ways[0].length() + f64::from(posed.farthest);
+        1e-12 * (size + self.radius)
+    }
+}
+
+/// Casts and sweeps at known points; gives how many had to touch.
+pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -> usize {
+    let mut checked = 0;
+    let mut answer = Answer::default();
+    for round in 0..rounds {
+        let sweeps = round % 2 == 0;
+        let triangle = posed.any_triangle(rng);
+        let weights = random_weights(rng);
+        let unit = posed.extent;
+        let radius = unit * libm::exp10f(-3.0 + 2.0 * rng.f32());
+        // Ends within reach of a point of the skin where that is then, after a way from anywhere near.
+        let end = point_of(posed.corners(triangle), weights);
+        let within = random_direction(rng).as_vec3() * (radius * 0.9 * rng.f32());
+        let way = random_direction(rng).as_vec3() * (unit * rng.f32());
+        let center = end + within - way;
+        let tolerance = Aims::new(posed, rng).tolerance();
+        let sphere = Sphere { center, radius };
+        let question = if sweeps {
+            Question::SweepSphere(sphere, way, tolerance)
+        } else {
+            Question::CastSphere(sphere, way, tolerance)
+        };
+        let mover = Mover {
+            start: [center.as_dvec3(); 2],
+            ways: [way.as_dvec3(); 2],
+            radius: f64::from(radius),
+            tolerance: f64::from(tolerance),
+            sweeps,
+        };
+        checked += compare(posed, &question, &mover, triangle, weights, &mut answer);
+
+        let other = end + random_direction(rng).as_vec3() * (unit * 0.3 * rng.f32());
+        let back = random_direction(rng).as_vec3() * (unit * rng.f32());
+        let capsule = Capsule {
+            a: center,
+            b: other - back,
+            radius,
+        };
+        let question = if sweeps {
+            Question::SweepCapsule(capsule, [way, back], tolerance)
+        } else {
+            Question::CastCapsule(capsule, [way, back], tolerance)
+        };
+        let mover = Mover {
+            start: [capsule.a.as_dvec3(), capsule.b.as_dvec3()],
+            ways: [way.as_dvec3(), back.as_dvec3()],
+            ..mover
+        };
+        checked += compare(posed, &question, &mover, triangle, weights, &mut answer);
+    }
+    checked
+}
+
+/// Asks, and holds the answer against what is known; gives 1 if there had to be a contact.
+fn compare(
+    posed: &Posed<'_>,
+    question: &Question,
+    mover: &Mover,
+    triangle: usize,
+    weights: [f32; 3],
+    answer: &mut Answer,
+) -> usize {
+    if let Err(error) = question.ask(posed.surface, answer) {
+        panic!("{question:?}: {error}");
+    }
+    let hit = answer.sweeps.first();
+    if let Some(hit) = hit {
+        assert_near(posed, question, mover, hit);
+    }
+    let time = hit.map_or(f64::INFINITY, |hit| hit.time);
+    let enough = mover.radius - mover.lost(posed);
+    let mut known = false;
+    let mut at_latest = |at: f64, distance: f64, of: usize| {
+        if distance <= enough {
+            known = true;
+            let name = || posed.name(of);
+            assert!(
+                time <= at,
+                "missed or late: {question:?} touches {} by {at}: {hit:?}",
+                name()
+            );
+        }
+    };
+    // The point aimed at, all along.
+    let weights = weights.map(f64::from);
+    for step in 0..=64 {
+        let at = f64::from(step) / 64.0;
+        let [a, b, c] = corners(posed, mover, triangle, at);
+        let sum = weights.iter().sum::<f64>();
+        let p = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
+        at_latest(at, (mover.facing(at, p) - p).length(), triangle);
+    }
+    // All triangles, at times.
+    for step in 0..TIMES {
+        let at = (step as f64 + 0.5) / TIMES as f64;
+        if at >= time {
+            break;
+        }
+        let [a, b] = mover.at(at);
+        let points = if a == b { 1 } else { ALONG };
+        for of in 0..posed.surface.mesh().triangles().len() {
+            let corners = corners(posed, mover, of, at);
+            for k in 0..points {
+                let p = a + (b - a) * (k as f64 / (ALONG - 1) as f64);
+                at_latest(at, (nearest_in(corners, p) - p).length(), of);
+            }
+        }
+    }
+    usize::from(known)
+}
+
+fn corners(posed: &Posed<'_>, mover: &Mover, triangle: usize, at: f64) -> [DVec3; 3] {
+    posed.corners_at(triangle, if mover.sweeps { at } else { 1.0 })
+}
+
+/// What is reported touches, but for the tolerance.
+fn assert_near(posed: &Posed<'_>, question: &Question, mover: &Mover, hit: &SweepHit) {
+    let [a, b, c] = corners(posed, mover, hit.triangle.index(), hit.time);
+    let [u, v, w] = hit.barycentric.map(f64::from);
+    let point = a * u + b * v + c * w;
+    let size = f64::from(posed.farthest);
+    let rounded = 1e-6 * ((a - b).length() + (b - c).length() + size);
+    let same = (hit.point.as_dvec3() - point).length() <= rounded;
+    assert!(same, "{question:?}: {hit:?} is not at {point}");
+    let distance = (mover.facing(hit.time, point) - point).length();
+    let limit = mover.radius + mover.tolerance + rounded + mover.lost(posed);
+    let near = hit.undecided || distance <= limit;
+    assert!(near, "{question:?}: {hit:?} is {distance} away");
+    let told = (hit.distance - distance).abs() <= rounded + mover.lost(posed);
+    assert!(told, "{question:?}: {hit:?} is {distance} away");
+}

@@ -1,0 +1,97 @@
+//! No ray gets through closed skin.
+//!
+//! A path from where the skin winds around so many times to where it winds around another number of times crosses the
+//! skin, however the skin is bent, mirrored or pinched: that is topology, and owes nothing to the queries. How often it
+//! winds around a point is the sum of the solid angles of its triangles over 4 pi (van Oosterom and Strackee 1983, "The
+//! Solid Angle of a Plane Triangle"), here in f64.
+
+use clamber_surface::geometry::Ray;
+use glam::{DVec3, Vec3};
+
+use super::aims::Aims;
+use super::posed::{Posed, nearest_in};
+use super::questions::{Answer, Question};
+
+/// How far from a whole number a sum may be that counts as one.
+const ROUNDED: f64 = 1e-3;
+
+/// What a ray's f32 arithmetic may move a vertex by, as a share of the lengths involved, with room to spare.
+const MOVED: f64 = 1e-6;
+
+/// How often closed skin winds around a point; `None` where that cannot be told for skin moved as rounding may: at the
+/// skin itself. Elsewhere a ray from or to the point has to cross the skin so moved as often as the skin.
+fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
+    let clear = MOVED * (f64::from(posed.farthest) + point.length());
+    let mut sum = 0.0;
+    for triangle in 0..posed.surface.mesh().triangles().len() {
+        let corners = posed.corners(triangle).map(|p| p.as_dvec3() - point);
+        if nearest_in(corners, DVec3::ZERO).length() < clear {
+            return None;
+        }
+        let [a, b, c] = corners;
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+        sum += 2.0 * libm::atan2(a.dot(b.cross(c)), below);
+    }
+    let turns = sum / (4.0 * core::f64::consts::PI);
+    let whole = turns.round();
+    ((turns - whole).abs() < ROUNDED).then_some(whole as i64)
+}
+
+/// Aims rays at edges, vertices and triangles from either side; gives how many of them had to hit.
+pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) -> usize {
+    let mut checked = 0;
+    let mut answer = Answer::default();
+    for _ in 0..origins {
+        let origin = origin(posed, rng);
+        let Some(around) = winding(posed, origin.as_dvec3()) else {
+            continue;
+        };
+        for kind in 0..6 {
+            let mut aims = Aims::new(posed, rng);
+            let target = match kind % 3 {
+                0 => aims.edge(),
+                1 => aims.vertex(),
+                _ => aims.skin(),
+            };
+            let Some(ray) = Ray::new(origin, target - origin) else {
+                continue;
+            };
+            if around != 0 {
+                must_hit(posed, &ray, f32::INFINITY, &mut answer);
+                checked += 1;
+            }
+            // Just beyond the skin aimed at.
+            let beyond = libm::exp10(-4.0 + 3.0 * rng.f64()) * f64::from(posed.extent);
+            let reach = (target - origin).as_dvec3().length() + beyond;
+            let end = origin.as_dvec3() + ray.direction().as_dvec3() * reach;
+            if winding(posed, end).is_some_and(|there| there != around) {
+                must_hit(posed, &ray, (reach * (1.0 + 1e-6)) as f32, &mut answer);
+                checked += 1;
+            }
+        }
+    }
+    checked
+}
+
+/// Close to the skin, on either side.
+fn origin(posed: &Posed<'_>, rng: &mut fastrand::Rng) -> Vec3 {
+    let triangle = posed.any_triangle(rng);
+    let [a, b, c] = posed.corners(triangle).map(|p| p.as_dvec3());
+    let normal = (b - a).cross(c - a).normalize_or(DVec3::X);
+    let side = if rng.bool() { 1.0 } else { -1.0 };
+    let off = libm::exp10(-3.0 + 2.5 * rng.f64()) * f64::from(posed.extent);
+    ((a + b + c) / 3.0 + normal * (side * off)).as_vec3()
+}
+
+fn must_hit(posed: &Posed<'_>, ray: &Ray, reach: f32, answer: &mut Answer) {
+    for question in [
+        Question::Ray(*ray, reach),
+        Question::AnyAlong(*ray, reach),
+        Question::AllAlong(*ray, reach),
+    ] {
+        let asked = question.ask(posed.surface, answer);
+        let found = asked.is_ok() && answer.count() > 0;
+        assert!(found, "a leak: {question:?} finds nothing");
+    }
+}

@@ -1,0 +1,187 @@
+//! One case from beginning to end.
+
+use clamber_surface::SimdLevel;
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError};
+use glam::DVec3;
+
+use super::aims::{Aims, Named};
+use super::bounds::Bounds;
+use super::places::Journey;
+use super::posed::Posed;
+use super::poses::{Motion, spoilt};
+use super::questions::Answer;
+use super::world::Before;
+use super::{Case, Class, Seen, Subject, Times, contacts, leaks, world};
+
+/// Rounds of all questions in a tick.
+const ROUNDS: usize = 2;
+
+/// Origins of rays at closed skin in a tick, six rays each.
+const ORIGINS: usize = 4;
+
+/// Contacts sought in a tick, two movers each.
+const CONTACTS: usize = 6;
+
+/// Places asked about in the world in a tick.
+const WORLD: usize = 6;
+
+/// Questions that are timed in a tick, of every name.
+const TIMED: usize = 24;
+
+/// Most steps of a sweep's exact test, as documented.
+const STEPS: u32 = 256;
+
+/// Runs a case. Panics at the first thing that is wrong. With `times`, queries are timed, each after it was asked once:
+/// what it costs to skin what they touch is no part of it.
+pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
+    let mut rng = fastrand::Rng::with_seed(case.seed);
+    let journey = Journey::new(case.place, &mut rng);
+    let subject = Subject::new(case.mesh, case.triangles, journey.extent, case.seed);
+    let motion = Motion::new(&subject, case.pose, &mut rng);
+    let mut bounds = Bounds::new(&subject.mesh, &mut rng);
+    let levels = SimdLevel::available();
+    let mut any_level = || levels[rng.usize(0..levels.len())];
+    let [level, other] = [any_level(), any_level()];
+    let mut surface = SkinnedSurface::with_simd_level(subject.mesh.clone(), level);
+    // Never sees a fault, and skins ahead.
+    let mut twin = SkinnedSurface::with_simd_level(subject.mesh.clone(), other);
+    let fault = rng.usize(0..case.ticks.max(1));
+    let mut before: Option<Before> = None;
+    let mut seen = Seen::default();
+    for tick in 0..case.ticks {
+        let palette = motion.palette(&subject, tick, &mut rng);
+        let place = journey.at(tick);
+        if tick == fault {
+            refuse(&mut surface, &palette, place, &mut rng);
+            seen.refused += 1;
+        }
+        for surface in [&mut surface, &mut twin] {
+            let taken = if tick == 0 {
+                surface.place(&palette, place)
+            } else {
+                surface.advance(&palette, place)
+            };
+            assert_eq!(taken, Ok(()), "tick {tick}");
+        }
+        twin.skin_ahead();
+        seen.ticks += 1;
+        let posed = Posed::new(&surface, subject.extent);
+        seen += compare(&posed, &twin, &mut rng);
+        seen.bounds += bounds.check(&posed, &palette);
+        if case.mesh.is_closed() {
+            seen.rays += leaks::check(&posed, &mut rng, ORIGINS);
+        }
+        seen.contacts += contacts::check(&posed, &mut rng, CONTACTS);
+        seen.world += world::check(&posed, &palette, before.as_ref(), &mut rng, WORLD);
+        before = Some(Before::of(&posed, &palette));
+        if let Some(times) = times.as_deref_mut() {
+            time(case, &posed, times, &mut rng);
+        }
+    }
+    seen
+}
+
+/// All questions, asked in every way.
+fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) -> Seen {
+    let mut seen = Seen::default();
+    let brute_force = BruteForce::new(posed.surface);
+    let mut questions: Vec<Named> = Vec::new();
+    let [mut lazy, mut ahead, mut wanted] = [(); 3].map(|()| Answer::default());
+    for _ in 0..ROUNDS {
+        Aims::new(posed, rng).all(&mut questions);
+        for (name, question) in &questions {
+            let asked = [
+                question.ask(posed.surface, &mut lazy),
+                question.ask(twin, &mut ahead),
+                question.ask_brute_force(&brute_force, &mut wanted),
+            ];
+            assert!(asked.iter().all(Result::is_ok), "{name}: {asked:?}");
+            lazy.check(question);
+            let same = lazy.same(&wanted);
+            assert!(
+                same,
+                "{name} {question:?}: {lazy:?}, by brute force {wanted:?}"
+            );
+            let same = ahead.same(&wanted);
+            assert!(
+                same,
+                "{name} {question:?}: {ahead:?} ahead, by brute force {wanted:?}"
+            );
+            seen.questions += 1;
+            seen.hits += lazy.count();
+            seen.undecided += lazy.sweeps.iter().filter(|hit| hit.undecided).count();
+        }
+    }
+    let steps = posed.surface.diagnostics().most_sweep_steps;
+    assert!(steps <= STEPS, "{steps} steps");
+    seen.steps = steps as usize;
+    seen
+}
+
+/// Gives a surface what it must refuse; nothing may have changed then.
+fn refuse(
+    surface: &mut SkinnedSurface,
+    palette: &Palette,
+    place: Similarity,
+    rng: &mut fastrand::Rng,
+) {
+    let state = |surface: &SkinnedSurface| {
+        let posed = Posed::new(surface, 1.0);
+        let bits = |p: &glam::Vec3| crate::same::bits(*p);
+        let now: Vec<_> = posed.positions.iter().map(bits).collect();
+        let before: Vec<_> = posed.previous.iter().map(bits).collect();
+        (
+            now,
+            before,
+            *surface.world_from_model(),
+            surface.bounding_ball(),
+        )
+    };
+    let before = state(surface);
+    let (broken, joint) = spoilt(palette, rng);
+    let joint = JointId(joint as u32);
+    assert_eq!(
+        surface.advance(&broken, place),
+        Err(SurfaceError::Palette(joint))
+    );
+    assert_eq!(
+        surface.place(&broken, place),
+        Err(SurfaceError::Palette(joint))
+    );
+    let nowhere = Similarity {
+        translation: DVec3::new(0.0, f64::NAN, 0.0),
+        ..place
+    };
+    assert_eq!(
+        surface.advance(palette, nowhere),
+        Err(SurfaceError::WorldFromModel)
+    );
+    assert!(
+        state(surface) == before,
+        "a palette was refused, and changed something"
+    );
+}
+
+/// Times all questions.
+fn time(case: &Case, posed: &Posed<'_>, times: &mut Times, rng: &mut fastrand::Rng) {
+    let (mut questions, mut answer) = (Vec::new(), Answer::default());
+    for _ in 0..TIMED {
+        Aims::new(posed, rng).all(&mut questions);
+        for (query, question) in &questions {
+            let class = Class {
+                mesh: case.mesh,
+                pose: case.pose,
+                triangles: case.triangles,
+                query,
+            };
+            let mut ask = || {
+                let asked = question.ask(posed.surface, &mut answer);
+                assert!(asked.is_ok(), "{asked:?}");
+            };
+            ask();
+            times.add(class, case, ask);
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Meshes of every family, with what poses need to know of them.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::JointId;
+use glam::{DVec3, Vec3};
+
+use super::MeshFamily;
+use super::shapes::{Shape, ball, tube, tube_of_pairs};
+use super::soups::{copied, slivers, spiked, with_t_junctions};
+
+/// A mesh and its joints.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// The mesh.
+    pub mesh: Arc<ColliderMesh>,
+    /// Where its joints are at rest.
+    pub(super) origins: Vec<DVec3>,
+    /// True if each joint hangs from the one before; else all from the ground.
+    pub(super) is_chain: bool,
+    /// About how large it is at rest, without spikes, in units of its own space.
+    pub extent: f64,
+}
+
+/// How joints share the vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Joints {
+    /// Six, along the axes of a ball.
+    Star,
+    /// So many along a tube.
+    Chain(usize),
+    /// So many along a tube, of which the middle one has everything.
+    Middle(usize),
+}
+
+impl Subject {
+    /// A mesh of about so many triangles and of the given extent.
+    pub fn new(family: MeshFamily, triangles: usize, extent: f64, seed: u64) -> Self {
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let (shape, joints) = match family {
+            MeshFamily::Ball => (ball(triangles), Joints::Star),
+            MeshFamily::OneJoint => (ball(triangles), Joints::Middle(1)),
+            MeshFamily::Limb => (tube(triangles), Joints::Chain(12)),
+            MeshFamily::Chain => (tube(triangles), Joints::Chain(1_000)),
+            MeshFamily::AllOnOne => (tube(triangles), Joints::Middle(12)),
+            MeshFamily::SliverTube => {
+                let gap = [1e-3, 1e-4, 1e-6][rng.usize(0..3)];
+                (tube_of_pairs(triangles, gap), Joints::Chain(12))
+            }
+            MeshFamily::Slivers => (slivers(triangles, &mut rng), Joints::Star),
+            MeshFamily::Copies => (copied(ball(triangles / 2), &mut rng), Joints::Star),
+            MeshFamily::Spikes => (spiked(ball(triangles), &mut rng), Joints::Star),
+            MeshFamily::TJunctions => {
+                let shape = with_t_junctions(ball(triangles * 3 / 4), &mut rng);
+                (shape, Joints::Star)
+            }
+        };
+        Self::build(family, shape, joints, extent, &mut rng)
+    }
+
+    fn build(
+        family: MeshFamily,
+        shape: Shape,
+        joints: Joints,
+        extent: f64,
+        rng: &mut fastrand::Rng,
+    ) -> Self {
+        let origins: Vec<DVec3> = match joints {
+            Joints::Star => STAR.map(|axis| axis * 0.25).to_vec(),
+            Joints::Chain(count) | Joints::Middle(count) => (0..count)
+                .map(|k| DVec3::Y * ((k as f64 + 0.5) / count as f64))
+                .collect(),
+        };
+        let (mut influences, mut influence_ends) = (Vec::new(), Vec::new());
+        for position in &shape.positions {
+            match joints {
+                Joints::Star => star(*position, &mut influences),
+                Joints::Chain(count) => chain(position.y, count, &mut influences),
+                Joints::Middle(count) => influences.push(influence(count / 2, 1.0)),
+            }
+            if family == MeshFamily::Copies && rng.u32(0..8) == 0 {
+                // Cracks open along it.
+                let start = influence_ends.last().map_or(0, |end| *end as usize);
+                influences.truncate(start);
+                influences.push(influence(rng.usize(0..6), 1.0));
+            }
+            influence_ends.push(influences.len() as u32);
+        }
+        let positions: Vec<Vec3> = shape
+            .positions
+            .iter()
+            .map(|p| (*p * extent).as_vec3())
+            .collect();
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &shape.triangles,
+            influences: &influences,
+            influence_ends: &influence_ends,
+            joint_count: origins.len(),
+            ..MeshSource::default()
+        };
+        let (mesh, _) = match ColliderMesh::build(&source, &BuildOptions::default()) {
+            Ok(built) => built,
+            Err(error) => panic!("{family}: {error}"),
+        };
+        let subject = Self {
+            mesh: Arc::new(mesh),
+            origins: origins.iter().map(|origin| *origin * extent).collect(),
+            is_chain: !matches!(joints, Joints::Star),
+            extent,
+        };
+        assert_eq!(is_closed(&subject.mesh), family.is_closed(), "{family}");
+        subject
+    }
+}
+
+const STAR: [DVec3; 6] = [
+    DVec3::X,
+    DVec3::NEG_X,
+    DVec3::Y,
+    DVec3::NEG_Y,
+    DVec3::Z,
+    DVec3::NEG_Z,
+];
+
+fn influence(joint: usize, weight: f64) -> Influence {
+    Influence {
+        joint: JointId(joint as u32),
+        weight: weight as f32,
+    }
+}
+
+/// The joints whose axes it is not behind.
+fn star(position: DVec3, all: &mut Vec<Influence>) {
+    let direction = position.normalize_or(DVec3::Y);
+    let near = STAR.iter().map(|axis| axis.dot(direction) + 0.3);
+    let near = near.enumerate().filter(|(_, near)| *near > 0.0);
+    all.extend(near.map(|(joint, near)| influence(joint, near * near)));
+}
+
+/// The four nearest joints, or those there are.
+fn chain(height: f64, count: usize, all: &mut Vec<Influence>) {
+    let along = height * count as f64 - 0.5;
+    let first = (along.floor() as isize - 1).clamp(0, count.saturating_sub(4) as isize) as usize;
+    for joint in first..(first + 4).min(count) {
+        let distance = (joint as f64 - along).abs() / 2.5;
+        let weight = (1.0 - distance * distance).max(0.0);
+        all.push(influence(joint, weight * weight + 1e-6));
+    }
+}
+
+/// True if every edge has one triangle on either side.
+fn is_closed(mesh: &ColliderMesh) -> bool {
+    let mut balance: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
+    for corners in mesh.triangles() {
+        for k in 0..3 {
+            let (a, b) = (corners[k].0, corners[(k + 1) % 3].0);
+            let sides = balance.entry([a.min(b), a.max(b)]).or_default();
+            sides[usize::from(a < b)] += 1;
+        }
+    }
+    balance.values().all(|sides| *sides == [1, 1])
+}

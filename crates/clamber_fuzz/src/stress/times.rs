@@ -1,0 +1,109 @@
+//! How long queries take, by what they are.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::{MeshFamily, PoseFamily};
+
+/// Queries that are alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Class {
+    /// On what.
+    pub mesh: MeshFamily,
+    /// In what pose.
+    pub pose: PoseFamily,
+    /// Of about how many triangles.
+    pub triangles: usize,
+    /// Which query, aimed how.
+    pub query: &'static str,
+}
+
+/// Times beyond so many medians are taken again: see [`Times::add`].
+pub const LIMIT: f64 = 20.0;
+
+/// How often.
+const AGAIN: usize = 3;
+
+/// Times of classes.
+#[derive(Clone, Debug, Default)]
+pub struct Times {
+    classes: BTreeMap<Class, Samples>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Samples {
+    nanoseconds: Vec<f32>,
+    /// About; found anew whenever their number has doubled.
+    median: f32,
+    worst: f32,
+    /// The case that took longest.
+    of: String,
+}
+
+/// What a class took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Queries.
+    pub count: usize,
+    /// Half of them took at most this, nanoseconds.
+    pub median: f64,
+    /// And 999 of 1,000 this; all but one, of fewer than 1,000.
+    pub p999: f64,
+    /// The case that took longest.
+    pub longest: String,
+}
+
+impl Summary {
+    /// How many medians the slowest took.
+    pub fn ratio(&self) -> f64 {
+        self.p999 / self.median.max(1.0)
+    }
+}
+
+impl Times {
+    /// Times a query. One that takes more than [`LIMIT`] times the median so far is asked three times more at once, and
+    /// its shortest time counts: another process that had the core says nothing about the query.
+    pub(super) fn add(&mut self, class: Class, case: &impl ToString, mut ask: impl FnMut()) {
+        let mut time = || {
+            let start = Instant::now();
+            ask();
+            start.elapsed().as_nanos() as f32
+        };
+        let samples = self.classes.entry(class).or_default();
+        let mut taken = time();
+        if samples.nanoseconds.len() >= 16 && taken > samples.median * LIMIT as f32 {
+            for _ in 0..AGAIN {
+                taken = taken.min(time());
+            }
+        }
+        if taken > samples.worst {
+            samples.worst = taken;
+            samples.of = case.to_string();
+        }
+        samples.nanoseconds.push(taken);
+        if samples.nanoseconds.len().is_power_of_two() {
+            samples.median = quantile(&samples.nanoseconds, 0.5);
+        }
+    }
+
+    /// What every class took.
+    pub fn summaries(&self) -> impl Iterator<Item = (Class, Summary)> {
+        self.classes.iter().map(|(class, samples)| {
+            let all = &samples.nanoseconds;
+            let summary = Summary {
+                count: all.len(),
+                median: quantile(all, 0.5).into(),
+                p999: quantile(all, 0.999).into(),
+                longest: samples.of.clone(),
+            };
+            (*class, summary)
+        })
+    }
+}
+
+fn quantile(values: &[f32], part: f64) -> f32 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f32::total_cmp);
+    let index = ((sorted.len() as f64 * part).ceil() as usize).saturating_sub(1);
+    sorted[index.min(sorted.len() - 1)]
+}

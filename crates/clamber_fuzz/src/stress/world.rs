@@ -1,0 +1,153 @@
+//! In the world, a hundred kilometres out is as exact as the origin.
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Contact, MaterialPoint, Obstacle};
+use glam::{DVec3, Vec3};
+
+use super::aims::Aims;
+use super::posed::{Posed, point_of, random_weights};
+
+/// Seconds of a tick.
+const TICK: f64 = 1.0 / 60.0;
+
+/// What a tick ago is needed.
+pub(super) struct Before {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) place: Similarity,
+    pub(super) reach: f64,
+}
+
+impl Before {
+    pub(super) fn of(posed: &Posed<'_>, palette: &Palette) -> Self {
+        Self {
+            positions: posed.positions.clone(),
+            place: *posed.surface.world_from_model(),
+            reach: reach(posed.surface, palette),
+        }
+    }
+}
+
+/// Largest product that skinning adds up, in model units: what its rounding is a share of.
+fn reach(surface: &SkinnedSurface, palette: &Palette) -> f64 {
+    let radius = f64::from(surface.mesh().radius());
+    let of = |map: glam::DAffine3| {
+        let [x, y, z] = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
+        let linear = x.length() + y.length() + z.length();
+        linear * radius + map.translation.length()
+    };
+    let all = palette.matrices().iter().map(|m| of(m.to_f64()));
+    all.fold(0.0, f64::max)
+}
+
+/// The same questions here and at the origin, and the ways of points against f64; gives how many there were.
+pub(super) fn check(
+    posed: &Posed<'_>,
+    palette: &Palette,
+    before: Option<&Before>,
+    rng: &mut fastrand::Rng,
+    count: usize,
+) -> usize {
+    let far = posed.surface;
+    let place = *far.world_from_model();
+    let mut home = far.clone();
+    let at_home = Similarity {
+        translation: DVec3::ZERO,
+        ..place
+    };
+    if let Err(error) = home.place(palette, at_home) {
+        panic!("refused at the origin: {error}");
+    }
+    let away = place.translation;
+    // A point in model space is rounded to f32 once, wherever it comes from, and so is what is found; the world's
+    // coordinates are off by some 2^-52 of their own size.
+    let world = 1e-15 * away.length();
+    let mut checked = 0;
+    for _ in 0..count {
+        let mut aims = Aims::new(posed, rng);
+        let skin = aims.skin();
+        let near = aims.off(skin, 0.1);
+        let size = f64::from(posed.farthest.max(near.abs().max_element()));
+        let exact = place.scale * size * 4e-7 + 8.0 * world;
+
+        let point = home.world_from_model().transform_point_f32(near);
+        let here = Obstacle::closest_point(&home, point, f64::INFINITY);
+        let there = Obstacle::closest_point(far, point + away, f64::INFINITY);
+        let (Some(here), Some(there)) = (here, there) else {
+            panic!("nothing is nearest to {point}, {away} out");
+        };
+        let off = (here.distance - there.distance).abs();
+        assert!(
+            off <= exact,
+            "{off} m off, {exact} allowed, {away} out: {here:?} {there:?}"
+        );
+        check_contact(posed, &there, exact);
+
+        let target = home.world_from_model().transform_point_f32(skin);
+        let along = target - point;
+        if let Some(hit) = Obstacle::cast_ray(far, point + away, along, f64::INFINITY) {
+            check_contact(posed, &hit, exact);
+            let from = hit.point - (point + away);
+            let aside = from.cross(along.normalize_or(DVec3::X)).length();
+            // A direction is rounded, too.
+            let turned = from.length() * 2e-7;
+            assert!(
+                aside <= exact + turned,
+                "{hit:?} is {aside} m beside its ray"
+            );
+        }
+        checked += 2;
+        if let Some(before) = before {
+            check_motion(posed, palette, before, rng);
+            checked += 1;
+        }
+    }
+    checked
+}
+
+/// A contact is where its material is.
+fn check_contact(posed: &Posed<'_>, contact: &Contact, exact: f64) {
+    let corners = posed.corners(contact.material.key as usize);
+    // In model space: weights in f32 do not add up to 1 exactly, and the world is large.
+    let weights = contact.material.coordinates.map(|weight| weight as f32);
+    let place = posed.surface.world_from_model();
+    let point = place.transform_point_f32(point_of(corners, weights));
+    let off = contact.point.distance(point);
+    assert!(off <= exact, "{contact:?} is {off} m from its material");
+    let unit = (contact.normal.length() - 1.0).abs() < 1e-6;
+    assert!(unit && contact.distance.is_finite(), "{contact:?}");
+}
+
+/// A material point goes from where it was to where it is.
+fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut fastrand::Rng) {
+    let triangle = posed.any_triangle(rng);
+    let weights = random_weights(rng);
+    let material = MaterialPoint {
+        key: triangle as u64,
+        coordinates: weights.map(f64::from),
+    };
+    let Some(motion) = Obstacle::motion(posed.surface, &material, TICK) else {
+        panic!("{material:?} does not move");
+    };
+    let place = *posed.surface.world_from_model();
+    let now = place.transform_point_f32(point_of(posed.corners(triangle), weights));
+    let corners = posed.corner_ids(triangle).map(|v| before.positions[v]);
+    let then = before.place.transform_point_f32(point_of(corners, weights));
+    let moved = now - then;
+    let relative = place.relative(&before.place).translation.length();
+    // Two skinnings and a matrix are rounded, as the products that they add up.
+    let size = reach(posed.surface, palette) + before.reach + relative;
+    let exact = place.scale * size * 2e-6 + 1e-14 * place.translation.length();
+    let off = (motion.velocity * TICK - moved).length();
+    assert!(
+        off <= exact,
+        "{motion:?} moves {off} m else than {moved}, {exact} allowed"
+    );
+    assert!(
+        motion.position.distance(now) <= exact,
+        "{motion:?} is not at {now}"
+    );
+    let sound = motion.area_ratio >= 0.0 && motion.stretches.iter().all(|s| *s >= 0.0);
+    assert!(sound && motion.turn.is_finite(), "{motion:?}");
+}
