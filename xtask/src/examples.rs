@@ -11,9 +11,10 @@ use crate::build;
 use crate::run::program;
 
 /// What an example cannot do without.
-const ARGUMENTS: [(&str, &[&str]); 2] = [
+const ARGUMENTS: [(&str, &[&str]); 3] = [
     ("inspect", &["assets/colossus.glb", "--poses", "2"]),
     ("seeds", &["target/fuzz-seeds"]),
+    ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];
 
 /// A vertex that falls through a face, in the form of the query files.

@@ -11,15 +11,18 @@ use super::bounds::Bounds;
 use super::places::Journey;
 use super::posed::Posed;
 use super::poses::{Motion, spoilt};
-use super::questions::Answer;
+use super::questions::{Answer, Question};
 use super::world::Before;
-use super::{Case, Class, Seen, Subject, Times, contacts, leaks, world};
+use super::{Case, Class, Seen, Subject, Times, contacts, leaks, nearest, world};
 
 /// Rounds of all questions in a tick.
 const ROUNDS: usize = 2;
 
 /// Origins of rays at closed skin in a tick, six rays each.
 const ORIGINS: usize = 4;
+
+/// Nearest points sought in a tick.
+const NEAREST: usize = 4;
 
 /// Contacts sought in a tick, two movers each.
 const CONTACTS: usize = 6;
@@ -28,7 +31,7 @@ const CONTACTS: usize = 6;
 const WORLD: usize = 6;
 
 /// Questions that are timed in a tick, of every name.
-const TIMED: usize = 24;
+const TIMED: usize = 64;
 
 /// Most steps of a sweep's exact test, as documented.
 const STEPS: u32 = 256;
@@ -49,6 +52,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     let mut twin = SkinnedSurface::with_simd_level(subject.mesh.clone(), other);
     let fault = rng.usize(0..case.ticks.max(1));
     let mut before: Option<Before> = None;
+    let mut last: Option<(Palette, Similarity)> = None;
     let mut seen = Seen::default();
     for tick in 0..case.ticks {
         let palette = motion.palette(&subject, tick, &mut rng);
@@ -73,12 +77,18 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
         if case.mesh.is_closed() {
             seen.rays += leaks::check(&posed, &mut rng, ORIGINS);
         }
+        seen.nearest += nearest::check(&posed, &mut rng, NEAREST);
         seen.contacts += contacts::check(&posed, &mut rng, CONTACTS);
         seen.world += world::check(&posed, &palette, before.as_ref(), &mut rng, WORLD);
         before = Some(Before::of(&posed, &palette));
         if let Some(times) = times.as_deref_mut() {
-            time(case, &posed, times, &mut rng);
+            let now = (&palette, place);
+            let then = last
+                .as_ref()
+                .map_or(now, |(palette, place)| (palette, *place));
+            time(case, &posed, [then, now], times, &mut rng);
         }
+        last = Some((palette, place));
     }
     seen
 }
@@ -164,8 +174,18 @@ fn refuse(
     );
 }
 
+/// A pose and the one before it.
+type Poses<'a> = [(&'a Palette, Similarity); 2];
+
 /// Times all questions.
-fn time(case: &Case, posed: &Posed<'_>, times: &mut Times, rng: &mut fastrand::Rng) {
+fn time(
+    case: &Case,
+    posed: &Posed<'_>,
+    poses: Poses<'_>,
+    times: &mut Times,
+    rng: &mut fastrand::Rng,
+) {
+    let mut fresh = posed.surface.clone();
     let (mut questions, mut answer) = (Vec::new(), Answer::default());
     for _ in 0..TIMED {
         Aims::new(posed, rng).all(&mut questions);
@@ -175,7 +195,9 @@ fn time(case: &Case, posed: &Posed<'_>, times: &mut Times, rng: &mut fastrand::R
                 pose: case.pose,
                 triangles: case.triangles,
                 query,
+                work: 0,
             };
+            let class = class.with_work(work(&mut fresh, poses, question, &mut answer));
             let mut ask = || {
                 let asked = question.ask(posed.surface, &mut answer);
                 assert!(asked.is_ok(), "{asked:?}");
@@ -184,4 +206,21 @@ fn time(case: &Case, posed: &Posed<'_>, times: &mut Times, rng: &mut fastrand::R
             times.add(class, case, ask);
         }
     }
+}
+
+/// What a question alone makes of a tick: nodes, clusters and triangles.
+fn work(
+    fresh: &mut SkinnedSurface,
+    [before, now]: Poses<'_>,
+    question: &Question,
+    answer: &mut Answer,
+) -> usize {
+    let done = fresh
+        .place(before.0, before.1)
+        .and_then(|()| fresh.advance(now.0, now.1))
+        .and_then(|()| question.ask(fresh, answer));
+    assert_eq!(done, Ok(()));
+    let touched = fresh.diagnostics();
+    // Eight bounds are a node.
+    touched.bounds_evaluated / 8 + touched.clusters_touched + touched.triangles_tested as usize
 }

@@ -15,6 +15,8 @@ pub struct Seen {
     pub bounds: usize,
     /// Rays that closed skin had to stop.
     pub rays: usize,
+    /// Nearest points compared with f64.
+    pub nearest: usize,
     /// Casts and sweeps that had to touch.
     pub contacts: usize,
     /// Questions in the world.
@@ -33,6 +35,7 @@ impl AddAssign for Seen {
         self.hits += other.hits;
         self.bounds += other.bounds;
         self.rays += other.rays;
+        self.nearest += other.nearest;
         self.contacts += other.contacts;
         self.world += other.world;
         self.undecided += other.undecided;
@@ -43,6 +46,12 @@ impl AddAssign for Seen {
 impl Seen {
     /// All checks.
     pub fn checks(&self) -> usize {
-        self.refused + self.questions + self.bounds + self.rays + self.contacts + self.world
+        self.refused
+            + self.questions
+            + self.bounds
+            + self.rays
+            + self.nearest
+            + self.contacts
+            + self.world
     }
 }

@@ -16,12 +16,34 @@ pub struct Class {
     pub triangles: usize,
     /// Which query, aimed how.
     pub query: &'static str,
+    /// How much it had to do, nodes of the hierarchy, clusters and triangles together, rounded up to a power of four
+    /// less one.
+    pub work: usize,
 }
 
-/// Times beyond so many medians are taken again: see [`Times::add`].
+impl Class {
+    /// The class with so much work.
+    pub(super) fn with_work(self, done: usize) -> Self {
+        let mut work = 0;
+        while work < done {
+            work = work * 4 + 3;
+        }
+        Self { work, ..self }
+    }
+}
+
+/// Medians below this count as this, nanoseconds: what the first box rules out takes a twentieth of it, and is no measure
+/// for what goes a little farther.
+pub const FLOOR: f64 = 1_000.0;
+
+/// So many medians the slowest queries of a class may take.
 pub const LIMIT: f64 = 20.0;
 
-/// How often.
+/// Times beyond so many medians are taken again: see [`Times::add`].
+pub const DOUBTFUL: f64 = 4.0;
+
+/// How often, and so are the first few.
+const FEW: usize = 16;
 const AGAIN: usize = 3;
 
 /// Times of classes.
@@ -54,14 +76,14 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// How many medians the slowest took.
+    /// How many medians, of [`FLOOR`] at least, the slowest took.
     pub fn ratio(&self) -> f64 {
-        self.p999 / self.median.max(1.0)
+        self.p999 / self.median.max(FLOOR)
     }
 }
 
 impl Times {
-    /// Times a query. One that takes more than [`LIMIT`] times the median so far is asked three times more at once, and
+    /// Times a query. One that takes more than [`DOUBTFUL`] times the median so far is asked three times more at once, and
     /// its shortest time counts: another process that had the core says nothing about the query.
     pub(super) fn add(&mut self, class: Class, case: &impl ToString, mut ask: impl FnMut()) {
         let mut time = || {
@@ -71,7 +93,8 @@ impl Times {
         };
         let samples = self.classes.entry(class).or_default();
         let mut taken = time();
-        if samples.nanoseconds.len() >= 16 && taken > samples.median * LIMIT as f32 {
+        let slow = samples.median.max(FLOOR as f32) * DOUBTFUL as f32;
+        if samples.nanoseconds.len() < FEW || taken > slow {
             for _ in 0..AGAIN {
                 taken = taken.min(time());
             }
@@ -88,16 +111,36 @@ impl Times {
 
     /// What every class took.
     pub fn summaries(&self) -> impl Iterator<Item = (Class, Summary)> {
-        self.classes.iter().map(|(class, samples)| {
-            let all = &samples.nanoseconds;
-            let summary = Summary {
-                count: all.len(),
-                median: quantile(all, 0.5).into(),
-                p999: quantile(all, 0.999).into(),
-                longest: samples.of.clone(),
-            };
-            (*class, summary)
-        })
+        let all = self.classes.iter();
+        all.map(|(class, samples)| (*class, samples.summary()))
+    }
+
+    /// [`Times::summaries`] with classes of unlike work thrown together; that of those is told as 0.
+    pub fn whatever_work(&self) -> Vec<(Class, Summary)> {
+        let mut merged: BTreeMap<Class, Samples> = BTreeMap::new();
+        for (class, samples) in &self.classes {
+            let into = merged.entry(Class { work: 0, ..*class }).or_default();
+            into.nanoseconds.extend(&samples.nanoseconds);
+            if samples.worst > into.worst {
+                into.worst = samples.worst;
+                into.of.clone_from(&samples.of);
+            }
+        }
+        let all = merged.into_iter();
+        all.map(|(class, samples)| (class, samples.summary()))
+            .collect()
+    }
+}
+
+impl Samples {
+    fn summary(&self) -> Summary {
+        let all = &self.nanoseconds;
+        Summary {
+            count: all.len(),
+            median: quantile(all, 0.5).into(),
+            p999: quantile(all, 0.999).into(),
+            longest: self.of.clone(),
+        }
     }
 }
 

@@ -122,7 +122,8 @@ impl BattleOptions {
         self.height.unwrap_or(default)
     }
 
-    pub(super) fn ticks(&self) -> u64 {
+    /// How many ticks it lasts.
+    pub fn ticks(&self) -> u64 {
         ((self.seconds / TICK).round() as u64).max(1)
     }
 

@@ -82,7 +82,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    pub(super) fn new(battle: &Battle<'_>, options: &BattleOptions) -> Self {
+    /// Of a battle as it stands, fought with these options.
+    pub fn new(battle: &Battle<'_>, options: &BattleOptions) -> Self {
         let recording = battle.recording();
         let mesh = battle.surface().mesh();
         let watch = battle.watch();

@@ -1,0 +1,48 @@
+//! Whole battles, watched for numbers that are none.
+
+use clamber_scenes::Creature;
+use clamber_scenes::battle::{Battle, BattleOptions, Summary};
+
+/// Seconds that a battle takes.
+const SECONDS: f64 = 15.0;
+
+/// Fights a battle; gives how many ticks and checks there were. Panics where a check fails, a number is not finite, or
+/// the battle ends with an error.
+pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
+    let options = BattleOptions {
+        creature: None,
+        height: None,
+        seconds: SECONDS,
+        rocks: 24,
+        seed,
+        out: "target/soak".into(),
+        record: None,
+    };
+    let rocks = options.rocks as usize;
+    let mut battle = match Battle::new(giant, options.height(), seed, rocks) {
+        Ok(battle) => battle,
+        Err(error) => panic!("no battle: {error}"),
+    };
+    for tick in 0..options.ticks() {
+        if let Err(error) = battle.step(options.input_at(tick)) {
+            panic!("tick {tick}: {error}");
+        }
+        let state = battle.climber().state();
+        let footing = state.footing.map(|footing| footing.contact);
+        let finite = state.position.is_finite()
+            && state.velocity.is_finite()
+            && footing.is_none_or(|contact| contact.is_finite());
+        assert!(finite, "tick {tick}: {state:?}");
+        let push_out = battle.report().push_out.displacement;
+        assert!(push_out.is_finite(), "tick {tick}: {push_out}");
+        for (_, body) in battle.world().bodies.iter() {
+            let at = body.translation();
+            assert!(at.is_finite(), "tick {tick}: a rock is at {at}");
+        }
+    }
+    let summary = Summary::new(&battle, &options);
+    for check in &summary.checks {
+        assert!(check.holds, "{check:?}");
+    }
+    summary.ticks * 3 + summary.checks.len()
+}

@@ -1,0 +1,110 @@
+//! Does everything that could go wrong, over and over with fresh seeds, until the time is up: stress cases of every
+//! family, every fuzz target on random bytes, whole battles. `cargo xtask soak` builds and runs it.
+
+#![expect(clippy::panic, reason = "a finding is a panic, caught and reported")]
+
+mod fight;
+mod findings;
+mod plan;
+mod report;
+mod task;
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use clamber_scenes::giant::giant;
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use report::Report;
+use task::Task;
+
+/// Stress cases, fuzz targets and battles with fresh seeds until the time is up.
+///
+/// Ends with a report, which report.md has, too, and exits with 1 if there is a finding, or if the slowest thousandth of
+/// a class of queries takes more than 20 times its median. The same seed gives the same tasks in the same order.
+#[derive(Debug, Parser)]
+#[command(name = "soak", version)]
+struct Options {
+    /// How long.
+    #[arg(long, value_name = "MINUTES", default_value_t = 0.1)]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
+    minutes: f64,
+
+    /// Of everything random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+
+    /// Runs this alone, as a report names it, and lets it panic: stress/CASE, battle/SEED, queries/SEED, palettes/SEED,
+    /// builder/SEED or import/SEED.
+    #[arg(long, value_name = "TASK")]
+    case: Option<Task>,
+
+    /// Folder for report.md and times.csv.
+    #[arg(long, value_name = "DIR", default_value = "target/soak")]
+    out: PathBuf,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number <= 1e5 => Ok(number),
+        Ok(_) => Err("must be above 0 and at most 100000".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let giant = match giant() {
+        Ok(giant) => giant,
+        Err(error) => {
+            eprintln!("the giant cannot play: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let mut report = Report::new(options.seed);
+    if let Some(task) = options.case {
+        let checks = task.run(&giant, &mut report.times);
+        println!("{task}: {checks} checks, all hold");
+        return ExitCode::SUCCESS;
+    }
+    findings::keep_panics();
+    let start = Instant::now();
+    let length = Duration::from_secs_f64(options.minutes * 60.0);
+    let bar = bar(length);
+    for task in plan::tasks(options.seed) {
+        let elapsed = start.elapsed();
+        if elapsed >= length {
+            break;
+        }
+        bar.set_position(elapsed.as_secs());
+        bar.set_message(format!("{} findings  {task}", report.findings()));
+        let came = findings::caught(|| task.run(&giant, &mut report.times));
+        report.note(task, came);
+    }
+    bar.finish_and_clear();
+    report.minutes = start.elapsed().as_secs_f64() / 60.0;
+    println!("{report}");
+    if let Err(error) = report.write(&options.out) {
+        eprintln!("{}: {error}", options.out.display());
+        return ExitCode::FAILURE;
+    }
+    if report.holds() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// Seconds gone and to go, and what is being done; nothing where nobody watches.
+fn bar(length: Duration) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(length.as_secs().max(1));
+    let template = "{bar:30} {elapsed_precise} of {len} s  {wide_msg}";
+    let style = ProgressStyle::with_template(template);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
