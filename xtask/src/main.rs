@@ -42,7 +42,7 @@ enum Task {
     App,
     /// Stress cases of every family, every fuzz target on random bytes and whole battles, in release, with fresh seeds
     /// until the time is up. Checks that nothing panics, all numbers are finite, answers are those of brute force,
-    /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that of each class of queries
+    /// bounds hold, closed skin lets no ray through, no contact is missed or late, and that of queries with like work
     /// the slowest thousandth takes at most 20 medians. Ends with a report, also in target/soak/report.md, which says
     /// how to repeat each finding, and fails if there is one.
     Soak {

@@ -192,7 +192,6 @@ fn time(
         for (query, question) in &questions {
             let class = Class {
                 mesh: case.mesh,
-                pose: case.pose,
                 triangles: case.triangles,
                 query,
                 work: 0,

@@ -3,15 +3,13 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::{MeshFamily, PoseFamily};
+use super::MeshFamily;
 
-/// Queries that are alike.
+/// Queries that are alike, in whatever pose: where poses make a difference, it is in the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Class {
     /// On what.
     pub mesh: MeshFamily,
-    /// In what pose.
-    pub pose: PoseFamily,
     /// Of about how many triangles.
     pub triangles: usize,
     /// Which query, aimed how.
@@ -42,9 +40,11 @@ pub const LIMIT: f64 = 20.0;
 /// Times beyond so many medians are taken again: see [`Times::add`].
 pub const DOUBTFUL: f64 = 4.0;
 
-/// How often, and so are the first few.
-const FEW: usize = 16;
+/// How often.
 const AGAIN: usize = 3;
+
+/// So many of a class are taken again in any case: there is no median to speak of yet.
+const FEW: usize = 16;
 
 /// Times of classes.
 #[derive(Clone, Debug, Default)]
@@ -69,7 +69,7 @@ pub struct Summary {
     pub count: usize,
     /// Half of them took at most this, nanoseconds.
     pub median: f64,
-    /// And 999 of 1,000 this; all but one, of fewer than 1,000.
+    /// And 999 of 1,000 this; of fewer than 1,000 it is the slowest one's.
     pub p999: f64,
     /// The case that took longest.
     pub longest: String,
