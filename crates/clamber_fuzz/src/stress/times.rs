@@ -37,7 +37,7 @@ pub const FLOOR: f64 = 1_000.0;
 /// So many medians the slowest queries of a class may take.
 pub const LIMIT: f64 = 20.0;
 
-/// Times beyond so many medians are taken again: see [`Times::add`].
+/// Times beyond so many medians are taken again, and the shortest counts.
 pub const DOUBTFUL: f64 = 4.0;
 
 /// How often.
