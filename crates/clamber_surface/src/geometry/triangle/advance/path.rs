@@ -73,6 +73,8 @@ impl<L: Lanes, const N: usize> Path<L, N> {
                 *kept = L::select(is_going, weight, *kept);
             }
             let (until, approaching) = self.certified(&nearest, distance, &found, &terms);
+            // What turns or slides closer does so although no line falls along n of the moment.
+            let approaching = approaching | distance.less(progress.distance);
             let last = steps == STEPS;
             let verdict = self.verdict([time, until, distance], approaching, &terms, last);
             found.verdict = L::select(is_going, verdict, found.verdict);

@@ -166,3 +166,44 @@ fn eight_moving_lanes_have_the_scalar_bits_at_every_level() {
         "{found:?}"
     );
 }
+
+#[test]
+fn what_only_turning_brings_closer_is_a_contact_once_it_is_near() {
+    // Each took 256 steps, ever nearer to a radius that it all but reached: no line falls along the direction of the
+    // moment.
+    let needle = [
+        Vec3::new(0.6113142, 5.4071283, 0.18201125),
+        Vec3::new(309.57385, -783.1844, -64.232796),
+        Vec3::new(188.8219, -816.3295, 104.45469),
+    ];
+    let needle_later = [
+        Vec3::new(0.22916088, 5.392338, 0.4358096),
+        Vec3::new(461.2387, -695.15924, -134.38286),
+        Vec3::new(298.06003, -788.97046, -41.088737),
+    ];
+    let center = Vec3::new(0.56197846, 4.6092825, -0.8551329);
+    let motion = Vec3::new(-0.2915352, 0.39834568, 1.2191159);
+    let core = MovingCore::new([center], [motion], 0.29228053, 7.307013e-4);
+    let sphere = advance(needle, needle_later, &core, 1.0);
+
+    let still = [
+        Vec3::new(0.16663875, 0.15703431, -0.16905947),
+        Vec3::new(0.20738038, 0.12496459, -0.07551392),
+        Vec3::new(0.2286959, 0.122229256, -0.077263094),
+    ];
+    let ends = [
+        Vec3::new(0.2214882, 0.15528747, -0.09076764),
+        Vec3::new(0.29003665, 0.107907444, -0.10404461),
+    ];
+    let motions = [
+        Vec3::new(-0.28068694, 0.079735085, 0.27360037),
+        Vec3::new(-0.21398029, 0.14502981, 0.39101768),
+    ];
+    let core = MovingCore::new(ends, motions, 0.02, 5e-5);
+    let capsule = advance(still, still, &core, 1.0);
+
+    for (contact, steps) in [sphere, capsule] {
+        assert!(steps < STEPS / 2, "{steps} steps: {contact:?}");
+        assert!(contact.is_some_and(|c| !c.undecided), "{contact:?}");
+    }
+}
