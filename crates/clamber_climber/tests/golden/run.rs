@@ -105,13 +105,13 @@ fn climber(index: u32) -> Climber {
 /// Half of them stand still; the others walk about, and jump at times.
 fn input(index: usize, tick: u32) -> ClimberInput {
     let index = index as u32;
-    if index % 2 == 0 {
+    if index.is_multiple_of(2) {
         return ClimberInput::default();
     }
     let angle = f64::from(index + tick / 40);
     ClimberInput {
         walk: DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)),
-        jump: (tick + 7 * index) % 50 == 0,
+        jump: (tick + 7 * index).is_multiple_of(50),
     }
 }
 
