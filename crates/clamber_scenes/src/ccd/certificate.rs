@@ -3,9 +3,11 @@
 //! For any vector n the gap `min n.(p(t) - a(t))` over the core's ends p and the corners a is a
 //! minimum of linear functions of time, hence concave, and at most |n| times the distance: that it is
 //! above `radius |n|` at two times proves that the distance is above the radius at all times
-//! between. Where no n does for a stretch, the stretch is halved. The gap is first bounded in f64, with
-//! all roundings against the proof, and where that leaves it open, computed in rational numbers. So
-//! which n is tried decides only how soon a proof is found.
+//! between. Where no n does for a stretch, one is tried that turns linearly from the first time to the
+//! last: a gap along it is quadratic, and nowhere less than the least of its Bernstein coefficients. Where
+//! that does not either, the stretch is halved. The gap is first bounded in f64, with all roundings against
+//! the proof, and where that leaves it open, computed in rational numbers. So which n is tried decides only
+//! how soon a proof is found.
 
 use std::cell::LazyCell;
 
@@ -20,7 +22,7 @@ use super::pair::{ExactPair, MovingPair};
 const STRETCHES: usize = 20_000;
 
 /// Twice the largest relative error of a gap's lines at a time: of each difference of points, its
-/// products, their sums and their mean, nine roundings of 2^-53.
+/// products, their sums and their means, ten roundings of 2^-53.
 const LOST: f64 = 24.0 / (1u64 << 53) as f64;
 
 /// For stretches shorter than this, directions are computed in rational numbers if those in f64 fail.
@@ -133,13 +135,16 @@ impl<'a> Motion<'a> {
     /// the last the gap may equal the radius.
     fn is_certified(&self, radius: f64, [from, middle, to]: [f64; 3]) -> bool {
         let mut open = Vec::new();
-        for time in [to, from, middle] {
-            let n = self.nearest(time).direction;
+        let directions = [to, from, middle].map(|time| self.nearest(time).direction);
+        for n in directions {
             match self.separates(n, radius, [from, to]) {
                 Some(true) => return true,
                 Some(false) => {}
                 None => open.push(n),
             }
+        }
+        if self.separates_turning([directions[1], directions[0]], radius, [from, to]) {
+            return true;
         }
         let is_shown = |n: &Exact| {
             n.iter().any(|x| *x != Relaxed::ZERO) && self.separates_exactly(n, radius, [from, to])
@@ -175,6 +180,29 @@ impl<'a> Motion<'a> {
             }
         }
         all.then_some(true)
+    }
+
+    /// Along a direction that goes linearly from the first to the last; false if rounding leaves it open.
+    fn separates_turning(&self, [n, m]: [DVec3; 2], radius: f64, [from, to]: [f64; 2]) -> bool {
+        if n == DVec3::ZERO || m == DVec3::ZERO {
+            return false;
+        }
+        let limit = radius * n.length().max(m.length());
+        let along = |n: DVec3, [start, end]: [DVec3; 2], time: f64| {
+            let mean = |h0: f64, h1: f64| h0 * (1.0 - time) + h1 * time;
+            let gap = mean(n.dot(start), n.dot(end));
+            let size = mean(n.abs().dot(start.abs()), n.abs().dot(end.abs()));
+            [gap, size]
+        };
+        self.each_line().all(|line| {
+            let first = along(n, line, from);
+            let last = along(m, line, to);
+            let [a, b] = [along(n, line, to), along(m, line, from)];
+            let between = [0, 1].map(|k| (a[k] + b[k]) * 0.5);
+            [first, between, last]
+                .iter()
+                .all(|[gap, size]| gap - (LOST * (size + limit) + UNDERFLOW) > limit)
+        })
     }
 
     fn separates_exactly(&self, n: &Exact, radius: f64, [from, to]: [f64; 2]) -> bool {

@@ -1,4 +1,5 @@
 use super::path::Path;
+use super::separation::between;
 use super::{LOST, NEVER, ROUNDED_DOWN, ROUNDED_UP};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
@@ -79,6 +80,63 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             approaching: slope.less(zero),
         }
     }
+
+    /// Whether the gap is large enough all the time between two, along a direction that turns linearly
+    /// from the one to the other.
+    ///
+    /// Each gap of an end and a corner is quadratic then, and nowhere less than the least of its
+    /// coefficients in the Bernstein basis.
+    #[inline(always)]
+    pub(super) fn holds_turning(
+        &self,
+        n: [Vector3<L>; 2],
+        times: [L; 2],
+        floors: &Floors<L, N>,
+    ) -> L::Mask {
+        let zero = self.radius.splat(0.0);
+        let corners = [0, 1, 2].map(
+            #[inline(always)]
+            |k| {
+                let floor = floors.start[k].or_larger(floors.end[k]);
+                along_turning(
+                    n,
+                    times.map(
+                        #[inline(always)]
+                        |time| between(self.start[k], self.end[k], time),
+                    ),
+                )
+                .map(
+                    #[inline(always)]
+                    |part| part + floor,
+                )
+            },
+        );
+        let mut least = zero.splat(f64::INFINITY);
+        for end in 0..N {
+            let floor = floors.core_start[end].or_larger(floors.core_end[end]);
+            let core = along_turning(
+                n,
+                times.map(
+                    #[inline(always)]
+                    |time| between(self.core_start[end], self.core_end[end], time),
+                ),
+            );
+            for corner in corners {
+                for (core, corner) in core.into_iter().zip(corner) {
+                    least = least.or_smaller(core - floor - corner);
+                }
+            }
+        }
+        zero.at_most(least)
+    }
+}
+
+/// Coefficients in the Bernstein basis of a point's part along a direction, both of which go linearly
+/// from the first to the last.
+#[inline(always)]
+fn along_turning<L: Lanes>([n, m]: [Vector3<L>; 2], [p, q]: [Vector3<L>; 2]) -> [L; 3] {
+    let between = (n.dot(q) + m.dot(p)) * p.x.splat(0.5);
+    [n.dot(p), between, m.dot(q)]
 }
 
 /// The sum of absolute coordinates.

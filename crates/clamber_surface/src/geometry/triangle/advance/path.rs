@@ -80,7 +80,8 @@ impl<L: Lanes, const N: usize> Path<L, N> {
             found.verdict = L::select(is_going, verdict, found.verdict);
             found.time = L::select(found.is_going(), until, time);
             if steps >= SLOW && L::any(found.is_going()) {
-                self.look_ahead([time, distance], &mut found, &mut progress, &terms);
+                let now = [time, distance];
+                self.look_ahead(now, &nearest, &mut found, &mut progress, &terms);
             }
             if !L::any(found.is_going()) {
                 return (found, steps);
@@ -150,25 +151,30 @@ impl<L: Lanes, const N: usize> Path<L, N> {
     }
 
     /// Goes on from `found.time` by a direction of shortly before the gap would close, if that went on
-    /// as since the last step: `now` is the time and the distance at which this step began.
+    /// as since the last step, or by one that turns from that of `nearest`, where this step began, to it.
     #[inline(always)]
     fn look_ahead(
         &self,
-        now: [L; 2],
+        [begin, distance]: [L; 2],
+        nearest: &Separation<L>,
         found: &mut Found<L>,
         progress: &mut Progress<L>,
         terms: &Terms<L, N>,
     ) {
-        let ([begin, distance], time) = (now, found.time);
+        let time = found.time;
         let (zero, one) = (time.splat(0.0), time.splat(1.0));
         let rate = (progress.distance - distance) / (begin - progress.time);
         let closes = begin + (distance - self.radius) / rate;
         let closes = L::select(zero.less(rate) & closes.less(one), closes, one);
         let probe = time + (closes - time) * progress.ahead;
         let probe = L::select(time.less(probe), probe, time);
+        let now = direction(nearest.apart, distance);
         let apart = self.separation(probe).apart;
-        let gaps = self.gaps(direction(apart, apart.length()), &terms.floors, probe);
-        let holds = gaps.from.at_most(time) & time.less(gaps.until);
+        let then = direction(apart, apart.length());
+        let gaps = self.gaps(then, &terms.floors, probe);
+        let turning = self.holds_turning([now, then], [begin, probe], &terms.floors);
+        let until_then = gaps.from.at_most(time) | (turning & gaps.from.at_most(probe));
+        let holds = until_then & time.less(gaps.until);
         let passed = terms.limit.less(gaps.until) | one.less(gaps.until);
         let is_going = found.is_going();
         found.time = L::select(is_going & holds, gaps.until, time);

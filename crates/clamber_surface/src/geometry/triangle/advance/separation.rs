@@ -134,6 +134,6 @@ pub(super) fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> 
 
 /// `start` at time 0.
 #[inline(always)]
-fn between<L: Lanes>(start: Vector3<L>, end: Vector3<L>, time: L) -> Vector3<L> {
+pub(super) fn between<L: Lanes>(start: Vector3<L>, end: Vector3<L>, time: L) -> Vector3<L> {
     start + (end - start) * time
 }
