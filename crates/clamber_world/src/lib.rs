@@ -11,7 +11,9 @@ mod surface;
 
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
-pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
+pub use obstacle::{
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+};
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, RapierTerrain};
 /// The rapier that [`RapierTerrain`] speaks to.

@@ -47,6 +47,78 @@ impl Contact {
     }
 }
 
+/// All points within a radius of a segment, in world space: what a character is to the world. A ball where both ends are
+/// one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldCapsule {
+    /// Ends of the segment.
+    pub ends: [DVec3; 2],
+    /// Metres, not negative.
+    pub radius: f64,
+}
+
+impl WorldCapsule {
+    /// A ball.
+    pub const fn ball(center: DVec3, radius: f64) -> Self {
+        Self {
+            ends: [center, center],
+            radius,
+        }
+    }
+
+    /// Both ends are one point.
+    pub fn is_ball(&self) -> bool {
+        self.ends[0] == self.ends[1]
+    }
+
+    /// The same, somewhere else.
+    #[must_use]
+    pub fn moved(&self, by: DVec3) -> Self {
+        Self {
+            ends: self.ends.map(|end| end + by),
+            ..*self
+        }
+    }
+
+    /// With another radius.
+    #[must_use]
+    pub const fn with_radius(&self, radius: f64) -> Self {
+        Self { radius, ..*self }
+    }
+
+    /// The point of the segment nearest to a point.
+    pub fn nearest_on_axis(&self, point: DVec3) -> DVec3 {
+        let [a, b] = self.ends;
+        let axis = b - a;
+        let along = (point - a).dot(axis);
+        let length_sq = axis.length_squared();
+        if along > 0.0 && length_sq > 0.0 {
+            a + axis * (along / length_sq).min(1.0)
+        } else {
+            a
+        }
+    }
+
+    /// Centre and radius of a ball around it.
+    pub fn bounding_ball(&self) -> (DVec3, f64) {
+        let [a, b] = self.ends;
+        ((a + b) * 0.5, (b - a).length() * 0.5 + self.radius)
+    }
+}
+
+/// Where a capsule on its way first touches an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepContact {
+    /// Share of the displacement made when they touch, 0..=1.
+    pub time: f64,
+    /// What is touched, where and how it is at that time; its distance is from the capsule's segment.
+    pub contact: Contact,
+    /// Unit vector from there towards the capsule's segment.
+    pub away: DVec3,
+    /// They overlap at the start already; the time is 0.
+    pub started_inside: bool,
+}
+
 /// How a material point moves over the tick that ends now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMotion {
@@ -69,9 +141,9 @@ pub struct PointMotion {
 
 /// Something that a character can stand on, hit, or be carried by.
 ///
-/// All queries are in world space, see the pose of this tick, and take `&self`. A point or direction
-/// that is not finite finds nothing, and neither does a length that is NaN or negative; lengths may
-/// be infinite.
+/// All queries are in world space and take `&self`. All but [`Obstacle::sweep_capsule`] see the pose of this tick. A
+/// point or direction that is not finite finds nothing, and neither does a length that is NaN or negative; lengths may be
+/// infinite, but for those of capsules that move.
 pub trait Obstacle {
     /// Centre and radius of a ball in world space that holds all that queries of this tick can touch; `None` for what
     /// has no bounds, or does not know them. What is out of its reach is not asked.
@@ -86,9 +158,29 @@ pub trait Obstacle {
     /// The point nearest to `point`, up to `max_distance`.
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact>;
 
-    /// Appends what lies within `radius` of `center`: for each triangle or convex body its point
-    /// nearest to the centre, by ascending [`MaterialPoint::key`].
-    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>);
+    /// Appends what lies within a capsule: for each triangle or convex body its point nearest to the capsule's segment,
+    /// by ascending [`MaterialPoint::key`]. Distances are from the segment.
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>);
+
+    /// [`Obstacle::overlap_capsule`] for a ball.
+    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
+        self.overlap_capsule(&WorldCapsule::ball(center, radius), contacts);
+    }
+
+    /// The first contact of a capsule that moves by `displacement`, with the obstacle standing still as it stands now.
+    /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm.
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
+
+    /// The first contact of a capsule that moves by `displacement` over the tick that ends now, while the obstacle moves
+    /// from where it stood a tick ago to where it stands now.
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
+
+    /// The speed, metres a second, that an impulse of 1 N s along a unit `direction` gives to a material point; 0 for
+    /// what cannot be pushed.
+    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        let _ = (point, direction);
+        0.0
+    }
 
     /// The motion of a material point over the tick of `dt` seconds that ends now; `None` if the
     /// material is no longer there, or queries no longer see it.

@@ -1,11 +1,14 @@
 //! A skinned surface as an obstacle: queries go to model space and come back.
 
-use clamber_surface::geometry::{Ray, Sphere, rotation_from_axis_angle};
+use clamber_surface::geometry::{Capsule, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceHit};
-use glam::{DQuat, DVec3, Quat};
+use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceHit, SweepHit};
+use glam::{DQuat, DVec3, Quat, Vec3};
 
-use crate::{Contact, MaterialPoint, Obstacle, PointMotion};
+use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
+
+/// How far from touching a sweep may stop, metres: below what one sees, above the steps of f32 a kilometre out.
+pub(crate) const SWEEP_TOLERANCE: f64 = 1e-4;
 
 /// A hit in the world. `from` is the query's point, to which the distance is measured anew: the
 /// one in the hit starts from the point's rounding to f32.
@@ -27,6 +30,55 @@ fn contact(surface: &SkinnedSurface, hit: &SurfaceHit, from: DVec3) -> Contact {
 /// A length of the world in model units, in f32.
 fn length_in_model(surface: &SkinnedSurface, length: f64) -> f32 {
     (length / surface.world_from_model().scale) as f32
+}
+
+fn capsule_in_model(surface: &SkinnedSurface, capsule: &WorldCapsule) -> Capsule {
+    let world_from_model = surface.world_from_model();
+    let [a, b] = capsule
+        .ends
+        .map(|end| world_from_model.inverse_transform_point_f32(end));
+    Capsule {
+        a,
+        b,
+        radius: length_in_model(surface, capsule.radius),
+    }
+}
+
+/// With the way and the tolerance, both in model units.
+fn sweep_in_model(
+    surface: &SkinnedSurface,
+    capsule: &WorldCapsule,
+    displacement: DVec3,
+) -> (Capsule, Vec3, f32) {
+    let world_from_model = surface.world_from_model();
+    (
+        capsule_in_model(surface, capsule),
+        world_from_model
+            .inverse_transform_vector(displacement)
+            .as_vec3(),
+        length_in_model(surface, SWEEP_TOLERANCE),
+    )
+}
+
+fn sweep_contact(surface: &SkinnedSurface, hit: &SweepHit) -> SweepContact {
+    let world_from_model = surface.world_from_model();
+    let direction = |v: Vec3| world_from_model.rotation * v.as_dvec3();
+    let away = direction(hit.normal).normalize_or(DVec3::Y);
+    SweepContact {
+        time: hit.time,
+        contact: Contact {
+            point: world_from_model.transform_point_f32(hit.point),
+            normal: direction(hit.surface_normal).normalize_or(away),
+            distance: hit.distance * world_from_model.scale,
+            material: MaterialPoint {
+                key: u64::from(hit.triangle.0),
+                coordinates: hit.barycentric.map(f64::from),
+            },
+            tag: hit.tag,
+        },
+        away,
+        started_inside: hit.started_inside,
+    }
 }
 
 impl Obstacle for SkinnedSurface {
@@ -55,19 +107,58 @@ impl Obstacle for SkinnedSurface {
         Some(contact(self, &hit, point))
     }
 
-    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
-        let sphere = Sphere {
-            center: self.world_from_model().inverse_transform_point_f32(center),
-            radius: length_in_model(self, radius),
-        };
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let local = capsule_in_model(self, capsule);
         let start = contacts.len();
-        let visited = self.visit_overlap_sphere(&sphere, |hit| {
-            contacts.push(contact(self, &hit, center));
-        });
-        // A sphere that is not finite touches nothing.
+        let mut found = |hit: SurfaceHit| {
+            let mut contact = contact(self, &hit, capsule.ends[0]);
+            if !capsule.is_ball() {
+                let nearest = capsule.nearest_on_axis(contact.point);
+                contact.distance = (nearest - contact.point).length();
+            }
+            contacts.push(contact);
+        };
+        let visited = if capsule.is_ball() {
+            let sphere = Sphere {
+                center: local.a,
+                radius: local.radius,
+            };
+            self.visit_overlap_sphere(&sphere, found)
+        } else {
+            self.visit_overlap_capsule(&local, &mut found)
+        };
+        // A capsule that is not finite touches nothing.
         if visited.is_ok() {
             contacts[start..].sort_unstable_by_key(|contact| contact.material.key);
         }
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
+        let hit = if capsule.is_ball() {
+            let sphere = Sphere {
+                center: local.a,
+                radius: local.radius,
+            };
+            self.cast_sphere(&sphere, motion, tolerance)
+        } else {
+            self.cast_capsule(&local, [motion; 2], tolerance)
+        };
+        Some(sweep_contact(self, &hit.ok()??))
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
+        let hit = if capsule.is_ball() {
+            let sphere = Sphere {
+                center: local.a,
+                radius: local.radius,
+            };
+            self.sweep_sphere(&sphere, motion, tolerance)
+        } else {
+            self.sweep_capsule(&local, [motion; 2], tolerance)
+        };
+        Some(sweep_contact(self, &hit.ok()??))
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
