@@ -1,55 +1,36 @@
-use clamber_world::Contact;
+use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceTag, WorldCapsule};
 use glam::DVec3;
 
-use crate::surroundings::Surroundings;
-use crate::{ClimberConfig, ClimberError, ClimberMode, ClimberState};
+use crate::mover::Scratch;
+use crate::step::Step;
+use crate::{ClimberConfig, ClimberError, ClimberInput, ClimberState, StepReport};
 
-/// What a player wants of a climber this tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ClimberInput {
-    /// Direction to walk in, in world space; its length, at most 1, is the share of full speed.
-    /// The part along up does not count.
-    pub walk: DVec3,
-    /// True to jump off what the climber stands on.
-    pub jump: bool,
-}
+/// Whether a climber may grip something, and hold on to it.
+pub type CanGrip<'a> = dyn Fn(ObstacleId, &Contact) -> bool + 'a;
 
 /// A kinematic character: configuration, state, and the memory that a step needs.
 #[derive(Clone, Debug)]
 pub struct Climber {
-    pub(crate) config: ClimberConfig,
-    pub(crate) state: ClimberState,
-    /// Contacts of the current query; kept for its memory.
-    pub(crate) contacts: Vec<Contact>,
-    /// Direction away from each contact, and its velocity; kept for its memory.
-    pub(crate) planes: Vec<(DVec3, DVec3)>,
-    /// Obstacles of the current step; kept for its memory.
-    pub(crate) surroundings: Surroundings,
+    config: ClimberConfig,
+    state: ClimberState,
+    /// Kept for its memory.
+    scratch: Scratch,
 }
 
 impl Climber {
-    /// A climber in the air, its centre at `position`, in world space, at rest.
+    /// A climber in the air, the centre of its ball at `position`, in world space, at rest.
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges or a position that is not finite.
     pub fn new(config: ClimberConfig, position: DVec3) -> Result<Self, ClimberError> {
         config.validate()?;
-        let state = ClimberState {
-            position,
-            velocity: DVec3::ZERO,
-            heading: config.up().any_orthonormal_vector(),
-            mode: ClimberMode::Falling,
-            footing: None,
-        };
-        if !state.is_finite() {
+        if !position.is_finite() {
             return Err(ClimberError::NotFinite("position"));
         }
         Ok(Self {
             config,
-            state,
-            contacts: Vec::new(),
-            planes: Vec::new(),
-            surroundings: Surroundings::default(),
+            state: ClimberState::new(position, config.up()),
+            scratch: Scratch::default(),
         })
     }
 
@@ -63,19 +44,72 @@ impl Climber {
         &self.state
     }
 
+    /// What it is to the world: where it stands after the last step.
+    pub fn body(&self) -> WorldCapsule {
+        crate::step::body(&self.config, &self.state)
+    }
+
     /// Puts it back into a state, of this or another run.
     ///
     /// # Errors
-    /// [`ClimberError::NotFinite`] if the state is not finite, [`ClimberError::Footing`] if it
-    /// stands on nothing or falls with a footing.
+    /// [`ClimberError::NotFinite`] if the state is not finite, [`ClimberError::Support`] if it stands, holds or hangs
+    /// from nothing, or falls with a support, [`ClimberError::OutOfRange`] for shares that are none.
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
-        if !state.is_finite() {
-            return Err(ClimberError::NotFinite("state"));
-        }
-        if (state.mode == ClimberMode::Standing) != state.footing.is_some() {
-            return Err(ClimberError::Footing);
-        }
+        state.validate()?;
         self.state = state;
         Ok(())
     }
+
+    /// One tick of `dt` seconds. Obstacles must already stand where they stand at its end. Fur can be gripped.
+    ///
+    /// Obstacles may come in any order; of two with the same id the first counts.
+    ///
+    /// # Errors
+    /// [`ClimberError`] if `dt` is not positive or the input is not finite; the climber is
+    /// unchanged then.
+    pub fn step(
+        &mut self,
+        input: &ClimberInput,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        dt: f64,
+    ) -> Result<StepReport, ClimberError> {
+        self.step_where(input, obstacles, &|_, contact| is_fur(&contact.tag), dt)
+    }
+
+    /// [`Climber::step`], gripping what a function says can be gripped.
+    ///
+    /// # Errors
+    /// As [`Climber::step`].
+    pub fn step_where(
+        &mut self,
+        input: &ClimberInput,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        can_grip: &CanGrip<'_>,
+        dt: f64,
+    ) -> Result<StepReport, ClimberError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(ClimberError::OutOfRange {
+                name: "dt",
+                range: "positive",
+                found: dt,
+            });
+        }
+        if !input.is_finite() {
+            return Err(ClimberError::NotFinite("input"));
+        }
+        let (state, report) = Step::new(
+            &self.config,
+            self.state,
+            input,
+            (obstacles, can_grip, dt),
+            &mut self.scratch,
+        )
+        .run();
+        self.state = state;
+        Ok(report)
+    }
+}
+
+fn is_fur(tag: &SurfaceTag) -> bool {
+    tag.kind == clamber_world::SurfaceKind::Fur
 }

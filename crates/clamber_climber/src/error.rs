@@ -1,5 +1,7 @@
 use thiserror::Error;
 
+use crate::ClimberMode;
+
 /// Why a climber could not be made or stepped. Nothing was changed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -7,9 +9,9 @@ pub enum ClimberError {
     /// A position, velocity or input is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
-    /// A state stands without a footing, or falls with one.
-    #[error("a state has a footing if and only if it is standing")]
-    Footing,
+    /// A state has a support that its mode has not, or lacks one.
+    #[error("a state has a support if and only if it stands, holds or hangs; this one is {0:?}")]
+    Support(ClimberMode),
     /// A number is outside its range.
     #[error("{name} must be {range}, found {found}")]
     OutOfRange {

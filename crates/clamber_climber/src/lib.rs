@@ -4,13 +4,23 @@ mod climber;
 mod config;
 mod discrete;
 mod error;
+mod event;
+mod input;
+mod mover;
+mod pendulum;
+mod planes;
+mod shake;
 mod state;
 mod step;
 mod surroundings;
 
-pub use climber::{Climber, ClimberInput};
-pub use config::ClimberConfig;
+pub use climber::{CanGrip, Climber};
+pub use config::{
+    BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
+    StaminaConfig, TumbleConfig,
+};
 pub use discrete::{PushOut, average_push_out};
 pub use error::ClimberError;
-pub use state::{ClimberMode, ClimberState, Footing};
-pub use step::{ClimberEvent, StepReport};
+pub use event::{ClimberEvent, Push, StepReport};
+pub use input::{Blow, ClimberInput};
+pub use state::{ClimberMode, ClimberState, Support, TRANSITIONS};

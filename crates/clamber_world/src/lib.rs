@@ -9,6 +9,8 @@ mod rapier;
 pub mod shapes;
 mod surface;
 
+/// What a contact's material is made of.
+pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
 pub use obstacle::{

@@ -6,12 +6,14 @@ use glam::{DQuat, DVec3};
 /// Of equal distances the smaller id wins, so results do not depend on the order in which obstacles
 /// are handed over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObstacleId(pub u32);
 
 /// A point of an obstacle's material. Only the obstacle that made it can read it.
 ///
 /// A small plain value: two of them are the same point if their bits are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MaterialPoint {
     /// What the point lies on: a triangle of a surface, a collider of a rapier world.
     pub key: u64,

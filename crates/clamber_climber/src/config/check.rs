@@ -1,0 +1,42 @@
+//! Ranges that numbers of a configuration are held to.
+
+use crate::ClimberError;
+
+fn check(
+    name: &'static str,
+    range: &'static str,
+    found: f64,
+    holds: bool,
+) -> Result<(), ClimberError> {
+    if holds {
+        Ok(())
+    } else {
+        Err(ClimberError::OutOfRange { name, range, found })
+    }
+}
+
+pub(super) fn positive(name: &'static str, x: f64) -> Result<(), ClimberError> {
+    check(name, "positive", x, x > 0.0 && x.is_finite())
+}
+
+pub(super) fn not_negative(name: &'static str, x: f64) -> Result<(), ClimberError> {
+    check(name, "not negative", x, x >= 0.0 && x.is_finite())
+}
+
+/// A limit that may be infinite: never reached.
+pub(super) fn limit(name: &'static str, x: f64) -> Result<(), ClimberError> {
+    check(name, "not negative", x, x >= 0.0)
+}
+
+pub(super) fn share(name: &'static str, x: f64) -> Result<(), ClimberError> {
+    check(name, "from 0 to 1", x, (0.0..=1.0).contains(&x))
+}
+
+pub(super) fn less_than(
+    name: &'static str,
+    range: &'static str,
+    x: f64,
+    end: f64,
+) -> Result<(), ClimberError> {
+    check(name, range, x, x >= 0.0 && x < end)
+}

@@ -1,0 +1,106 @@
+use clamber_world::{MaterialPoint, ObstacleId};
+use glam::DVec3;
+
+use crate::ClimberMode;
+
+/// Something that happened in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClimberEvent {
+    /// Came down on something that can be stood on.
+    Landed {
+        /// On what.
+        obstacle: ObstacleId,
+        /// Speed towards it, metres a second.
+        speed: f64,
+    },
+    /// Jumped, off the ground or off a hold.
+    Jumped,
+    /// What it stood on, or hung from, became too steep.
+    Slipped,
+    /// What it stood on or held ended, or was removed.
+    LostFooting,
+    /// The ground was pulled away from under its feet.
+    Thrown {
+        /// How hard, metres a second squared beyond gravity.
+        acceleration: f64,
+    },
+    /// Gripped something.
+    Grabbed {
+        /// What.
+        obstacle: ObstacleId,
+        /// Where, in world space.
+        point: DVec3,
+    },
+    /// Climbed around a corner, convex or concave.
+    TurnedCorner {
+        /// Between what it held before and holds now, radians.
+        angle: f64,
+    },
+    /// Caught a ledge with its hands.
+    LedgeCaught {
+        /// Of what.
+        obstacle: ObstacleId,
+        /// Where, in world space.
+        point: DVec3,
+    },
+    /// Climbed over a ledge.
+    Mantled,
+    /// Let go, as was asked.
+    Released,
+    /// Its strength was used up, and the grip opened.
+    ShakenOff {
+        /// The shake at that time, metres a second squared; below what costs strength it was just tired.
+        shake: f64,
+    },
+    /// Knocked off its feet, or off its hold.
+    Tumbled,
+    /// Caught between obstacles that leave no room.
+    Crushed {
+        /// How deep they overlap beyond the skin width, metres.
+        depth: f64,
+    },
+    /// Lost hit points.
+    Hurt {
+        /// How many, 0 to 1.
+        damage: f64,
+    },
+    /// Is doing something else now.
+    Changed {
+        /// Before.
+        from: ClimberMode,
+        /// Now.
+        to: ClimberMode,
+    },
+    /// Obstacles answered with numbers that are not finite: nothing else happened in this tick.
+    NotFinite,
+}
+
+/// What a climber gave to something that can be pushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// To what.
+    pub obstacle: ObstacleId,
+    /// Which point of its material.
+    pub material: MaterialPoint,
+    /// Where, in world space.
+    pub point: DVec3,
+    /// Newton seconds, in world space.
+    pub impulse: DVec3,
+}
+
+/// What a step did, beside the new state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// In the order in which they happened; empty in most ticks, and then without memory.
+    pub events: Vec<ClimberEvent>,
+    /// What it pushed; apply it to the bodies, or do not.
+    pub pushes: Vec<Push>,
+    /// By how much contacts moved it away from where it was carried and wanted to go.
+    pub pushed_out: DVec3,
+    /// How deep anything is below its skin width, metres: 0 but when crushed, or when rounds did not suffice.
+    pub penetration: f64,
+    /// Rounds that the movement took.
+    pub rounds: u32,
+    /// The rounds sufficed: there is nothing on the way from where it was to where it is.
+    pub is_clear: bool,
+}

@@ -1,0 +1,260 @@
+//! How a body gets from where it was a tick ago to where it wants to be, among things that move.
+//!
+//! The body's hard core, its capsule without the skin width, is swept over the tick against everything on
+//! its own way. What it meets becomes a plane: beyond it the body may not be at the tick's end, where the
+//! material point that was met will be then. Of the displacements above all planes together the one nearest
+//! to what is wanted is taken, and swept again, until nothing is in the way. Then whatever overlaps the body,
+//! skin width and all, at the tick's end adds its planes, the deepest first: each is tested anew after every
+//! push, so that the edges within flat ground, which lie deeper only until the ground has pushed, give none.
+//!
+//! A plane says where the body may end, not how fast it may go, so that what is pushed aside, carried, or
+//! slides does so within the same tick: a plane's velocity is in where its point ends. (Contact planes
+//! solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those ask for
+//! planes near the start, with a margin, of things that stand.)
+
+use clamber_world::WorldCapsule;
+use glam::DVec3;
+
+use super::{Touch, World};
+use crate::planes::{Plane, nearest_above};
+
+/// Most sweeps of one movement. Two or three do for corners; what is left after eight stands where it met.
+const ROUNDS: u32 = 8;
+
+/// Most planes that the overlaps of one round add.
+const PUSHES: usize = 16;
+
+/// Overlap that counts as none, metres: above the rounding of f32 coordinates of a creature, far below what
+/// is seen.
+const TOUCH: f64 = 1e-5;
+
+/// Where a body is to go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Path {
+    /// Ends of the body's axis from its position.
+    pub(crate) axis: [DVec3; 2],
+    pub(crate) radius: f64,
+    pub(crate) skin: f64,
+    /// Position a tick ago, and the one that is wanted.
+    pub(crate) start: DVec3,
+    pub(crate) target: DVec3,
+    /// Up, and the cosine of the steepest slope: what is steeper is a wall. For those who walk.
+    pub(crate) walkable: Option<(DVec3, f64)>,
+    /// What it hangs from.
+    pub(crate) arm: Option<Arm>,
+    /// False to take what is there already as found: no sweep. For those who were put elsewhere.
+    pub(crate) swept: bool,
+}
+
+/// It may be no farther than this from there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arm {
+    pub(crate) pivot: DVec3,
+    pub(crate) length: f64,
+}
+
+/// Where a body went.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    pub(crate) position: DVec3,
+    /// How much room is missing between planes, metres.
+    pub(crate) missed: f64,
+    /// How deep the hard core is in something, metres.
+    pub(crate) penetration: f64,
+    pub(crate) rounds: u32,
+    /// Nothing is on the way.
+    pub(crate) is_clear: bool,
+}
+
+impl Path {
+    fn capsule(&self, position: DVec3) -> WorldCapsule {
+        WorldCapsule {
+            ends: self.axis.map(|end| position + end),
+            radius: self.radius,
+        }
+    }
+
+    fn core(&self, position: DVec3) -> WorldCapsule {
+        self.capsule(position).with_radius(self.radius - self.skin)
+    }
+}
+
+impl World<'_> {
+    /// Moves a body; what it touches in the end, or was kept from entering, is in [`World::touched`].
+    pub(crate) fn slide(&mut self, path: &Path) -> Moved {
+        self.scratch.planes.clear();
+        self.scratch.touched.clear();
+        let mut moved = Moved {
+            position: path.target,
+            missed: 0.0,
+            penetration: 0.0,
+            rounds: 0,
+            is_clear: true,
+        };
+        self.keep_arm(path, &mut moved);
+        let mut swept = path.swept;
+        loop {
+            moved.rounds += 1;
+            if swept && let Some(inside) = self.meet(path, &mut moved) {
+                // What it is in already shows the way out, and would hide all else.
+                swept = !inside;
+                if moved.rounds < ROUNDS {
+                    continue;
+                }
+                moved.is_clear = inside;
+                if !inside {
+                    self.stop(path, &mut moved);
+                }
+            }
+            let before = moved.position;
+            self.push_out(path, &mut moved);
+            let pushed = moved.position.distance(before);
+            if pushed <= path.skin * 0.5 || moved.rounds >= ROUNDS {
+                return moved;
+            }
+        }
+    }
+
+    /// What the last movement touched or was kept from entering, each at most once.
+    pub(crate) fn touched(&self) -> &[Touch] {
+        &self.scratch.touched
+    }
+
+    /// Sweeps to where the body is to be, and keeps clear of the first thing that it meets: whether the
+    /// body was inside it from the start.
+    fn meet(&mut self, path: &Path, moved: &mut Moved) -> Option<bool> {
+        let displacement = moved.position - path.start;
+        let (touch, hit) = self.sweep(&path.core(path.start), displacement)?;
+        let at = path.start + displacement * hit.time;
+        let end = self
+            .motion(touch.obstacle, &touch.contact.material)
+            .map_or(touch.contact.point, |motion| motion.position);
+        let on_axis = path.core(at).nearest_on_axis(touch.contact.point) - at;
+        let offset = touch.away.dot(end - path.start - on_axis) + path.radius;
+        self.add_plane(path, touch, offset, moved.position);
+        self.solve(path, moved);
+        Some(hit.started_inside)
+    }
+
+    /// Stands where it met something, and goes with that for the rest of the tick.
+    fn stop(&mut self, path: &Path, moved: &mut Moved) {
+        let displacement = moved.position - path.start;
+        if let Some((touch, hit)) = self.sweep(&path.core(path.start), displacement) {
+            let end = self.motion(touch.obstacle, &touch.contact.material);
+            let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
+            moved.position = path.start + displacement * hit.time + carried;
+        }
+    }
+
+    /// Out of everything that overlaps the body where it is.
+    fn push_out(&mut self, path: &Path, moved: &mut Moved) {
+        let found = moved.position;
+        self.touching(&path.capsule(found));
+        let mut touches = std::mem::take(&mut self.scratch.touches);
+        for _ in 0..PUSHES {
+            let capsule = path.capsule(moved.position);
+            let mut worst: Option<(f64, Touch)> = None;
+            for touch in &touches {
+                let now = again(touch, &capsule, moved.position - found);
+                let depth = path.radius - now.contact.distance;
+                if depth > worst.map_or(TOUCH, |(deepest, _)| deepest) {
+                    worst = Some((depth, now));
+                }
+            }
+            let Some((depth, touch)) = worst else {
+                break;
+            };
+            let offset = touch.away.dot(moved.position - path.start) + depth;
+            self.add_plane(path, touch, offset, moved.position);
+            let before = moved.position;
+            self.solve(path, moved);
+            if moved.position == before {
+                break;
+            }
+        }
+        let capsule = path.capsule(moved.position);
+        let overlap = touches.iter().map(|touch| {
+            let now = again(touch, &capsule, moved.position - found);
+            path.radius - now.contact.distance
+        });
+        moved.penetration = (overlap.fold(0.0, f64::max) - path.skin).max(0.0);
+        std::mem::swap(&mut self.scratch.touches, &mut touches);
+    }
+
+    /// `position` is where the body would be without the plane.
+    fn add_plane(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
+        let scratch = &mut *self.scratch;
+        scratch.touched.push(touch);
+        scratch.planes.push(Plane {
+            normal: touch.away,
+            offset,
+        });
+        if let Some((up, least_cosine)) = path.walkable {
+            let rise = touch.away.dot(up);
+            let level = (touch.away - up * rise).normalize_or_zero();
+            let lean = touch.away.dot(level);
+            // Too steep to stand on, and no ceiling: as steep as can be.
+            if rise > LEVEL && rise < least_cosine && lean > 0.0 {
+                let displacement = position - path.start;
+                let into = offset - touch.away.dot(displacement);
+                scratch.planes.push(Plane {
+                    normal: level,
+                    offset: level.dot(displacement) + into / lean,
+                });
+            }
+        }
+    }
+
+    fn solve(&mut self, path: &Path, moved: &mut Moved) {
+        let wanted = path.target - path.start;
+        let above = nearest_above(wanted, &self.scratch.planes);
+        moved.position = path.start + above.point;
+        moved.missed = above.missed;
+        self.keep_arm(path, moved);
+    }
+
+    /// A body at the end of a taut arm stays there: planes that touch the ball of its reach where it is.
+    fn keep_arm(&mut self, path: &Path, moved: &mut Moved) {
+        let Some(arm) = path.arm else {
+            return;
+        };
+        let count = self.scratch.planes.len();
+        for _ in 0..4 {
+            let reach = moved.position - arm.pivot;
+            if reach.length() <= arm.length * (1.0 + 1e-9) {
+                break;
+            }
+            let inward = -reach.normalize_or(DVec3::Y);
+            self.scratch.planes.push(Plane {
+                normal: inward,
+                offset: inward.dot(arm.pivot - path.start) - arm.length,
+            });
+            let above = nearest_above(path.target - path.start, &self.scratch.planes);
+            moved.position = path.start + above.point;
+            moved.missed = above.missed;
+        }
+        self.scratch.planes.truncate(count);
+    }
+}
+
+/// Slopes steeper than this are walls already: sine of the angle from the vertical.
+const LEVEL: f64 = 1e-3;
+
+/// A contact as it is seen from a body that has been pushed since.
+fn again(touch: &Touch, capsule: &WorldCapsule, pushed: DVec3) -> Touch {
+    let mut now = *touch;
+    if touch.contact.distance > 0.0 {
+        let apart = capsule.nearest_on_axis(touch.contact.point) - touch.contact.point;
+        // Once through, the other side is no way out.
+        let side = if apart.dot(touch.away) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        now.contact.distance = apart.length() * side;
+        now.away = (apart * side).normalize_or(touch.away);
+    } else {
+        now.contact.distance += touch.away.dot(pushed);
+    }
+    now
+}

@@ -1,0 +1,67 @@
+use glam::DVec3;
+
+use super::ClimberState;
+
+impl ClimberState {
+    /// A number that differs, in all likelihood, if any bit of the state does: 64-bit FNV-1a over
+    /// its fields. For comparing runs, not for hash tables.
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash = Fnv::default();
+        for v in [self.position, self.velocity, self.heading, self.shake] {
+            hash.vector(v);
+        }
+        hash.word(self.mode as u64 + 1);
+        if let Some(support) = &self.support {
+            hash.word(u64::from(support.obstacle.0));
+            hash.word(support.point.key);
+            hash.vector(DVec3::from_array(support.point.coordinates));
+            hash.vector(support.contact);
+            hash.vector(support.offset);
+            hash.vector(support.normal);
+            for x in support.frame.to_array() {
+                hash.word(x.to_bits());
+            }
+        }
+        if let Some(velocity) = self.support_velocity {
+            hash.vector(velocity);
+        }
+        let numbers = [
+            self.stamina,
+            self.hit_points,
+            self.arm,
+            self.pull_up,
+            self.calm,
+            self.coyote,
+            self.jump_buffer,
+            self.open_handed,
+        ];
+        for x in numbers {
+            hash.word(x.to_bits());
+        }
+        hash.word(u64::from(self.crouched));
+        hash.0
+    }
+}
+
+/// FNV-1a with 64 bits (Fowler, Noll, Vo).
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn word(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+
+    fn vector(&mut self, v: DVec3) {
+        for x in v.to_array() {
+            self.word(x.to_bits());
+        }
+    }
+}

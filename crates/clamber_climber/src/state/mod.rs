@@ -1,0 +1,112 @@
+mod fingerprint;
+mod mode;
+mod support;
+
+pub use mode::{ClimberMode, TRANSITIONS};
+pub use support::Support;
+
+use glam::DVec3;
+
+use crate::ClimberError;
+
+/// Everything a climber remembers between ticks: a small plain value. Restored, it continues with
+/// the same bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ClimberState {
+    /// Centre of its ball, in world space, metres.
+    pub position: DVec3,
+    /// In world space, metres a second: of the last tick.
+    pub velocity: DVec3,
+    /// Unit vector, perpendicular to up: where it faces.
+    pub heading: DVec3,
+    /// What it is doing.
+    pub mode: ClimberMode,
+    /// The ground underfoot, what it grips, or the ledge it hangs from; `None` in the air.
+    pub support: Option<Support>,
+    /// Velocity of what supports it over the last tick; `None` when that was just found, or was put elsewhere.
+    pub support_velocity: Option<DVec3>,
+    /// Acceleration of what supports it as it is felt, metres a second squared: filtered.
+    pub shake: DVec3,
+    /// 0 to 1.
+    pub stamina: f64,
+    /// 0 to 1.
+    pub hit_points: f64,
+    /// Length of the arm while hanging, metres: shorter than at full stretch while it pulls itself in. Else 0.
+    pub arm: f64,
+    /// How far it has pulled itself up over a ledge, 0 to 1.
+    pub pull_up: f64,
+    /// For how long it has been calm enough to climb or get up, seconds.
+    pub calm: f64,
+    /// For how long a jump still works without ground, seconds.
+    pub coyote: f64,
+    /// For how long a jump is still remembered, seconds.
+    pub jump_buffer: f64,
+    /// For how long it grips nothing after it has let go, seconds.
+    pub open_handed: f64,
+    /// Only its ball stands in the way: there is no room to stand up.
+    pub crouched: bool,
+}
+
+impl ClimberState {
+    pub(crate) fn new(position: DVec3, up: DVec3) -> Self {
+        Self {
+            position,
+            velocity: DVec3::ZERO,
+            heading: up.any_orthonormal_vector(),
+            mode: ClimberMode::Falling,
+            support: None,
+            support_velocity: None,
+            shake: DVec3::ZERO,
+            stamina: 1.0,
+            hit_points: 1.0,
+            arm: 0.0,
+            pull_up: 0.0,
+            calm: 0.0,
+            coyote: 0.0,
+            jump_buffer: 0.0,
+            open_handed: 0.0,
+            crouched: false,
+        }
+    }
+
+    /// Refuses what no climber can be in.
+    pub(crate) fn validate(&self) -> Result<(), ClimberError> {
+        if !self.is_finite() {
+            return Err(ClimberError::NotFinite("state"));
+        }
+        if self.mode.is_supported() != self.support.is_some() {
+            return Err(ClimberError::Support(self.mode));
+        }
+        let shares = [
+            ("stamina", self.stamina),
+            ("hit_points", self.hit_points),
+            ("pull_up", self.pull_up),
+        ];
+        for (name, found) in shares {
+            if !(0.0..=1.0).contains(&found) {
+                let range = "from 0 to 1";
+                return Err(ClimberError::OutOfRange { name, range, found });
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        let vectors = [self.position, self.velocity, self.heading, self.shake];
+        let numbers = [
+            self.stamina,
+            self.hit_points,
+            self.arm,
+            self.pull_up,
+            self.calm,
+            self.coyote,
+            self.jump_buffer,
+            self.open_handed,
+        ];
+        vectors.iter().all(|v| v.is_finite())
+            && numbers.iter().all(|x| x.is_finite())
+            && self.support.is_none_or(|support| support.is_finite())
+            && self.support_velocity.is_none_or(DVec3::is_finite)
+    }
+}

@@ -1,0 +1,142 @@
+//! By its hands: a pendulum that can only hold on.
+
+use glam::DVec3;
+
+use super::{Carried, Step};
+use crate::mover::Arm;
+use crate::pendulum::{Pendulum, PendulumTick};
+use crate::planes::{Plane, nearest_above};
+use crate::{ClimberEvent, ClimberMode};
+
+/// How fast it pulls itself in once its hold is calm, metres a second.
+const PULL_SPEED: f64 = 2.0;
+
+/// Below this share of what made it hang, shake is calm.
+const CALM: f64 = 0.7;
+
+/// As close to its hands as this share of its radius, it climbs again.
+const CLOSE: f64 = 1.25;
+
+/// Most planes that stop its swing together.
+const STOPS: usize = 24;
+
+impl Step<'_> {
+    pub(super) fn hang(&mut self) {
+        let was = self.state.velocity;
+        let pivot_was = self.state.support_velocity;
+        let Some(carried) = self.carry() else {
+            self.event(ClimberEvent::LostFooting);
+            self.leave(ClimberMode::Falling);
+            return self.fly();
+        };
+        if !self.input.grip {
+            self.event(ClimberEvent::Released);
+            self.state.open_handed = super::holding::OPEN_HANDED;
+            self.state.velocity = was;
+            self.leave(ClimberMode::Falling);
+            return self.fly();
+        }
+        let now = carried.motion.velocity;
+        let pivot_was = if carried.swept {
+            pivot_was.unwrap_or(now)
+        } else {
+            now
+        };
+        let relative = if carried.swept {
+            was - pivot_was
+        } else {
+            DVec3::ZERO
+        };
+        self.reach_or_pull(&carried);
+        self.swing(&carried, pivot_was, relative);
+    }
+
+    /// Lets its arms go long, or pulls itself in once it has been calm.
+    fn reach_or_pull(&mut self, carried: &Carried) {
+        let Some(grip) = self.config.grip else {
+            return;
+        };
+        let leans_over = self.config.slope(carried.support.normal_in_world()) > grip.max_overhang;
+        let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
+        let dt = self.dt();
+        let is_calm = !shakes && !leans_over;
+        self.state.calm = if is_calm { self.state.calm + dt } else { 0.0 };
+        if is_calm && self.state.calm >= grip.calm_time {
+            let reach = self
+                .state
+                .position
+                .distance(carried.motion.previous_position);
+            self.state.arm = (self.state.arm.min(reach) - PULL_SPEED * dt).max(0.0);
+        }
+    }
+
+    /// Swings below its hands, which moved at `pivot_was` until now; `relative` is its own velocity beyond that.
+    pub(super) fn swing(&mut self, carried: &Carried, pivot_was: DVec3, relative: DVec3) {
+        let dt = self.dt();
+        let hang = &self.config.hang;
+        let pivot = carried.motion.position;
+        if self.state.calm == 0.0 {
+            self.state.arm = hang.arm_length;
+        }
+        let mut pendulum = Pendulum {
+            arm: carried.start - carried.motion.previous_position,
+            velocity: relative,
+        };
+        pendulum.step(&PendulumTick {
+            length: self.state.arm.max(self.config.body.radius),
+            gravity: self.config.gravity,
+            pivot_change: carried.motion.velocity - pivot_was,
+            damping: hang.damping,
+            dt,
+        });
+        let legs = pendulum.arm.normalize_or(-self.config.up()) * hang.leg_length;
+        let mut path = self.path(carried.start, pivot + pendulum.arm, carried.swept);
+        path.axis = [DVec3::ZERO, legs];
+        path.arm = Some(Arm {
+            pivot,
+            length: self.state.arm.max(self.config.body.radius),
+        });
+        let moved = self.slide_along(&path);
+        let velocity = carried.motion.velocity + pendulum.velocity;
+        self.settle(carried, moved.position);
+        self.state.velocity = if moved.position == path.target {
+            velocity
+        } else {
+            self.stopped(velocity, carried, moved.position - pivot)
+        };
+        let close = CLOSE * self.config.body.radius;
+        let is_in = moved.position.distance(pivot) <= close;
+        if self.state.calm > 0.0 && is_in {
+            self.state.mode = ClimberMode::Holding;
+            self.state.arm = 0.0;
+            self.state.calm = 0.0;
+        }
+    }
+
+    /// A velocity without its parts into what it touches and beyond its arms.
+    fn stopped(&mut self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
+        let mut planes = [Plane {
+            normal: DVec3::Y,
+            offset: 0.0,
+        }; STOPS];
+        let inward = -arm.normalize_or(DVec3::Y);
+        let is_taut = arm.length() >= self.state.arm * (1.0 - 1e-6);
+        let mut count = 0;
+        if is_taut {
+            planes[0] = Plane {
+                normal: inward,
+                offset: inward.dot(carried.motion.velocity),
+            };
+            count = 1;
+        }
+        for index in 0..self.world.touched().len().min(STOPS - 1) {
+            let touch = self.world.touched()[index];
+            planes[count] = Plane {
+                normal: touch.away,
+                offset: touch.away.dot(self.world.velocity_of(&touch)),
+            };
+            count += 1;
+        }
+        nearest_above(velocity, &planes[..count]).point
+    }
+}
