@@ -18,6 +18,7 @@ impl ClimberState {
             hash.vector(support.contact);
             hash.vector(support.offset);
             hash.vector(support.normal);
+            hash.vector(support.face);
             for x in support.frame.to_array() {
                 hash.word(x.to_bits());
             }

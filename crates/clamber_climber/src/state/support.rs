@@ -15,6 +15,9 @@ pub struct Support {
     pub offset: DVec3,
     /// Unit vector from the material to the climber, in the frame of the material.
     pub normal: DVec3,
+    /// Outward unit normal of the last face that it lay on flat, in the frame of the material: corners are counted
+    /// from face to face.
+    pub face: DVec3,
     /// The frame of the material as last known: where the skin collapses, it stands.
     pub frame: DQuat,
 }
@@ -35,6 +38,7 @@ impl Support {
             self.contact,
             self.offset,
             self.normal,
+            self.face,
             DVec3::from_array(self.point.coordinates),
         ];
         vectors.iter().all(|v| v.is_finite()) && self.frame.is_finite()

@@ -17,8 +17,14 @@ pub(super) const OPEN_HANDED: f64 = 0.3;
 /// What is this much farther than the nearest, metres, is as near: of those it grips what it climbs towards.
 const AS_NEAR: f64 = 0.02;
 
-/// What turns by more than this between two ticks is a corner, radians: 40 degrees.
+/// Faces that differ by more than this meet in a corner, radians: 40 degrees.
 const CORNER: f64 = 0.7;
+
+/// Cosine of the angle up to which it lies flat on a face: 10 degrees.
+const FLAT: f64 = 0.985;
+
+/// What opposes its way by more than this cosine is climbed onto rather than along.
+const AHEAD: f64 = 0.3;
 
 impl Step<'_> {
     /// Grips what is in reach, if it is asked to and has the strength: true if it does now.
@@ -123,8 +129,7 @@ impl Step<'_> {
         }
         self.state.position = moved.position;
         if let Some(touch) = self.grip_near(moved.position, grip, wish) {
-            self.turn_corner(carried, &touch);
-            self.attach(&touch);
+            self.climb_on_to(carried, &touch);
             self.state.velocity =
                 carried.motion.velocity + (moved.position - carried.position) / dt;
             self.face(-touch.away);
@@ -172,7 +177,8 @@ impl Step<'_> {
             if touch.contact.distance > nearest + AS_NEAR || !self.world.can_grip(&touch) {
                 continue;
             }
-            let cost = touch.contact.distance - nearest + touch.away.dot(wish) * AS_NEAR;
+            let ahead = (-touch.away.dot(wish) - AHEAD).max(0.0);
+            let cost = touch.contact.distance - nearest - ahead * AS_NEAR * 2.0;
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, touch));
             }
@@ -180,20 +186,19 @@ impl Step<'_> {
         best.map(|(_, touch)| touch)
     }
 
-    fn turn_corner(&mut self, carried: &Carried, touch: &Touch) {
-        let (obstacle, key) = (carried.support.obstacle, carried.support.point.key);
-        if (touch.obstacle, touch.contact.material.key) == (obstacle, key) {
+    /// Attaches it to what it climbs on to. A corner is turned when it lies flat on a face that differs from the last.
+    fn climb_on_to(&mut self, carried: &Carried, touch: &Touch) {
+        let face = carried.support.frame * carried.support.face;
+        self.attach(touch);
+        let lies_flat = touch.away.dot(touch.contact.normal) > FLAT;
+        let Some(support) = &mut self.state.support else {
+            return;
+        };
+        if !lies_flat {
+            support.face = support.frame.conjugate() * face;
             return;
         }
-        let before = self
-            .world
-            .found()
-            .iter()
-            .find(|found| (found.obstacle, found.contact.material.key) == (obstacle, key));
-        let before = before.map_or(carried.support.normal_in_world(), |found| {
-            found.contact.normal
-        });
-        let angle = libm::acos(before.dot(touch.contact.normal).clamp(-1.0, 1.0));
+        let angle = libm::acos(face.dot(touch.contact.normal).clamp(-1.0, 1.0));
         if angle > CORNER {
             self.event(ClimberEvent::TurnedCorner { angle });
         }

@@ -218,6 +218,7 @@ impl<'a> Step<'a> {
             contact,
             offset: into_frame * (self.state.position - contact),
             normal: into_frame * touch.away,
+            face: into_frame * touch.contact.normal,
             frame,
         });
         self.state.support_velocity = motion.map(|motion| motion.velocity);

@@ -1,0 +1,124 @@
+use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode};
+use glam::{DQuat, DVec3, Vec3};
+
+use crate::scene::{DT, HOLD, STONE, assert_mode, climber, cuboid, moved, run, step};
+
+/// Hangs from the upper front edge of a block of stone.
+fn hung(block: &clamber_surface::surface::SkinnedSurface) -> clamber_climber::Climber {
+    let mut climber = climber(DVec3::new(0.3, 2.5, 3.5));
+    let toward = ClimberInput {
+        walk: -DVec3::Z * 0.1,
+        ..HOLD
+    };
+    let events = run(&mut climber, &[block], &toward, 1);
+    let caught = |event: &ClimberEvent| matches!(event, ClimberEvent::LedgeCaught { .. });
+    assert!(
+        events.iter().any(caught),
+        "{events:?} {:?}",
+        climber.state()
+    );
+    run(&mut climber, &[block], &HOLD, 60);
+    assert_mode(&climber, ClimberMode::LedgeHanging);
+    climber
+}
+
+fn block() -> clamber_surface::surface::SkinnedSurface {
+    cuboid(Vec3::new(4.0, 3.0, 3.0), STONE)
+}
+
+#[test]
+fn catches_a_ledge_in_flight_and_hangs_below_it() {
+    let climber = hung(&block());
+    let position = climber.state().position;
+    assert!((position.y - 2.4).abs() < 0.05, "{position}");
+    assert!(position.z > 3.39 && position.z < 3.7, "{position}");
+}
+
+#[test]
+fn pulls_itself_up_and_stands_on_top() {
+    let block = block();
+    let mut climber = hung(&block);
+    let up = ClimberInput {
+        walk: -DVec3::Z,
+        ..HOLD
+    };
+    let events = run(&mut climber, &[&block], &up, 60);
+    assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
+    assert_mode(&climber, ClimberMode::Standing);
+    assert!(
+        (climber.state().position.y - 3.4).abs() < 1e-3,
+        "{:?}",
+        climber.state()
+    );
+}
+
+#[test]
+fn goes_along_a_ledge_and_stops_at_its_end() {
+    let block = block();
+    let mut climber = hung(&block);
+    let aside = ClimberInput {
+        walk: DVec3::X,
+        ..HOLD
+    };
+    run(&mut climber, &[&block], &aside, 60);
+    let x = climber.state().position.x;
+    assert!((x - 1.3).abs() < 0.02, "{x}");
+    run(&mut climber, &[&block], &aside, 300);
+    assert_mode(&climber, ClimberMode::LedgeHanging);
+    let x = climber.state().position.x;
+    assert!(x > 3.5 && x < 4.2, "{x}");
+}
+
+#[test]
+fn drops_and_jumps_away() {
+    let block = block();
+    let mut climber = hung(&block);
+    let events = run(&mut climber, &[&block], &ClimberInput::default(), 1);
+    assert!(events.contains(&ClimberEvent::Released), "{events:?}");
+    let mut climber = hung(&block);
+    let jump = ClimberInput { jump: true, ..HOLD };
+    let events = run(&mut climber, &[&block], &jump, 1);
+    assert!(events.contains(&ClimberEvent::Jumped), "{events:?}");
+    assert!(climber.state().velocity.z > 1.0, "{:?}", climber.state());
+}
+
+#[test]
+fn a_ledge_that_tips_away_drops_and_one_that_tips_back_becomes_ground() {
+    for (sign, expected) in [(1.0, ClimberMode::Falling), (-1.0, ClimberMode::Standing)] {
+        let mut block = block();
+        let mut climber = hung(&block);
+        let mut modes = Vec::new();
+        for tick in 0..240 {
+            // About the far lower edge, so that the ledge tips over it, or lies down.
+            let angle = sign * 0.4 * f64::from(tick) * DT;
+            let half = angle * 0.5;
+            let turn = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
+            moved(&mut block, DVec3::ZERO, turn);
+            step(&mut climber, &[&block], &HOLD);
+            modes.push(climber.state().mode);
+            if climber.state().mode != ClimberMode::LedgeHanging {
+                break;
+            }
+        }
+        assert_eq!(
+            modes.last(),
+            Some(&expected),
+            "{sign}: {:?}",
+            climber.state()
+        );
+    }
+}
+
+#[test]
+fn rides_a_ledge_that_moves() {
+    let mut block = block();
+    let mut climber = hung(&block);
+    let offset = climber.state().position;
+    for tick in 1..=120 {
+        let at = DVec3::new(0.0, 0.02, 0.05) * f64::from(tick);
+        moved(&mut block, at, DQuat::IDENTITY);
+        step(&mut climber, &[&block], &HOLD);
+        let off = climber.state().position - at - offset;
+        assert!(off.length() < 1e-3, "{tick}: {off}");
+    }
+}

@@ -1,0 +1,12 @@
+//! Gripping, climbing, hanging, ledges and what shakes a climber off.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+mod corners;
+mod hanging;
+mod ledges;
+mod scene;
+mod shaking;
