@@ -21,6 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let input = ClimberInput {
             jump: tick == 200,
             walk: if tick > 200 { DVec3::X } else { DVec3::ZERO },
+            ..ClimberInput::default()
         };
         let report = climber.step(&input, &[(ObstacleId(0), &terrain)], dt)?;
         for event in report.events {

@@ -19,8 +19,8 @@ fn a_battle_has_the_same_bits_in_every_build() {
     let mut carried = 0;
     for tick in 0..1_200 {
         battle.step(options.input_at(tick)).unwrap();
-        let footing = battle.climber().state().footing;
-        carried += usize::from(footing.is_some_and(|footing| footing.obstacle == CREATURE));
+        let support = battle.climber().state().support;
+        carried += usize::from(support.is_some_and(|support| support.obstacle == CREATURE));
     }
     // Or the hash is of little.
     assert!(carried > 600, "{carried} ticks on the creature");

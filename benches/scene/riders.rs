@@ -58,13 +58,14 @@ impl Riders {
             let place = surface.world_from_model();
             let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
             let point = place.transform_point_f32(motion.position);
-            let position = point + normal * (climber.config().radius * 1.01);
+            let position = point + normal * (climber.config().body.radius * 1.01);
             if (climber.state().position - position).length() > AWAY {
                 climber.restore(ClimberState {
                     position,
                     velocity: place.transform_vector(motion.velocity.as_dvec3()),
                     mode: ClimberMode::Falling,
-                    footing: None,
+                    support: None,
+                    support_velocity: None,
                     ..*climber.state()
                 })?;
             }
@@ -133,6 +134,6 @@ fn input(index: usize) -> ClimberInput {
     let walk = DVec3::new(f64::from(x), 0.0, f64::from(z)).normalize();
     ClimberInput {
         walk: walk * (index % 2) as f64,
-        jump: false,
+        ..ClimberInput::default()
     }
 }

@@ -102,7 +102,7 @@ impl Overlays {
         for (trail, now) in self.rocks.iter_mut().zip(rocks) {
             follow(trail, now);
         }
-        self.way.push(now - config.up() * config.radius);
+        self.way.push(now - config.up() * config.body.radius);
         if self.way.len() > WAY {
             self.way.remove(0);
         }
@@ -150,18 +150,18 @@ impl Overlays {
         for motion in self.anchors.iter().filter_map(motion) {
             show(motion, 3.0, SKY_BLUE, YELLOW);
         }
-        let footing = battle.climber().state().footing;
-        let footing = footing.filter(|footing| footing.obstacle == CREATURE);
-        if let Some(motion) = footing.and_then(|footing| motion(&footing.point)) {
+        let support = battle.climber().state().support;
+        let support = support.filter(|support| support.obstacle == CREATURE);
+        if let Some(motion) = support.and_then(|support| motion(&support.point)) {
             show(motion, 4.5, MAGENTA, MAGENTA);
         }
     }
 
     fn sweeps(&self, over: &mut Overlay, battle: &Battle<'_>, eye: DVec3) {
-        let radius = battle.climber().config().radius;
+        let radius = battle.climber().config().body.radius;
         self.sweep(over, &self.climber, radius, eye, WHITE);
-        if let Some(footing) = battle.climber().state().footing {
-            dot(over, footing.contact, eye, 1.0, VERMILION);
+        if let Some(support) = battle.climber().state().support {
+            dot(over, support.contact, eye, 1.0, VERMILION);
         }
         let world = battle.world();
         for (trail, rock) in self.rocks.iter().zip(battle.rocks().bodies()) {
@@ -382,17 +382,17 @@ fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
 
 fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     over.path(way, 2.5, [1.0, 1.0, 1.0, 0.8]);
-    let footing = battle.climber().state().footing;
-    let Some(footing) = footing.filter(|footing| footing.obstacle == CREATURE) else {
+    let support = battle.climber().state().support;
+    let Some(support) = support.filter(|support| support.obstacle == CREATURE) else {
         return;
     };
-    let triangle = TriangleId(footing.point.key as u32);
+    let triangle = TriangleId(support.point.key as u32);
     if let Some(corners) = posed(battle.surface(), triangle) {
         over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
         let [a, b, c] = corners;
         over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
     }
-    over.sphere(footing.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
+    over.sphere(support.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
 }
 
 /// Of the largest ball in a rock.
@@ -444,19 +444,20 @@ fn state(battle: &Battle<'_>) -> String {
     let surface = battle.surface();
     let mesh = surface.mesh();
     let state = battle.climber().state();
-    let on_skin = state.footing.filter(|footing| footing.obstacle == CREATURE);
-    let doing = match (state.mode, on_skin) {
-        (ClimberMode::Falling, _) => "falls".to_owned(),
-        (ClimberMode::Standing, None) => "stands on the ground".to_owned(),
-        (ClimberMode::Standing, Some(footing)) => {
-            let triangle = TriangleId(footing.point.key as u32);
+    let on_skin = state.support.filter(|support| support.obstacle == CREATURE);
+    let doing = match on_skin {
+        None if state.support.is_none() => verb(state.mode).to_owned(),
+        None => format!("{} the ground", verb(state.mode)),
+        Some(support) => {
+            let triangle = TriangleId(support.point.key as u32);
             let part = mesh.part_of(triangle);
             let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
             let joints = battle.creature().skeleton.joints();
             let joint = joint.and_then(|joint| joints.get(joint));
             let kind = mesh.tags().get(triangle.index()).map(|tag| tag.kind);
             format!(
-                "stands on {} of {}",
+                "{} {} of {}",
+                verb(state.mode),
                 match kind {
                     Some(SurfaceKind::Fur) => "fur",
                     Some(SurfaceKind::Stone) => "stone",
@@ -466,7 +467,7 @@ fn state(battle: &Battle<'_>) -> String {
             )
         }
     };
-    let motion = on_skin.and_then(|footing| Obstacle::motion(surface, &footing.point, TICK));
+    let motion = on_skin.and_then(|support| Obstacle::motion(surface, &support.point, TICK));
     let speeds = match motion {
         Some(motion) => format!(
             "speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s",
@@ -487,4 +488,16 @@ fn state(battle: &Battle<'_>) -> String {
         battle.tick(),
         battle.rocks().len()
     )
+}
+
+/// What it does; to what, if it is supported.
+fn verb(mode: ClimberMode) -> &'static str {
+    match mode {
+        ClimberMode::Standing => "stands on",
+        ClimberMode::Sliding => "slides",
+        ClimberMode::Holding => "holds on to",
+        ClimberMode::Hanging | ClimberMode::LedgeHanging => "hangs from",
+        ClimberMode::Falling => "falls",
+        ClimberMode::Tumbling => "tumbles",
+    }
 }

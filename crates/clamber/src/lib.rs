@@ -30,6 +30,7 @@ pub use clamber_world as world;
 pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+        Support,
     };
     pub use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
     pub use clamber_surface::mesh::{

@@ -2,9 +2,8 @@ use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use clamber_climber::ClimberConfig;
-use glam::DVec3;
 
-use crate::RecordError;
+use crate::{RecordError, config};
 
 /// What a recording is of: all that is needed to make the scene again, before any tick.
 ///
@@ -17,7 +16,7 @@ pub struct RecordingInfo {
     pub creature_fingerprint: u64,
     /// Seconds of a tick.
     pub tick_seconds: f64,
-    /// What the climber is made of.
+    /// What the climber is made of. As `climber.` and the field's path, a number each; of a group that it lacks nothing.
     pub climber: ClimberConfig,
     /// What the scene was made from, in the caller's words: seed, options, files.
     pub settings: BTreeMap<String, String>,
@@ -36,9 +35,6 @@ impl RecordingInfo {
     pub const SETTINGS: &str = "settings";
 
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
-        let climber = &self.climber;
-        let gravity = climber.gravity;
-        let number = |x: f64| format!("{x:?}");
         let pairs = [
             ("version", Self::VERSION.to_owned()),
             ("creature", self.creature.clone()),
@@ -46,26 +42,19 @@ impl RecordingInfo {
                 "creature_fingerprint",
                 format!("{:016x}", self.creature_fingerprint),
             ),
-            ("tick_seconds", number(self.tick_seconds)),
-            ("climber.radius", number(climber.radius)),
-            ("climber.max_slope", number(climber.max_slope)),
-            ("climber.walk_speed", number(climber.walk_speed)),
-            ("climber.jump_speed", number(climber.jump_speed)),
-            ("climber.gravity.x", number(gravity.x)),
-            ("climber.gravity.y", number(gravity.y)),
-            ("climber.gravity.z", number(gravity.z)),
-            ("climber.snap_distance", number(climber.snap_distance)),
+            ("tick_seconds", format!("{:?}", self.tick_seconds)),
         ];
-        pairs.map(|(key, value)| (key.to_owned(), value)).into()
+        let mut metadata = pairs.map(|(key, value)| (key.to_owned(), value)).into();
+        config::write(&self.climber, &mut metadata);
+        metadata
     }
 
     pub(crate) fn from_metadata(
         metadata: &BTreeMap<String, String>,
         settings: BTreeMap<String, String>,
     ) -> Result<Self, RecordError> {
-        let number = |key| parse::<f64>(metadata, key);
         let fingerprint = text(metadata, "creature_fingerprint")?;
-        let tick_seconds = number("tick_seconds")?;
+        let tick_seconds = parse::<f64>(metadata, "tick_seconds")?;
         if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
             return Err(RecordError::TickSeconds(tick_seconds));
         }
@@ -74,18 +63,7 @@ impl RecordingInfo {
             creature_fingerprint: u64::from_str_radix(fingerprint, 16)
                 .map_err(|error| bad("creature_fingerprint", fingerprint, &error.to_string()))?,
             tick_seconds,
-            climber: ClimberConfig {
-                radius: number("climber.radius")?,
-                max_slope: number("climber.max_slope")?,
-                walk_speed: number("climber.walk_speed")?,
-                jump_speed: number("climber.jump_speed")?,
-                gravity: DVec3::new(
-                    number("climber.gravity.x")?,
-                    number("climber.gravity.y")?,
-                    number("climber.gravity.z")?,
-                ),
-                snap_distance: number("climber.snap_distance")?,
-            },
+            climber: config::read(metadata)?,
             settings,
             version: text(metadata, "version")?.clone(),
         })
@@ -98,7 +76,10 @@ fn text<'a>(metadata: &'a BTreeMap<String, String>, key: &str) -> Result<&'a Str
         .ok_or_else(|| RecordError::NotARecording(format!("its metadata says nothing about {key}")))
 }
 
-fn parse<T: FromStr>(metadata: &BTreeMap<String, String>, key: &str) -> Result<T, RecordError>
+pub(crate) fn parse<T: FromStr>(
+    metadata: &BTreeMap<String, String>,
+    key: &str,
+) -> Result<T, RecordError>
 where
     T::Err: ToString,
 {

@@ -68,7 +68,7 @@
 //! let mut recorder = Recorder::new(Vec::new(), &info, &skeleton, RecordOptions::default())?;
 //! let mut scene = start()?;
 //! for tick in 1..=90 {
-//!     let input = ClimberInput { walk: DVec3::X, jump: tick == 60 };
+//!     let input = ClimberInput { walk: DVec3::X, jump: tick == 60, ..Default::default() };
 //!     let report = step(&mut scene, tick, &input)?;
 //!     recorder.tick(&TickView {
 //!         tick,
@@ -100,6 +100,7 @@
 //! Not for streaming: there is no server. Not for archives: another version of this crate may read a
 //! recording differently, and says so, and another build of the scene may well differ in bits.
 
+mod config;
 mod error;
 mod file;
 mod fingerprint;

@@ -1,7 +1,7 @@
 //! clamber's own messages. Their schemas come from foxglove's `Encode`, and they are read by prost: field
 //! numbers follow the order of the fields in both.
 
-use clamber_climber::{ClimberInput, ClimberMode, ClimberState, Footing};
+use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberState, StepReport, Support};
 use clamber_surface::surface::Diagnostics;
 use clamber_world::{MaterialPoint, ObstacleId};
 use foxglove::Encode;
@@ -35,13 +35,28 @@ pub(crate) struct Rotation {
 pub(crate) struct Input {
     #[prost(message, required, tag = "1")]
     pub(crate) walk: Vector,
-    #[prost(bool, tag = "2")]
+    #[prost(message, required, tag = "2")]
+    pub(crate) climb: Vector,
+    #[prost(bool, tag = "3")]
     pub(crate) jump: bool,
+    #[prost(bool, tag = "4")]
+    pub(crate) grip: bool,
+    #[prost(message, optional, tag = "5")]
+    pub(crate) blow: Option<Struck>,
 }
 
-/// What it stands on.
+/// What struck it.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
-pub(crate) struct Ground {
+pub(crate) struct Struck {
+    #[prost(message, required, tag = "1")]
+    pub(crate) velocity: Vector,
+    #[prost(double, tag = "2")]
+    pub(crate) damage: f64,
+}
+
+/// What it stands on, grips, or hangs from.
+#[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
+pub(crate) struct Held {
     #[prost(uint32, tag = "1")]
     pub(crate) obstacle: u32,
     #[prost(uint64, tag = "2")]
@@ -50,9 +65,15 @@ pub(crate) struct Ground {
     pub(crate) coordinates: Vector,
     #[prost(message, required, tag = "4")]
     pub(crate) contact: Vector,
+    /// In the frame of the material, as the normal.
     #[prost(message, required, tag = "5")]
     pub(crate) offset: Vector,
     #[prost(message, required, tag = "6")]
+    pub(crate) normal: Vector,
+    /// Of the face, in the frame of the material.
+    #[prost(message, required, tag = "7")]
+    pub(crate) face: Vector,
+    #[prost(message, required, tag = "8")]
     pub(crate) frame: Rotation,
 }
 
@@ -65,22 +86,52 @@ pub(crate) struct State {
     pub(crate) velocity: Vector,
     #[prost(message, required, tag = "3")]
     pub(crate) heading: Vector,
-    /// 0 falling, 1 standing.
+    /// As [`mode_number`] says.
     #[prost(uint32, tag = "4")]
     pub(crate) mode: u32,
     #[prost(message, optional, tag = "5")]
-    pub(crate) footing: Option<Ground>,
+    pub(crate) support: Option<Held>,
+    #[prost(message, optional, tag = "6")]
+    pub(crate) support_velocity: Option<Vector>,
+    #[prost(message, required, tag = "7")]
+    pub(crate) shake: Vector,
+    #[prost(double, tag = "8")]
+    pub(crate) stamina: f64,
+    #[prost(double, tag = "9")]
+    pub(crate) hit_points: f64,
+    #[prost(double, tag = "10")]
+    pub(crate) arm: f64,
+    #[prost(double, tag = "11")]
+    pub(crate) pull_up: f64,
+    #[prost(double, tag = "12")]
+    pub(crate) calm: f64,
+    #[prost(double, tag = "13")]
+    pub(crate) coyote: f64,
+    #[prost(double, tag = "14")]
+    pub(crate) jump_buffer: f64,
+    #[prost(double, tag = "15")]
+    pub(crate) open_handed: f64,
+    #[prost(bool, tag = "16")]
+    pub(crate) crouched: bool,
 }
 
-/// How contacts pushed.
+/// How the tick went.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
-pub(crate) struct Push {
+pub(crate) struct Report {
     #[prost(message, required, tag = "1")]
-    pub(crate) displacement: Vector,
-    #[prost(uint32, tag = "2")]
-    pub(crate) contacts: u32,
-    #[prost(double, tag = "3")]
-    pub(crate) deepest: f64,
+    pub(crate) pushed_out: Vector,
+    #[prost(double, tag = "2")]
+    pub(crate) penetration: f64,
+    #[prost(uint32, tag = "3")]
+    pub(crate) rounds: u32,
+    #[prost(bool, tag = "4")]
+    pub(crate) is_clear: bool,
+    /// Of everything that was pushed together, newton seconds.
+    #[prost(message, required, tag = "5")]
+    pub(crate) impulse: Vector,
+    /// How many were pushed.
+    #[prost(uint32, tag = "6")]
+    pub(crate) pushes: u32,
 }
 
 /// One tick.
@@ -93,7 +144,7 @@ pub(crate) struct Tick {
     #[prost(message, required, tag = "3")]
     pub(crate) state: State,
     #[prost(message, required, tag = "4")]
-    pub(crate) push_out: Push,
+    pub(crate) report: Report,
     #[prost(uint64, tag = "5")]
     pub(crate) state_fingerprint: u64,
     #[prost(uint64, tag = "6")]
@@ -144,23 +195,57 @@ impl Tick {
     }
 
     fn has_negative_zero(&self) -> bool {
-        let state = &self.state;
-        let vectors = [
-            self.input.walk,
-            state.position,
-            state.velocity,
-            state.heading,
-            self.push_out.displacement,
+        self.input.has_negative_zero()
+            || self.state.has_negative_zero()
+            || self.report.pushed_out.has_negative_zero()
+            || self.report.impulse.has_negative_zero()
+            || negative_zero(&self.report.penetration)
+    }
+}
+
+impl Input {
+    fn has_negative_zero(&self) -> bool {
+        self.walk.has_negative_zero()
+            || self.climb.has_negative_zero()
+            || self.blow.is_some_and(|blow| {
+                blow.velocity.has_negative_zero() || negative_zero(&blow.damage)
+            })
+    }
+}
+
+impl State {
+    fn has_negative_zero(&self) -> bool {
+        let vectors = [self.position, self.velocity, self.heading, self.shake];
+        let numbers = [
+            self.stamina,
+            self.hit_points,
+            self.arm,
+            self.pull_up,
+            self.calm,
+            self.coyote,
+            self.jump_buffer,
+            self.open_handed,
         ];
-        let of_footing = state.footing.is_some_and(|ground| {
-            let turn = ground.frame;
-            let vectors = [ground.coordinates, ground.contact, ground.offset];
-            vectors.iter().any(Vector::has_negative_zero)
-                || [turn.x, turn.y, turn.z, turn.w].iter().any(negative_zero)
-        });
-        of_footing
-            || vectors.iter().any(Vector::has_negative_zero)
-            || negative_zero(&self.push_out.deepest)
+        vectors.iter().any(Vector::has_negative_zero)
+            || numbers.iter().any(negative_zero)
+            || self.support.is_some_and(|held| held.has_negative_zero())
+            || self
+                .support_velocity
+                .is_some_and(|velocity| velocity.has_negative_zero())
+    }
+}
+
+impl Held {
+    fn has_negative_zero(&self) -> bool {
+        let vectors = [
+            self.coordinates,
+            self.contact,
+            self.offset,
+            self.normal,
+            self.face,
+        ];
+        let Rotation { x, y, z, w } = self.frame;
+        vectors.iter().any(Vector::has_negative_zero) || [x, y, z, w].iter().any(negative_zero)
     }
 }
 
@@ -201,11 +286,23 @@ impl From<DQuat> for Rotation {
     }
 }
 
+impl From<Rotation> for DQuat {
+    fn from(q: Rotation) -> Self {
+        Self::from_xyzw(q.x, q.y, q.z, q.w)
+    }
+}
+
 impl From<&ClimberInput> for Input {
     fn from(input: &ClimberInput) -> Self {
         Self {
             walk: input.walk.into(),
+            climb: input.climb.into(),
             jump: input.jump,
+            grip: input.grip,
+            blow: input.blow.map(|blow| Struck {
+                velocity: blow.velocity.into(),
+                damage: blow.damage,
+            }),
         }
     }
 }
@@ -214,8 +311,27 @@ impl From<Input> for ClimberInput {
     fn from(input: Input) -> Self {
         Self {
             walk: input.walk.into(),
+            climb: input.climb.into(),
             jump: input.jump,
+            grip: input.grip,
+            blow: input.blow.map(|blow| Blow {
+                velocity: blow.velocity.into(),
+                damage: blow.damage,
+            }),
         }
+    }
+}
+
+/// 0 falling, 1 standing, 2 sliding, 3 holding, 4 hanging, 5 hanging from a ledge, 6 tumbling.
+const fn mode_number(mode: ClimberMode) -> u32 {
+    match mode {
+        ClimberMode::Falling => 0,
+        ClimberMode::Standing => 1,
+        ClimberMode::Sliding => 2,
+        ClimberMode::Holding => 3,
+        ClimberMode::Hanging => 4,
+        ClimberMode::LedgeHanging => 5,
+        ClimberMode::Tumbling => 6,
     }
 }
 
@@ -225,18 +341,51 @@ impl From<&ClimberState> for State {
             position: state.position.into(),
             velocity: state.velocity.into(),
             heading: state.heading.into(),
-            mode: match state.mode {
-                ClimberMode::Falling => 0,
-                ClimberMode::Standing => 1,
+            mode: mode_number(state.mode),
+            support: state.support.as_ref().map(Held::from),
+            support_velocity: state.support_velocity.map(Vector::from),
+            shake: state.shake.into(),
+            stamina: state.stamina,
+            hit_points: state.hit_points,
+            arm: state.arm,
+            pull_up: state.pull_up,
+            calm: state.calm,
+            coyote: state.coyote,
+            jump_buffer: state.jump_buffer,
+            open_handed: state.open_handed,
+            crouched: state.crouched,
+        }
+    }
+}
+
+impl From<&Support> for Held {
+    fn from(support: &Support) -> Self {
+        Self {
+            obstacle: support.obstacle.0,
+            key: support.point.key,
+            coordinates: DVec3::from_array(support.point.coordinates).into(),
+            contact: support.contact.into(),
+            offset: support.offset.into(),
+            normal: support.normal.into(),
+            face: support.face.into(),
+            frame: support.frame.into(),
+        }
+    }
+}
+
+impl From<Held> for Support {
+    fn from(held: Held) -> Self {
+        Self {
+            obstacle: ObstacleId(held.obstacle),
+            point: MaterialPoint {
+                key: held.key,
+                coordinates: DVec3::from(held.coordinates).to_array(),
             },
-            footing: state.footing.map(|footing| Ground {
-                obstacle: footing.obstacle.0,
-                key: footing.point.key,
-                coordinates: DVec3::from_array(footing.point.coordinates).into(),
-                contact: footing.contact.into(),
-                offset: footing.offset.into(),
-                frame: footing.frame.into(),
-            }),
+            contact: held.contact.into(),
+            offset: held.offset.into(),
+            normal: held.normal.into(),
+            face: held.face.into(),
+            frame: held.frame.into(),
         }
     }
 }
@@ -244,31 +393,40 @@ impl From<&ClimberState> for State {
 impl State {
     /// `Err` with the mode if it is none that this version knows.
     pub(crate) fn to_climber(self) -> Result<ClimberState, u32> {
+        let mut modes = ClimberMode::ALL.into_iter();
+        let mode = modes.find(|mode| mode_number(*mode) == self.mode);
         Ok(ClimberState {
             position: self.position.into(),
             velocity: self.velocity.into(),
             heading: self.heading.into(),
-            mode: match self.mode {
-                0 => ClimberMode::Falling,
-                1 => ClimberMode::Standing,
-                other => return Err(other),
-            },
-            footing: self.footing.map(|ground| Footing {
-                obstacle: ObstacleId(ground.obstacle),
-                point: MaterialPoint {
-                    key: ground.key,
-                    coordinates: DVec3::from(ground.coordinates).to_array(),
-                },
-                contact: ground.contact.into(),
-                offset: ground.offset.into(),
-                frame: DQuat::from_xyzw(
-                    ground.frame.x,
-                    ground.frame.y,
-                    ground.frame.z,
-                    ground.frame.w,
-                ),
-            }),
+            mode: mode.ok_or(self.mode)?,
+            support: self.support.map(Support::from),
+            support_velocity: self.support_velocity.map(DVec3::from),
+            shake: self.shake.into(),
+            stamina: self.stamina,
+            hit_points: self.hit_points,
+            arm: self.arm,
+            pull_up: self.pull_up,
+            calm: self.calm,
+            coyote: self.coyote,
+            jump_buffer: self.jump_buffer,
+            open_handed: self.open_handed,
+            crouched: self.crouched,
         })
+    }
+}
+
+impl From<&StepReport> for Report {
+    fn from(report: &StepReport) -> Self {
+        let impulse: DVec3 = report.pushes.iter().map(|push| push.impulse).sum();
+        Self {
+            pushed_out: report.pushed_out.into(),
+            penetration: report.penetration,
+            rounds: report.rounds,
+            is_clear: report.is_clear,
+            impulse: impulse.into(),
+            pushes: u32::try_from(report.pushes.len()).unwrap_or(u32::MAX),
+        }
     }
 }
 
@@ -288,49 +446,4 @@ impl From<Diagnostics> for Touched {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clamber_climber::{Climber, ClimberConfig};
-    use prost::Message;
-
-    #[test]
-    fn every_bit_of_a_number_survives_a_negative_zero_and_the_smallest_too() {
-        let state = ClimberState {
-            velocity: DVec3::new(-0.0, f64::from_bits(1), -f64::MAX),
-            ..*Climber::new(ClimberConfig::default(), DVec3::ZERO)
-                .unwrap()
-                .state()
-        };
-        for walk in [
-            DVec3::new(-0.0, 0.0, 1.0),
-            DVec3::new(0.0, -0.0, -f64::MIN_POSITIVE),
-            DVec3::ZERO,
-        ] {
-            for state in [
-                state,
-                ClimberState {
-                    velocity: DVec3::ZERO,
-                    ..state
-                },
-            ] {
-                let push_out = Push::default();
-                let message = Tick {
-                    input: Input {
-                        walk: walk.into(),
-                        jump: true,
-                    },
-                    state: (&state).into(),
-                    push_out,
-                    ..Tick::default()
-                };
-                let mut buffer = Vec::new();
-                message.write(&mut buffer).unwrap();
-                let read = Tick::decode(&buffer[..]).unwrap();
-                let bits = |v: Vector| [v.x, v.y, v.z].map(f64::to_bits);
-                assert_eq!(bits(read.input.walk), bits(message.input.walk), "{walk}");
-                let restored = read.state.to_climber().unwrap();
-                assert_eq!(restored.fingerprint(), state.fingerprint(), "{state:?}");
-            }
-        }
-    }
-}
+mod tests;

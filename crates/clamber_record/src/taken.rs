@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use clamber_climber::{ClimberEvent, ClimberInput, ClimberState, PushOut};
+use clamber_climber::{ClimberEvent, ClimberInput, ClimberState};
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::Diagnostics;
 use glam::DAffine3;
 
+use crate::messages::Report;
 use crate::{RecordOptions, TickView};
 
 /// A copy of a tick. Its vectors keep their memory from one tick to another.
@@ -17,7 +18,7 @@ pub(crate) struct Taken {
     pub(crate) tick: u64,
     pub(crate) input: ClimberInput,
     pub(crate) state: ClimberState,
-    pub(crate) push_out: PushOut,
+    pub(crate) report: Report,
     pub(crate) world_from_model: Similarity,
     pub(crate) scene_fingerprint: u64,
     pub(crate) events: Vec<ClimberEvent>,
@@ -45,7 +46,7 @@ impl Taken {
             tick: view.tick,
             input: *view.input,
             state: *view.state,
-            push_out: view.report.push_out,
+            report: view.report.into(),
             world_from_model: *view.surface.world_from_model(),
             scene_fingerprint: view.scene_fingerprint,
             events: Vec::new(),
@@ -65,7 +66,7 @@ impl Taken {
         self.tick = view.tick;
         self.input = *view.input;
         self.state = *view.state;
-        self.push_out = view.report.push_out;
+        self.report = view.report.into();
         self.world_from_model = *view.surface.world_from_model();
         self.scene_fingerprint = view.scene_fingerprint;
         self.events.clone_from(&view.report.events);

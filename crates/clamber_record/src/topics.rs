@@ -1,12 +1,12 @@
 //! What a recording's topics are called.
 
-/// Every tick: input, state, push-out and fingerprints (`tick.Tick`).
+/// Every tick: input, state, how the movement went, and fingerprints (`tick.Tick`).
 pub const TICK: &str = "/tick";
 /// Now and then: what the scene needs to go on from a tick (`snapshot.Snapshot`).
 pub const SNAPSHOT: &str = "/snapshot";
 /// Where creature, joints and climber are (`foxglove.FrameTransforms`).
 pub const TRANSFORMS: &str = "/transforms";
-/// Skin that queries touched, the triangle underfoot, the climber (`foxglove.SceneUpdate`).
+/// Skin that queries touched, the triangle that supports the climber, the climber (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";
 /// Vertices of the posed skin (`foxglove.PointCloud`).
 pub const SKIN: &str = "/skin";

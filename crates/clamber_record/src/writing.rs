@@ -11,7 +11,7 @@ use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 
 use crate::fingerprint::matrices_fingerprint;
-use crate::messages::{Push, Snapshot, Tick, Touched};
+use crate::messages::{Snapshot, Tick, Touched};
 use crate::taken::{Taken, TakenSkin};
 use crate::views::{Frames, Scene, Skin, line};
 use crate::{RecordError, RecordingInfo, topics};
@@ -83,7 +83,7 @@ impl<W: Write> Writing<W> {
             sequence: 0,
             frames: Frames::new(skeleton),
             skin: Skin::new(skin_points),
-            scene: Scene::new(info.climber.radius),
+            scene: Scene::new(&info.climber),
             positions: Vec::new(),
             buffer: Vec::new(),
         })
@@ -110,16 +110,11 @@ impl<W: Write> Writing<W> {
 
     fn tick(&mut self, taken: &mut Taken) -> Result<(), RecordError> {
         self.sequence = self.sequence.wrapping_add(1);
-        let push_out = &taken.push_out;
         let message = Tick {
             tick: taken.tick,
             input: (&taken.input).into(),
             state: (&taken.state).into(),
-            push_out: Push {
-                displacement: push_out.displacement.into(),
-                contacts: u32::try_from(push_out.contacts).unwrap_or(u32::MAX),
-                deepest: push_out.deepest,
-            },
+            report: taken.report,
             state_fingerprint: taken.state.fingerprint(),
             palette_fingerprint: matrices_fingerprint(&taken.matrices),
             scene_fingerprint: taken.scene_fingerprint,

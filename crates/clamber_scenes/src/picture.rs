@@ -48,7 +48,7 @@ impl Stage {
     pub fn drawn<'a>(&self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
         let config = battle.climber().config();
         let up = config.up();
-        let feet = battle.climber().state().position - up * config.radius;
+        let feet = battle.climber().state().position - up * config.body.radius;
         let at = |mesh, place| Drawn {
             mesh,
             world_from_model: Similarity::from_translation(place),

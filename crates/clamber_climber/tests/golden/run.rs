@@ -72,7 +72,7 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
         });
         let states: Vec<_> = states.collect();
         states.iter().for_each(|state| riders.climber(state));
-        let on_tube = |state: &&ClimberState| state.footing.is_some_and(|f| f.obstacle == TUBE);
+        let on_tube = |state: &&ClimberState| state.support.is_some_and(|s| s.obstacle == TUBE);
         carried += states.iter().filter(on_tube).count();
     }
     // Or the hashes are of little.
@@ -112,6 +112,7 @@ fn input(index: usize, tick: u32) -> ClimberInput {
     ClimberInput {
         walk: DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)),
         jump: (tick + 7 * index).is_multiple_of(50),
+        ..ClimberInput::default()
     }
 }
 

@@ -28,12 +28,12 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
             panic!("tick {tick}: {error}");
         }
         let state = battle.climber().state();
-        let footing = state.footing.map(|footing| footing.contact);
+        let support = state.support.map(|support| support.contact);
         let finite = state.position.is_finite()
             && state.velocity.is_finite()
-            && footing.is_none_or(|contact| contact.is_finite());
+            && support.is_none_or(|contact| contact.is_finite());
         assert!(finite, "tick {tick}: {state:?}");
-        let push_out = battle.report().push_out.displacement;
+        let push_out = battle.report().pushed_out;
         assert!(push_out.is_finite(), "tick {tick}: {push_out}");
         for (_, body) in battle.world().bodies.iter() {
             let at = body.translation();

@@ -14,6 +14,45 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ClimberEvent::Jumped => (Level::Info, "jumped".to_owned()),
         ClimberEvent::Slipped => (Level::Warning, "slipped: too steep".to_owned()),
         ClimberEvent::LostFooting => (Level::Warning, "lost its footing".to_owned()),
+        ClimberEvent::Thrown { acceleration } => (
+            Level::Warning,
+            format!("thrown: the ground was pulled away at {acceleration:.1} m/s^2"),
+        ),
+        ClimberEvent::Grabbed { obstacle, point } => (
+            Level::Info,
+            format!("grabbed obstacle {} at {point:.2}", obstacle.0),
+        ),
+        ClimberEvent::TurnedCorner { angle } => (
+            Level::Debug,
+            format!(
+                "climbed around a corner of {:.0} degrees",
+                angle.to_degrees()
+            ),
+        ),
+        ClimberEvent::LedgeCaught { obstacle, point } => (
+            Level::Info,
+            format!("caught a ledge of obstacle {} at {point:.2}", obstacle.0),
+        ),
+        ClimberEvent::Mantled => (Level::Info, "climbed over a ledge".to_owned()),
+        ClimberEvent::Released => (Level::Info, "let go".to_owned()),
+        ClimberEvent::ShakenOff { shake } => (
+            Level::Warning,
+            format!("out of strength, the grip opened at a shake of {shake:.1} m/s^2"),
+        ),
+        ClimberEvent::Tumbled => (Level::Warning, "knocked down".to_owned()),
+        ClimberEvent::Crushed { depth } => (
+            Level::Warning,
+            format!("crushed: {:.1} mm of room are missing", depth * 1e3),
+        ),
+        ClimberEvent::Hurt { damage } => (
+            Level::Warning,
+            format!("hurt: lost {:.0} % of its hit points", damage * 100.0),
+        ),
+        ClimberEvent::Changed { from, to } => (Level::Debug, format!("{from:?} to {to:?}")),
+        ClimberEvent::NotFinite => (
+            Level::Error,
+            "an obstacle answered with numbers that are not finite: nothing happened".to_owned(),
+        ),
     };
     Log {
         timestamp: Some(timestamp(nanoseconds)),

@@ -1,27 +1,31 @@
-use clamber_climber::ClimberMode;
+use clamber_climber::{ClimberConfig, ClimberMode, ClimberState};
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use foxglove::messages::{
-    Color, Point3, SceneEntity, SceneUpdate, SpherePrimitive, TriangleListPrimitive,
+    Color, CylinderPrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive,
+    TriangleListPrimitive,
 };
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
-use super::{CREATURE, WORLD, color, pose, timestamp, vector};
+use super::{CREATURE, WORLD, color, pose, rotation, timestamp, vector};
 use crate::taken::{Taken, TakenSkin};
 
 /// Marks a vertex without a place among the points.
 const NOWHERE: u32 = u32::MAX;
 
-/// Skin that this tick's queries touched, the triangle underfoot, the climber.
+/// Skin that this tick's queries touched, the triangle that supports the climber, the climber.
 pub(crate) struct Scene {
     radius: f64,
+    /// From the climber's ball to the one above it, while it is upright.
+    upright: DVec3,
     /// By vertex: its place among the points. Kept for its memory, all [`NOWHERE`] between ticks.
     places: Vec<u32>,
 }
 
 impl Scene {
-    pub(crate) fn new(climber_radius: f64) -> Self {
+    pub(crate) fn new(climber: &ClimberConfig) -> Self {
         Self {
-            radius: climber_radius,
+            radius: climber.body.radius,
+            upright: climber.up() * climber.body.height,
             places: Vec::new(),
         }
     }
@@ -48,27 +52,46 @@ impl Scene {
         let tint = color(0.95, 0.7, 0.2, 0.5);
         touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
 
-        let mut underfoot = entity("underfoot", CREATURE);
-        // A footing on another obstacle has a key of its own meaning, which may name a triangle by chance:
+        let mut support = entity("support", CREATURE);
+        // A support on another obstacle has a key of its own meaning, which may name a triangle by chance:
         // only one that the contact lies on counts.
-        let key = state.footing.map(|footing| footing.point.key);
+        let key = state.support.map(|support| support.point.key);
         let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
         let tint = color(0.9, 0.1, 0.1, 1.0);
-        underfoot.triangles = vec![self.list(mesh, scale, positions, triangle, tint)];
+        support.triangles = vec![self.list(mesh, scale, positions, triangle, tint)];
 
         let mut climber = entity("climber", WORLD);
-        climber.spheres = vec![SpherePrimitive {
-            pose: Some(pose(state.position)),
-            size: Some(vector(DVec3::splat(2.0 * self.radius))),
-            color: Some(match state.mode {
-                ClimberMode::Standing => color(0.2, 0.7, 0.3, 0.9),
-                ClimberMode::Falling => color(0.2, 0.4, 0.9, 0.9),
-            }),
-        }];
+        self.body(state, &mut climber);
         SceneUpdate {
             deletions: Vec::new(),
-            entities: vec![touched, underfoot, climber],
+            entities: vec![touched, support, climber],
+        }
+    }
+
+    /// The climber's ball; upright and with a height, its capsule.
+    fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
+        let tint = Some(color_of(state.mode));
+        let diameter = 2.0 * self.radius;
+        let ball = |center| SpherePrimitive {
+            pose: Some(pose(center)),
+            size: Some(vector(DVec3::splat(diameter))),
+            color: tint,
+        };
+        climber.spheres = vec![ball(state.position)];
+        let height = self.upright.length();
+        if height > 0.0 && !state.mode.is_holding() && !state.crouched {
+            climber.spheres.push(ball(state.position + self.upright));
+            climber.cylinders = vec![CylinderPrimitive {
+                pose: Some(Pose {
+                    position: Some(vector(state.position + self.upright * 0.5)),
+                    orientation: Some(rotation(from_z_to(self.upright / height))),
+                }),
+                size: Some(vector(DVec3::new(diameter, diameter, height))),
+                bottom_scale: 1.0,
+                top_scale: 1.0,
+                color: tint,
+            }];
         }
     }
 
@@ -118,18 +141,41 @@ impl Scene {
     }
 }
 
-/// True if the climber's footing names a triangle of the surface that its contact lies near.
+/// Green on its feet, amber to red by its hands, blue in the air, grey knocked down.
+fn color_of(mode: ClimberMode) -> Color {
+    match mode {
+        ClimberMode::Standing => color(0.2, 0.7, 0.3, 0.9),
+        ClimberMode::Sliding => color(0.6, 0.8, 0.2, 0.9),
+        ClimberMode::Holding => color(0.95, 0.65, 0.1, 0.9),
+        ClimberMode::LedgeHanging => color(0.9, 0.45, 0.1, 0.9),
+        ClimberMode::Hanging => color(0.85, 0.2, 0.1, 0.9),
+        ClimberMode::Falling => color(0.2, 0.4, 0.9, 0.9),
+        ClimberMode::Tumbling => color(0.5, 0.5, 0.5, 0.9),
+    }
+}
+
+/// The shortest rotation from +Z to a unit vector; about X where they are opposite.
+fn from_z_to(to: DVec3) -> DQuat {
+    let axis = DVec3::Z.cross(to);
+    let real = 1.0 + to.z;
+    if real < 1e-9 {
+        return DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+    }
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, real).normalize()
+}
+
+/// True if the climber's support names a triangle of the surface that its contact lies near.
 fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
-        let footing = taken.state.footing?;
-        let triangle = usize::try_from(footing.point.key).ok()?;
+        let support = taken.state.support?;
+        let triangle = usize::try_from(support.point.key).ok()?;
         let corners = mesh.triangles().get(triangle)?;
         let mut position = DVec3::ZERO;
-        for (corner, weight) in corners.iter().zip(footing.point.coordinates) {
+        for (corner, weight) in corners.iter().zip(support.point.coordinates) {
             position += positions.get(corner.index())?.as_dvec3() * weight;
         }
         let in_world = taken.world_from_model.transform_point(position);
-        Some(in_world.distance(footing.contact) < 0.01 * taken.world_from_model.scale.max(1.0))
+        Some(in_world.distance(support.contact) < 0.01 * taken.world_from_model.scale.max(1.0))
     };
     named().unwrap_or(false)
 }

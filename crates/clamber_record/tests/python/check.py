@@ -22,6 +22,9 @@ WANTED = {
     "/log": "foxglove.Log",
 }
 
+# Modes that are attached to something: standing, holding, hanging, hanging from a ledge.
+SUPPORTED = {1, 3, 4, 5}
+
 
 def check(condition, what):
     if not condition:
@@ -33,8 +36,11 @@ def check_tick(message, count):
     for name in ("position", "velocity", "heading"):
         v = getattr(message.state, name)
         check(all(abs(x) < 1e6 for x in (v.x, v.y, v.z)), f"tick {count}: {name} {v}")
-    standing = message.state.mode == 1
-    check(standing == message.state.HasField("footing"), f"tick {count}: mode and footing")
+    supported = message.state.mode in SUPPORTED
+    check(supported == message.state.HasField("support"), f"tick {count}: mode and support")
+    for name in ("stamina", "hit_points", "pull_up"):
+        share = getattr(message.state, name)
+        check(0 <= share <= 1, f"tick {count}: {name} {share}")
     heading = message.state.heading
     length = heading.x**2 + heading.y**2 + heading.z**2
     check(abs(length - 1) < 1e-9, f"tick {count}: heading of length^2 {length}")
@@ -61,7 +67,7 @@ def check_skin(message):
 
 def check_scene(message):
     entities = {e.id: e for e in message.entities}
-    check(set(entities) == {"touched", "underfoot", "climber"}, f"{list(entities)}")
+    check(set(entities) == {"touched", "support", "climber"}, f"{list(entities)}")
     for entity in entities.values():
         for triangles in entity.triangles:
             check(len(triangles.indices) % 3 == 0, "a piece of a triangle")

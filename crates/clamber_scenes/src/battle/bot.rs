@@ -57,7 +57,10 @@ pub(super) fn input(
             } else {
                 DVec3::ZERO
             };
-            ClimberInput { walk, jump: false }
+            ClimberInput {
+                walk,
+                ..ClimberInput::default()
+            }
         }
     }
 }

@@ -43,24 +43,24 @@ impl Watch {
             self.fell_through += 1;
         }
         let riding = state
-            .footing
-            .filter(|footing| footing.obstacle == CREATURE && idle);
-        let Some(footing) = riding else {
+            .support
+            .filter(|support| support.obstacle == CREATURE && idle);
+        let Some(support) = riding else {
             self.recorded = None;
             return None;
         };
         let Some(recorded) = self.recorded else {
-            self.recorded = Some(footing.point);
+            self.recorded = Some(support.point);
             return None;
         };
-        let radius = climber.config().radius;
+        let radius = climber.config().body.radius;
         if let Some(nearest) = Obstacle::closest_point(surface, center, radius) {
             self.deepest = self.deepest.max(radius - nearest.distance);
         }
         // Off its point, or out of touch with it.
         let off = |expected: DVec3| {
             let gap = (center.distance(expected) - radius).abs();
-            footing.contact.distance(expected).max(gap)
+            support.contact.distance(expected).max(gap)
         };
         Some(reference_position(surface, palette, &recorded).map_or(f64::INFINITY, off))
     }

@@ -9,12 +9,12 @@ pub struct Sample {
     pub height: f64,
     /// What the climber is doing.
     pub mode: ClimberMode,
-    /// True if it stands on the creature.
+    /// True if it stands on the creature, or holds on to it.
     pub riding: bool,
     /// Distance from the climber's contact to the material point recorded when its input ended,
     /// metres; `None` if there is input, or it does not ride.
     pub drift: Option<f64>,
-    /// Length of the tick's push-out, metres.
+    /// By how much contacts kept it from where it was carried and wanted to go, metres.
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
     pub skinned_share: f64,
@@ -27,8 +27,12 @@ impl Sample {
     pub fn activity(&self) -> &'static str {
         match (self.mode, self.riding) {
             (ClimberMode::Falling, _) => "falling ",
+            (ClimberMode::Tumbling, _) => "tumbling",
+            (ClimberMode::Sliding, _) => "sliding ",
             (ClimberMode::Standing, true) => "riding  ",
             (ClimberMode::Standing, false) => "grounded",
+            (ClimberMode::Holding, _) => "holding ",
+            (ClimberMode::Hanging | ClimberMode::LedgeHanging, _) => "hanging ",
         }
     }
 }
@@ -88,7 +92,7 @@ impl Recording {
         sum / self.samples.len().max(1) as f64
     }
 
-    /// The share of ticks spent standing on the creature.
+    /// The share of ticks spent on the creature.
     pub fn riding_share(&self) -> f64 {
         let riding = self.samples.iter().filter(|s| s.riding).count();
         riding as f64 / self.samples.len().max(1) as f64

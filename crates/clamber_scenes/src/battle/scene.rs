@@ -75,8 +75,11 @@ impl<'a> Battle<'a> {
         let perch = find_perch(&surface, height, seed).ok_or_else(|| BattleError::NoPerch {
             creature: creature.name.clone(),
         })?;
-        let config = ClimberConfig::default();
-        let climber = Climber::new(config, perch.point + config.up() * (DROP + config.radius))?;
+        let config = ClimberConfig::walker();
+        let climber = Climber::new(
+            config,
+            perch.point + config.up() * (DROP + config.body.radius),
+        )?;
         let mut world = valley::world();
         let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
         let rocks = Rockfall::new(&mut world, rocks, seed, above, height)?;
@@ -173,10 +176,10 @@ impl<'a> Battle<'a> {
             height: state.position.y,
             mode: state.mode,
             riding: state
-                .footing
-                .is_some_and(|footing| footing.obstacle == CREATURE),
+                .support
+                .is_some_and(|support| support.obstacle == CREATURE),
             drift,
-            push_out: report.push_out.displacement.length(),
+            push_out: report.pushed_out.length(),
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
             microseconds,
         };
@@ -189,8 +192,8 @@ impl<'a> Battle<'a> {
     fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
         let state = *self.climber.state();
         let on_ground = state
-            .footing
-            .is_some_and(|footing| footing.obstacle == TERRAIN);
+            .support
+            .is_some_and(|support| support.obstacle == TERRAIN);
         self.grounded = if on_ground { self.grounded + 1 } else { 0 };
         if self.grounded < GROUNDED_TICKS {
             return Ok(());
@@ -199,12 +202,14 @@ impl<'a> Battle<'a> {
             return Ok(());
         };
         let up = self.climber.config().up();
-        let above = perch.position + up * (DROP + self.climber.config().radius);
+        let above = perch.position + up * (DROP + self.climber.config().body.radius);
         self.climber.restore(ClimberState {
             position: above,
             velocity: perch.velocity,
             mode: ClimberMode::Falling,
-            footing: None,
+            support: None,
+            support_velocity: None,
+            coyote: 0.0,
             ..state
         })?;
         self.grounded = 0;

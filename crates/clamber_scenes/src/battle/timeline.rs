@@ -24,14 +24,15 @@ const PANELS: [Panel; 4] = [
         value: |s| Some(s.height),
     },
     Panel {
-        title: "state: 0 falling, 1 on the ground, 2 riding",
+        title: "state: 0 in the air, 1 sliding, 2 on the ground, 3 on the creature",
         unit: "",
         color: RGBColor(44, 130, 44),
         value: |s| {
             Some(match (s.mode, s.riding) {
-                (ClimberMode::Falling, _) => 0.0,
-                (ClimberMode::Standing, false) => 1.0,
-                (ClimberMode::Standing, true) => 2.0,
+                (ClimberMode::Falling | ClimberMode::Tumbling, _) => 0.0,
+                (ClimberMode::Sliding, _) => 1.0,
+                (_, false) => 2.0,
+                (_, true) => 3.0,
             })
         },
     },

@@ -1,0 +1,219 @@
+//! A climber's configuration as metadata: an entry for each number, named by its path. A group that the climber
+//! lacks has no entries.
+//!
+//! As the shortest text that reads back to the same bits, which JSON has not for limits that are infinite.
+
+use std::collections::BTreeMap;
+
+use clamber_climber::{
+    BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
+    StaminaConfig, TumbleConfig,
+};
+use glam::DVec3;
+
+use crate::RecordError;
+use crate::info::parse;
+
+type Metadata = BTreeMap<String, String>;
+
+/// A group of numbers, whose names are those of its fields.
+trait Group: Sized {
+    /// Before the names, with a dot at its end.
+    const PREFIX: &str;
+
+    fn write(&self, metadata: &mut Metadata);
+
+    fn read(metadata: &Metadata) -> Result<Self, RecordError>;
+}
+
+/// Every field stands here once: one that is missing or unknown does not compile.
+macro_rules! group {
+    ($group:ident, $prefix:literal, $($field:ident),+) => {
+        impl Group for $group {
+            const PREFIX: &str = concat!($prefix, ".");
+
+            fn write(&self, metadata: &mut Metadata) {
+                let Self { $($field),+ } = self;
+                $(metadata.insert(
+                    concat!($prefix, ".", stringify!($field)).to_owned(),
+                    format!("{:?}", $field),
+                );)+
+            }
+
+            fn read(metadata: &Metadata) -> Result<Self, RecordError> {
+                Ok(Self {
+                    $($field: parse(metadata, concat!($prefix, ".", stringify!($field)))?),+
+                })
+            }
+        }
+    };
+}
+
+group!(DVec3, "climber.gravity", x, y, z);
+group!(
+    BodyConfig,
+    "climber.body",
+    radius,
+    height,
+    skin_width,
+    mass,
+    push_force
+);
+group!(
+    GroundConfig,
+    "climber.ground",
+    max_slope,
+    walk_speed,
+    jump_speed,
+    snap_distance,
+    step_height,
+    coyote_time,
+    jump_buffer,
+    throw_acceleration
+);
+group!(
+    GripConfig,
+    "climber.grip",
+    reach,
+    climb_speed,
+    max_overhang,
+    hang_acceleration,
+    calm_time,
+    jump_speed
+);
+group!(HangConfig, "climber.hang", arm_length, leg_length, damping);
+group!(
+    LedgeConfig,
+    "climber.ledge",
+    reach_up,
+    reach,
+    drop,
+    shimmy_speed,
+    pull_up_time
+);
+group!(
+    StaminaConfig,
+    "climber.stamina",
+    hold_drain,
+    shake_threshold,
+    shake_drain,
+    refill
+);
+group!(
+    TumbleConfig,
+    "climber.tumble",
+    knock_acceleration,
+    knock_speed,
+    landing_speed,
+    friction,
+    restitution,
+    recover_time
+);
+group!(HealthConfig, "climber.health", safe_speed, fall_damage);
+
+const SHAKE_TIME: &str = "climber.shake_time";
+
+pub(crate) fn write(config: &ClimberConfig, metadata: &mut Metadata) {
+    let ClimberConfig {
+        gravity,
+        shake_time,
+        body,
+        ground,
+        grip,
+        hang,
+        ledge,
+        stamina,
+        tumble,
+        health,
+    } = config;
+    metadata.insert(SHAKE_TIME.to_owned(), format!("{shake_time:?}"));
+    gravity.write(metadata);
+    body.write(metadata);
+    ground.write(metadata);
+    hang.write(metadata);
+    write_optional(grip.as_ref(), metadata);
+    write_optional(ledge.as_ref(), metadata);
+    write_optional(stamina.as_ref(), metadata);
+    write_optional(tumble.as_ref(), metadata);
+    write_optional(health.as_ref(), metadata);
+}
+
+pub(crate) fn read(metadata: &Metadata) -> Result<ClimberConfig, RecordError> {
+    Ok(ClimberConfig {
+        gravity: DVec3::read(metadata)?,
+        shake_time: parse(metadata, SHAKE_TIME)?,
+        body: BodyConfig::read(metadata)?,
+        ground: GroundConfig::read(metadata)?,
+        grip: read_optional(metadata)?,
+        hang: HangConfig::read(metadata)?,
+        ledge: read_optional(metadata)?,
+        stamina: read_optional(metadata)?,
+        tumble: read_optional(metadata)?,
+        health: read_optional(metadata)?,
+    })
+}
+
+fn write_optional<G: Group>(group: Option<&G>, metadata: &mut Metadata) {
+    if let Some(group) = group {
+        group.write(metadata);
+    }
+}
+
+/// Any one entry says that the group is there; then all have to be.
+fn read_optional<G: Group>(metadata: &Metadata) -> Result<Option<G>, RecordError> {
+    let is_there = metadata.keys().any(|key| key.starts_with(G::PREFIX));
+    is_there.then(|| G::read(metadata)).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_back(config: &ClimberConfig) -> ClimberConfig {
+        let mut metadata = Metadata::new();
+        write(config, &mut metadata);
+        read(&metadata).unwrap()
+    }
+
+    #[test]
+    fn a_configuration_comes_back_with_the_groups_that_it_has() {
+        let walker = ClimberConfig::walker();
+        let climber = ClimberConfig::colossus_climber();
+        assert_eq!(read_back(&walker), walker);
+        assert_eq!(read_back(&climber), climber);
+        let some = ClimberConfig {
+            health: None,
+            ledge: None,
+            ..climber
+        };
+        assert_eq!(read_back(&some), some);
+    }
+
+    #[test]
+    fn numbers_without_a_short_text_and_infinite_limits_come_back() {
+        let mut config = ClimberConfig::colossus_climber();
+        config.gravity = DVec3::new(0.1 + 0.2, -1.0 / 3.0, -0.0);
+        config.shake_time = f64::MIN_POSITIVE;
+        config.ground.throw_acceleration = f64::INFINITY;
+        let back = read_back(&config);
+        assert_eq!(back, config);
+        assert_eq!(back.gravity.z.to_bits(), (-0.0_f64).to_bits());
+    }
+
+    #[test]
+    fn no_two_numbers_share_an_entry() {
+        let mut metadata = Metadata::new();
+        write(&ClimberConfig::colossus_climber(), &mut metadata);
+        // 3 of gravity, the shake's time, and 5, 8, 6, 3, 5, 4, 6, 2 of the groups.
+        assert_eq!(metadata.len(), 43, "{metadata:?}");
+    }
+
+    #[test]
+    fn a_group_that_lacks_a_number_is_refused_by_its_name() {
+        let mut metadata = Metadata::new();
+        write(&ClimberConfig::colossus_climber(), &mut metadata);
+        metadata.remove("climber.tumble.friction");
+        let error = read(&metadata).unwrap_err().to_string();
+        assert!(error.contains("climber.tumble.friction"), "{error}");
+    }
+}

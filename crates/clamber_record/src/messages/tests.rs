@@ -1,0 +1,165 @@
+use super::*;
+use clamber_climber::{Climber, ClimberConfig};
+use prost::Message;
+
+/// A state and an input in which every field has a value of its own.
+fn everything() -> (ClimberState, ClimberInput) {
+    let mut number = 0.0;
+    let mut next = || {
+        number += 1.0;
+        1.0 / (number + 1.0)
+    };
+    let mut vector = || DVec3::new(next(), next(), next());
+    let [position, velocity, heading, shake] = [vector(), vector(), vector(), vector()];
+    let [contact, offset, normal, face] = [vector(), vector(), vector(), vector()];
+    let coordinates = vector();
+    let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
+    let state = ClimberState {
+        position,
+        velocity,
+        heading,
+        mode: ClimberMode::LedgeHanging,
+        support: Some(Support {
+            obstacle: ObstacleId(7),
+            point: MaterialPoint {
+                key: 1 << 60,
+                coordinates: coordinates.to_array(),
+            },
+            contact,
+            offset,
+            normal,
+            face,
+            frame: DQuat::from_xyzw(next(), next(), next(), next()),
+        }),
+        support_velocity: Some(support_velocity),
+        shake,
+        stamina: next(),
+        hit_points: next(),
+        arm: next(),
+        pull_up: next(),
+        calm: next(),
+        coyote: next(),
+        jump_buffer: next(),
+        open_handed: next(),
+        crouched: true,
+    };
+    let input = ClimberInput {
+        walk,
+        climb,
+        jump: true,
+        grip: true,
+        blow: Some(Blow {
+            velocity: struck,
+            damage: next(),
+        }),
+    };
+    (state, input)
+}
+
+/// As they are read again.
+fn read_back(state: &ClimberState, input: &ClimberInput) -> (ClimberState, ClimberInput) {
+    let message = Tick {
+        input: input.into(),
+        state: state.into(),
+        ..Tick::default()
+    };
+    let mut buffer = Vec::new();
+    message.write(&mut buffer).unwrap();
+    let read = Tick::decode(&buffer[..]).unwrap();
+    (read.state.to_climber().unwrap(), read.input.into())
+}
+
+/// All that holds numbers, in words: two of them are equal if their bits are, and a negative zero shows.
+fn words(state: &ClimberState, input: &ClimberInput) -> String {
+    format!("{state:?} {input:?}")
+}
+
+#[test]
+fn every_field_comes_back_in_every_mode() {
+    let (state, input) = everything();
+    for mode in ClimberMode::ALL {
+        let state = ClimberState { mode, ..state };
+        assert_eq!(read_back(&state, &input), (state, input), "{mode:?}");
+    }
+    let state = ClimberState {
+        support: None,
+        support_velocity: None,
+        crouched: false,
+        ..state
+    };
+    let input = ClimberInput::default();
+    assert_eq!(read_back(&state, &input), (state, input));
+}
+
+/// Every number of a state and an input, to be changed.
+fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<&'a mut f64> {
+    fn all(v: &mut DVec3) -> [&mut f64; 3] {
+        [&mut v.x, &mut v.y, &mut v.z]
+    }
+    let mut list: Vec<&mut f64> = Vec::new();
+    for v in [
+        &mut state.position,
+        &mut state.velocity,
+        &mut state.heading,
+        &mut state.shake,
+        &mut input.walk,
+        &mut input.climb,
+    ] {
+        list.extend(all(v));
+    }
+    if let Some(support) = &mut state.support {
+        list.extend(&mut support.point.coordinates);
+        for v in [
+            &mut support.contact,
+            &mut support.offset,
+            &mut support.normal,
+            &mut support.face,
+        ] {
+            list.extend(all(v));
+        }
+        let DQuat { x, y, z, w } = &mut support.frame;
+        list.extend([x, y, z, w]);
+    }
+    list.extend(state.support_velocity.iter_mut().flat_map(all));
+    if let Some(blow) = &mut input.blow {
+        list.extend(all(&mut blow.velocity));
+        list.push(&mut blow.damage);
+    }
+    list.extend([
+        &mut state.stamina,
+        &mut state.hit_points,
+        &mut state.arm,
+        &mut state.pull_up,
+        &mut state.calm,
+        &mut state.coyote,
+        &mut state.jump_buffer,
+        &mut state.open_handed,
+    ]);
+    list
+}
+
+#[test]
+fn every_bit_of_every_number_survives_a_negative_zero_and_the_smallest_too() {
+    let (mut state, mut input) = everything();
+    let count = numbers(&mut state, &mut input).len();
+    // Twelve vectors and the coordinates, a rotation, the damage, eight numbers.
+    assert_eq!(count, 3 * 13 + 4 + 1 + 8);
+    for index in 0..count {
+        for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
+            let (mut state, mut input) = everything();
+            *numbers(&mut state, &mut input)[index] = value;
+            let (read_state, read_input) = read_back(&state, &input);
+            let found = words(&read_state, &read_input);
+            assert_eq!(found, words(&state, &input), "number {index} as {value:e}");
+            assert_eq!(read_state.fingerprint(), state.fingerprint());
+        }
+    }
+}
+
+#[test]
+fn a_mode_of_another_version_is_refused_with_its_number() {
+    let climber = Climber::new(ClimberConfig::default(), DVec3::ZERO).unwrap();
+    let mut message = State::from(climber.state());
+    message.mode = 7;
+    assert_eq!(message.to_climber(), Err(7));
+}
