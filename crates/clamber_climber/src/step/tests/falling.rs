@@ -51,6 +51,29 @@ fn lands_on_level_ground_at_any_height_and_on_any_scale() {
 }
 
 #[test]
+fn lands_on_the_point_that_is_underfoot_not_on_the_one_that_it_met_first() {
+    let mut ground = level();
+    let mut climber = climber_at(0.0, 1.0, 0.0);
+    let state = ClimberState {
+        velocity: DVec3::new(6.0, -3.0, -2.0),
+        ..*climber.state()
+    };
+    climber.restore(state).unwrap();
+    for tick in 1..30 {
+        let along = DVec3::new(-4.0, 1.0, 3.0) * (f64::from(tick) * DT);
+        pose(&mut ground, &DAffine3::from_translation(along));
+        step_on(&mut climber, &ground, &IDLE);
+        let state = climber.state();
+        if let Some(support) = state.support {
+            let off = support.contact - (state.position - DVec3::Y * 0.4);
+            assert!(off.length() < 1e-5, "tick {tick}: {off}");
+            return;
+        }
+    }
+    panic!("never landed: {:?}", climber.state());
+}
+
+#[test]
 fn a_jump_keeps_the_velocity_of_what_it_leaves_and_reaches_its_height() {
     let mut raft = level();
     let mut climber = landed(0.0, 0.5, 0.0, &raft);
