@@ -20,19 +20,22 @@ pub enum ClimberMode {
 
 use ClimberMode::{Falling, Hanging, Holding, LedgeHanging, Sliding, Standing, Tumbling};
 
-/// Every change of mode that there is: from, to, and why.
+/// Every change of mode that there is: from, to, and why. Two may happen in one tick: who lets go of a slope stands, and
+/// slips.
 pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Standing, Sliding, "the ground is or becomes too steep"),
     (Standing, Holding, "grips"),
-    (Standing, Hanging, "grips what shakes or leans over too far"),
     (Standing, LedgeHanging, "grips a ledge"),
     (Standing, Falling, "jumps, is thrown, or the ground ends"),
-    (Standing, Tumbling, "is knocked down by a shake or a blow"),
+    (
+        Standing,
+        Tumbling,
+        "a shake, a blow or a landing knocks it down",
+    ),
     (Sliding, Standing, "the ground is level enough"),
     (Sliding, Holding, "grips"),
-    (Sliding, Hanging, "grips what shakes or leans over too far"),
     (Sliding, LedgeHanging, "grips a ledge"),
-    (Sliding, Falling, "the ground ends"),
+    (Sliding, Falling, "jumps, or the slope ends"),
     (Sliding, Tumbling, "is struck by a blow"),
     (
         Holding,
@@ -62,9 +65,8 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Falling, Standing, "lands"),
     (Falling, Sliding, "lands on what is too steep"),
     (Falling, Holding, "grips"),
-    (Falling, Hanging, "grips what shakes or leans over too far"),
     (Falling, LedgeHanging, "catches a ledge"),
-    (Falling, Tumbling, "lands too fast, or is struck by a blow"),
+    (Falling, Tumbling, "is struck by a blow"),
     (Tumbling, Standing, "lies still on what can be stood on"),
 ];
 

@@ -89,17 +89,15 @@ impl Step<'_> {
             return;
         };
         self.hurt(blow.damage);
-        if self.state.mode.is_supported() {
-            let knocks = self
-                .config
-                .tumble
-                .is_some_and(|tumble| blow.velocity.length() > tumble.knock_speed);
-            if knocks {
-                self.state.velocity += blow.velocity;
-                self.tumble();
-            }
-        } else {
+        let knocks = self
+            .config
+            .tumble
+            .is_some_and(|tumble| blow.velocity.length() > tumble.knock_speed);
+        if knocks || !self.state.mode.is_supported() {
             self.state.velocity += blow.velocity;
+        }
+        if knocks && self.state.mode != ClimberMode::Tumbling {
+            self.tumble();
         }
     }
 

@@ -4,19 +4,16 @@ use glam::DVec3;
 
 use super::Step;
 use crate::mover::Touch;
-use crate::planes::{Plane, nearest_above};
 use crate::{ClimberEvent, ClimberMode};
-
-/// Most planes that stop a velocity together.
-const STOPS: usize = 24;
 
 impl Step<'_> {
     pub(super) fn fly(&mut self) {
-        if self.state.mode != ClimberMode::Tumbling && self.grip_or_catch() {
+        let is_tumbling = self.state.mode == ClimberMode::Tumbling;
+        if !is_tumbling && self.grip_or_catch() {
             return;
         }
         let (start, dt) = (self.state.position, self.dt());
-        if self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
+        if !is_tumbling && self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
             self.state.jump_buffer = 0.0;
             self.state.coyote = 0.0;
             let up = self.config.up();
@@ -24,36 +21,18 @@ impl Step<'_> {
             let jump = self.config.ground.jump_speed;
             self.state.velocity += up * (jump + rising - self.state.velocity.dot(up));
             self.event(ClimberEvent::Jumped);
-            self.state.mode = ClimberMode::Falling;
+            self.change_to(ClimberMode::Falling);
         }
         self.state.velocity += self.config.gravity * dt;
         let falling = self.state.velocity;
         let moved = self.slide(start, start + falling * dt, true);
         self.state.position = moved.position;
-        self.stop();
-        if self.state.mode == ClimberMode::Tumbling {
+        self.state.velocity = self.world.stopped(falling, None);
+        if is_tumbling {
             self.lie(falling);
         } else {
             self.land(falling);
         }
-    }
-
-    /// Takes away the velocity into everything that was touched, relative to its own.
-    fn stop(&mut self) {
-        let mut planes = [Plane {
-            normal: DVec3::Y,
-            offset: 0.0,
-        }; STOPS];
-        let mut count = 0;
-        for index in 0..self.world.touched().len().min(STOPS) {
-            let touch = self.world.touched()[index];
-            planes[count] = Plane {
-                normal: touch.away,
-                offset: touch.away.dot(self.world.velocity_of(&touch)),
-            };
-            count += 1;
-        }
-        self.state.velocity = nearest_above(self.state.velocity, &planes[..count]).point;
     }
 
     /// Stands on what it came down on, or slides down it.
@@ -65,11 +44,11 @@ impl Step<'_> {
             let speed = -(falling - ground).dot(touch.away);
             self.attach(&touch);
             self.state.velocity = ground;
-            self.state.mode = ClimberMode::Standing;
             self.event(ClimberEvent::Landed {
                 obstacle: touch.obstacle,
                 speed: speed.max(0.0),
             });
+            self.change_to(ClimberMode::Standing);
             self.hit_the_ground(speed.max(0.0));
             return;
         }
@@ -78,11 +57,12 @@ impl Step<'_> {
             .touched()
             .iter()
             .any(|touch| touch.away.dot(up) > GRAZING);
-        self.state.mode = if is_steep || self.is_beside_slope() {
+        let mode = if is_steep || self.is_beside_slope() {
             ClimberMode::Sliding
         } else {
             ClimberMode::Falling
         };
+        self.change_to(mode);
     }
 
     /// Who slides goes on sliding as long as the slope is within the skin width.
@@ -100,7 +80,7 @@ impl Step<'_> {
     /// Bounces, slides to a halt, and gets up once it has lain still.
     fn lie(&mut self, falling: DVec3) {
         let Some(tumble) = &self.config.tumble else {
-            self.state.mode = ClimberMode::Falling;
+            self.change_to(ClimberMode::Falling);
             return;
         };
         let slope = self.config.ground.max_slope;
@@ -128,7 +108,7 @@ impl Step<'_> {
         if self.state.calm >= tumble.recover_time {
             self.attach(&touch);
             self.state.velocity = ground;
-            self.state.mode = ClimberMode::Standing;
+            self.change_to(ClimberMode::Standing);
             self.state.calm = 0.0;
         }
     }

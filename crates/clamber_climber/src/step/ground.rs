@@ -21,12 +21,13 @@ impl Step<'_> {
     /// The ground below a position, as far as `reach` below its feet, no steeper than one who stands may stand on.
     pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
         let body = &self.config.body;
-        let (radius, core) = (body.radius, body.hard_radius());
+        let (radius, core, skin) = (body.radius, body.hard_radius(), body.skin_width);
         let up = self.config.up();
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
-        let down = -up * (reach + body.skin_width);
-        let ball = WorldCapsule::ball(position, core);
-        if let Some((touch, hit)) = self.world.cast(&ball, down)
+        let down = -up * (reach + skin);
+        let mut body = super::body(self.config, &self.state).with_radius(core);
+        body = body.moved(position - self.state.position);
+        if let Some((touch, hit)) = self.world.cast(&body, down)
             && !hit.started_inside
             && self.config.slope(touch.away) <= limit
         {
@@ -35,7 +36,7 @@ impl Step<'_> {
             let position = position + down * hit.time + up * rise;
             return Some(Ground { touch, position });
         }
-        self.ground_beside(position, radius + reach, limit)
+        self.ground_beside(position, radius + skin, limit)
     }
 
     /// The nearest contact of the ball that is no steeper than `limit`.

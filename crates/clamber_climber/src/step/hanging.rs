@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Carried, Step};
 use crate::mover::Arm;
 use crate::pendulum::{Pendulum, PendulumTick};
-use crate::planes::{Plane, nearest_above};
+use crate::planes::Plane;
 use crate::{ClimberEvent, ClimberMode};
 
 /// How fast it pulls itself in once its hold is calm, metres a second.
@@ -16,9 +16,6 @@ const CALM: f64 = 0.7;
 
 /// As close to its hands as this share of its radius, it climbs again.
 const CLOSE: f64 = 1.25;
-
-/// Most planes that stop its swing together.
-const STOPS: usize = 24;
 
 impl Step<'_> {
     pub(super) fn hang(&mut self) {
@@ -107,36 +104,20 @@ impl Step<'_> {
         let close = CLOSE * self.config.body.radius;
         let is_in = moved.position.distance(pivot) <= close;
         if self.state.calm > 0.0 && is_in {
-            self.state.mode = ClimberMode::Holding;
+            self.change_to(ClimberMode::Holding);
             self.state.arm = 0.0;
             self.state.calm = 0.0;
         }
     }
 
     /// A velocity without its parts into what it touches and beyond its arms.
-    fn stopped(&mut self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
-        let mut planes = [Plane {
-            normal: DVec3::Y,
-            offset: 0.0,
-        }; STOPS];
+    fn stopped(&self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
         let inward = -arm.normalize_or(DVec3::Y);
         let is_taut = arm.length() >= self.state.arm * (1.0 - 1e-6);
-        let mut count = 0;
-        if is_taut {
-            planes[0] = Plane {
-                normal: inward,
-                offset: inward.dot(carried.motion.velocity),
-            };
-            count = 1;
-        }
-        for index in 0..self.world.touched().len().min(STOPS - 1) {
-            let touch = self.world.touched()[index];
-            planes[count] = Plane {
-                normal: touch.away,
-                offset: touch.away.dot(self.world.velocity_of(&touch)),
-            };
-            count += 1;
-        }
-        nearest_above(velocity, &planes[..count]).point
+        let taut = is_taut.then(|| Plane {
+            normal: inward,
+            offset: inward.dot(carried.motion.velocity),
+        });
+        self.world.stopped(velocity, taut)
     }
 }

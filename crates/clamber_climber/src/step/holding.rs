@@ -36,12 +36,12 @@ impl Step<'_> {
             && let Some(touch) = self.grip_near(self.state.position, &grip, DVec3::ZERO)
         {
             self.attach(&touch);
-            self.state.mode = ClimberMode::Holding;
             self.face(-touch.away);
             self.event(ClimberEvent::Grabbed {
                 obstacle: touch.obstacle,
                 point: touch.contact.point,
             });
+            self.change_to(ClimberMode::Holding);
             self.hold();
             return true;
         }
@@ -67,7 +67,7 @@ impl Step<'_> {
         }
         let leans_over = self.config.slope(normal) > grip.max_overhang;
         if leans_over || self.state.shake.length() > grip.hang_acceleration {
-            self.state.mode = ClimberMode::Hanging;
+            self.change_to(ClimberMode::Hanging);
             self.state.calm = 0.0;
             return self.swing(&carried, carried.motion.velocity, DVec3::ZERO);
         }
@@ -79,7 +79,7 @@ impl Step<'_> {
     fn let_go(&mut self, normal: DVec3) {
         self.event(ClimberEvent::Released);
         if self.config.slope(normal) <= self.config.ground.max_slope {
-            self.state.mode = ClimberMode::Standing;
+            self.change_to(ClimberMode::Standing);
             self.stand();
         } else {
             self.state.open_handed = OPEN_HANDED;
@@ -137,7 +137,7 @@ impl Step<'_> {
         }
         if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
             self.attach(&touch);
-            self.state.mode = ClimberMode::Standing;
+            self.change_to(ClimberMode::Standing);
             return;
         }
         if self.catch_ledge() {

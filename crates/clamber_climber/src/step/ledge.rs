@@ -24,15 +24,6 @@ const OVER: f64 = 0.6;
 /// How far it may be kept from where pulling up leads before it counts as blocked, metres.
 const KEPT: f64 = 0.05;
 
-/// A ledge that can be hung from.
-#[derive(Clone, Copy, Debug)]
-struct Ledge {
-    /// Its top.
-    top: Touch,
-    /// From the climber's centre to its wall, metres, level.
-    to_wall: f64,
-}
-
 impl Step<'_> {
     /// Hangs from a ledge in front of it, if there is one.
     pub(super) fn catch_ledge(&mut self) -> bool {
@@ -40,18 +31,18 @@ impl Step<'_> {
             return false;
         };
         let facing = self.facing();
-        let Some(ledge) = self.find_ledge(self.state.position, facing, &config) else {
+        let Some(top) = self.find_ledge(self.state.position, facing, &config) else {
             return false;
         };
         self.face(facing);
-        self.attach(&ledge.top);
-        self.state.mode = ClimberMode::LedgeHanging;
+        self.attach(&top);
         self.state.pull_up = 0.0;
         self.state.arm = 0.0;
         self.event(ClimberEvent::LedgeCaught {
-            obstacle: ledge.top.obstacle,
-            point: ledge.top.contact.point,
+            obstacle: top.obstacle,
+            point: top.contact.point,
         });
+        self.change_to(ClimberMode::LedgeHanging);
         self.hang_from_ledge();
         true
     }
@@ -64,7 +55,8 @@ impl Step<'_> {
         level.normalize_or(self.state.heading)
     }
 
-    fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Ledge> {
+    /// The top of a ledge that can be hung from, a hand beyond its edge.
+    fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Touch> {
         let up = self.config.up();
         let radius = self.config.body.radius;
         let reach = radius + config.reach;
@@ -88,7 +80,7 @@ impl Step<'_> {
         let (top, hit) = self.world.cast(&above.moved(inward), -height)?;
         let limit = self.config.ground.max_slope;
         let is_top = !hit.started_inside && self.config.slope(top.away) <= limit;
-        is_top.then_some(Ledge { top, to_wall })
+        is_top.then_some(top)
     }
 
     pub(super) fn hang_from_ledge(&mut self) {
@@ -157,16 +149,16 @@ impl Step<'_> {
         self.settle(carried, moved.position);
         if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
             self.attach(&touch);
-            self.state.mode = ClimberMode::Standing;
+            self.change_to(ClimberMode::Standing);
             return;
         }
         if step == DVec3::ZERO {
             return;
         }
         let facing = self.state.heading;
-        if let Some(ledge) = self.find_ledge(moved.position, facing, config) {
+        if let Some(top) = self.find_ledge(moved.position, facing, config) {
             let velocity = self.state.velocity;
-            self.attach(&ledge.top);
+            self.attach(&top);
             self.state.velocity = velocity;
         } else {
             let moved = self.slide(carried.start, carried.position + drawn, carried.swept);
@@ -204,9 +196,9 @@ impl Step<'_> {
         if let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance) {
             self.state.position = ground.position;
             self.attach(&ground.touch);
-            self.state.mode = ClimberMode::Standing;
             self.state.pull_up = 0.0;
             self.event(ClimberEvent::Mantled);
+            self.change_to(ClimberMode::Standing);
         } else {
             self.event(ClimberEvent::LostFooting);
             self.leave(ClimberMode::Falling);

@@ -96,18 +96,6 @@ impl<'a> Step<'a> {
         }
         self.stand_up();
         self.tire(before.shake);
-        if self.state.mode != before.mode {
-            debug_assert!(
-                before.mode.may_become(self.state.mode),
-                "{:?} became {:?}",
-                before.mode,
-                self.state.mode
-            );
-            self.report.events.push(ClimberEvent::Changed {
-                from: before.mode,
-                to: self.state.mode,
-            });
-        }
         if !self.state.is_finite() {
             // Obstacles of one's own may answer nonsense; the climber waits for better.
             let report = StepReport {
@@ -224,9 +212,19 @@ impl<'a> Step<'a> {
         self.state.support_velocity = motion.map(|motion| motion.velocity);
     }
 
+    /// Does something else from now on.
+    fn change_to(&mut self, mode: ClimberMode) {
+        let from = self.state.mode;
+        if mode != from {
+            debug_assert!(from.may_become(mode), "{from:?} became {mode:?}");
+            self.state.mode = mode;
+            self.event(ClimberEvent::Changed { from, to: mode });
+        }
+    }
+
     /// Into the air, with the velocity that it has.
     fn leave(&mut self, mode: ClimberMode) {
-        self.state.mode = mode;
+        self.change_to(mode);
         self.state.support = None;
         self.state.support_velocity = None;
         self.state.arm = 0.0;

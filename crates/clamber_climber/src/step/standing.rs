@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Carried, SLOPE_HYSTERESIS, Step};
+use crate::mover::Touch;
 use crate::{ClimberEvent, ClimberMode, Support};
 
 /// Pushed farther than this share of the radius from where it would stand upright on its material point, be it by and
@@ -74,18 +75,33 @@ impl Step<'_> {
     /// Walks relative to what carried it, and finds new ground.
     fn walk(&mut self, carried: &Carried, walk: DVec3) {
         self.face(walk);
-        let target = carried.position + walk * self.dt();
+        // Pressed onto the ground, so that the ground is among what it touches.
+        let press = carried.support.normal_in_world() * (PRESS * self.config.body.skin_width);
+        let target = carried.position + walk * self.dt() - press;
         let mut path = self.path(carried.start, target, carried.swept);
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         path.walkable = Some((self.config.up(), libm::cos(limit)));
         let moved = self.slide_along(&path);
         self.state.position = moved.position;
-        self.step_up(carried.position, target);
-        self.find_ground(carried, walk);
+        if self.step_up(carried.position, target) {
+            self.find_ground(carried, walk);
+            return;
+        }
+        match self.held_up_by(limit) {
+            Some(touch) => self.stand_on(carried, &touch),
+            None => self.find_ground(carried, walk),
+        }
     }
 
-    /// Where walking was blocked: over a step, if there is one.
-    fn step_up(&mut self, from: DVec3, target: DVec3) {
+    /// Stands where it is.
+    fn stand_on(&mut self, carried: &Carried, touch: &Touch) {
+        self.attach(touch);
+        self.state.velocity =
+            carried.motion.velocity + (self.state.position - carried.position) / self.dt();
+    }
+
+    /// Where walking was blocked: over a step, if there is one; whether it is on it now.
+    fn step_up(&mut self, from: DVec3, target: DVec3) -> bool {
         let up = self.config.up();
         let level = |v: DVec3| v - up * v.dot(up);
         let wanted = level(target - from);
@@ -93,7 +109,7 @@ impl Step<'_> {
         let missing = wanted.length() - made.dot(wanted.normalize_or_zero());
         let height = self.config.ground.step_height;
         if height == 0.0 || missing <= wanted.length() * BLOCKED {
-            return;
+            return false;
         }
         let mut core = super::body(self.config, &self.state);
         core.radius = self.config.body.hard_radius();
@@ -104,32 +120,34 @@ impl Step<'_> {
         let way = self.world.cast(&raised, forward);
         let share = way.map_or(1.0, |(_, hit)| hit.time);
         if share < BLOCKED {
-            return;
+            return false;
         }
         let over = self.state.position + rise + forward * share;
         let depth = rise.length();
         let limit = self.config.ground.max_slope;
-        if let Some(ground) = self.ground_below(over, depth)
-            && self.config.slope(ground.touch.away) <= limit
-            && (ground.position - self.state.position).dot(up) > 0.0
-        {
+        let Some(ground) = self.ground_below(over, depth) else {
+            return false;
+        };
+        let is_up = self.config.slope(ground.touch.away) <= limit
+            && (ground.position - self.state.position).dot(up) > 0.0;
+        if is_up {
             self.state.position = ground.position;
         }
+        is_up
     }
 
     /// Stands on what is below it now, or leaves the ground.
     fn find_ground(&mut self, carried: &Carried, walk: DVec3) {
         let reach = self.config.ground.snap_distance;
         if let Some(ground) = self.ground_below(self.state.position, reach) {
-            self.state.position = ground.position;
-            self.attach(&ground.touch);
-            self.state.velocity += (ground.position - carried.position) / self.dt();
+            let moved = self.slide(ground.position, ground.position, false);
+            self.state.position = moved.position;
+            self.stand_on(carried, &ground.touch);
             return;
         }
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         if let Some(touch) = self.held_up_by(limit) {
-            self.attach(&touch);
-            self.state.velocity += (self.state.position - carried.position) / self.dt();
+            self.stand_on(carried, &touch);
             return;
         }
         let is_steep = self
@@ -164,6 +182,9 @@ impl Step<'_> {
         along.normalize_or_zero() * (share * self.config.ground.walk_speed)
     }
 }
+
+/// With this share of the skin width it is pressed onto the ground that it walks on.
+const PRESS: f64 = 0.5;
 
 /// Share of a way that may be missing before it counts as blocked.
 const BLOCKED: f64 = 0.05;

@@ -1,0 +1,123 @@
+//! Climbers with random input on skin that waves, stretches and mirrors, between bodies that move at random.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+#[path = "../golden/creature.rs"]
+mod creature;
+mod scene;
+
+use clamber_climber::{Climber, ClimberEvent, ClimberMode};
+
+use scene::Scene;
+
+/// What the ticks of all runs came to.
+#[derive(Debug, Default)]
+struct Seen {
+    ticks: u32,
+    in_mode: [u32; 7],
+    transitions: u32,
+    crushed: u32,
+    unclear: u32,
+    deepest: f64,
+    deep: u32,
+}
+
+/// Random ticks; at a random one the climber is put back into its state elsewhere, and goes on beside itself.
+fn run(seed: u64, ticks: u32, seen: &mut Seen) {
+    let mut scene = Scene::new(seed);
+    let mut climber = scene.climber();
+    let mut twin: Option<Climber> = None;
+    let restored_at = scene.rng.u32(0..ticks);
+    for tick in 0..ticks {
+        scene.advance();
+        let input = scene.input(&climber);
+        let before = *climber.state();
+        let report = scene.step(&mut climber, &input);
+        let state = *climber.state();
+        let told =
+            || format!("seed {seed} tick {tick}: {report:?}\n{input:?}\n{before:?}\n{state:?}");
+
+        let numbers = [state.position, state.velocity, state.heading, state.shake];
+        assert!(numbers.iter().all(|v| v.is_finite()), "{}", told());
+        assert!((state.heading.length() - 1.0).abs() < 1e-9, "{}", told());
+        assert!((0.0..=1.0).contains(&state.stamina), "{}", told());
+        assert!((0.0..=1.0).contains(&state.hit_points), "{}", told());
+        assert!(state.velocity.length() < 300.0, "{}", told());
+        assert_eq!(
+            state.mode.is_supported(),
+            state.support.is_some(),
+            "{}",
+            told()
+        );
+        let mut mode = before.mode;
+        for event in &report.events {
+            if let ClimberEvent::Changed { from, to } = *event {
+                assert_eq!(from, mode, "{}", told());
+                assert!(from != to && from.may_become(to), "{}", told());
+                mode = to;
+                seen.transitions += 1;
+            }
+        }
+        assert_eq!(mode, state.mode, "{}", told());
+        if let Some(twin) = &mut twin {
+            let other = scene.step(twin, &input);
+            assert_eq!(other, report, "{}", told());
+            assert_eq!(
+                twin.state().fingerprint(),
+                state.fingerprint(),
+                "{}",
+                told()
+            );
+        }
+        if tick == restored_at {
+            let mut other = scene.climber();
+            other.restore(state).unwrap();
+            twin = Some(other);
+        }
+        let is_crushed = report
+            .events
+            .iter()
+            .any(|event| matches!(event, ClimberEvent::Crushed { .. }));
+        seen.ticks += 1;
+        seen.in_mode[ClimberMode::ALL
+            .iter()
+            .position(|mode| *mode == state.mode)
+            .unwrap()] += 1;
+        seen.crushed += u32::from(is_crushed);
+        seen.unclear += u32::from(!report.is_clear);
+        if !is_crushed && report.is_clear {
+            let depth = scene.depth(&climber);
+            seen.deepest = seen.deepest.max(depth);
+            if depth > 1e-3 {
+                seen.deep += 1;
+                if seen.deep < 4 {
+                    println!("deep: {}", told());
+                }
+            }
+        }
+    }
+}
+
+fn runs(count: u64, ticks: u32) {
+    let mut seen = Seen::default();
+    for seed in 0..count {
+        run(seed, ticks, &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.in_mode.iter().all(|ticks| *ticks > 100), "{seen:?}");
+    assert_eq!(seen.deep, 0, "{seen:?}");
+}
+
+#[test]
+fn a_hundred_thousand_random_ticks() {
+    runs(200, 500);
+}
+
+#[test]
+#[ignore = "a million: run it in release"]
+fn a_million_random_ticks() {
+    runs(1_000, 1_000);
+}
