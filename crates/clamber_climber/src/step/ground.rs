@@ -58,9 +58,14 @@ impl Step<'_> {
         })
     }
 
-    /// Of what the last movement touched, what holds the climber up: level ground, else the least steep of slopes
-    /// that leave it no way down.
+    /// Of what the last movement touched, what holds the climber up, as it touches it where it is now.
     pub(super) fn held_up_by(&mut self, slope_limit: f64) -> Option<Touch> {
+        let touch = self.holding_up(slope_limit)?;
+        Some(self.underfoot(&touch))
+    }
+
+    /// Level ground, else the least steep of slopes that leave it no way down.
+    fn holding_up(&self, slope_limit: f64) -> Option<Touch> {
         let up = self.config.up();
         let flattest = |touches: &[Touch]| {
             touches.iter().copied().reduce(|best, touch| {
@@ -89,7 +94,25 @@ impl Step<'_> {
         let down = nearest_above(-up, &slopes[..count]).point;
         (down.length() < SUPPORTED).then_some(best)
     }
+
+    /// What was met on the way, where the ball now stands on it: since they met it has slid on along it.
+    fn underfoot(&mut self, met: &Touch) -> Touch {
+        let body = &self.config.body;
+        let ball = WorldCapsule::ball(self.state.position, body.radius + body.skin_width);
+        let mut best: Option<Touch> = None;
+        for touch in self.world.touching(&ball) {
+            let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
+            let is_met = touch.obstacle == met.obstacle && touch.away.dot(met.away) > SAME_SIDE;
+            if nearer && is_met {
+                best = Some(*touch);
+            }
+        }
+        best.unwrap_or(*met)
+    }
 }
+
+/// Cosine of how far the ground may have turned under what slides over it in a tick: 45 degrees.
+const SAME_SIDE: f64 = 0.7;
 
 /// Most slopes that are looked at together.
 const WEDGE: usize = 16;

@@ -6,7 +6,8 @@ use super::{Carried, SLOPE_HYSTERESIS, Step};
 use crate::mover::Touch;
 use crate::{ClimberEvent, ClimberMode, Support};
 
-/// Pushed farther than this share of the radius from where its support carries it, it looks for new ground.
+/// Pushed farther than this share of the radius from where it would stand upright on its material point, be it by and
+/// by, it looks for new ground.
 const SHOVED: f64 = 0.1;
 
 impl Step<'_> {
@@ -55,15 +56,16 @@ impl Step<'_> {
     fn stay(&mut self, carried: &Carried) {
         let moved = self.slide(carried.start, carried.position, carried.swept);
         self.state.position = moved.position;
-        if moved.position == carried.position {
-            return;
-        }
-        let shoved = moved.position.distance(carried.position);
-        if shoved > SHOVED * self.config.body.radius {
+        let support = &carried.support;
+        let radius = self.config.body.radius;
+        let upright = support.contact + support.normal_in_world() * radius;
+        if moved.position.distance(upright) > SHOVED * radius {
             self.find_ground(carried, DVec3::ZERO);
             return;
         }
-        let support = &carried.support;
+        if moved.position == carried.position {
+            return;
+        }
         self.state.support = Some(Support {
             offset: support.frame.conjugate() * (moved.position - support.contact),
             ..*support

@@ -67,7 +67,10 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
         let states = climbers.par_iter_mut().enumerate().map(|(index, climber)| {
             let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
                 [(ObstacleId(0), &floor), (TUBE, &surface)];
-            climber.step(&input(index, tick), &obstacles, TICK).unwrap();
+            let input = input(index, tick);
+            climber
+                .step_where(&input, &obstacles, &|_, _| true, TICK)
+                .unwrap();
             *climber.state()
         });
         let states: Vec<_> = states.collect();
@@ -99,19 +102,34 @@ fn place(time: f64) -> Similarity {
 fn climber(index: u32) -> Climber {
     let along = (f64::from(index) + 0.5) / f64::from(CLIMBERS) * f64::from(JOINTS - 1);
     let above = DVec3::new(SCALE * along, 7.0, 0.1 * f64::from(index % 5));
-    Climber::new(ClimberConfig::default(), PLACE + above).unwrap()
+    let config = if grips(index) {
+        ClimberConfig::colossus_climber()
+    } else {
+        ClimberConfig::walker()
+    };
+    Climber::new(config, PLACE + above).unwrap()
 }
 
-/// Half of them stand still; the others walk about, and jump at times.
+/// A third of them grip what they reach, and climb.
+fn grips(index: u32) -> bool {
+    index.is_multiple_of(3)
+}
+
+/// Half of them stand or hold still; the others go about, and jump at times.
 fn input(index: usize, tick: u32) -> ClimberInput {
     let index = index as u32;
+    let grip = grips(index);
     if index.is_multiple_of(2) {
-        return ClimberInput::default();
+        return ClimberInput {
+            grip,
+            ..ClimberInput::default()
+        };
     }
     let angle = f64::from(index + tick / 40);
     ClimberInput {
         walk: DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)),
         jump: (tick + 7 * index).is_multiple_of(50),
+        grip,
         ..ClimberInput::default()
     }
 }

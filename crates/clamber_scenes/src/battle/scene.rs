@@ -75,7 +75,9 @@ impl<'a> Battle<'a> {
         let perch = find_perch(&surface, height, seed).ok_or_else(|| BattleError::NoPerch {
             creature: creature.name.clone(),
         })?;
-        let config = ClimberConfig::walker();
+        let mut config = ClimberConfig::walker();
+        // It rides whatever the creature does.
+        config.ground.throw_acceleration = f64::INFINITY;
         let climber = Climber::new(
             config,
             perch.point + config.up() * (DROP + config.body.radius),

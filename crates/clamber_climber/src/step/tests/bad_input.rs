@@ -1,0 +1,214 @@
+//! What makes no sense, from callers and from obstacles.
+
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+};
+use glam::DVec3;
+
+use super::*;
+use crate::{Blow, ClimberError, ClimberState, Support};
+
+/// An obstacle that answers nonsense.
+struct Broken;
+
+impl Obstacle for Broken {
+    fn cast_ray(&self, _: DVec3, _: DVec3, _: f64) -> Option<Contact> {
+        Some(self.nonsense())
+    }
+
+    fn closest_point(&self, _: DVec3, _: f64) -> Option<Contact> {
+        Some(self.nonsense())
+    }
+
+    fn overlap_capsule(&self, _: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        contacts.push(self.nonsense());
+    }
+
+    fn cast_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
+        Some(self.met())
+    }
+
+    fn sweep_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
+        Some(self.met())
+    }
+
+    fn push_response(&self, _: &MaterialPoint, _: DVec3) -> f64 {
+        f64::NAN
+    }
+
+    fn motion(&self, _: &MaterialPoint, _: f64) -> Option<PointMotion> {
+        None
+    }
+}
+
+impl Broken {
+    fn met(&self) -> SweepContact {
+        SweepContact {
+            time: f64::NAN,
+            contact: self.nonsense(),
+            away: DVec3::NAN,
+            started_inside: false,
+        }
+    }
+
+    fn nonsense(&self) -> Contact {
+        Contact {
+            point: DVec3::NAN,
+            normal: DVec3::splat(f64::INFINITY),
+            distance: f64::NAN,
+            material: MaterialPoint {
+                key: 0,
+                coordinates: [f64::NAN; 3],
+            },
+            tag: Default::default(),
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_refused_and_changes_nothing() {
+    let ground = level();
+    let mut climber = landed(0.0, 0.5, 0.0, &ground);
+    let before = *climber.state();
+    let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(climber.step(&IDLE, &obstacles, dt).is_err(), "{dt}");
+    }
+    let nan = DVec3::new(f64::NAN, 0.0, 0.0);
+    let blow = |velocity, damage| Some(Blow { velocity, damage });
+    for input in [
+        walking(nan),
+        ClimberInput { climb: nan, ..IDLE },
+        ClimberInput {
+            blow: blow(nan, 0.1),
+            ..IDLE
+        },
+        ClimberInput {
+            blow: blow(DVec3::X, f64::INFINITY),
+            ..IDLE
+        },
+    ] {
+        let refused = climber.step(&input, &obstacles, DT);
+        assert_eq!(refused, Err(ClimberError::NotFinite("input")), "{input:?}");
+    }
+    assert_eq!(*climber.state(), before);
+}
+
+#[test]
+fn states_that_no_climber_can_be_in_are_refused() {
+    let ground = level();
+    let mut climber = landed(0.0, 0.5, 0.0, &ground);
+    let before = *climber.state();
+    let with_support = |change: fn(&mut Support)| {
+        let mut state = before;
+        state.support.iter_mut().for_each(change);
+        state
+    };
+    let (nan, none) = (f64::NAN, DVec3::NAN);
+    for state in [
+        ClimberState {
+            velocity: none,
+            ..before
+        },
+        ClimberState {
+            shake: none,
+            ..before
+        },
+        ClimberState {
+            support_velocity: Some(none),
+            ..before
+        },
+        ClimberState {
+            stamina: nan,
+            ..before
+        },
+        ClimberState {
+            coyote: nan,
+            ..before
+        },
+        with_support(|support| support.offset.x = f64::NAN),
+        with_support(|support| support.normal.y = f64::INFINITY),
+        with_support(|support| support.face.y = f64::INFINITY),
+        with_support(|support| support.frame.w = f64::NAN),
+        with_support(|support| support.point.coordinates[1] = f64::NAN),
+    ] {
+        let refused = climber.restore(state);
+        assert_eq!(refused, Err(ClimberError::NotFinite("state")), "{state:?}");
+    }
+    for mode in ClimberMode::ALL {
+        let supported = ClimberState { mode, ..before };
+        let unsupported = ClimberState {
+            support: None,
+            ..supported
+        };
+        let [right, wrong] = if mode.is_supported() {
+            [supported, unsupported]
+        } else {
+            [unsupported, supported]
+        };
+        assert_eq!(climber.restore(wrong), Err(ClimberError::Support(mode)));
+        assert_eq!(climber.restore(right), Ok(()), "{mode:?}");
+        climber.restore(before).unwrap();
+    }
+    for stamina in [-0.1, 1.1] {
+        let refused = climber.restore(ClimberState { stamina, ..before });
+        let name = "stamina";
+        assert!(
+            matches!(refused, Err(ClimberError::OutOfRange { name: n, .. }) if n == name),
+            "{refused:?}"
+        );
+    }
+    assert_eq!(*climber.state(), before);
+}
+
+#[test]
+fn configurations_outside_their_ranges_are_refused_by_name() {
+    assert!(Climber::new(ClimberConfig::default(), DVec3::NAN).is_err());
+    let refused = |change: &dyn Fn(&mut ClimberConfig)| {
+        let mut config = ClimberConfig::colossus_climber();
+        change(&mut config);
+        match Climber::new(config, DVec3::ZERO) {
+            Err(ClimberError::OutOfRange { name, .. }) => name,
+            Err(ClimberError::NotFinite(name)) => name,
+            other => panic!("{other:?} for {config:?}"),
+        }
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(refused(&|config| config.body.radius = bad), "body.radius");
+        assert_eq!(refused(&|config| config.body.mass = bad), "body.mass");
+        assert_eq!(refused(&|config| config.shake_time = bad), "shake_time");
+        let arm = refused(&|config| config.hang.arm_length = bad);
+        assert_eq!(arm, "hang.arm_length");
+    }
+    assert_eq!(refused(&|config| config.gravity = DVec3::NAN), "gravity");
+    assert_eq!(
+        refused(&|config| config.ground.max_slope = 1.6),
+        "ground.max_slope"
+    );
+    let thick = refused(&|config| config.body.skin_width = config.body.radius);
+    assert_eq!(thick, "body.skin_width");
+    let grip = refused(&|config| config.grip.iter_mut().for_each(|grip| grip.reach = -1.0));
+    assert_eq!(grip, "grip.reach");
+    let bounce = refused(&|config| {
+        let tumble = config.tumble.iter_mut();
+        tumble.for_each(|tumble| tumble.restitution = 1.5);
+    });
+    assert_eq!(bounce, "tumble.restitution");
+}
+
+#[test]
+fn an_obstacle_that_answers_nonsense_does_not_spread_it() {
+    let ground = level();
+    let mut climber = climber_at(0.0, 1.0, 0.0);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+        [(ObstacleId(0), &Broken), (ObstacleId(1), &ground)];
+    for _ in 0..60 {
+        climber.step(&IDLE, &obstacles, DT).unwrap();
+        assert!(climber.state().is_finite(), "{:?}", climber.state());
+    }
+    assert!(
+        (climber.state().position.y - 0.4).abs() < 1e-6,
+        "{:?}",
+        climber.state()
+    );
+}

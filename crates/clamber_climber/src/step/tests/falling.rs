@@ -1,0 +1,164 @@
+//! In the air, and down what is too steep.
+
+use clamber_surface::surface::SkinnedSurface;
+use glam::{DAffine3, DVec3};
+
+use super::*;
+use crate::ClimberState;
+
+#[test]
+fn falls_by_semi_implicit_euler_and_lands_where_it_touches() {
+    let ground = level();
+    let mut climber = climber_at(1.0, 3.4, 2.0);
+    let mut expected = 3.4;
+    for tick in 1..=30 {
+        let report = step_on(&mut climber, &ground, &IDLE);
+        expected -= 9.81 * DT * DT * f64::from(tick);
+        assert!(report.events.is_empty());
+        assert!(
+            (climber.state().position.y - expected).abs() < 1e-9,
+            "tick {tick}"
+        );
+    }
+    let mut events = Vec::new();
+    for _ in 0..60 {
+        events.extend(step_on(&mut climber, &ground, &IDLE).events);
+    }
+    // From 3 m: the square root of 2 g h.
+    let [ClimberEvent::Landed { speed, .. }, change] = events[..] else {
+        panic!("{events:?}");
+    };
+    assert!((speed - 7.67).abs() < 0.2, "{speed}");
+    assert_eq!(change, changed(ClimberMode::Falling, ClimberMode::Standing));
+    let at = climber.state().position;
+    assert!((at - DVec3::new(1.0, 0.4, 2.0)).length() < 1e-6, "{at}");
+    assert_eq!(climber.state().velocity, DVec3::ZERO);
+}
+
+#[test]
+fn lands_on_level_ground_at_any_height_and_on_any_scale() {
+    // Skin is posed in f32: what touches is off by its rounding, which grows with its coordinates.
+    for height in [0.3, 7.7, 40.3, 99.9, 300.1, 1000.7] {
+        for shift in 0..20 {
+            let mut ground = level();
+            let floor = height + f64::from(shift) * 0.137;
+            pose(&mut ground, &DAffine3::from_translation(DVec3::Y * floor));
+            let climber = landed(1.0, floor + 1.0, 2.0, &ground);
+            let off = climber.state().position.y - floor - 0.4;
+            assert!(off.abs() < 1e-4, "at {floor}: {off}");
+        }
+    }
+}
+
+#[test]
+fn lands_on_the_point_that_is_underfoot_not_on_the_one_that_it_met_first() {
+    let mut ground = level();
+    let mut climber = climber_at(0.0, 1.0, 0.0);
+    let state = ClimberState {
+        velocity: DVec3::new(6.0, -3.0, -2.0),
+        ..*climber.state()
+    };
+    climber.restore(state).unwrap();
+    for tick in 1..30 {
+        let along = DVec3::new(-4.0, 1.0, 3.0) * (f64::from(tick) * DT);
+        pose(&mut ground, &DAffine3::from_translation(along));
+        step_on(&mut climber, &ground, &IDLE);
+        let state = climber.state();
+        if let Some(support) = state.support {
+            let off = support.contact - (state.position - DVec3::Y * 0.4);
+            assert!(off.length() < 1e-5, "tick {tick}: {off}");
+            return;
+        }
+    }
+    panic!("never landed: {:?}", climber.state());
+}
+
+#[test]
+fn a_jump_keeps_the_velocity_of_what_it_leaves_and_reaches_its_height() {
+    let mut raft = level();
+    let mut climber = landed(0.0, 0.5, 0.0, &raft);
+    let mut x = 0.0;
+    let mut drift = |raft: &mut SkinnedSurface| {
+        x += 2.0 * DT;
+        pose(raft, &DAffine3::from_translation(DVec3::X * x));
+    };
+    for _ in 0..5 {
+        drift(&mut raft);
+        step_on(&mut climber, &raft, &IDLE);
+    }
+    drift(&mut raft);
+    let jump = ClimberInput { jump: true, ..IDLE };
+    let report = step_on(&mut climber, &raft, &jump);
+    let change = changed(ClimberMode::Standing, ClimberMode::Falling);
+    assert_eq!(report.events, [ClimberEvent::Jumped, change]);
+    let mut highest = 0.0f64;
+    for _ in 0..30 {
+        drift(&mut raft);
+        step_on(&mut climber, &raft, &IDLE);
+        highest = highest.max(climber.state().position.y - 0.4);
+        assert!((climber.state().velocity.x - 2.0).abs() < 1e-3);
+    }
+    // v^2 / 2 g, less what semi-implicit Euler gives away in half a tick.
+    assert!((highest - 25.0 / 19.62).abs() < 5.0 * DT, "{highest}");
+}
+
+#[test]
+fn too_steep_slopes_are_slid_down() {
+    let steep = trough(60.0);
+    let mut climber = climber_at(8.0, 14.8, 0.0);
+    let mut before = *climber.state();
+    let mut slid = 0;
+    for tick in 0..60 {
+        step_on(&mut climber, &steep, &IDLE);
+        let state = climber.state();
+        if before.mode == ClimberMode::Sliding {
+            assert_eq!(state.mode, ClimberMode::Sliding, "tick {tick}: {state:?}");
+            // Down the slope, without friction.
+            let gained = (state.velocity - before.velocity).length() / DT;
+            let expected = 9.81 * libm::sin(60f64.to_radians());
+            assert!((gained - expected).abs() < 0.01, "tick {tick}: {gained}");
+            slid += 1;
+        }
+        before = *state;
+    }
+    assert!(slid > 40, "slid for {slid} ticks");
+    let at = climber.state().position;
+    assert!(at.x > 1.0 && at.x < 7.0, "slid to {at}");
+}
+
+#[test]
+fn a_v_of_steep_slopes_supports_in_its_middle() {
+    let steep = trough(60.0);
+    let mut climber = climber_at(2.0, 4.5, 0.0);
+    let mut events = Vec::new();
+    for _ in 0..180 {
+        events.extend(step_on(&mut climber, &steep, &IDLE).events);
+    }
+    let state = climber.state();
+    assert_eq!(state.mode, ClimberMode::Standing, "{events:?} {state:?}");
+    // It touches both sides.
+    let middle = DVec3::Y * (0.4 / libm::cos(60f64.to_radians()));
+    assert!((state.position - middle).length() < 2e-3, "{state:?}");
+    assert_eq!(state.velocity, DVec3::ZERO);
+    let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
+    assert_eq!(events.iter().filter(landed).count(), 1, "{events:?}");
+    let slid = changed(ClimberMode::Falling, ClimberMode::Sliding);
+    assert!(events.contains(&slid), "{events:?}");
+}
+
+#[test]
+fn a_fast_fall_does_not_pass_through() {
+    let ground = level();
+    let mut climber = climber_at(0.2, 100.0, 0.3);
+    climber
+        .restore(ClimberState {
+            velocity: DVec3::new(0.0, -300.0, 0.0),
+            ..*climber.state()
+        })
+        .unwrap();
+    for _ in 0..60 {
+        step_on(&mut climber, &ground, &IDLE);
+        assert!(climber.state().position.y > 0.0);
+    }
+    assert_eq!(climber.state().mode, ClimberMode::Standing);
+}
