@@ -182,3 +182,6 @@ fn farthest(points: impl Iterator<Item = DVec3>, direction: DVec3) -> DVec3 {
     }
     best.1
 }
+
+#[cfg(test)]
+mod tests;

@@ -19,7 +19,7 @@ const MEETING: f64 = 1e-14;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shapes) struct Nearest {
     pub(in crate::shapes) on_core: DVec3,
-    /// Unit vector from the core's to the segment's.
+    /// Unit vector from the core's to the segment's: of all directions tried that of the widest gap.
     pub(in crate::shapes) normal: DVec3,
     pub(in crate::shapes) distance: f64,
 }
@@ -41,6 +41,8 @@ impl Convex<'_> {
         let mut simplex = Simplex::new(corner(guess));
         let mut best = simplex.nearest();
         let mut size = best.on_core.length() + best.on_axis.length();
+        // The widest gap along a direction so far, and that direction.
+        let (mut gap, mut normal) = (f64::NEG_INFINITY, DVec3::Y);
         for _ in 0..ROUNDS {
             let length_sq = best.apart.length_squared();
             if length_sq <= (size * MEETING) * (size * MEETING) {
@@ -48,11 +50,16 @@ impl Convex<'_> {
             }
             let next = corner(-best.apart);
             size = size.max(next.on_core.length() + next.on_axis.length());
-            let gain = length_sq - best.apart.dot(next.apart);
-            if gain <= length_sq * GAIN || simplex.has(&next) {
+            let kept = best.apart.dot(next.apart);
+            let length = length_sq.sqrt();
+            if kept / length > gap {
+                (gap, normal) = (kept / length, -best.apart / length);
+            }
+            if length_sq - kept <= length_sq * GAIN || simplex.has(&next) {
                 break;
             }
-            let wider = simplex.with(next)?;
+            // What a plane parts does not meet, whatever rounding makes of four corners that are all but flat.
+            let wider = simplex.with(next, gap > 0.0)?;
             let nearest = wider.nearest();
             // Rounding allows no more.
             if nearest.apart.length_squared() >= length_sq {
@@ -60,11 +67,10 @@ impl Convex<'_> {
             }
             (simplex, best) = (wider, nearest);
         }
-        let distance = best.apart.length();
         Some(Nearest {
             on_core: best.on_core,
-            normal: -best.apart / distance,
-            distance,
+            normal,
+            distance: best.apart.length(),
         })
     }
 }

@@ -31,8 +31,8 @@ impl Simplex {
     }
 
     /// With one corner more, reduced to those that carry the point nearest to the origin. `None` if the origin lies
-    /// inside.
-    pub(super) fn with(&self, corner: Corner) -> Option<Self> {
+    /// inside, which is not asked where it is known to be apart: four corners of a rim are all but flat.
+    pub(super) fn with(&self, corner: Corner, apart: bool) -> Option<Self> {
         let mut all = *self;
         all.corners[all.count] = corner;
         all.count += 1;
@@ -41,7 +41,7 @@ impl Simplex {
             2 => Nearest::of_segment(p, [0, 1]),
             3 => Nearest::of_triangle(p, [0, 1, 2]),
             _ => {
-                if is_inside(p) {
+                if !apart && is_inside(p) {
                     return None;
                 }
                 let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
