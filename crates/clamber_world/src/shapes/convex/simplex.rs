@@ -1,11 +1,10 @@
 use glam::DVec3;
 
-/// A point of the difference of core and segment, and the points that it is the difference of.
+/// A point of the difference of core and segment, and where the core's lies at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Corner {
     pub(super) apart: DVec3,
     pub(super) on_core: DVec3,
-    pub(super) on_axis: DVec3,
 }
 
 /// Up to four corners, and the weights of their point nearest to the origin.
@@ -66,7 +65,6 @@ impl Simplex {
         for (corner, weight) in self.corners.iter().zip(self.weights).take(self.count) {
             sum.apart += corner.apart * weight;
             sum.on_core += corner.on_core * weight;
-            sum.on_axis += corner.on_axis * weight;
         }
         sum
     }

@@ -8,7 +8,7 @@ use clamber_surface::parry::parry3d::shape::{
 };
 use glam::{DQuat, DVec3, Vec3};
 
-use super::Convex;
+use super::{Convex, Moving};
 
 /// A shape, and how far a point outside of its core is from that by another road; 0 inside.
 struct Case {
@@ -87,7 +87,12 @@ fn to_hull(faces: &[[Vec3; 3]], p: DVec3) -> f64 {
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         inside &= (b - a).cross(c - a).dot(p - a) <= 0.0;
         let still = MovingCapsule::ball(p, DVec3::ZERO, 0.0);
-        nearest = nearest.min(still.nearest_of_triangle(corners).unwrap().distance);
+        nearest = nearest.min(
+            still
+                .nearest_of_triangle(corners.map(|p| p.as_dvec3()))
+                .unwrap()
+                .distance,
+        );
     }
     if inside { 0.0 } else { nearest }
 }
@@ -165,7 +170,10 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
             }),
             Box::new(move |p| {
                 let still = MovingCapsule::ball(p, DVec3::ZERO, 0.0);
-                still.nearest_of_triangle(corners).unwrap().distance
+                still
+                    .nearest_of_triangle(corners.map(|p| p.as_dvec3()))
+                    .unwrap()
+                    .distance
             }),
         ),
         case(

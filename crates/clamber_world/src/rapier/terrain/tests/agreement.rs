@@ -159,7 +159,7 @@ fn overlaps_are_the_same() {
             }
         }
     }
-    assert!(found > 1_000, "{found}");
+    assert!(found > 500, "{found}");
 }
 
 /// How two answers to one question differ.
@@ -275,24 +275,36 @@ fn sweeps_of_what_slides_are_the_same() {
 }
 
 #[test]
-fn sweeps_of_what_turns_differ_by_what_is_said_of_turns() {
+fn sweeps_of_what_turns_are_the_same() {
     let mut rng = fastrand::Rng::with_seed(64);
     let mut tally = Tally::default();
-    for _ in 0..60 {
+    for round in 0..60 {
         for origin in ORIGINS {
-            let angle = 0.05;
-            let places = places(&mut rng, angle);
+            let places = places(&mut rng, [0.05, 0.5, 2.0][round % 3]);
             let both = Both::new(&mut rng, origin, places);
             for _ in 0..20 {
                 let capsule = capsule(&mut rng, origin);
                 let by = random_point(&mut rng, 3.0);
                 let skin = Obstacle::sweep_capsule(&both.surface, &capsule, by);
                 let body = both.terrain().sweep_capsule(&capsule, by);
-                // Skin goes straight as the present pose sees it, capsules as the body does: each may be off by as
-                // much, seen from up to six metres.
-                let off = 2.0 * 6.0 * (1.0 - libm::cos(angle * 0.5));
-                let slide = places[1].translation - places[0].translation;
-                tally.compare([skin, body], &capsule, by - slide.as_dvec3(), 1.2e-4 + off);
+                // How fast they close on each other is not asked of what turns.
+                let off = |a: SweepContact, b: SweepContact| (a.time - b.time).abs();
+                match (skin, body) {
+                    (Some(a), Some(b)) => {
+                        tally.met += 1;
+                        tally.inside += u32::from(a.started_inside);
+                        tally.grazed += u32::from(off(a, b) > 2e-4);
+                        assert!(off(a, b) < 5e-3, "{capsule:?} {by}: {a:?} {b:?}");
+                        let reach = capsule.radius + 1.1e-4;
+                        assert!(b.contact.distance <= reach, "{capsule:?} {by}: {b:?}");
+                        let axis = capsule.moved(by * b.time);
+                        let apart = axis.nearest_on_axis(b.contact.point) - b.contact.point;
+                        let seen = apart - b.away * b.contact.distance;
+                        assert!(seen.length() < 1e-6, "{capsule:?} {by}: {seen} {b:?}");
+                    }
+                    (None, None) => {}
+                    _ => tally.grazed += 1,
+                }
             }
         }
     }
@@ -301,5 +313,5 @@ fn sweeps_of_what_turns_differ_by_what_is_said_of_turns() {
         inside,
         grazed,
     } = tally;
-    assert!(met > 500 && inside > 50 && grazed < 25, "{tally:?}");
+    assert!(met > 500 && inside > 50 && grazed < 10, "{tally:?}");
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::shapes::RigidPose;
 
 const TOLERANCE: f64 = 1e-4;
 
@@ -31,7 +32,7 @@ fn contacts_are_never_late_and_always_near() {
             let convex = case.convex();
             let name = case.name;
             let reach = radius + convex.round;
-            let touch = convex.advance(&path, TOLERANCE, 1.0);
+            let touch = Moving::still(&convex).advance(&path, TOLERANCE, 1.0);
             let until = touch.as_ref().map_or(1.0, |touch| touch.time);
             // Nothing before: where the distance is least between steps, too.
             let (mut time, fastest) = (0.0, speed(&path));
@@ -74,7 +75,7 @@ fn what_slides_along_a_side_or_leaves_is_no_contact() {
     let convex = Convex::new(&*side).unwrap();
     let along = |height: f64, by: DVec3| {
         let path = MovingCapsule::ball(DVec3::new(-40.0, height, 0.0), by, 0.5);
-        convex
+        Moving::still(&convex)
             .advance(&path, TOLERANCE, 1.0)
             .map(|touch| touch.time)
     };
@@ -103,7 +104,7 @@ fn nothing_later_than_the_limit_is_said_and_all_before_is() {
             let path = path(&mut rng, 0.2);
             let convex = case.convex();
             let time = |limit: f64| {
-                let touch = convex.advance(&path, TOLERANCE, limit);
+                let touch = Moving::still(&convex).advance(&path, TOLERANCE, limit);
                 touch.map(|touch| touch.time)
             };
             let Some(all) = time(1.0) else { continue };
@@ -113,4 +114,71 @@ fn nothing_later_than_the_limit_is_said_and_all_before_is() {
             assert!(none, "{} {round} {path:?}: {before:?} {all}", case.name);
         }
     }
+}
+
+#[test]
+fn solids_that_turn_are_met_in_time_as_well() {
+    let mut rng = fastrand::Rng::with_seed(57);
+    let (mut met, mut missed, mut undecided) = (0, 0, 0);
+    for round in 0..100 {
+        for case in cases(&mut rng) {
+            let radius = [0.0, 0.05, 0.4][rng.usize(0..3)];
+            let path = path(&mut rng, radius);
+            let convex = case.convex();
+            let angle = [0.1, 0.6, 1.5][rng.usize(0..3)];
+            let axis = direction(&mut rng);
+            let moving = Moving {
+                convex: &convex,
+                before: Some(RigidPose {
+                    rotation: clamber_surface::geometry::rotation_from_axis_angle(axis, angle),
+                    translation: point(&mut rng, 2.0),
+                }),
+            };
+            let name = case.name;
+            let input = (name, round, &path, moving.before);
+            let touch = moving.advance(&path, TOLERANCE, 1.0);
+            let until = touch.as_ref().map_or(1.0, |touch| touch.time);
+            let reach = radius + convex.round;
+            let gap = |time: f64| {
+                let nearest = moving.nearest(time, path.at(time), DVec3::ZERO);
+                let Some(nearest) = nearest else {
+                    return -reach;
+                };
+                // Both are where it says, and a plane parts them.
+                let normal = nearest.normal;
+                let ends = path.at(time).map(|end| end.dot(normal));
+                let extent = moving.point(time, moving.support(time, normal)).dot(normal);
+                let parted = ends[0].min(ends[1]) - extent;
+                let distance = nearest.distance;
+                assert!(
+                    (parted - distance).abs() < 1e-7,
+                    "{input:?} {time}: {parted} {nearest:?}"
+                );
+                distance - reach
+            };
+            let steps = if until > 0.0 { 300 } else { 0 };
+            for step in 0..steps {
+                let time = until * f64::from(step) / 300.0;
+                assert!(
+                    gap(time) > -2e-7,
+                    "{input:?}: {} at {time}, before {until}",
+                    gap(time)
+                );
+            }
+            let Some(touch) = touch else {
+                missed += 1;
+                continue;
+            };
+            met += 1;
+            undecided += u32::from(touch.undecided);
+            assert!(
+                touch.undecided || gap(until) < TOLERANCE + 1e-7,
+                "{input:?}: {until}"
+            );
+        }
+    }
+    assert!(
+        met > 100 && missed > 200 && undecided == 0,
+        "{met} {missed} {undecided}"
+    );
 }
