@@ -149,11 +149,9 @@ impl<'a> RapierTerrain<'a> {
             let handles = bodies.flat_map(|body| body.colliders().iter().copied());
             let moved = handles.filter_map(|handle| {
                 let collider = self.colliders.get(handle)?;
-                let tick = Tick {
-                    before: self.previous_pose(collider)?,
-                    now: pose_of(collider.position()),
-                };
-                Some((handle, Moved::new(collider.shape(), tick)))
+                let before = self.previous_pose(collider)?;
+                let now = pose_of(collider.position());
+                Some((handle, Moved::new(collider.shape(), before, now)))
             });
             moved.collect()
         })
@@ -225,16 +223,7 @@ impl Obstacle for RapierTerrain<'_> {
             let pose = pose_of(collider.position());
             let ends = local.ends.map(|end| pose.inverse_transform(end));
             overlap_shape(collider.shape(), ends, radius, &mut |found| {
-                contacts.push(Contact {
-                    point: pose.transform(found.point) + self.origin,
-                    normal: (pose.rotation * found.normal).normalize_or(DVec3::Y),
-                    distance: found.distance,
-                    material: MaterialPoint {
-                        key: key_of(handle),
-                        coordinates: found.point.to_array(),
-                    },
-                    tag: SurfaceTag::default(),
-                });
+                contacts.push(found.in_world(&pose, self.origin, key_of(handle)));
             });
         }
         sort_contacts(&mut contacts[start..]);
@@ -253,7 +242,7 @@ impl Obstacle for RapierTerrain<'_> {
         });
         let queries = self.queries();
         for (handle, moved) in self.moved() {
-            if first.may_meet_moved(moved)
+            if first.may_meet(&moved.bounds)
                 && let Some(collider) = self.colliders.get(*handle)
                 && collider.is_enabled()
                 && queries.filter.test(self.bodies, *handle, collider)
