@@ -3,7 +3,7 @@
 mod route;
 mod stage;
 
-pub use route::Route;
+pub use route::{Route, Ways};
 pub use stage::{Motion, Stage};
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};

@@ -1,16 +1,30 @@
-//! The shortest way over a mesh, along its edges at rest (Dijkstra 1959).
+//! Ways over a creature: the shortest ones along its edges at rest (Dijkstra 1959).
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use clamber_surface::mesh::{ColliderMesh, VertexId};
+use clamber_surface::mesh::VertexId;
 use glam::Vec3;
+
+use crate::{Creature, CreatureError};
+
+/// Pieces that are no farther apart than this share of the creature's height are climbed between.
+const GAP: f32 = 0.04;
 
 /// A way over a creature, from vertex to vertex.
 #[derive(Clone, Debug)]
 pub struct Route {
-    /// Along edges, from the first to the last.
+    /// Neighbours by edges, or across gaps between pieces.
     pub waypoints: Vec<VertexId>,
+}
+
+/// All ways over a creature.
+#[derive(Clone, Debug)]
+pub struct Ways {
+    rest: Vec<Vec3>,
+    neighbours: Vec<Vec<u32>>,
+    feet: Vec<u32>,
+    heads: Vec<u32>,
 }
 
 /// A vertex on the way, nearest first.
@@ -19,57 +33,115 @@ struct Open {
     vertex: u32,
 }
 
-impl Route {
-    /// From one vertex to another, at rest; `None` where the mesh does not connect them.
-    pub fn between(
-        mesh: &ColliderMesh,
-        positions: &[Vec3],
-        from: VertexId,
-        to: VertexId,
-    ) -> Option<Self> {
-        let mut edges: Vec<Vec<u32>> = vec![Vec::new(); positions.len()];
-        for corners in mesh.triangles() {
+impl Ways {
+    /// At rest.
+    ///
+    /// # Errors
+    /// [`CreatureError`] if its rest pose does not fit it.
+    pub fn new(creature: &Creature) -> Result<Self, CreatureError> {
+        let palette = creature.skeleton.palette(&creature.skeleton.rest_pose())?;
+        let rest = clamber_surface::skin::skin(&creature.collider, palette.matrices())?;
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
+        for corners in creature.collider.triangles() {
             for k in 0..3 {
-                edges[corners[k].index()].push(corners[(k + 1) % 3].0);
-                edges[corners[(k + 1) % 3].index()].push(corners[k].0);
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                neighbours[a.index()].push(b.0);
+                neighbours[b.index()].push(a.0);
             }
         }
-        let mut best = vec![f32::INFINITY; positions.len()];
-        let mut before = vec![u32::MAX; positions.len()];
+        let used = |v: &u32| !neighbours[*v as usize].is_empty();
+        let used: Vec<u32> = (0..rest.len() as u32).filter(used).collect();
+        let heights = used.iter().map(|v| rest[*v as usize].y);
+        let low = heights.clone().fold(f32::INFINITY, f32::min);
+        let high = heights.fold(f32::NEG_INFINITY, f32::max);
+        let share = |v: u32| (rest[v as usize].y - low) / (high - low);
+        let among = |from: f32, to: f32| {
+            let within = used.iter().copied();
+            within
+                .filter(|v| (from..=to).contains(&share(*v)))
+                .collect()
+        };
+        let (feet, heads) = (among(0.02, 0.15), among(0.93, 1.0));
+        let piece = pieces(&neighbours);
+        for (index, &a) in used.iter().enumerate() {
+            for &b in &used[index + 1..] {
+                let apart = rest[a as usize].distance(rest[b as usize]);
+                if piece[a as usize] != piece[b as usize] && apart < GAP * (high - low) {
+                    neighbours[a as usize].push(b);
+                    neighbours[b as usize].push(a);
+                }
+            }
+        }
+        Ok(Self {
+            rest,
+            neighbours,
+            feet,
+            heads,
+        })
+    }
+
+    /// From a vertex near the ground to one near the top, by a seed; `None` where nothing connects them.
+    pub fn climb(&self, seed: u64) -> Option<Route> {
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let mut one_of =
+            |vertices: &[u32]| vertices.get(rng.usize(0..vertices.len().max(1))).copied();
+        (0..50).find_map(|_| {
+            let (foot, head) = (one_of(&self.feet)?, one_of(&self.heads)?);
+            self.between(foot, head)
+        })
+    }
+
+    fn between(&self, from: u32, to: u32) -> Option<Route> {
+        let mut best = vec![f32::INFINITY; self.rest.len()];
+        let mut before = vec![None; self.rest.len()];
         let mut open = BinaryHeap::new();
-        best[from.index()] = 0.0;
+        best[from as usize] = 0.0;
         open.push(Open {
             distance: 0.0,
-            vertex: from.0,
+            vertex: from,
         });
         while let Some(Open { distance, vertex }) = open.pop() {
             if distance > best[vertex as usize] {
                 continue;
             }
-            for &other in &edges[vertex as usize] {
-                let edge = positions[vertex as usize].distance(positions[other as usize]);
-                if distance + edge < best[other as usize] {
-                    best[other as usize] = distance + edge;
-                    before[other as usize] = vertex;
+            let here = self.rest[vertex as usize];
+            for &other in &self.neighbours[vertex as usize] {
+                let along = distance + here.distance(self.rest[other as usize]);
+                if along < best[other as usize] {
+                    best[other as usize] = along;
+                    before[other as usize] = Some(vertex);
                     open.push(Open {
-                        distance: distance + edge,
+                        distance: along,
                         vertex: other,
                     });
                 }
             }
         }
-        let mut waypoints = vec![to];
-        let mut vertex = to.0;
-        while vertex != from.0 {
-            vertex = before[vertex as usize];
-            if vertex == u32::MAX {
-                return None;
-            }
+        let mut waypoints = vec![VertexId(to)];
+        let mut vertex = to;
+        while vertex != from {
+            vertex = before[vertex as usize]?;
             waypoints.push(VertexId(vertex));
         }
         waypoints.reverse();
-        Some(Self { waypoints })
+        Some(Route { waypoints })
     }
+}
+
+/// For each vertex the first one that edges lead to.
+fn pieces(neighbours: &[Vec<u32>]) -> Vec<u32> {
+    let mut piece = vec![u32::MAX; neighbours.len()];
+    let mut open = Vec::new();
+    for first in 0..neighbours.len() as u32 {
+        open.push(first);
+        while let Some(vertex) = open.pop() {
+            if piece[vertex as usize] == u32::MAX {
+                piece[vertex as usize] = first;
+                open.extend(&neighbours[vertex as usize]);
+            }
+        }
+    }
+    piece
 }
 
 impl PartialEq for Open {

@@ -4,9 +4,8 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::VertexId;
 use clamber_surface::rig::{Clip, Palette, Playback};
 use clamber_surface::surface::SkinnedSurface;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::Route;
 use crate::{Creature, CreatureError};
 
 /// How a creature moves while it is climbed.
@@ -24,7 +23,6 @@ pub enum Motion {
 pub struct Stage<'a> {
     creature: &'a Creature,
     surface: SkinnedSurface,
-    rest: Vec<Vec3>,
     /// Corners of one triangle at each vertex.
     triangle_at: Vec<Option<[VertexId; 3]>>,
     scale: f64,
@@ -57,37 +55,10 @@ impl<'a> Stage<'a> {
         Ok(Self {
             creature,
             surface: SkinnedSurface::new(creature.collider.clone()),
-            rest,
             triangle_at,
             scale: height / f64::from(high - low),
             tempo,
             motion,
-        })
-    }
-
-    /// A way from a vertex near the ground to one near the top, by a seed; `None` where there is none.
-    pub fn route(&self, seed: u64) -> Option<Route> {
-        let mut rng = fastrand::Rng::with_seed(seed);
-        let height = |p: &Vec3| p.y;
-        let low = self.rest.iter().map(height).fold(f32::INFINITY, f32::min);
-        let high = self
-            .rest
-            .iter()
-            .map(height)
-            .fold(f32::NEG_INFINITY, f32::max);
-        let share = |p: &Vec3| (p.y - low) / (high - low);
-        let used = |v: &usize| self.triangle_at[*v].is_some();
-        let among = |range: std::ops::Range<f32>| -> Vec<usize> {
-            let all = (0..self.rest.len()).filter(used);
-            all.filter(|v| range.contains(&share(&self.rest[*v])))
-                .collect()
-        };
-        let (feet, heads) = (among(0.02..0.15), among(0.93..1.01));
-        (0..50).find_map(|_| {
-            let foot = feet.get(rng.usize(0..feet.len().max(1)))?;
-            let head = heads.get(rng.usize(0..heads.len().max(1)))?;
-            let ends = [*foot, *head].map(|v| VertexId(v as u32));
-            Route::between(&self.creature.collider, &self.rest, ends[0], ends[1])
         })
     }
 
