@@ -77,8 +77,8 @@ impl Step<'_> {
         self.face(walk);
         // Pressed onto the ground, so that the ground is among what it touches.
         let press = carried.support.normal_in_world() * (PRESS * self.config.body.skin_width);
-        let target = carried.position + walk * self.dt() - press;
-        let mut path = self.path(carried.start, target, carried.swept);
+        let target = carried.position + walk * self.dt();
+        let mut path = self.path(carried.start, target - press, carried.swept);
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         path.walkable = Some((self.config.up(), libm::cos(limit)));
         let moved = self.slide_along(&path);
@@ -150,11 +150,12 @@ impl Step<'_> {
             self.stand_on(carried, &touch);
             return;
         }
-        let is_steep = self
-            .world
-            .touched()
-            .iter()
-            .any(|touch| touch.away.dot(self.config.up()) > 0.0);
+        // Over the edge of level ground, the ground ends; a slope is slipped on.
+        let is_slope = |touch: &Touch| {
+            touch.away.dot(self.config.up()) > 0.0
+                && self.config.slope(touch.contact.normal) > limit
+        };
+        let is_steep = self.world.touched().iter().any(is_slope);
         self.state.velocity += walk;
         if is_steep {
             self.event(ClimberEvent::Slipped);
