@@ -82,6 +82,7 @@ impl Step<'_> {
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         path.walkable = Some((self.config.up(), libm::cos(limit)));
         let moved = self.slide_along(&path);
+        self.report.pushed_out -= press;
         self.state.position = moved.position;
         if self.step_up(carried.position, target) {
             self.find_ground(carried, walk);
@@ -170,7 +171,10 @@ impl Step<'_> {
     /// Slopes on all sides hold it up.
     fn is_wedged(&mut self, carried: &Carried) -> bool {
         let down = carried.position - self.config.up() * self.config.body.skin_width;
+        // A trial, that moves nothing.
+        let pushed_out = self.report.pushed_out;
         self.slide(carried.start, down, carried.swept);
+        self.report.pushed_out = pushed_out;
         self.held_up_by(0.0).is_some()
     }
 

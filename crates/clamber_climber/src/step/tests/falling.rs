@@ -140,6 +140,8 @@ fn a_v_of_steep_slopes_supports_in_its_middle() {
     let middle = DVec3::Y * (0.4 / libm::cos(60f64.to_radians()));
     assert!((state.position - middle).length() < 2e-3, "{state:?}");
     assert_eq!(state.velocity, DVec3::ZERO);
+    let report = step_on(&mut climber, &steep, &IDLE);
+    assert!(report.pushed_out.length() < 1e-4, "{report:?}");
     let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
     assert_eq!(events.iter().filter(landed).count(), 1, "{events:?}");
     let slid = changed(ClimberMode::Falling, ClimberMode::Sliding);

@@ -18,6 +18,8 @@ fn walks_at_its_speed_along_the_surface() {
         for _ in 0..60 {
             let report = step_on(&mut climber, &slope, &walk);
             assert!(report.events.is_empty(), "{degrees}: {report:?}");
+            // Nothing is in the way.
+            assert!(report.pushed_out.length() < 2e-5, "{degrees}: {report:?}");
         }
         let way = climber.state().position - from;
         assert!((way.length() - 1.5).abs() < 1e-3, "{degrees}: {way}");
