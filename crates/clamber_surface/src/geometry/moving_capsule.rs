@@ -172,3 +172,113 @@ impl MovingCapsule {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::point;
+
+    fn random(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
+        point(rng, 1.0).as_dvec3() * size
+    }
+
+    /// Of f64 that no f32 holds.
+    fn case(rng: &mut fastrand::Rng, is_ball: bool) -> (MovingCapsule, [[DVec3; 3]; 2]) {
+        let offset = random(rng, 1.0) * [0.0, 1e3][rng.usize(0..2)];
+        let a = random(rng, 2.0) + offset;
+        let by = random(rng, 3.0);
+        let along = if is_ball {
+            DVec3::ZERO
+        } else {
+            random(rng, 1.0)
+        };
+        let turned = if is_ball {
+            DVec3::ZERO
+        } else {
+            random(rng, 1.0)
+        };
+        let capsule = MovingCapsule {
+            start: [a, a + along],
+            end: [a + by, a + by + turned],
+            radius: rng.f64() * 0.3,
+        };
+        let corners = [(); 2].map(|()| [(); 3].map(|()| random(rng, 1.5) + offset));
+        (capsule, corners)
+    }
+
+    #[test]
+    fn no_touch_is_late_and_all_are_near() {
+        let mut rng = fastrand::Rng::with_seed(91);
+        let (mut met, mut missed) = (0, 0);
+        for round in 0..3_000 {
+            let (capsule, corners) = case(&mut rng, round % 2 == 0);
+            let touch = capsule.cast_at_triangle(corners, 1e-4, 1.0);
+            let gap = |time: f64| {
+                let [first, last] = corners;
+                let then = [0, 1, 2].map(|k| first[k] * (1.0 - time) + last[k] * time);
+                let still = MovingCapsule {
+                    start: capsule.at(time),
+                    end: capsule.at(time),
+                    ..capsule
+                };
+                still.nearest_of_triangle(then).unwrap().distance - capsule.radius
+            };
+            let until = touch.map_or(1.0, |touch| touch.time);
+            let inside = touch.is_some_and(|touch| touch.started_inside);
+            for step in 0..200 {
+                let time = until * f64::from(step) / 200.0;
+                let apart = gap(time);
+                assert!(
+                    inside || apart > -1e-9,
+                    "{round} {capsule:?}: {apart} at {time}"
+                );
+            }
+            let Some(touch) = touch else {
+                missed += 1;
+                continue;
+            };
+            met += 1;
+            let apart = gap(touch.time);
+            assert!(
+                apart <= 1e-4 + 1e-9 && !touch.undecided,
+                "{round} {touch:?}: {apart}"
+            );
+            assert_eq!(
+                inside,
+                touch.time == 0.0 && apart <= 0.0,
+                "{round} {touch:?}"
+            );
+            // Point, direction and distance agree with where the segment is then.
+            let [a, b] = capsule.at(touch.time);
+            let on_axis = a + (b - a) * touch.on_axis;
+            let off = touch.point + touch.away * touch.distance - on_axis;
+            assert!(off.length() < 1e-9, "{round} {touch:?}: {off}");
+        }
+        assert!(met > 150 && missed > 500, "{met} {missed}");
+    }
+
+    #[test]
+    fn what_is_not_finite_or_negative_touches_nothing() {
+        let mut rng = fastrand::Rng::with_seed(92);
+        let (mut capsule, corners) = case(&mut rng, false);
+        capsule.start[0] = corners[0][0];
+        assert!(capsule.cast_at_triangle(corners, 1e-4, 1.0).is_some());
+        for bad in [f64::NAN, f64::INFINITY, -1.0, 1e300] {
+            let radius = MovingCapsule {
+                radius: bad,
+                ..capsule
+            };
+            assert_eq!(radius.cast_at_triangle(corners, 1e-4, 1.0), None, "{bad}");
+            assert_eq!(capsule.cast_at_triangle(corners, bad, 1.0), None, "{bad}");
+            if bad != -1.0 {
+                let mut broken = corners;
+                broken[1][2].y = bad;
+                assert_eq!(capsule.cast_at_triangle(broken, 1e-4, 1.0), None, "{bad}");
+                assert_eq!(capsule.nearest_of_triangle(broken[1]), None, "{bad}");
+                let mut broken = capsule;
+                broken.end[1].z = bad;
+                assert_eq!(broken.cast_at_triangle(corners, 1e-4, 1.0), None, "{bad}");
+            }
+        }
+    }
+}
