@@ -17,7 +17,7 @@ pub use obstacle::{
     Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
 };
 #[cfg(feature = "rapier")]
-pub use rapier::{BodyPoses, RapierTerrain};
+pub use rapier::{BodyPoses, RapierTerrain, apply_push};
 /// The rapier that [`RapierTerrain`] speaks to.
 #[cfg(feature = "rapier")]
 pub use rapier3d;

@@ -17,7 +17,7 @@ mod sheared_ray;
 pub(crate) use advance::{Contact, MovingCore, advance, advance_eight};
 pub(crate) use eight::{Corners8, EIGHT, Points8, closest_points, closest_to_segments};
 pub(crate) use point::closest_point;
-pub(crate) use segment::closest_to_segment;
+pub(crate) use segment::{closest_to_segment, nearest_to_axis};
 pub(crate) use sheared_ray::{ShearedRay, intersect_sheared};
 
 use glam::{DVec3, Vec3};

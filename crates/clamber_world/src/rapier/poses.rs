@@ -1,4 +1,4 @@
-use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet};
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::math::Pose;
 
 /// Where the bodies of a rapier world stood before a step.
@@ -49,5 +49,16 @@ impl BodyPoses {
             })
             .ok()?;
         Some(&self.poses[index].1)
+    }
+
+    /// Bodies that are elsewhere than they were.
+    pub(super) fn moved<'a>(
+        &'a self,
+        bodies: &'a RigidBodySet,
+    ) -> impl Iterator<Item = &'a RigidBody> {
+        self.poses.iter().filter_map(|(handle, before)| {
+            let body = bodies.get(*handle)?;
+            (body.position() != before).then_some(body)
+        })
     }
 }

@@ -1,14 +1,20 @@
+use std::sync::OnceLock;
+
 use clamber_surface::mesh::SurfaceTag;
 use glam::DVec3;
 use rapier3d::dynamics::RigidBodySet;
-use rapier3d::geometry::{Aabb, BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, Ray};
+use rapier3d::geometry::{BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, Ray};
 use rapier3d::math::{Pose, Vector};
+use rapier3d::parry::partitioning::TraversalAction;
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
-use crate::shapes::{RigidPose, closest_by_overlap, overlap_shape, sort_contacts};
-use crate::{Contact, MaterialPoint, Obstacle, PointMotion};
+use super::push::push_response;
+use crate::shapes::{
+    FirstContact, Moved, Reach, RigidPose, Tick, closest_by_overlap, overlap_shape, sort_contacts,
+};
+use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
@@ -17,6 +23,20 @@ const LOOSE: f32 = 1e-4;
 
 /// Whether a collider is seen. Terrain is asked from many threads at once, so this is too; `QueryFilter` need not be.
 type Filter<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync);
+
+pub(super) fn pose_of(pose: &Pose) -> RigidPose {
+    RigidPose::new(pose.rotation, pose.translation)
+}
+
+fn key_of(handle: ColliderHandle) -> u64 {
+    let (index, generation) = handle.into_raw_parts();
+    u64::from(generation) << 32 | u64::from(index)
+}
+
+/// The collider that a point lies on.
+pub(super) fn handle_of(point: &MaterialPoint) -> ColliderHandle {
+    ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32)
+}
 
 /// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
 /// without sensors.
@@ -31,6 +51,8 @@ pub struct RapierTerrain<'a> {
     filter: Option<Filter<'a>>,
     before: &'a BodyPoses,
     origin: DVec3,
+    /// Made when first asked for.
+    moved: OnceLock<Vec<(ColliderHandle, Moved)>>,
 }
 
 impl<'a> RapierTerrain<'a> {
@@ -49,6 +71,7 @@ impl<'a> RapierTerrain<'a> {
             filter: None,
             before,
             origin: DVec3::ZERO,
+            moved: OnceLock::new(),
         }
     }
 
@@ -98,18 +121,62 @@ impl<'a> RapierTerrain<'a> {
         normal: Vector,
         distance: f64,
     ) -> Contact {
-        let (index, generation) = handle.into_raw_parts();
         let on_collider = collider.position().inverse_transform_point(point);
         Contact {
             point: point.as_dvec3() + self.origin,
             normal: normal.as_dvec3().normalize_or(DVec3::Y),
             distance,
             material: MaterialPoint {
-                key: u64::from(generation) << 32 | u64::from(index),
+                key: key_of(handle),
                 coordinates: on_collider.as_dvec3().to_array(),
             },
             tag: SurfaceTag::default(),
         }
+    }
+
+    /// Where a collider was; `None` if it has not moved.
+    fn previous_pose(&self, collider: &Collider) -> Option<RigidPose> {
+        let on_body = collider.position_wrt_parent()?;
+        let body = self.before.get(collider.parent()?)?;
+        // By rapier's own arithmetic, so that what stands still has not moved by rounding.
+        let has_moved = *body * *on_body != *collider.position();
+        has_moved.then(|| pose_of(body).then(&pose_of(on_body)))
+    }
+
+    fn moved(&self) -> &[(ColliderHandle, Moved)] {
+        self.moved.get_or_init(|| {
+            let bodies = self.before.moved(self.bodies);
+            let handles = bodies.flat_map(|body| body.colliders().iter().copied());
+            let moved = handles.filter_map(|handle| {
+                let collider = self.colliders.get(handle)?;
+                let tick = Tick {
+                    before: self.previous_pose(collider)?,
+                    now: pose_of(collider.position()),
+                };
+                Some((handle, Moved::new(collider.shape(), tick)))
+            });
+            moved.collect()
+        })
+    }
+
+    /// Tries what the broad phase finds in the way, as it stands now, if it is to be tried.
+    fn meet_near(&self, first: &mut FirstContact, is_tried: impl Fn(&Collider) -> bool) {
+        let queries = self.queries();
+        queries.bvh.traverse(|node| {
+            if !first.may_meet(&node.aabb()) {
+                return TraversalAction::Prune;
+            }
+            let leaf = node.leaf_data();
+            let collider = leaf.and_then(|leaf| self.colliders.get_unknown_gen(leaf));
+            if let Some((collider, handle)) = collider
+                && queries.filter.test(self.bodies, handle, collider)
+                && is_tried(collider)
+            {
+                let tick = Tick::still(pose_of(collider.position()));
+                first.meet(collider.shape(), &tick, key_of(handle));
+            }
+            TraversalAction::Continue
+        });
     }
 
     /// A radius about `point` that reaches everything.
@@ -147,43 +214,69 @@ impl Obstacle for RapierTerrain<'_> {
         })
     }
 
-    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
-        let Some(local) = self.local(center) else {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let local = capsule.moved(-self.origin);
+        let radius = capsule.radius;
+        let Some(reach) = Reach::around(local.ends, radius) else {
             return;
         };
-        let radius = radius as f32;
-        if radius.is_nan() || radius < 0.0 {
-            return;
-        }
         let start = contacts.len();
-        let reach = Vector::splat(radius);
-        let near = Aabb::new(local - reach, local + reach);
-        for (handle, collider) in self.queries().intersect_aabb_conservative(near) {
-            let pose = collider.position();
-            let on_shape = pose.inverse_transform_point(local);
-            overlap_shape(collider.shape(), on_shape, radius, &mut |found| {
-                let point = pose.transform_point(found.point);
-                let normal = pose.transform_vector(found.normal);
-                let distance = f64::from(found.distance);
-                contacts.push(self.contact(handle, collider, point, normal, distance));
+        for (handle, collider) in self.queries().intersect_aabb_conservative(reach.bounds()) {
+            let pose = pose_of(collider.position());
+            let ends = local.ends.map(|end| pose.inverse_transform(end));
+            overlap_shape(collider.shape(), ends, radius, &mut |found| {
+                contacts.push(Contact {
+                    point: pose.transform(found.point) + self.origin,
+                    normal: (pose.rotation * found.normal).normalize_or(DVec3::Y),
+                    distance: found.distance,
+                    material: MaterialPoint {
+                        key: key_of(handle),
+                        coordinates: found.point.to_array(),
+                    },
+                    tag: SurfaceTag::default(),
+                });
             });
         }
         sort_contacts(&mut contacts[start..]);
     }
 
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        self.meet_near(&mut first, |_| true);
+        first.contact(self.origin)
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        self.meet_near(&mut first, |collider| {
+            self.previous_pose(collider).is_none()
+        });
+        let queries = self.queries();
+        for (handle, moved) in self.moved() {
+            if first.may_meet_moved(moved)
+                && let Some(collider) = self.colliders.get(*handle)
+                && collider.is_enabled()
+                && queries.filter.test(self.bodies, *handle, collider)
+            {
+                first.meet(collider.shape(), &moved.tick, key_of(*handle));
+            }
+        }
+        first.contact(self.origin)
+    }
+
+    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        push_response(self.bodies, self.colliders, point, direction)
+    }
+
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let handle = ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32);
+        let handle = handle_of(point);
         let collider = self.colliders.get(handle)?;
         let seen = self.queries().filter.test(self.bodies, handle, collider);
         if !collider.is_enabled() || !seen {
             return None;
         }
-        let pose = |pose: &Pose| RigidPose::new(pose.rotation, pose.translation);
-        let now = pose(collider.position());
-        let before = collider.parent().and_then(|body| {
-            let on_body = collider.position_wrt_parent()?;
-            Some(pose(self.before.get(body)?).then(&pose(on_body)))
-        });
+        let now = pose_of(collider.position());
+        let before = self.previous_pose(collider);
         let local = DVec3::from_array(point.coordinates);
         now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }

@@ -5,11 +5,11 @@
 //! every such pair is formed with one point on each of the two and measured, and the best is taken:
 //! no decision by sign can make the answer worse than rounding.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::TrianglePoint;
 use super::candidate::{Candidate, between, fraction};
-use super::point::{Edge, OnEdge, edges, foot, on_edges, volumes, weighted};
+use super::point::{Edge, OnEdge, edges, foot, nearest_to_origin, on_edges, volumes, weighted};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
@@ -30,6 +30,16 @@ pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> Triang
     let from_a = corners.map(|corner| Vector3::from(widen(corner) - a));
     let from_b = corners.map(|corner| Vector3::from(widen(corner) - b));
     nearest_to_segment(from_a, from_b, (b - a).into()).into()
+}
+
+/// [`closest_to_segment`] for ends in f64, which may be one point.
+pub(crate) fn nearest_to_axis(corners: [Vec3; 3], [a, b]: [DVec3; 2]) -> TrianglePoint {
+    let from = |end: DVec3| corners.map(|corner| Vector3::from(widen(corner) - end));
+    if a == b {
+        nearest_to_origin(from(a)).into()
+    } else {
+        nearest_to_segment(from(a), from(b), (b - a).into()).into()
+    }
 }
 
 /// The lexicographically smaller end first.

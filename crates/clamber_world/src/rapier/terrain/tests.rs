@@ -218,3 +218,5 @@ fn what_is_not_finite_or_gone_finds_nothing() {
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     assert!(terrain.motion(&material, 0.1).is_none());
 }
+
+mod capsules;

@@ -1,0 +1,159 @@
+//! The shortest way out of a convex core, for a segment that meets it.
+//!
+//! Along any direction, the core's extent less that of the segment's end that is farthest behind is enough of a way.
+//! Where core and segment have faces and edges only, the shortest is along the normal of a face, or upright on an edge
+//! and the segment, and each is tried. Rims are searched: what is found is a way out in any case, on a rim the shortest
+//! to within what the search resolves.
+
+use glam::DVec3;
+
+use super::{Convex, Core};
+use crate::shapes::ShapeContact;
+
+/// Directions tried around the segment, where the core has rims.
+const AROUND: u32 = 48;
+
+/// How often the best direction of a rim is refined. Each halves the step or goes on.
+const REFINEMENTS: u32 = 96;
+
+/// The first step of refining, radians; about that between the directions tried.
+const FIRST_STEP: f64 = 0.13;
+
+struct Search<'a> {
+    convex: &'a Convex<'a>,
+    ends: [DVec3; 2],
+    /// Least way so far, and along what.
+    best: (f64, DVec3),
+}
+
+impl Search<'_> {
+    fn depth(&self, direction: DVec3) -> f64 {
+        let behind = self.ends.map(|end| direction.dot(end));
+        self.convex.extent(direction) - behind[0].min(behind[1])
+    }
+
+    /// A direction of any length and its opposite; the first of equals stays.
+    fn offer(&mut self, direction: DVec3) {
+        if let Some(unit) = direction.try_normalize() {
+            for direction in [unit, -unit] {
+                let depth = self.depth(direction);
+                if depth < self.best.0 {
+                    self.best = (depth, direction);
+                }
+            }
+        }
+    }
+
+    /// Upright on an edge and on the segment.
+    fn offer_edge(&mut self, edge: DVec3) {
+        self.offer(edge.cross(self.ends[1] - self.ends[0]));
+    }
+
+    fn refine(&mut self) {
+        let mut step = FIRST_STEP;
+        for _ in 0..REFINEMENTS {
+            let (depth, at) = self.best;
+            let (u, v) = at.any_orthonormal_pair();
+            for aside in [u, v, u + v, u - v] {
+                self.offer(at + aside * step);
+                self.offer(at - aside * step);
+            }
+            if self.best.0 >= depth {
+                step *= 0.5;
+            }
+        }
+    }
+}
+
+impl Convex<'_> {
+    /// For a segment that meets the core; the distance is negative or zero.
+    pub(in crate::shapes) fn way_out(&self, ends: [DVec3; 2]) -> ShapeContact {
+        let mut search = Search {
+            convex: self,
+            ends,
+            best: (f64::INFINITY, DVec3::Y),
+        };
+        self.offer_all(&mut search);
+        let (depth, normal) = search.best;
+        let behind = ends.map(|end| normal.dot(end));
+        let deepest = ends[usize::from(behind[1] < behind[0])];
+        // Where that leaves the core beside a face, the face's point next to it.
+        let out = deepest + normal * depth;
+        let on_core = self.nearest([out; 2], normal);
+        let on_core = on_core.map_or(out, |nearest| nearest.on_core);
+        ShapeContact {
+            point: on_core + normal * self.round,
+            normal,
+            distance: -(depth.max(0.0) + self.round),
+        }
+    }
+
+    fn offer_all(&self, search: &mut Search<'_>) {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let along = search.ends[1] - search.ends[0];
+        match &self.core {
+            Core::Few(points, _) => {
+                let [a, b, c] = *points;
+                search.offer((b - a).cross(c - a));
+                for edge in [b - a, c - b, a - c] {
+                    search.offer_edge(edge);
+                    // For what is flat, or parallel to the segment, or a point.
+                    search.offer(edge.any_orthogonal_vector());
+                }
+                search.offer(along.any_orthogonal_vector());
+                for axis in axes {
+                    search.offer(axis);
+                }
+            }
+            Core::Cuboid { .. } => {
+                for axis in axes {
+                    search.offer(axis);
+                    search.offer_edge(axis);
+                }
+            }
+            Core::Polyhedron(polyhedron) => {
+                for face in polyhedron.faces() {
+                    search.offer(face.normal.as_dvec3());
+                }
+                for edge in polyhedron.edges() {
+                    search.offer_edge(edge.dir.as_dvec3());
+                }
+            }
+            Core::Cylinder { .. } => self.offer_around(DVec3::ZERO, search),
+            Core::Cone {
+                half_height,
+                radius,
+            } => self.offer_around(DVec3::Y * (*radius / (2.0 * *half_height)), search),
+            Core::Custom(_) => self.offer_around(DVec3::ZERO, search),
+        }
+    }
+
+    /// For bodies that are round about Y, whose sides rise by `rise` for each unit outwards.
+    fn offer_around(&self, rise: DVec3, search: &mut Search<'_>) {
+        for axis in [DVec3::Y, DVec3::X, DVec3::Z] {
+            search.offer(axis);
+        }
+        let [a, b] = search.ends;
+        let along = b - a;
+        let level = |v: DVec3| DVec3::new(v.x, 0.0, v.z);
+        let share = -level(a).dot(level(along)) / level(along).length_squared();
+        let nearest_to_axis = a + along
+            * if share.is_finite() {
+                share.clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+        for point in [a, b, nearest_to_axis] {
+            search.offer(level(point).normalize_or(DVec3::X) + rise);
+        }
+        search.offer_edge(DVec3::Y);
+        if let Some(unit) = along.try_normalize() {
+            let (u, v) = unit.any_orthonormal_pair();
+            for k in 0..AROUND {
+                let angle = f64::from(k) * core::f64::consts::PI / f64::from(AROUND);
+                search.offer(u * libm::cos(angle) + v * libm::sin(angle));
+            }
+        }
+        search.refine();
+    }
+}

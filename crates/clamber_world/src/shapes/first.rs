@@ -1,0 +1,112 @@
+use clamber_surface::parry::parry3d;
+use glam::DVec3;
+use parry3d::bounding_volume::Aabb;
+use parry3d::shape::Shape;
+
+use super::reach::Reach;
+use super::{Moved, TOLERANCE, Tick, sweep_shape};
+use crate::{Contact, SweepContact, WorldCapsule};
+
+/// The first contact of a capsule on its way among many shapes; in whatever order they are met, the same.
+///
+/// An engine asks its tree for what [may be met](FirstContact::may_meet), and tries that. Boxes, poses and the capsule
+/// are in the engine's own space.
+///
+/// ```
+/// use clamber_world::WorldCapsule;
+/// use clamber_world::shapes::{FirstContact, RigidPose, Tick};
+/// use clamber_surface::parry::parry3d::shape::Ball;
+/// use glam::{DQuat, DVec3};
+///
+/// let falling = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
+/// let mut first = FirstContact::new(&falling, DVec3::NEG_Y * 4.0).unwrap();
+/// let pose = RigidPose { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
+/// first.meet(&Ball::new(0.5), &Tick::still(pose), 7);
+/// let contact = first.contact(DVec3::ZERO).unwrap();
+/// assert!((contact.time - 0.5).abs() < 1e-4);
+/// assert_eq!(contact.contact.material.key, 7);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct FirstContact {
+    capsule: WorldCapsule,
+    displacement: DVec3,
+    reach: Reach,
+    first: Option<SweepContact>,
+}
+
+impl FirstContact {
+    /// Of none so far. `None` if anything is not finite, or the radius negative.
+    pub fn new(capsule: &WorldCapsule, displacement: DVec3) -> Option<Self> {
+        let [a, b] = capsule.ends;
+        let radius = capsule.radius;
+        let usable = a.is_finite() && b.is_finite() && displacement.is_finite();
+        if !usable || !(0.0..f64::INFINITY).contains(&radius) {
+            return None;
+        }
+        let path = clamber_surface::geometry::MovingCapsule {
+            start: capsule.ends,
+            end: capsule.moved(displacement).ends,
+            radius,
+        };
+        Some(Self {
+            capsule: *capsule,
+            displacement,
+            reach: Reach::new(&path, radius + 2.0 * TOLERANCE),
+            first: None,
+        })
+    }
+
+    /// The box around all of the way, and of what it reaches.
+    pub fn bounds(&self) -> Aabb {
+        self.reach.bounds()
+    }
+
+    /// Whether something in this box, which stands still, may be met before what was met so far.
+    pub fn may_meet(&self, bounds: &Aabb) -> bool {
+        self.reach.meets(bounds, self.limit())
+    }
+
+    /// [`FirstContact::may_meet`] for what moved.
+    pub fn may_meet_moved(&self, moved: &Moved) -> bool {
+        self.may_meet(&moved.bounds(&self.capsule, self.displacement))
+    }
+
+    /// Tries a shape on a body.
+    pub fn meet(&mut self, shape: &dyn Shape, tick: &Tick, key: u64) {
+        let path = tick.path(&self.capsule, self.displacement);
+        if let Some(touch) = sweep_shape(shape, &path, self.limit()) {
+            let contact = tick.contact(&touch, &self.capsule, self.displacement, key);
+            let earlier = |first: &SweepContact| precedes(&contact, first);
+            if self.first.as_ref().is_none_or(earlier) {
+                self.first = Some(contact);
+            }
+        }
+    }
+
+    /// What was met first, in the world: `origin` is where the engine's own stands in it.
+    pub fn contact(&self, origin: DVec3) -> Option<SweepContact> {
+        self.first.map(|first| SweepContact {
+            contact: Contact {
+                point: first.contact.point + origin,
+                ..first.contact
+            },
+            ..first
+        })
+    }
+
+    fn limit(&self) -> f64 {
+        self.first.map_or(1.0, |first| first.time)
+    }
+}
+
+/// By time, then distance, then key, then place.
+fn precedes(contact: &SweepContact, other: &SweepContact) -> bool {
+    let key = |sweep: &SweepContact| {
+        let Contact {
+            distance, material, ..
+        } = sweep.contact;
+        let first = (sweep.time, distance, material.key);
+        (first, material.coordinates, sweep.away.to_array())
+    };
+    key(contact) < key(other)
+}

@@ -1,0 +1,100 @@
+use clamber_surface::geometry::MovingCapsule;
+use clamber_surface::parry::parry3d;
+use glam::{DVec3, Vec3};
+use parry3d::shape::Shape;
+
+use super::convex::Convex;
+use super::parts::{Part, visit_parts};
+use super::reach::Reach;
+
+/// Where a shape is touched, in its own space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeContact {
+    /// The shape's point.
+    pub point: DVec3,
+    /// Out of the shape, of length 1.
+    pub normal: DVec3,
+    /// From the capsule's segment. Negative inside a solid: the way out is along the normal, so far.
+    pub distance: f64,
+}
+
+/// Calls `found` for every triangle of a mesh or height field and every convex part within `radius` of the segment
+/// between `ends`, all in the shape's own space, with its nearest point. The radius may be infinite; nothing is found
+/// if anything is NaN, an end not finite or the radius negative.
+pub fn overlap_shape(
+    shape: &dyn Shape,
+    ends: [DVec3; 2],
+    radius: f64,
+    found: &mut dyn FnMut(ShapeContact),
+) {
+    let still = MovingCapsule {
+        start: ends,
+        end: ends,
+        radius: 0.0,
+    };
+    let Some(reach) = Reach::around(ends, radius) else {
+        return;
+    };
+    let mut offer = |contact: Option<ShapeContact>| {
+        if let Some(contact) = contact.filter(|contact| contact.distance <= radius) {
+            found(contact);
+        }
+    };
+    visit_parts(
+        shape,
+        &reach.bounds(),
+        &|bounds| reach.meets(bounds, 1.0),
+        &mut |part| match part {
+            Part::Triangle(corners) => offer(triangle(corners, &still)),
+            Part::Convex(convex) => offer(Some(solid(&convex, ends))),
+            Part::HalfSpace(normal) => offer(Some(half_space(normal, ends))),
+            Part::Posed(pose, part) => {
+                let local = ends.map(|end| pose.inverse_transform(end));
+                overlap_shape(part, local, radius, &mut |contact| {
+                    offer(Some(ShapeContact {
+                        point: pose.transform(contact.point),
+                        normal: pose.rotation * contact.normal,
+                        ..contact
+                    }));
+                });
+            }
+        },
+    );
+}
+
+fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
+    let nearest = still.nearest_of_triangle(corners)?;
+    Some(ShapeContact {
+        point: nearest.point,
+        normal: outward(corners).unwrap_or(nearest.away),
+        distance: nearest.distance,
+    })
+}
+
+/// The counter-clockwise normal.
+pub(super) fn outward(corners: [Vec3; 3]) -> Option<DVec3> {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    (b - a).cross(c - a).try_normalize()
+}
+
+/// With the way out where they overlap.
+pub(super) fn solid(convex: &Convex<'_>, ends: [DVec3; 2]) -> ShapeContact {
+    match convex.nearest(ends, DVec3::ZERO) {
+        Some(nearest) => ShapeContact {
+            point: nearest.on_core + nearest.normal * convex.round,
+            normal: nearest.normal,
+            distance: nearest.distance - convex.round,
+        },
+        None => convex.way_out(ends),
+    }
+}
+
+pub(super) fn half_space(normal: DVec3, ends: [DVec3; 2]) -> ShapeContact {
+    let heights = ends.map(|end| normal.dot(end));
+    let lower = usize::from(heights[1] < heights[0]);
+    ShapeContact {
+        point: ends[lower] - normal * heights[lower],
+        normal,
+        distance: heights[lower],
+    }
+}

@@ -1,0 +1,66 @@
+use clamber_surface::parry::parry3d;
+use glam::{DQuat, DVec3, Quat};
+use parry3d::math::Vector;
+
+use crate::PointMotion;
+
+/// A rigid pose in f64: engines round their own in f32 with every product.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidPose {
+    /// A unit quaternion.
+    pub rotation: DQuat,
+    /// Metres.
+    pub translation: DVec3,
+}
+
+impl RigidPose {
+    /// From an engine's pose; the rotation is normalised.
+    pub fn new(rotation: Quat, translation: Vector) -> Self {
+        Self {
+            rotation: rotation.as_dquat().normalize(),
+            translation: translation.as_dvec3(),
+        }
+    }
+
+    /// This pose after `inner`.
+    #[must_use]
+    pub fn then(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            translation: self.transform(inner.translation),
+        }
+    }
+
+    /// A point of the body, in the space that the pose places it in.
+    pub fn transform(&self, point: DVec3) -> DVec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// Undoes [`RigidPose::transform`].
+    pub fn inverse_transform(&self, point: DVec3) -> DVec3 {
+        self.rotation.conjugate() * (point - self.translation)
+    }
+
+    /// How a point of the body moves that was placed by `before` a tick of `dt` seconds ago, and by `self` now.
+    /// `origin` is where the engine's own stands in the world. `None` unless `dt` is positive and the pose finite.
+    pub fn motion_since(
+        &self,
+        before: &Self,
+        local: DVec3,
+        origin: DVec3,
+        dt: f64,
+    ) -> Option<PointMotion> {
+        let position = self.transform(local) + origin;
+        let previous_position = before.transform(local) + origin;
+        let usable = dt > 0.0 && position.is_finite();
+        usable.then(|| PointMotion {
+            position,
+            previous_position,
+            velocity: (position - previous_position) / dt,
+            frame: Some(self.rotation),
+            turn: (self.rotation * before.rotation.conjugate()).normalize(),
+            area_ratio: 1.0,
+            stretches: [1.0, 1.0],
+        })
+    }
+}

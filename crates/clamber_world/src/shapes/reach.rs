@@ -1,0 +1,114 @@
+use clamber_surface::geometry::MovingCapsule;
+use clamber_surface::parry::parry3d;
+use glam::{DVec3, Vec3};
+use parry3d::bounding_volume::Aabb;
+
+/// Share of coordinates by which boxes are widened, so that none is missed by rounding of trees in f32.
+const LOOSE: f64 = 1e-6;
+
+/// Lengths beyond this count as infinite: their squares are finite in f32.
+const ENDLESS: f64 = 1e18;
+
+/// The box around a moving capsule, at both ends of its way; between them it lies between the two.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach {
+    low: [DVec3; 2],
+    high: [DVec3; 2],
+}
+
+impl Reach {
+    /// Of what comes within `distance` of the capsule's segment.
+    pub fn new(path: &MovingCapsule, distance: f64) -> Self {
+        let boxes = [path.start, path.end].map(|[a, b]| {
+            let (low, high) = (a.min(b), a.max(b));
+            let size = low.abs().max(high.abs()).max_element();
+            let around = DVec3::splat((distance + (size + distance) * LOOSE).min(ENDLESS));
+            (low - around, high + around)
+        });
+        Self {
+            low: boxes.map(|(low, _)| low),
+            high: boxes.map(|(_, high)| high),
+        }
+    }
+
+    /// Of what comes within `radius` of a segment that stands still; infinite for all. `None` if an end is not finite,
+    /// or the radius NaN or negative.
+    pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
+        let usable = ends[0].is_finite() && ends[1].is_finite() && radius >= 0.0;
+        let path = MovingCapsule {
+            start: ends,
+            end: ends,
+            radius: 0.0,
+        };
+        usable.then(|| Self::new(&path, radius))
+    }
+
+    /// Around all of the way.
+    pub fn bounds(&self) -> Aabb {
+        let down = |x: f64| (x as f32).next_down();
+        let up = |x: f64| (x as f32).next_up();
+        let low = self.low[0].min(self.low[1]).to_array().map(down);
+        let high = self.high[0].max(self.high[1]).to_array().map(up);
+        Aabb::new(Vec3::from(low), Vec3::from(high))
+    }
+
+    /// Whether the box meets another one that stands still, up to the time `limit`.
+    pub fn meets(&self, other: &Aabb, limit: f64) -> bool {
+        let (mut from, mut until) = (0.0, limit);
+        for axis in 0..3 {
+            let low = self.low.map(|low| low[axis]);
+            let high = self.high.map(|high| high[axis]);
+            let below = f64::from(other.maxs[axis]);
+            let above = f64::from(other.mins[axis]);
+            narrow(low.map(|low| below - low), &mut from, &mut until);
+            narrow(high.map(|high| high - above), &mut from, &mut until);
+        }
+        from <= until
+    }
+}
+
+/// Leaves of an interval where the line from the one value at 0 to the other at 1 is not negative, and a little more.
+fn narrow([first, last]: [f64; 2], from: &mut f64, until: &mut f64) {
+    if first < 0.0 && last < 0.0 {
+        *until = -1.0;
+    } else if first < 0.0 {
+        *from = from.max(first / (first - last) * (1.0 - LOOSE));
+    } else if last < 0.0 {
+        *until = until.min(first / (first - last) * (1.0 + LOOSE) + f64::MIN_POSITIVE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_box_is_missed_that_a_step_on_the_way_meets() {
+        let mut rng = fastrand::Rng::with_seed(41);
+        let mut point =
+            |size: f64| DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5) * 2.0 * size;
+        let (mut met, mut spared) = (0, 0);
+        for case in 0..20_000 {
+            let start = [point(3.0), point(3.0)];
+            let path = MovingCapsule {
+                start,
+                end: [start[0] + point(4.0), start[1] + point(4.0)],
+                radius: 0.3,
+            };
+            let low = point(3.0);
+            let other = Aabb::new(low.as_vec3(), (low + point(1.0).abs()).as_vec3());
+            let reach = Reach::new(&path, path.radius);
+            let steps = (0..=64).map(|step| path.at(f64::from(step) / 64.0));
+            let meets = steps.into_iter().any(|[a, b]| {
+                let (low, high) = (a.min(b) - path.radius, a.max(b) + path.radius);
+                low.cmple(other.maxs.as_dvec3()).all() && high.cmpge(other.mins.as_dvec3()).all()
+            });
+            if meets {
+                assert!(reach.meets(&other, 1.0), "case {case}: {path:?} {other:?}");
+                met += 1;
+            }
+            spared += u32::from(!reach.meets(&other, 1.0));
+        }
+        assert!(met > 2_000 && spared > 2_000, "{met} {spared}");
+    }
+}
