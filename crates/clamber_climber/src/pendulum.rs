@@ -37,7 +37,7 @@ const HALVINGS: usize = 52;
 
 /// A body at the end of an arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pendulum {
+pub(crate) struct Pendulum {
     /// From the pivot to the body's centre, metres.
     pub arm: DVec3,
     /// Of the body, relative to the pivot, metres a second.
@@ -46,7 +46,7 @@ pub struct Pendulum {
 
 /// What acts on a [`Pendulum`] for a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PendulumTick {
+pub(crate) struct PendulumTick {
     /// Greatest distance of the body from the pivot, metres. Below a nanometre the body rests at
     /// the pivot.
     pub length: f64,
@@ -62,7 +62,7 @@ pub struct PendulumTick {
 
 /// Whether an arm pulls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Arm {
+pub(crate) enum Arm {
     /// The body flies.
     #[default]
     Slack,
@@ -72,7 +72,7 @@ pub enum Arm {
 
 /// What a tick of a [`Pendulum`] did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PendulumReport {
+pub(crate) struct PendulumReport {
     /// At the end of the tick.
     pub arm: Arm,
     /// Of the arm at the end of the tick, per mass, with the mean of the pivot's pull over the tick:
@@ -88,12 +88,12 @@ impl Pendulum {
     ///
     /// A body that is farther at the start is brought in along the arm. Nothing happens if an
     /// argument or the result is not finite, or `dt` not positive.
-    pub fn step(&mut self, tick: &PendulumTick) -> PendulumReport {
+    pub(crate) fn step(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut next = *self;
         let report = next.advance(tick);
         let finite =
             next.arm.is_finite() && next.velocity.is_finite() && report.tension.is_finite();
-        if !finite || !(tick.dt > 0.0 && tick.dt.is_finite() && tick.length.is_finite()) {
+        if !(finite && tick.dt > 0.0 && tick.dt.is_finite() && tick.length.is_finite()) {
             return PendulumReport::default();
         }
         *self = next;

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// The filtered acceleration of what is held on to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shake {
+pub(crate) struct Shake {
     /// Metres a second squared, in the space of the velocities.
     pub acceleration: DVec3,
 }
@@ -18,7 +18,7 @@ impl Shake {
     ///
     /// A time constant of zero or less does not filter. Nothing changes if `dt` is not positive, or
     /// the result would not be finite.
-    pub fn step(&mut self, velocity_change: DVec3, time_constant: f64, dt: f64) {
+    pub(crate) fn step(&mut self, velocity_change: DVec3, time_constant: f64, dt: f64) {
         if !(dt > 0.0 && dt.is_finite()) {
             return;
         }
@@ -43,7 +43,7 @@ impl Shake {
 /// and loses twice that, where the trapezoid gains on the flanks what it loses on the crests.
 ///
 /// Zero if an argument is not finite or `dt` is not positive; a threshold below zero counts as zero.
-pub fn excess(before: &Shake, after: &Shake, threshold: f64, dt: f64) -> f64 {
+pub(crate) fn excess(before: &Shake, after: &Shake, threshold: f64, dt: f64) -> f64 {
     if !(threshold.is_finite() && dt > 0.0) {
         return 0.0;
     }
