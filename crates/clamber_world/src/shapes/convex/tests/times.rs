@@ -182,3 +182,52 @@ fn solids_that_turn_are_met_in_time_as_well() {
         "{met} {missed} {undecided}"
     );
 }
+
+#[test]
+fn long_levers_are_neither_late_nor_undecided() {
+    // Rods of some metres that swing about one end, or about the middle, past what is small; and what swings itself.
+    let mut rng = fastrand::Rng::with_seed(58);
+    let (mut met, mut missed) = (0, 0);
+    for round in 0..200 {
+        for case in cases(&mut rng) {
+            let pivot = point(&mut rng, 1.5);
+            let (back, ahead) = (rng.f64() * 4.0, rng.f64() * 4.0);
+            let along = direction(&mut rng);
+            let axis = along.any_orthonormal_vector();
+            let angle = 0.5 + rng.f64() * 2.4;
+            let turn = clamber_surface::geometry::rotation_from_axis_angle(axis, angle);
+            let ends = |along: DVec3| [pivot - along * back, pivot + along * ahead];
+            let path = MovingCapsule {
+                start: ends(along),
+                end: ends(turn * along),
+                radius: 0.02,
+            };
+            let convex = case.convex();
+            let moving = Moving {
+                convex: &convex,
+                before: rng.bool().then(|| RigidPose {
+                    rotation: turn.conjugate(),
+                    translation: point(&mut rng, 0.5),
+                }),
+            };
+            let input = (case.name, round, &path, moving.before);
+            let touch = moving.advance(&path, TOLERANCE, 1.0);
+            let until = touch.as_ref().map_or(1.0, |touch| touch.time);
+            let steps = if until > 0.0 { 400 } else { 0 };
+            for step in 0..steps {
+                let time = until * f64::from(step) / 400.0;
+                let nearest = moving.nearest(time, path.at(time), DVec3::ZERO);
+                let gap = nearest.map_or(0.0, |nearest| nearest.distance) - 0.02 - convex.round;
+                assert!(gap > -2e-7, "{input:?}: {gap} at {time}, before {until}");
+            }
+            match touch {
+                Some(touch) => {
+                    assert!(!touch.undecided, "{input:?} {until}");
+                    met += 1;
+                }
+                None => missed += 1,
+            }
+        }
+    }
+    assert!(met > 300 && missed > 300, "{met} {missed}");
+}
