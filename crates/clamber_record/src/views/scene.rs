@@ -179,3 +179,63 @@ fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool
     };
     named().unwrap_or(false)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clamber_climber::Climber;
+    use foxglove::messages::Vector3;
+
+    fn drawn(config: ClimberConfig, change: fn(&mut ClimberState)) -> SceneEntity {
+        let climber = Climber::new(config, DVec3::new(1.0, 2.0, 3.0)).unwrap();
+        let mut state = *climber.state();
+        change(&mut state);
+        let mut entity = SceneEntity::default();
+        Scene::new(&config).body(&state, &mut entity);
+        entity
+    }
+
+    fn place(pose: Option<&Pose>) -> (DVec3, DQuat) {
+        let pose = pose.unwrap();
+        let Vector3 { x, y, z } = pose.position.unwrap();
+        let q = pose.orientation.unwrap();
+        (DVec3::new(x, y, z), DQuat::from_xyzw(q.x, q.y, q.z, q.w))
+    }
+
+    #[test]
+    fn an_upright_capsule_stands_against_gravity_and_a_crouched_one_is_a_ball() {
+        for up in [DVec3::Y, DVec3::X, -DVec3::Z, DVec3::new(0.0, 0.6, -0.8)] {
+            let mut config = ClimberConfig::walker();
+            config.body.height = 1.0;
+            config.gravity = up * -9.81;
+            let body = drawn(config, |_| ());
+            let foot = DVec3::new(1.0, 2.0, 3.0);
+            let balls = body.spheres.iter().map(|ball| place(ball.pose.as_ref()).0);
+            let balls: Vec<DVec3> = balls.collect();
+            assert!(
+                balls[0].distance(foot) < 1e-12 && balls.len() == 2,
+                "{balls:?}"
+            );
+            assert!(balls[1].distance(foot + up) < 1e-12, "{up} {balls:?}");
+            let (middle, turn) = place(body.cylinders[0].pose.as_ref());
+            assert!(middle.distance(foot + up * 0.5) < 1e-12, "{up} {middle}");
+            assert!((turn * DVec3::Z).distance(up) < 1e-12, "{up} {turn}");
+            for crouched in [
+                drawn(config, |state| state.crouched = true),
+                drawn(config, |state| state.mode = ClimberMode::Holding),
+            ] {
+                assert_eq!((crouched.spheres.len(), crouched.cylinders.len()), (1, 0));
+            }
+        }
+    }
+
+    #[test]
+    fn every_mode_has_a_colour_of_its_own() {
+        for mode in ClimberMode::ALL {
+            for other in ClimberMode::ALL {
+                let same = color_of(mode) == color_of(other);
+                assert_eq!(same, mode == other, "{mode:?} {other:?}");
+            }
+        }
+    }
+}
