@@ -3,7 +3,7 @@
 use clamber_climber::ClimberMode::Standing;
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at};
+use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at, within};
 
 const RATES: [u32; 4] = [60, 120, 240, 360];
 
@@ -73,8 +73,9 @@ pub(crate) fn a_wall_alongside_gives_no_speed() {
             let mut run = Run::new(stage, walker_at(want.length()), DVec3::ZERO).settle();
             run.steps(rate, &walk(want.normalize()));
             let off = run.feet().distance(DVec3::X * 5.0);
-            assert!(
-                off <= 1e-2,
+            within!(
+                off,
+                1e-2,
                 "{rate} Hz, {played:?}: {} is off by {off}",
                 run.feet()
             );
@@ -160,7 +161,7 @@ pub(crate) fn walls_of_pillars_and_of_segments_do_not_snag() {
             let mut run = Run::new(stage, walker_at(want.length()), DVec3::ZERO).settle();
             run.steps(120, &walk(want.normalize()));
             let off = run.feet().distance(DVec3::X * 4.0);
-            assert!(off <= 1e-3, "{played:?}: {} is off by {off}", run.feet());
+            within!(off, 1e-3, "{played:?}: {} is off by {off}", run.feet());
             run.sound()
         });
     }
@@ -183,7 +184,7 @@ pub(crate) fn a_funnel_holds_who_falls_into_it() {
         run.steps(60, &IDLE);
         assert_eq!(run.mode(), Standing, "{played:?}: {:?}", run.state());
         let drift = run.position().distance(rest);
-        assert!(drift <= 1e-4, "{played:?}: moves by {drift}");
+        within!(drift, 1e-4, "{played:?}: moves by {drift}");
         run.sound()
     });
 }
@@ -208,8 +209,9 @@ pub(crate) fn an_acute_corner_below_a_ceiling_stops_gently() {
         for _ in 0..60 {
             run.step(&walk(DVec3::X));
             let jump = run.position().distance(rest);
-            assert!(
-                jump <= 1e-3,
+            within!(
+                jump,
+                1e-3,
                 "{played:?}: jumps by {jump} to {}",
                 run.position()
             );

@@ -2,12 +2,14 @@
 
 mod bodies;
 mod config;
+mod reached;
 mod run;
 mod shape;
 mod skin;
 
 pub(crate) use bodies::Bodies;
 pub(crate) use config::{jolt, radians, walker_at};
+pub(crate) use reached::{demand, within};
 pub(crate) use run::{IDLE, JUMP, Run, Trace, every, walk};
 pub(crate) use shape::Shape;
 pub(crate) use skin::{Pose, Skin};

@@ -5,7 +5,7 @@ use clamber_climber::{
 };
 use glam::DVec3;
 
-use super::{Played, Stage};
+use super::{Played, Stage, within};
 
 /// What a climber did, tick by tick.
 #[derive(Clone, Debug, Default)]
@@ -203,8 +203,9 @@ pub(crate) fn every(chord: f64, play: impl Fn(Played) -> Trace) {
         let other = play(played);
         let (apart, tick) = root.apart(&other);
         let name = format!("{played:?}");
-        assert!(
-            apart <= tolerance,
+        within!(
+            apart,
+            tolerance,
             "{name}: {apart} m from the root's at tick {tick}"
         );
         root.assert_same_modes(&other, &name);
