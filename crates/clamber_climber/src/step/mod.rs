@@ -182,6 +182,8 @@ impl<'a> Step<'a> {
         self.report.rounds += moved.rounds;
         self.report.is_clear &= moved.is_clear;
         if moved.missed > path.skin {
+            // Down to its ball, which needs least room.
+            self.state.crouched = true;
             self.event(ClimberEvent::Crushed {
                 depth: moved.missed - path.skin,
             });
