@@ -3,7 +3,7 @@ use glam::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
 
-use super::reach::Reach;
+use super::reach::{Reach, is_usable, is_usable_radius};
 use super::{TOLERANCE, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
@@ -35,12 +35,12 @@ pub struct FirstContact {
 }
 
 impl FirstContact {
-    /// Of none so far. `None` if anything is not finite, or the radius negative.
+    /// Of none so far. `None` if anything is not finite or beyond 2^100, or the radius negative.
     pub fn new(capsule: &WorldCapsule, displacement: DVec3) -> Option<Self> {
-        let [a, b] = capsule.ends;
         let radius = capsule.radius;
-        let usable = a.is_finite() && b.is_finite() && displacement.is_finite();
-        if !usable || !(0.0..f64::INFINITY).contains(&radius) {
+        let ends = capsule.ends.into_iter();
+        let mut ends = ends.chain(capsule.moved(displacement).ends);
+        if !ends.all(is_usable) || !is_usable(displacement) || !is_usable_radius(radius) {
             return None;
         }
         let path = clamber_surface::geometry::MovingCapsule {

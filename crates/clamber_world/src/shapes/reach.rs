@@ -9,6 +9,21 @@ const LOOSE: f64 = 1e-6;
 /// Lengths beyond this count as infinite: their squares are finite in f32.
 const ENDLESS: f64 = 1e18;
 
+/// Coordinates beyond this find nothing, as for skin: sums of some are finite in f32, products of six in f64.
+const FARTHEST: f64 = (1u128 << 100) as f64;
+
+/// Whether a place is finite, and not too far out.
+pub(super) fn is_usable(place: DVec3) -> bool {
+    // NaN is in no range.
+    let within = |x: f64| (-FARTHEST..=FARTHEST).contains(&x);
+    within(place.x) && within(place.y) && within(place.z)
+}
+
+/// Whether a radius of what moves is finite, not too large, and not negative.
+pub(super) fn is_usable_radius(radius: f64) -> bool {
+    (0.0..=FARTHEST).contains(&radius)
+}
+
 /// The box around a moving capsule, at both ends of its way; between them it lies between the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach {
@@ -31,10 +46,10 @@ impl Reach {
         }
     }
 
-    /// Of what comes within `radius` of a segment that stands still; infinite for all. `None` if an end is not finite,
-    /// or the radius NaN or negative.
+    /// Of what comes within `radius` of a segment that stands still; infinite for all. `None` if an end is not finite
+    /// or beyond 2^100, or the radius NaN or negative.
     pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
-        let usable = ends[0].is_finite() && ends[1].is_finite() && radius >= 0.0;
+        let usable = is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0;
         let path = MovingCapsule {
             start: ends,
             end: ends,

@@ -6,7 +6,7 @@ use parry3d::shape::Shape;
 use super::convex::{Convex, Moving};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
-use super::reach::Reach;
+use super::reach::{Reach, is_usable, is_usable_radius};
 use super::{RigidPose, ShapeContact, TOLERANCE};
 
 /// A capsule and a shape over a tick, as seen from where the shape is at its end.
@@ -51,11 +51,11 @@ impl ShapeTouch {
 /// The first contact of a capsule with a shape, up to the time `limit`.
 ///
 /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm. Triangles are met from both
-/// sides. `None` if anything is not finite, or the radius negative.
+/// sides. `None` if anything is not finite or beyond 2^100, or the radius negative.
 pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
     let path = &sweep.path;
     let mut ends = path.start.into_iter().chain(path.end);
-    let usable = ends.all(DVec3::is_finite) && (0.0..f64::INFINITY).contains(&path.radius);
+    let usable = ends.all(is_usable) && is_usable_radius(path.radius);
     if !usable {
         return None;
     }
