@@ -13,7 +13,7 @@ use bevy_rapier3d::prelude::{NoUserData, PhysicsSet, RapierPhysicsPlugin};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
 use bevy_transform::components::Transform;
-use clamber_world::{Contact, Obstacle, PointMotion};
+use clamber_world::{Contact, Obstacle, PointMotion, SweepContact, WorldCapsule};
 use glam::{DQuat, DVec3};
 
 /// Ticks a second.
@@ -247,6 +247,69 @@ fn avian_answers_as_rapier_does() {
     assert!(contacts > 500 && carried > 50, "{contacts} {carried}");
 }
 
+/// What capsules meet that are cast and swept, and how what they meet moves; near the carousel every other time.
+type Meeting = (String, Option<SweepContact>, Option<PointMotion>);
+
+fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
+    let mut random = fastrand::Rng::with_seed(8);
+    let mut vector = |size: f64| {
+        let mut one = || size * (2.0 * random.f64() - 1.0);
+        DVec3::new(one(), one(), one())
+    };
+    let mut meetings = Vec::new();
+    for case in 0..800 {
+        let from = match case % 2 {
+            0 => vector(9.0),
+            _ => vector(3.0) + carousel(12.0 / RATE).1,
+        };
+        let capsule = WorldCapsule {
+            ends: [from, from + vector(1.0)],
+            radius: [0.0, 0.1, 0.4][case % 3],
+        };
+        let by = vector(2.0);
+        let cast = obstacle.cast_capsule(&capsule, by);
+        let swept = obstacle.sweep_capsule(&capsule, by);
+        for (what, met) in [("cast", cast), ("swept", swept)] {
+            let motion = met.and_then(|met| obstacle.motion(&met.contact.material, 1.0 / RATE));
+            meetings.push((format!("{capsule:?} {what} by {by}"), met, motion));
+        }
+    }
+    meetings
+}
+
+#[test]
+fn capsules_meet_in_avian_what_they_meet_in_rapier() {
+    let avian = ask_avian(&mut avian(), sweep);
+    let rapier = ask_rapier(&mut rapier(), sweep);
+    let (mut met, mut carried, mut inside, mut grazed) = (0, 0, 0, 0);
+    for ((question, avian, motion), (_, rapier, _)) in avian.iter().zip(&rapier) {
+        let (Some(a), Some(b)) = (avian, rapier) else {
+            grazed += usize::from(avian.is_some() != rapier.is_some());
+            continue;
+        };
+        met += 1;
+        inside += usize::from(a.started_inside);
+        carried += usize::from(motion.unwrap().velocity != DVec3::ZERO);
+        // What comes near slowly may stop anywhere within the tolerance.
+        grazed += usize::from((a.time - b.time).abs() > 1e-3);
+        assert!((a.time - b.time).abs() < 0.05, "{question}: {a:?} {b:?}");
+        assert_eq!(
+            a.started_inside, b.started_inside,
+            "{question}: {a:?} {b:?}"
+        );
+        if a.started_inside {
+            let apart = (a.contact.distance - b.contact.distance).abs();
+            assert!(apart < SAME, "{question}: {a:?} {b:?}");
+        }
+    }
+    println!("{met} meetings, {carried} on what moves, {inside} inside, {grazed} grazed");
+    assert!(
+        met > 400 && carried > 100 && inside > 50,
+        "{met} {carried} {inside}"
+    );
+    assert!(grazed < 8, "{grazed}");
+}
+
 /// What the carousel's motion must be, whatever the engine.
 fn check_motion(obstacle: &dyn Obstacle, now: f64) -> usize {
     let before = now - 1.0 / RATE;
@@ -321,6 +384,31 @@ fn check_limits(obstacle: &dyn Obstacle) {
     }
     for bad in [DVec3::NAN, DVec3::ZERO, DVec3::splat(f64::INFINITY)] {
         assert_eq!(obstacle.cast_ray(above, bad, 99.0), None);
+    }
+    let good = WorldCapsule::ball(above, 0.5);
+    for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(1e300)] {
+        let one_end = WorldCapsule {
+            ends: [above, bad],
+            ..good
+        };
+        for (capsule, by) in [(good, bad), (one_end, -DVec3::Y)] {
+            assert_eq!(
+                obstacle.cast_capsule(&capsule, by),
+                None,
+                "{capsule:?} {by}"
+            );
+            assert_eq!(
+                obstacle.sweep_capsule(&capsule, by),
+                None,
+                "{capsule:?} {by}"
+            );
+        }
+        obstacle.overlap_capsule(&one_end, &mut contacts);
+    }
+    for bad in [f64::NAN, -1.0, f64::INFINITY] {
+        let capsule = good.with_radius(bad);
+        assert_eq!(obstacle.cast_capsule(&capsule, -DVec3::Y), None, "{bad}");
+        assert_eq!(obstacle.sweep_capsule(&capsule, -DVec3::Y), None, "{bad}");
     }
     assert!(contacts.is_empty(), "{contacts:?}");
 

@@ -1,74 +1,340 @@
+//! The nearest point above planes: where a body may go, or how fast, between walls that move.
+//!
+//! A least-distance problem in three dimensions, solved from below: at most three planes hold the
+//! point up; the worst of those that it misses joins them, and of the joint sets the nearest point
+//! that is above all four counts. This is the pivot rule of dual active sets (Goldfarb and Idnani
+//! 1983) with the basis found by looking at all of its at most seven candidates, which needs no
+//! sign of a multiplier and so bears normals that are parallel to rounding.
+//!
+//! Where planes leave no point, all are lowered by one amount, the least that leaves one. Planes
+//! that are opposite but for a hundredth of a degree meet somewhere, thousands of times as far away
+//! as they overlap; that point is of no use, so they count as leaving none.
+
 use glam::DVec3;
+
+/// What lies beyond this many times the relief that it takes to avoid it counts as out of reach: if
+/// lowering all planes by d brings the point nearer by more than this times d, they are lowered.
+/// Opposite planes hence need to differ by 2e-4 radians to be a wedge that one can be squeezed out
+/// of. Greater, and normals of f32 triangles throw a crushed body hundreds of metres; less, and
+/// acute valleys are seen as closed.
+const STEEPEST: f64 = 1e4;
+
+/// By how much to lower the planes to see how steep they are, as a share of the largest gap and of
+/// the distance: a hundred times [`HELD`], which blurs how far each of them reaches.
+const PROBE: f64 = 1e-11;
+
+/// A plane missed by this share of the largest gap, or of the distance, is held: a hundred roundings
+/// of a point on three planes. Times [`STEEPEST`] it stays 1e-9.
+const HELD: f64 = 1e-13;
+
+/// Pivots after which [`HELD`] doubles with each: where many planes meet in one point, rounding
+/// could let them take turns for ever. Sets of 32 planes take a dozen pivots at most.
+const PATIENCE: usize = 64;
+
+/// Doublings of [`HELD`] until everything is held.
+const DOUBLINGS: usize = 44;
+
+/// Sines below this are of rounding alone: such planes cannot both carry.
+const PARALLEL: f64 = 1e-13;
+
+/// Halvings in search of the least relief, which begins at the largest gap and ends at the rounding
+/// of it.
+const HALVINGS: usize = 50;
+
+/// All points y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plane {
+    /// Unit length. Planes whose normal is shorter than a half, longer than 2, or not finite are
+    /// ignored.
     pub(crate) normal: DVec3,
+    /// Metres for points, metres a second for velocities.
     pub(crate) offset: f64,
 }
+
+/// A point above planes, if there is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Above {
     pub(crate) point: DVec3,
+    /// By how much the worst plane is missed; 0, or rounding, where all hold.
     pub(crate) missed: f64,
 }
+
+/// The point nearest to `target` on or above all planes.
+///
+/// Where there is none, the one that misses the worst plane least, and of those the nearest.
+/// Exact to 1e-9 of the largest gap between target and plane, of the distance, and to the rounding
+/// of coordinates; the same bits in whatever order the planes come. Planes that are not finite, or
+/// farther away than numbers reach, are ignored.
 pub(crate) fn nearest_above(target: DVec3, planes: &[Plane]) -> Above {
-    let miss = |y: DVec3| {
-        planes
-            .iter()
-            .map(|p| p.offset - p.normal.dot(y))
-            .fold(0.0, f64::max)
+    let Some(search) = Search::new(target, planes) else {
+        return Above {
+            point: target,
+            missed: 0.0,
+        };
     };
-    let mut best: Option<(f64, DVec3)> = None;
-    let mut offer = |y: DVec3| {
-        if y.is_finite() && miss(y) <= 1e-9 {
-            let d = y.distance(target);
-            if best.is_none_or(|(b, _)| d < b) {
-                best = Some((d, y));
-            }
-        }
-    };
-    offer(target);
-    let n = planes.len();
-    for i in 0..n {
-        let p = planes[i];
-        offer(target + p.normal * (p.offset - p.normal.dot(target)));
-        for j in 0..i {
-            let q = planes[j];
-            let c = p.normal.dot(q.normal);
-            let det = 1.0 - c * c;
-            if det < 1e-12 {
-                continue;
-            }
-            let (a, b) = (
-                p.offset - p.normal.dot(target),
-                q.offset - q.normal.dot(target),
-            );
-            offer(target + p.normal * ((a - c * b) / det) + q.normal * ((b - c * a) / det));
-            for r in planes.iter().take(j) {
-                let m = glam::DMat3::from_cols(p.normal, q.normal, r.normal).transpose();
-                if m.determinant().abs() < 1e-9 {
-                    continue;
-                }
-                offer(m.inverse() * DVec3::new(p.offset, q.offset, r.offset));
-            }
+    if let Some(point) = search.sound(0.0) {
+        return search.above(point);
+    }
+    // Relieved of the largest gap, the target itself is above all.
+    let (mut low, mut high, mut point) = (0.0, 1.0, DVec3::ZERO);
+    for _ in 0..HALVINGS {
+        let relief = 0.5 * (low + high);
+        match search.sound(relief) {
+            Some(found) => (high, point) = (relief, found),
+            None => low = relief,
         }
     }
-    match best {
-        Some((_, y)) => Above {
-            point: y,
-            missed: 0.0,
-        },
-        None => {
-            let mut y = target;
-            for _ in 0..64 {
-                for p in planes {
-                    let d = p.offset - p.normal.dot(y);
-                    if d > 0.0 {
-                        y += p.normal * d;
-                    }
-                }
+    search.above(point)
+}
+
+/// The problem with the target at the origin and the largest gap 1.
+struct Search<'a> {
+    target: DVec3,
+    planes: &'a [Plane],
+    /// The largest gap: by how much the target misses the worst plane.
+    size: f64,
+}
+
+/// A plane seen from the target: all x with `normal . x >= gap`.
+#[derive(Clone, Copy)]
+struct Wall {
+    normal: DVec3,
+    gap: f64,
+}
+
+/// The point nearest to the target on up to three planes.
+#[derive(Clone, Copy)]
+struct Corner {
+    walls: [Wall; 3],
+    count: usize,
+    point: DVec3,
+    /// Whether all planes push: their multipliers are positive.
+    carries: bool,
+    /// How much nearer the point comes for each metre by which the planes are lowered: by duality,
+    /// at most the sum of their multipliers over the distance, if they carry.
+    steepness: f64,
+}
+
+impl<'a> Search<'a> {
+    /// None if the target is above all planes.
+    fn new(target: DVec3, planes: &'a [Plane]) -> Option<Self> {
+        let gaps = planes.iter().filter_map(|plane| gap(plane, target));
+        let size = gaps.fold(0.0, f64::max);
+        // Below, reciprocals overflow.
+        (size > 1e-300).then_some(Self {
+            target,
+            planes,
+            size,
+        })
+    }
+
+    fn above(&self, point: DVec3) -> Above {
+        let moved = self.target + point * self.size;
+        let point = if moved.is_finite() {
+            moved
+        } else {
+            self.target
+        };
+        let gaps = self.planes.iter().filter_map(|plane| gap(plane, point));
+        Above {
+            point,
+            missed: gaps.fold(0.0, f64::max),
+        }
+    }
+
+    /// The nearest point above all planes lowered by `relief`, if it is within reach.
+    fn sound(&self, relief: f64) -> Option<DVec3> {
+        let corner = self.nearest(relief)?;
+        // In most cases the planes that carry tell at once. Where more than three meet they may not
+        // be the only ones; then the distance itself has the last word, unless it is all rounding.
+        if corner.carries && corner.steepness <= STEEPEST {
+            return Some(corner.point);
+        }
+        if corner.steepness > STEEPEST * 1e3 {
+            return None;
+        }
+        let distance = corner.point.length();
+        let probe = PROBE * (1.0 + distance);
+        let nearer = distance - self.nearest(relief + probe)?.point.length();
+        (nearer <= STEEPEST * probe).then_some(corner.point)
+    }
+
+    /// The nearest point above all planes lowered by `relief`, and what carries it.
+    fn nearest(&self, relief: f64) -> Option<Corner> {
+        let mut corner = Corner::nowhere();
+        let mut held = HELD;
+        for pivot in 0..PATIENCE + DOUBLINGS {
+            if pivot > PATIENCE {
+                held *= 2.0;
             }
-            Above {
-                point: y,
-                missed: miss(y),
+            let slack = held * (1.0 + corner.point.length());
+            let Some(wall) = self.worst(corner.point, relief, slack) else {
+                return Some(corner);
+            };
+            corner = corner.joined(wall, slack)?;
+            if corner.point.length_squared() > STEEPEST * STEEPEST {
+                return None;
             }
         }
+        None
+    }
+
+    /// The plane that a point misses most, if by more than `slack`.
+    fn worst(&self, point: DVec3, relief: f64, slack: f64) -> Option<Wall> {
+        let scale = 1.0 / self.size;
+        let mut worst: Option<Wall> = None;
+        let mut most = slack;
+        for plane in self.planes {
+            let Some(gap) = gap(plane, self.target) else {
+                continue;
+            };
+            let wall = Wall {
+                normal: plane.normal,
+                gap: gap * scale - relief,
+            };
+            let missed = wall.missed(point);
+            if missed > most || missed == most && worst.is_some_and(|worst| wall.precedes(&worst)) {
+                (most, worst) = (missed, Some(wall));
+            }
+        }
+        worst
     }
 }
+
+/// By how much a point misses a plane; none if the plane is to be ignored.
+fn gap(plane: &Plane, point: DVec3) -> Option<f64> {
+    let gap = plane.offset - plane.normal.dot(point);
+    ((0.25..=4.0).contains(&plane.normal.length_squared()) && gap.is_finite()).then_some(gap)
+}
+
+impl Wall {
+    fn missed(&self, point: DVec3) -> f64 {
+        self.gap - self.normal.dot(point)
+    }
+
+    /// An order of walls that are missed alike, by nothing but their values.
+    fn precedes(&self, other: &Self) -> bool {
+        let key = |wall: &Self| [wall.gap, wall.normal.x, wall.normal.y, wall.normal.z];
+        let (own, others) = (key(self), key(other));
+        let pairs = own.iter().zip(&others);
+        let mut orders = pairs.map(|(a, b)| a.total_cmp(b));
+        orders
+            .find(|order| order.is_ne())
+            .is_some_and(|order| order.is_lt())
+    }
+}
+
+impl Corner {
+    fn nowhere() -> Self {
+        Self {
+            walls: [Wall {
+                normal: DVec3::ZERO,
+                gap: 0.0,
+            }; 3],
+            count: 0,
+            point: DVec3::ZERO,
+            carries: true,
+            steepness: 0.0,
+        }
+    }
+
+    fn walls(&self) -> &[Wall] {
+        &self.walls[..self.count]
+    }
+
+    /// The nearest point above these walls and a new one that the point misses, which therefore is
+    /// one of those that carry. None if there is no such point.
+    fn joined(&self, wall: Wall, slack: f64) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        let mut nearest = f64::INFINITY;
+        // With none of the old walls, one, two: those that carry are the answer. Rounding may leave
+        // none that do; then the nearest is.
+        for kept in [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110_usize] {
+            if kept >> self.count != 0 {
+                continue;
+            }
+            let mut corner = Self::nowhere();
+            corner.push(wall);
+            for (index, &old) in self.walls().iter().enumerate() {
+                if kept >> index & 1 == 1 {
+                    corner.push(old);
+                }
+            }
+            if !corner.settle() {
+                continue;
+            }
+            let distance = corner.point.length_squared();
+            let above = |wall: &Wall| wall.missed(corner.point) <= slack;
+            if (corner.carries || distance < nearest)
+                && above(&wall)
+                && self.walls().iter().all(above)
+            {
+                if corner.carries {
+                    return Some(corner);
+                }
+                (nearest, best) = (distance, Some(corner));
+            }
+        }
+        best
+    }
+
+    fn push(&mut self, wall: Wall) {
+        if let Some(free) = self.walls.get_mut(self.count) {
+            *free = wall;
+            self.count += 1;
+        }
+    }
+
+    /// Finds the point on all walls. False if two of them are parallel, or three have a direction
+    /// in common.
+    fn settle(&mut self) -> bool {
+        let Some(axes) = axes(self.walls()) else {
+            return false;
+        };
+        let pairs = || self.walls[..self.count].iter().zip(&axes);
+        let mut point = DVec3::ZERO;
+        // A second round takes out the rounding that the first leaves, magnified, between walls
+        // that are nearly parallel.
+        for _ in 0..self.count.min(2) {
+            for (wall, axis) in pairs() {
+                point += *axis * (wall.missed(point) / wall.normal.dot(*axis));
+            }
+        }
+        let (mut rest, mut sum, mut carries) = (point, 0.0, true);
+        // The last axis is square to all walls but the last.
+        for (wall, axis) in pairs().rev() {
+            let multiplier = rest.dot(*axis) / wall.normal.dot(*axis);
+            rest -= wall.normal * multiplier;
+            sum += multiplier.abs();
+            carries &= multiplier >= 0.0;
+        }
+        self.steepness = sum / point.length();
+        (self.point, self.carries) = (point, carries);
+        true
+    }
+}
+
+/// Unit vectors, each square to the normals of all walls before its own, so that a step along it
+/// leaves those walls alone. None if one has nothing left.
+fn axes(walls: &[Wall]) -> Option<[DVec3; 3]> {
+    let mut axes = [DVec3::ZERO; 3];
+    for (k, wall) in walls.iter().enumerate().take(3) {
+        let (before, rest) = axes.split_at_mut(k);
+        let mut axis = wall.normal;
+        // Once leaves what rounding adds, which is much of a short remainder.
+        for _ in 0..2 {
+            for other in before.iter() {
+                axis -= *other * other.dot(axis);
+            }
+        }
+        let length = axis.length();
+        if length < PARALLEL {
+            return None;
+        }
+        rest[0] = axis / length;
+    }
+    Some(axes)
+}
+
+#[cfg(test)]
+mod tests;

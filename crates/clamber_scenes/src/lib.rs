@@ -13,6 +13,7 @@
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`measure`]: tables, quantiles and yardsticks for benches.
 //! - [`ccd`]: continuous collision queries with exact answers, and proofs of what sweeps claim.
+//! - [`tour`]: a bot climbs from a creature's foot to its head.
 //! - [`closed`]: is a mesh closed, and which side of it is inside?
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
 //! - [`test_data`]: third-party files for tests.
@@ -33,6 +34,7 @@ pub mod riders;
 pub mod rocks;
 pub mod solid_angle;
 pub mod test_data;
+pub mod tour;
 pub mod valley;
 
 pub use creature::{Creature, CreatureError};

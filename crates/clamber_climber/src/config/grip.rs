@@ -10,8 +10,8 @@ pub struct GripConfig {
     pub reach: f64,
     /// Speed along what is gripped, metres a second, not negative. 1.5.
     pub climb_speed: f64,
-    /// How far what is gripped may lean over, radians from level ground, beyond which it hangs; at most 180 degrees:
-    /// never. 160: nearly a ceiling.
+    /// How far what is gripped may lean over, radians from level ground, beyond which it hangs. 180 degrees: it climbs
+    /// along ceilings. 120 hangs from all that leans over by 30.
     pub max_overhang: f64,
     /// Shake from which it only hangs, metres a second squared, not negative. 15. Below seven tenths of it for
     /// `calm_time` it climbs again.
@@ -26,7 +26,7 @@ impl GripConfig {
     pub(super) const DEFAULT: Self = Self {
         reach: 0.35,
         climb_speed: 1.5,
-        max_overhang: 160.0 * DEGREE,
+        max_overhang: 180.0 * DEGREE,
         hang_acceleration: 15.0,
         calm_time: 0.4,
         jump_speed: 4.0,

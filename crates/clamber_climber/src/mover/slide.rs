@@ -96,13 +96,14 @@ impl World<'_> {
         loop {
             moved.rounds += 1;
             if swept && let Some(inside) = self.meet(path, &mut moved) {
-                // What it is in already shows the way out, and would hide all else.
-                swept = !inside;
-                if moved.rounds < ROUNDS {
+                if inside {
+                    // What it is in already shows the way out, and would hide all else. Whatever else it is in is to be
+                    // seen from here, not from beyond where that alone would push it.
+                    swept = false;
+                } else if moved.rounds < ROUNDS {
                     continue;
-                }
-                moved.is_clear = inside;
-                if !inside {
+                } else {
+                    moved.is_clear = false;
                     self.stop(path, &mut moved);
                 }
             }
@@ -132,7 +133,9 @@ impl World<'_> {
         let on_axis = path.core(at).nearest_on_axis(touch.contact.point) - at;
         let offset = touch.away.dot(end - path.start - on_axis) + path.radius;
         self.add_plane(path, touch, offset, moved.position);
-        self.solve(path, moved);
+        if !hit.started_inside {
+            self.solve(path, moved);
+        }
         Some(hit.started_inside)
     }
 
@@ -243,17 +246,12 @@ const LEVEL: f64 = 1e-3;
 /// A contact as it is seen from a body that has been pushed since.
 fn again(touch: &Touch, capsule: &WorldCapsule, pushed: DVec3) -> Touch {
     let mut now = *touch;
-    if touch.contact.distance > 0.0 {
-        let apart = capsule.nearest_on_axis(touch.contact.point) - touch.contact.point;
-        // Once through, the other side is no way out.
-        let side = if apart.dot(touch.away) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        now.contact.distance = apart.length() * side;
-        now.away = (apart * side).normalize_or(touch.away);
+    let apart = capsule.nearest_on_axis(touch.contact.point) - touch.contact.point;
+    if touch.contact.distance > 0.0 && apart.dot(touch.away) > 0.0 {
+        now.contact.distance = apart.length();
+        now.away = apart.normalize_or(touch.away);
     } else {
+        // Once through, the other side is no way out: back the way it came.
         now.contact.distance += touch.away.dot(pushed);
     }
     now

@@ -7,6 +7,9 @@ use super::Step;
 use crate::shake::{Shake, excess};
 use crate::{ClimberEvent, ClimberMode};
 
+/// For how long it grips nothing after its strength was used up, seconds.
+const EXHAUSTED: f64 = 1.0;
+
 impl Step<'_> {
     /// Feels how its support moves. What was put elsewhere, or is just found, has no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
@@ -43,6 +46,7 @@ impl Step<'_> {
             if self.state.stamina == 0.0 {
                 let shake = self.state.shake.length();
                 self.event(ClimberEvent::ShakenOff { shake });
+                self.state.open_handed = EXHAUSTED;
                 self.leave(ClimberMode::Falling);
             }
         } else if self.state.mode == ClimberMode::Standing && beyond == 0.0 {

@@ -1,6 +1,6 @@
 //! What is underfoot.
 
-use clamber_world::WorldCapsule;
+use clamber_world::{SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use super::{SLOPE_HYSTERESIS, Step};
@@ -14,48 +14,70 @@ pub(super) struct Ground {
     pub(super) position: DVec3,
 }
 
+/// Ground this little below is underfoot, however little it snaps, metres: far above the rounding of f32, by which one who
+/// stands may be above it, and far below what one sees.
+const UNDERFOOT: f64 = 1e-3;
+
 /// What is left of a step down where slopes on all sides support: sine of some degrees.
 const SUPPORTED: f64 = 0.1;
 
 impl Step<'_> {
-    /// The ground below a position, as far as `reach` below its feet, no steeper than one who stands may stand on.
+    /// The ground below a position, as far as `reach` below its feet, or beside it, no steeper than one who stands may
+    /// stand on.
     pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
-        let body = &self.config.body;
-        let (radius, core, skin) = (body.radius, body.hard_radius(), body.skin_width);
-        let up = self.config.up();
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
-        let down = -up * (reach + skin);
-        let mut body = super::body(self.config, &self.state).with_radius(core);
-        body = body.moved(position - self.state.position);
-        if let Some((touch, hit)) = self.world.cast(&body, down)
-            && !hit.started_inside
-            && self.config.slope(touch.away) <= limit
-        {
-            // Up again, so that the whole ball touches what its core has met.
-            let rise = (radius - touch.contact.distance) / touch.away.dot(up);
-            let position = position + down * hit.time + up * rise;
-            return Some(Ground { touch, position });
-        }
-        self.ground_beside(position, radius + skin, limit)
+        let reach = reach.max(UNDERFOOT);
+        self.ground_straight_below(position, reach)
+            .or_else(|| self.ground_beside(position, reach))
     }
 
-    /// The nearest contact of the ball that is no steeper than `limit`.
-    fn ground_beside(&mut self, position: DVec3, reach: f64, limit: f64) -> Option<Ground> {
-        let slope_of = |up: DVec3, away: DVec3| libm::acos(away.dot(up).clamp(-1.0, 1.0));
+    /// What a ball comes down on first, if that is ground.
+    pub(super) fn ground_straight_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
+        let down = -self.config.up() * (reach + self.config.body.skin_width);
+        let (touch, hit) = self.ground_towards(position, down)?;
+        // Up again, so that the whole ball touches what its core has met.
         let up = self.config.up();
-        let radius = self.config.body.radius;
-        let ball = WorldCapsule::ball(position, reach);
+        let rise = (self.config.body.radius - touch.contact.distance) / touch.away.dot(up);
+        let position = position + down * hit.time + up * rise;
+        Some(Ground { touch, position })
+    }
+
+    /// The nearest of what is no steeper than `limit`, where what is below is steeper.
+    fn ground_beside(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
+        let (up, limit) = (self.config.up(), self.stood_on());
+        let slope_of = |away: DVec3| libm::acos(away.dot(up).clamp(-1.0, 1.0));
+        let body = &self.config.body;
+        let (radius, core) = (body.radius, body.hard_radius());
+        let ball = WorldCapsule::ball(position, radius + reach);
         let mut best: Option<Touch> = None;
         for touch in self.world.touching(&ball) {
             let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
-            if nearer && slope_of(up, touch.away) <= limit {
+            if nearer && slope_of(touch.away) <= limit {
                 best = Some(*touch);
             }
         }
-        best.map(|touch| Ground {
-            position: position + touch.away * (radius - touch.contact.distance),
-            touch,
-        })
+        let best = best?;
+        // A triangle's nearest point may be on an edge within a wall, and look like a ledge: only what the ball comes to
+        // first is there.
+        let way = (best.contact.distance - core).max(0.0) + UNDERFOOT;
+        let toward = -best.away * way;
+        let (touch, hit) = self.ground_towards(position, toward)?;
+        let position =
+            position + toward * hit.time + touch.away * (radius - touch.contact.distance);
+        Some(Ground { touch, position })
+    }
+
+    /// What the core of the body meets first on a way, if that is ground.
+    fn ground_towards(&mut self, position: DVec3, way: DVec3) -> Option<(Touch, SweepContact)> {
+        let body = super::body(self.config, &self.state).moved(position - self.state.position);
+        let core = body.with_radius(self.config.body.hard_radius());
+        let (touch, hit) = self.world.cast(&core, way)?;
+        let is_ground = !hit.started_inside && self.config.slope(touch.away) <= self.stood_on();
+        is_ground.then_some((touch, hit))
+    }
+
+    /// The steepest slope that one who stands stays on.
+    fn stood_on(&self) -> f64 {
+        self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 
     /// Of what the last movement touched, what holds the climber up. It stands on it then: what turns while it lands

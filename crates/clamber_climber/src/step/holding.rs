@@ -33,7 +33,7 @@ impl Step<'_> {
             return false;
         }
         if let Some(grip) = self.config.grip
-            && let Some(touch) = self.grip_near(self.state.position, &grip, DVec3::ZERO)
+            && let Some(touch) = self.grip_near(self.state.position, &grip, None)
         {
             self.attach(&touch);
             self.face(-touch.away);
@@ -128,7 +128,7 @@ impl Step<'_> {
             return;
         }
         self.state.position = moved.position;
-        if let Some(touch) = self.grip_near(moved.position, grip, wish) {
+        if let Some(touch) = self.grip_near(moved.position, grip, Some(normal)) {
             self.climb_on_to(carried, &touch);
             self.state.velocity =
                 carried.motion.velocity + (moved.position - carried.position) / dt;
@@ -159,9 +159,14 @@ impl Step<'_> {
         self.state.velocity = carried.motion.velocity + (position - carried.position) / self.dt();
     }
 
-    /// What it grips at a position: the nearest that can be gripped, and of those as near the one towards which it
-    /// climbs.
-    fn grip_near(&mut self, position: DVec3, grip: &GripConfig, wish: DVec3) -> Option<Touch> {
+    /// What it grips at a position: the nearest that can be gripped, and of those as near the one that it climbs onto:
+    /// against which it pushes, and which does not lead it back against what it `holds` now, in a crease.
+    fn grip_near(
+        &mut self,
+        position: DVec3,
+        grip: &GripConfig,
+        holds: Option<DVec3>,
+    ) -> Option<Touch> {
         let reach = self.config.body.radius + grip.reach;
         self.world.touching(&WorldCapsule::ball(position, reach));
         let mut nearest = f64::INFINITY;
@@ -177,13 +182,26 @@ impl Step<'_> {
             if touch.contact.distance > nearest + AS_NEAR || !self.world.can_grip(&touch) {
                 continue;
             }
-            let ahead = (-touch.away.dot(wish) - AHEAD).max(0.0);
+            let ahead = holds.map_or(0.0, |normal| self.leads_on(normal, touch.away));
             let cost = touch.contact.distance - nearest - ahead * AS_NEAR * 2.0;
             if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, touch));
             }
         }
         best.map(|(_, touch)| touch)
+    }
+
+    /// How much more than a little it pushes against one face while it holds another, if the other does not push it
+    /// back.
+    fn leads_on(&self, held: DVec3, face: DVec3) -> f64 {
+        let wish = self.climb_direction(held);
+        let beyond = self.climb_direction(face);
+        let leads_back = beyond.dot(held) < -AHEAD;
+        if leads_back {
+            0.0
+        } else {
+            (-face.dot(wish) - AHEAD).max(0.0)
+        }
     }
 
     /// Attaches it to what it climbs on to. A corner is turned when it lies flat on a face that differs from the last.

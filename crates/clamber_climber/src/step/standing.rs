@@ -106,8 +106,8 @@ impl Step<'_> {
         let up = self.config.up();
         let level = |v: DVec3| v - up * v.dot(up);
         let wanted = level(target - from);
-        let made = level(self.state.position - from);
-        let missing = wanted.length() - made.dot(wanted.normalize_or_zero());
+        let direction = wanted.normalize_or_zero();
+        let missing = wanted.length() - level(self.state.position - from).dot(direction);
         let height = self.config.ground.step_height;
         if height == 0.0 || missing <= wanted.length() * BLOCKED {
             return false;
@@ -117,24 +117,32 @@ impl Step<'_> {
         let room = self.world.cast(&core, up * height);
         let rise = up * (height * room.map_or(1.0, |(_, hit)| hit.time));
         let raised = core.moved(rise);
-        let forward = wanted.normalize_or_zero() * missing.max(self.config.body.skin_width * 2.0);
-        let way = self.world.cast(&raised, forward);
-        let share = way.map_or(1.0, |(_, hit)| hit.time);
-        if share < BLOCKED {
-            return false;
-        }
-        let over = self.state.position + rise + forward * share;
-        let depth = rise.length();
-        let limit = self.config.ground.max_slope;
-        let Some(ground) = self.ground_below(over, depth) else {
-            return false;
-        };
-        let is_up = self.config.slope(ground.touch.away) <= limit
-            && (ground.position - self.state.position).dot(up) > 0.0;
-        if is_up {
-            self.state.position = ground.position;
-        }
-        is_up
+        let position = [missing, self.onto_a_tread().max(missing)]
+            .into_iter()
+            .find_map(|way| {
+                let forward = direction * way;
+                let is_free = self.world.cast(&raised, forward).is_none();
+                let over = self.state.position + rise + forward;
+                is_free
+                    .then(|| self.tread_below(over, rise.length()))
+                    .flatten()
+            });
+        self.state.position = position.unwrap_or(self.state.position);
+        position.is_some()
+    }
+
+    /// How far the ball has to go from where an edge first stops it to where it stands on that edge.
+    fn onto_a_tread(&self) -> f64 {
+        let steepest = libm::sin(self.config.ground.max_slope);
+        self.config.body.radius * (1.0 - steepest) + self.config.body.skin_width
+    }
+
+    /// Where it stands after a step up, if that is level enough, and higher than here.
+    fn tread_below(&mut self, over: DVec3, depth: f64) -> Option<DVec3> {
+        let ground = self.ground_straight_below(over, depth)?;
+        let rise = (ground.position - self.state.position).dot(self.config.up());
+        let is_level = self.config.slope(ground.touch.away) <= self.config.ground.max_slope;
+        (is_level && rise > self.config.body.skin_width).then_some(ground.position)
     }
 
     /// Stands on what is below it now, or leaves the ground.
@@ -151,10 +159,11 @@ impl Step<'_> {
             self.stand_on(carried, &touch);
             return;
         }
-        // Over the edge of level ground, the ground ends; a slope is slipped on.
+        // Over the edge of level ground, the ground ends; a slope that tips is slipped on.
+        let up = self.config.up();
         let is_slope = |touch: &Touch| {
-            touch.away.dot(self.config.up()) > 0.0
-                && self.config.slope(touch.contact.normal) > limit
+            let slope = self.config.slope(touch.contact.normal);
+            touch.away.dot(up) > 0.0 && slope > limit
         };
         let is_steep = self.world.touched().iter().any(is_slope);
         self.state.velocity += walk;

@@ -1,12 +1,28 @@
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, GripConfig};
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, GripConfig,
+};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::scene::{FUR, HOLD, assert_mode, climber, cuboid, moved, placed, run, step};
 
+/// Hangs from whatever leans over by more than 30 degrees.
+fn hanger(position: DVec3) -> Climber {
+    hanger_beyond(120.0, position)
+}
+
+fn hanger_beyond(degrees: f64, position: DVec3) -> Climber {
+    let mut config = ClimberConfig::colossus_climber();
+    config.grip = Some(GripConfig {
+        max_overhang: degrees.to_radians(),
+        ..config.grip.unwrap()
+    });
+    Climber::new(config, position).unwrap()
+}
+
 #[test]
 fn hangs_below_a_ceiling_swings_and_comes_to_rest() {
     let ceiling = cuboid(Vec3::new(5.0, 1.0, 5.0), FUR);
-    let mut climber = climber(DVec3::new(0.0, -1.4, 0.0));
+    let mut climber = hanger(DVec3::new(0.0, -1.4, 0.0));
     let events = run(&mut climber, &[&ceiling], &HOLD, 600);
     assert_mode(&climber, ClimberMode::Hanging);
     let below = climber.state().position.y + 1.0;
@@ -50,13 +66,7 @@ fn legs_lie_against_a_convex_belly() {
     let mut block = cuboid(Vec3::new(4.0, 4.0, 1.0), FUR);
     let lean = DQuat::from_xyzw(0.1305, 0.0, 0.0, 0.9914).normalize();
     placed(&mut block, DVec3::ZERO, lean);
-    let mut config = ClimberConfig::colossus_climber();
-    config.grip = Some(GripConfig {
-        max_overhang: 0.0,
-        ..config.grip.unwrap()
-    });
-    let mut climber =
-        clamber_climber::Climber::new(config, lean * DVec3::new(0.0, 1.0, 1.4)).unwrap();
+    let mut climber = hanger_beyond(0.0, lean * DVec3::new(0.0, 1.0, 1.4));
     run(&mut climber, &[&block], &HOLD, 300);
     assert_mode(&climber, ClimberMode::Hanging);
     assert!(
@@ -69,7 +79,7 @@ fn legs_lie_against_a_convex_belly() {
 #[test]
 fn lets_go_when_asked() {
     let ceiling = cuboid(Vec3::new(5.0, 1.0, 5.0), FUR);
-    let mut climber = climber(DVec3::new(0.0, -1.4, 0.0));
+    let mut climber = hanger(DVec3::new(0.0, -1.4, 0.0));
     run(&mut climber, &[&ceiling], &HOLD, 60);
     let events = run(&mut climber, &[&ceiling], &ClimberInput::default(), 1);
     assert!(events.contains(&ClimberEvent::Released), "{events:?}");

@@ -1,7 +1,7 @@
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::triangle::{MovingCore, advance, nearest_to_axis, point_at};
-use super::{MAX_COORDINATE, widen};
+use super::MAX_COORDINATE;
+use super::triangle::{advance_relative, nearest_to_axis};
 
 /// A capsule whose ends each move on a straight line, over a time from 0 to 1; a sphere where both ends are one point
 /// at both times.
@@ -11,11 +11,12 @@ use super::{MAX_COORDINATE, widen};
 ///
 /// ```
 /// use clamber_surface::geometry::MovingCapsule;
-/// use glam::{DVec3, Vec3};
+/// use glam::DVec3;
 ///
 /// // A ball of 0.5 m falls by 4 m on a triangle 2 m below.
 /// let ball = MovingCapsule::ball(DVec3::new(0.2, 2.0, 0.2), DVec3::NEG_Y * 4.0, 0.5);
-/// let touch = ball.cast_at_triangle([Vec3::ZERO, Vec3::Z, Vec3::X], 1e-4, 1.0).unwrap();
+/// let triangle = [DVec3::ZERO, DVec3::Z, DVec3::X];
+/// let touch = ball.cast_at_triangle([triangle; 2], 1e-4, 1.0).unwrap();
 /// assert!((touch.time - 0.375).abs() < 1e-4);
 /// assert!((touch.away - DVec3::Y).length() < 1e-6);
 /// ```
@@ -36,8 +37,10 @@ pub struct TriangleTouch {
     pub time: f64,
     /// Weights of the corners: not negative, sum 1 up to rounding.
     pub barycentric: DVec3,
-    /// The triangle's point.
+    /// The triangle's point, where it is at that time.
     pub point: DVec3,
+    /// Counter-clockwise unit normal of the triangle as it is then; `None` where it has collapsed.
+    pub normal: Option<DVec3>,
     /// Where on the capsule's segment the point nearest to it lies, from 0 at the first end to 1.
     pub on_axis: f64,
     /// From the segment to the point, at that time.
@@ -75,7 +78,8 @@ impl MovingCapsule {
         self.start[0] == self.start[1] && self.end[0] == self.end[1]
     }
 
-    /// The first contact with a triangle that stands still, up to the time `limit`.
+    /// The first contact up to the time `limit` with a triangle whose corners each move on a straight line, from the
+    /// first three to the last; twice the same for one that stands still.
     ///
     /// Its time is never later than that of the first touch, and if none is found there is none up to `limit`. At
     /// that time the distance is at most radius and `tolerance`; less than 2^-45 of the lengths involved counts as
@@ -83,7 +87,7 @@ impl MovingCapsule {
     /// than 2^100, or if radius or tolerance is negative.
     pub fn cast_at_triangle(
         &self,
-        corners: [Vec3; 3],
+        corners: [[DVec3; 3]; 2],
         tolerance: f64,
         limit: f64,
     ) -> Option<TriangleTouch> {
@@ -91,61 +95,57 @@ impl MovingCapsule {
         if !(self.is_usable(corners) && usable(tolerance) && usable(limit)) {
             return None;
         }
-        // Relative to a point of f32, as corners are.
-        let origin = self.start[0].as_vec3();
-        let local = |p: DVec3| p - widen(origin);
+        let origin = self.start[0];
+        let relative = corners.map(|corners| corners.map(|corner| corner - origin));
+        let core = [self.start, self.end].map(|ends| ends.map(|end| end - origin));
+        let lengths = [self.radius, tolerance];
         let contact = if self.is_ball() {
-            let core = MovingCore {
-                origin,
-                start: [local(self.start[0])],
-                end: [local(self.end[0])],
-                radius: self.radius,
-                tolerance,
-            };
-            advance(corners, corners, &core, limit.min(1.0)).0
+            let core = core.map(|[center, _]| [center]);
+            advance_relative(relative, core, lengths, limit.min(1.0))
         } else {
-            let core = MovingCore {
-                origin,
-                start: self.start.map(local),
-                end: self.end.map(local),
-                radius: self.radius,
-                tolerance,
-            };
-            advance(corners, corners, &core, limit.min(1.0)).0
+            advance_relative(relative, core, lengths, limit.min(1.0))
         };
         let contact = contact?;
-        let mut touch = self.touch(corners, contact.barycentric, contact.time);
-        touch.distance = contact.distance;
-        touch.undecided = contact.undecided;
-        touch.started_inside = contact.time == 0.0 && contact.distance <= self.radius;
-        Some(touch)
+        let [start, end] = corners;
+        let mut then = start;
+        for (corner, end) in then.iter_mut().zip(end) {
+            *corner += (end - *corner) * contact.time;
+        }
+        Some(TriangleTouch {
+            distance: contact.distance,
+            undecided: contact.undecided,
+            started_inside: contact.time == 0.0 && contact.distance <= self.radius,
+            ..self.touch(then, contact.barycentric, contact.time)
+        })
     }
 
     /// The point of a triangle nearest to the capsule's segment at time 0, whatever the radius; its time is 0. `None`
     /// as for [`MovingCapsule::cast_at_triangle`].
-    pub fn nearest_of_triangle(&self, corners: [Vec3; 3]) -> Option<TriangleTouch> {
-        if !self.is_usable(corners) {
+    pub fn nearest_of_triangle(&self, corners: [DVec3; 3]) -> Option<TriangleTouch> {
+        if !self.is_usable([corners; 2]) {
             return None;
         }
         let nearest = nearest_to_axis(corners, self.start);
-        let mut touch = self.touch(corners, nearest.barycentric, 0.0);
-        touch.distance = nearest.distance;
-        touch.started_inside = nearest.distance <= self.radius;
-        Some(touch)
+        Some(TriangleTouch {
+            distance: nearest.distance,
+            started_inside: nearest.distance <= self.radius,
+            ..self.touch(corners, nearest.barycentric, 0.0)
+        })
     }
 
-    fn is_usable(&self, corners: [Vec3; 3]) -> bool {
+    fn is_usable(&self, corners: [[DVec3; 3]; 2]) -> bool {
         // NaN is in no range.
         let small = |x: f64| (-MAX_COORDINATE..=MAX_COORDINATE).contains(&x);
         let ends = self.start.into_iter().chain(self.end);
-        let mut points = ends.chain(corners.map(widen));
+        let mut points = ends.chain(corners.into_iter().flatten());
         points.all(|p| p.to_array().into_iter().all(small))
             && (0.0..=MAX_COORDINATE).contains(&self.radius)
     }
 
     /// With the distance measured, and nothing said of inside and undecided.
-    fn touch(&self, corners: [Vec3; 3], barycentric: DVec3, time: f64) -> TriangleTouch {
-        let point = point_at(corners, barycentric);
+    fn touch(&self, corners: [DVec3; 3], barycentric: DVec3, time: f64) -> TriangleTouch {
+        let [a, b, c] = corners;
+        let point = a * barycentric.x + b * barycentric.y + c * barycentric.z;
         let [first, last] = self.at(time);
         let axis = last - first;
         let along = (point - first).dot(axis);
@@ -155,20 +155,130 @@ impl MovingCapsule {
             0.0
         };
         let apart = first + axis * on_axis - point;
-        let [a, b, c] = corners.map(widen);
         let size = (b - a).length() + (c - a).length() + axis.length() + point.length();
         let away = apart.try_normalize();
         let away = away.filter(|_| apart.length() > size * ALL_BUT_TOUCHING);
-        let normal = || (b - a).cross(c - a).try_normalize();
+        let normal = (b - a).cross(c - a).try_normalize();
         TriangleTouch {
             time,
             barycentric,
             point,
+            normal,
             on_axis,
             distance: apart.length(),
-            away: away.or_else(normal).unwrap_or(DVec3::Y),
+            away: away.or(normal).unwrap_or(DVec3::Y),
             started_inside: false,
             undecided: false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::point;
+
+    fn random(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
+        point(rng, 1.0).as_dvec3() * size
+    }
+
+    /// Of f64 that no f32 holds.
+    fn case(rng: &mut fastrand::Rng, is_ball: bool) -> (MovingCapsule, [[DVec3; 3]; 2]) {
+        let offset = random(rng, 1.0) * [0.0, 1e3][rng.usize(0..2)];
+        let a = random(rng, 2.0) + offset;
+        let by = random(rng, 3.0);
+        let along = if is_ball {
+            DVec3::ZERO
+        } else {
+            random(rng, 1.0)
+        };
+        let turned = if is_ball {
+            DVec3::ZERO
+        } else {
+            random(rng, 1.0)
+        };
+        let capsule = MovingCapsule {
+            start: [a, a + along],
+            end: [a + by, a + by + turned],
+            radius: rng.f64() * 0.3,
+        };
+        let corners = [(); 2].map(|()| [(); 3].map(|()| random(rng, 1.5) + offset));
+        (capsule, corners)
+    }
+
+    #[test]
+    fn no_touch_is_late_and_all_are_near() {
+        let mut rng = fastrand::Rng::with_seed(91);
+        let (mut met, mut missed) = (0, 0);
+        for round in 0..3_000 {
+            let (capsule, corners) = case(&mut rng, round % 2 == 0);
+            let touch = capsule.cast_at_triangle(corners, 1e-4, 1.0);
+            let gap = |time: f64| {
+                let [first, last] = corners;
+                let then = [0, 1, 2].map(|k| first[k] * (1.0 - time) + last[k] * time);
+                let still = MovingCapsule {
+                    start: capsule.at(time),
+                    end: capsule.at(time),
+                    ..capsule
+                };
+                still.nearest_of_triangle(then).unwrap().distance - capsule.radius
+            };
+            let until = touch.map_or(1.0, |touch| touch.time);
+            let inside = touch.is_some_and(|touch| touch.started_inside);
+            for step in 0..200 {
+                let time = until * f64::from(step) / 200.0;
+                let apart = gap(time);
+                assert!(
+                    inside || apart > -1e-9,
+                    "{round} {capsule:?}: {apart} at {time}"
+                );
+            }
+            let Some(touch) = touch else {
+                missed += 1;
+                continue;
+            };
+            met += 1;
+            let apart = gap(touch.time);
+            assert!(
+                apart <= 1e-4 + 1e-9 && !touch.undecided,
+                "{round} {touch:?}: {apart}"
+            );
+            assert_eq!(
+                inside,
+                touch.time == 0.0 && apart <= 0.0,
+                "{round} {touch:?}"
+            );
+            // Point, direction and distance agree with where the segment is then.
+            let [a, b] = capsule.at(touch.time);
+            let on_axis = a + (b - a) * touch.on_axis;
+            let off = touch.point + touch.away * touch.distance - on_axis;
+            assert!(off.length() < 1e-9, "{round} {touch:?}: {off}");
+        }
+        assert!(met > 150 && missed > 500, "{met} {missed}");
+    }
+
+    #[test]
+    fn what_is_not_finite_or_negative_touches_nothing() {
+        let mut rng = fastrand::Rng::with_seed(92);
+        let (mut capsule, corners) = case(&mut rng, false);
+        capsule.start[0] = corners[0][0];
+        assert!(capsule.cast_at_triangle(corners, 1e-4, 1.0).is_some());
+        for bad in [f64::NAN, f64::INFINITY, -1.0, 1e300] {
+            let radius = MovingCapsule {
+                radius: bad,
+                ..capsule
+            };
+            assert_eq!(radius.cast_at_triangle(corners, 1e-4, 1.0), None, "{bad}");
+            assert_eq!(capsule.cast_at_triangle(corners, bad, 1.0), None, "{bad}");
+            if bad != -1.0 {
+                let mut broken = corners;
+                broken[1][2].y = bad;
+                assert_eq!(capsule.cast_at_triangle(broken, 1e-4, 1.0), None, "{bad}");
+                assert_eq!(capsule.nearest_of_triangle(broken[1]), None, "{bad}");
+                let mut broken = capsule;
+                broken.end[1].z = bad;
+                assert_eq!(broken.cast_at_triangle(corners, 1e-4, 1.0), None, "{bad}");
+            }
         }
     }
 }

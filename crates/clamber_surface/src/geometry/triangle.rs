@@ -14,7 +14,7 @@ mod point;
 mod segment;
 mod sheared_ray;
 
-pub(crate) use advance::{Contact, MovingCore, advance, advance_eight};
+pub(crate) use advance::{Contact, MovingCore, advance, advance_eight, advance_relative};
 pub(crate) use eight::{Corners8, EIGHT, Points8, closest_points, closest_to_segments};
 pub(crate) use point::closest_point;
 pub(crate) use segment::{closest_to_segment, nearest_to_axis};

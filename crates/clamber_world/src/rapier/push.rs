@@ -98,3 +98,6 @@ fn response(body: &RigidBody, place: DVec3, direction: DVec3) -> f64 {
     );
     slide + torque.dot(spin)
 }
+
+#[cfg(test)]
+mod tests;

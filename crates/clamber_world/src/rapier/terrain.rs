@@ -5,7 +5,7 @@ use glam::DVec3;
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, Ray};
 use rapier3d::math::{Pose, Vector};
-use rapier3d::parry::partitioning::TraversalAction;
+use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
@@ -44,6 +44,10 @@ pub(super) fn handle_of(point: &MaterialPoint) -> ColliderHandle {
 /// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle,
 /// from both sides; convex shapes are solid. Rays are rapier's own: one that meets an edge between
 /// two of its triangles exactly may slip through.
+///
+/// Sweeps see each point of a body go straight from where [`BodyPoses`] has it to where it is: for a body that turns by
+/// an angle in a tick, up to `r (1 - cos(angle / 2))` beside its arc. The first of them in a tick looks once through the
+/// bodies that were recorded, and takes memory for those that moved.
 pub struct RapierTerrain<'a> {
     bodies: &'a RigidBodySet,
     colliders: &'a ColliderSet,
@@ -52,7 +56,23 @@ pub struct RapierTerrain<'a> {
     before: &'a BodyPoses,
     origin: DVec3,
     /// Made when first asked for.
-    moved: OnceLock<Vec<(ColliderHandle, Moved)>>,
+    moved: OnceLock<MovedColliders>,
+}
+
+/// Colliders of bodies that are elsewhere than they were, and a tree over the boxes of their ways: rapier's own has them
+/// where they are now.
+struct MovedColliders {
+    moved: Vec<(ColliderHandle, Moved)>,
+    /// Leaves are places in `moved`.
+    tree: Bvh,
+}
+
+impl MovedColliders {
+    fn new(moved: Vec<(ColliderHandle, Moved)>) -> Self {
+        let boxes: Vec<_> = moved.iter().map(|(_, moved)| moved.bounds).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        Self { moved, tree }
+    }
 }
 
 impl<'a> RapierTerrain<'a> {
@@ -143,20 +163,38 @@ impl<'a> RapierTerrain<'a> {
         has_moved.then(|| pose_of(body).then(&pose_of(on_body)))
     }
 
-    fn moved(&self) -> &[(ColliderHandle, Moved)] {
+    fn moved(&self) -> &MovedColliders {
         self.moved.get_or_init(|| {
             let bodies = self.before.moved(self.bodies);
             let handles = bodies.flat_map(|body| body.colliders().iter().copied());
             let moved = handles.filter_map(|handle| {
                 let collider = self.colliders.get(handle)?;
-                let tick = Tick {
-                    before: self.previous_pose(collider)?,
-                    now: pose_of(collider.position()),
-                };
-                Some((handle, Moved::new(collider.shape(), tick)))
+                let before = self.previous_pose(collider)?;
+                let now = pose_of(collider.position());
+                Some((handle, Moved::new(collider.shape(), before, now)))
             });
-            moved.collect()
+            MovedColliders::new(moved.collect())
         })
+    }
+
+    /// Tries what moved, all along its way.
+    fn meet_moved(&self, first: &mut FirstContact) {
+        let queries = self.queries();
+        let all = self.moved();
+        all.tree.traverse(|node| {
+            if !first.may_meet(&node.aabb()) {
+                return TraversalAction::Prune;
+            }
+            let leaf = node.leaf_data();
+            if let Some((handle, moved)) = leaf.and_then(|leaf| all.moved.get(leaf as usize))
+                && let Some(collider) = self.colliders.get(*handle)
+                && collider.is_enabled()
+                && queries.filter.test(self.bodies, *handle, collider)
+            {
+                first.meet(collider.shape(), &moved.tick, key_of(*handle));
+            }
+            TraversalAction::Continue
+        });
     }
 
     /// Tries what the broad phase finds in the way, as it stands now, if it is to be tried.
@@ -225,16 +263,7 @@ impl Obstacle for RapierTerrain<'_> {
             let pose = pose_of(collider.position());
             let ends = local.ends.map(|end| pose.inverse_transform(end));
             overlap_shape(collider.shape(), ends, radius, &mut |found| {
-                contacts.push(Contact {
-                    point: pose.transform(found.point) + self.origin,
-                    normal: (pose.rotation * found.normal).normalize_or(DVec3::Y),
-                    distance: found.distance,
-                    material: MaterialPoint {
-                        key: key_of(handle),
-                        coordinates: found.point.to_array(),
-                    },
-                    tag: SurfaceTag::default(),
-                });
+                contacts.push(found.in_world(&pose, self.origin, key_of(handle)));
             });
         }
         sort_contacts(&mut contacts[start..]);
@@ -251,16 +280,7 @@ impl Obstacle for RapierTerrain<'_> {
         self.meet_near(&mut first, |collider| {
             self.previous_pose(collider).is_none()
         });
-        let queries = self.queries();
-        for (handle, moved) in self.moved() {
-            if first.may_meet_moved(moved)
-                && let Some(collider) = self.colliders.get(*handle)
-                && collider.is_enabled()
-                && queries.filter.test(self.bodies, *handle, collider)
-            {
-                first.meet(collider.shape(), &moved.tick, key_of(*handle));
-            }
-        }
+        self.meet_moved(&mut first);
         first.contact(self.origin)
     }
 

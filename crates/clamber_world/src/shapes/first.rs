@@ -4,7 +4,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
 
 use super::reach::Reach;
-use super::{Moved, TOLERANCE, Tick, sweep_shape};
+use super::{TOLERANCE, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
 /// The first contact of a capsule on its way among many shapes; in whatever order they are met, the same.
@@ -61,21 +61,16 @@ impl FirstContact {
         self.reach.bounds()
     }
 
-    /// Whether something in this box, which stands still, may be met before what was met so far.
+    /// Whether something that stays within this box may be met before what was met so far, or with it.
     pub fn may_meet(&self, bounds: &Aabb) -> bool {
         self.reach.meets(bounds, self.limit())
     }
 
-    /// [`FirstContact::may_meet`] for what moved.
-    pub fn may_meet_moved(&self, moved: &Moved) -> bool {
-        self.may_meet(&moved.bounds(&self.capsule, self.displacement))
-    }
-
     /// Tries a shape on a body.
     pub fn meet(&mut self, shape: &dyn Shape, tick: &Tick, key: u64) {
-        let path = tick.path(&self.capsule, self.displacement);
-        if let Some(touch) = sweep_shape(shape, &path, self.limit()) {
-            let contact = tick.contact(&touch, &self.capsule, self.displacement, key);
+        let sweep = tick.sweep(&self.capsule, self.displacement);
+        if let Some(touch) = sweep_shape(shape, &sweep, self.limit()) {
+            let contact = tick.contact(&touch, key);
             let earlier = |first: &SweepContact| precedes(&contact, first);
             if self.first.as_ref().is_none_or(earlier) {
                 self.first = Some(contact);

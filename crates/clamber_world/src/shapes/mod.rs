@@ -19,7 +19,7 @@ pub use moved::Moved;
 pub use overlap::{ShapeContact, overlap_shape};
 pub use pose::RigidPose;
 pub use reach::Reach;
-pub use sweep::{ShapeTouch, sweep_shape};
+pub use sweep::{ShapeSweep, ShapeTouch, sweep_shape};
 pub use tick::Tick;
 
 use std::cmp::Ordering;

@@ -1,11 +1,14 @@
 use clamber_surface::geometry::MovingCapsule;
+use clamber_surface::mesh::SurfaceTag;
 use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
-use super::convex::Convex;
+use super::RigidPose;
+use super::convex::{Convex, Moving};
 use super::parts::{Part, visit_parts};
 use super::reach::Reach;
+use crate::{Contact, MaterialPoint};
 
 /// Where a shape is touched, in its own space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +19,22 @@ pub struct ShapeContact {
     pub normal: DVec3,
     /// From the capsule's segment. Negative inside a solid: the way out is along the normal, so far.
     pub distance: f64,
+}
+
+impl ShapeContact {
+    /// On the body that `key` names, which stands in a space whose origin is there in the world.
+    pub fn in_world(&self, pose: &RigidPose, origin: DVec3, key: u64) -> Contact {
+        Contact {
+            point: pose.transform(self.point) + origin,
+            normal: (pose.rotation * self.normal).normalize_or(DVec3::Y),
+            distance: self.distance,
+            material: MaterialPoint {
+                key,
+                coordinates: self.point.to_array(),
+            },
+            tag: SurfaceTag::default(),
+        }
+    }
 }
 
 /// Calls `found` for every triangle of a mesh or height field and every convex part within `radius` of the segment
@@ -63,23 +82,17 @@ pub fn overlap_shape(
 }
 
 fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
-    let nearest = still.nearest_of_triangle(corners)?;
+    let nearest = still.nearest_of_triangle(corners.map(|corner| corner.as_dvec3()))?;
     Some(ShapeContact {
         point: nearest.point,
-        normal: outward(corners).unwrap_or(nearest.away),
+        normal: nearest.normal.unwrap_or(nearest.away),
         distance: nearest.distance,
     })
 }
 
-/// The counter-clockwise normal.
-pub(super) fn outward(corners: [Vec3; 3]) -> Option<DVec3> {
-    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-    (b - a).cross(c - a).try_normalize()
-}
-
 /// With the way out where they overlap.
 pub(super) fn solid(convex: &Convex<'_>, ends: [DVec3; 2]) -> ShapeContact {
-    match convex.nearest(ends, DVec3::ZERO) {
+    match Moving::still(convex).nearest(0.0, ends, DVec3::ZERO) {
         Some(nearest) => ShapeContact {
             point: nearest.on_core + nearest.normal * convex.round,
             normal: nearest.normal,

@@ -14,6 +14,12 @@ pub struct RigidPose {
 }
 
 impl RigidPose {
+    /// At the origin, not turned.
+    pub const IDENTITY: Self = Self {
+        rotation: DQuat::IDENTITY,
+        translation: DVec3::ZERO,
+    };
+
     /// From an engine's pose; the rotation is normalised.
     pub fn new(rotation: Quat, translation: Vector) -> Self {
         Self {
@@ -28,6 +34,16 @@ impl RigidPose {
         Self {
             rotation: self.rotation * inner.rotation,
             translation: self.transform(inner.translation),
+        }
+    }
+
+    /// Undoes this pose.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self {
+            rotation,
+            translation: rotation * -self.translation,
         }
     }
 

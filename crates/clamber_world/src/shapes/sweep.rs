@@ -3,23 +3,32 @@ use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
-use super::convex::Convex;
-use super::overlap::{half_space, outward, solid};
+use super::convex::{Convex, Moving};
+use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
 use super::reach::Reach;
 use super::{RigidPose, ShapeContact, TOLERANCE};
 
-/// Where a capsule on its way first touches a shape, in the shape's own space.
+/// A capsule and a shape over a tick, as seen from where the shape is at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSweep {
+    /// The capsule, in the shape's own space.
+    pub path: MovingCapsule,
+    /// Where the shape was at the start, in the same space: its points go on straight lines from there. `None` for what
+    /// stands still.
+    pub before: Option<RigidPose>,
+}
+
+/// Where a capsule on its way first touches a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeTouch {
     /// Share of the way, 0..=1.
     pub time: f64,
-    /// Where and how the shape is touched then.
+    /// Where the shape is touched, as a point of the shape at rest; and how it is then: normal and distance at that
+    /// time, in the shape's own space.
     pub contact: ShapeContact,
     /// Unit vector from there towards the capsule's segment; the way out where that lies inside of a solid.
     pub away: DVec3,
-    /// Where on the segment the nearest point lies, from 0 at the first end to 1.
-    pub on_axis: f64,
     /// They overlap at the start; the time is 0.
     pub started_inside: bool,
     /// Neither contact nor its absence could be shown, for rounding or within the steps allowed: no contact before
@@ -28,150 +37,190 @@ pub struct ShapeTouch {
 }
 
 impl ShapeTouch {
-    /// The earlier; of those at one time the nearer; then by place and normal, so that the order in which parts are
+    /// The earlier; of those at one time the nearer; then by place and direction, so that the order in which parts are
     /// met does not matter.
     fn precedes(&self, other: &Self) -> bool {
         let key = |touch: &Self| {
-            let contact = &touch.contact;
-            let place = (contact.point.to_array(), contact.normal.to_array());
-            ((touch.time, contact.distance), place)
+            let place = (touch.contact.point.to_array(), touch.away.to_array());
+            ((touch.time, touch.contact.distance), place)
         };
         key(self) < key(other)
     }
 }
 
-/// The first contact of a capsule with a shape that stands still, both in the shape's own space, up to the time
-/// `limit`.
+/// The first contact of a capsule with a shape, up to the time `limit`.
 ///
 /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm. Triangles are met from both
 /// sides. `None` if anything is not finite, or the radius negative.
-pub fn sweep_shape(shape: &dyn Shape, path: &MovingCapsule, limit: f64) -> Option<ShapeTouch> {
+pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
+    let path = &sweep.path;
     let mut ends = path.start.into_iter().chain(path.end);
     let usable = ends.all(DVec3::is_finite) && (0.0..f64::INFINITY).contains(&path.radius);
     if !usable {
         return None;
     }
-    let mut first = None;
-    sweep_parts(shape, path, limit, &mut first);
-    first
-}
-
-fn sweep_parts(
-    shape: &dyn Shape,
-    path: &MovingCapsule,
-    limit: f64,
-    first: &mut Option<ShapeTouch>,
-) {
-    let reach = Reach::new(path, path.radius + 2.0 * TOLERANCE);
-    let until = std::cell::Cell::new(first.map_or(limit, |first| first.time.min(limit)));
+    let mut first: Option<ShapeTouch> = None;
+    let reach = sweep.reach();
+    let until = std::cell::Cell::new(limit);
     visit_parts(
         shape,
         &reach.bounds(),
         &|bounds| reach.meets(bounds, until.get()),
         &mut |part| {
-            let found = match part {
-                Part::Triangle(corners) => sweep_triangle(corners, path, until.get()),
-                Part::Convex(convex) => sweep_solid(&convex, path, until.get()),
-                Part::HalfSpace(normal) => sweep_half_space(normal, path),
-                Part::Posed(pose, part) => {
-                    let local = MovingCapsule {
-                        start: path.start.map(|end| pose.inverse_transform(end)),
-                        end: path.end.map(|end| pose.inverse_transform(end)),
-                        ..*path
-                    };
-                    let mut found = None;
-                    sweep_parts(part, &local, until.get(), &mut found);
-                    found.map(|touch| placed(&touch, &pose))
-                }
-            };
-            let Some(touch) = found.filter(|touch| touch.time <= until.get()) else {
+            let Some(touch) = sweep.meet(part, until.get()) else {
                 return;
             };
-            if first.is_none_or(|first| touch.precedes(&first)) {
+            if touch.time <= until.get() && first.is_none_or(|first| touch.precedes(&first)) {
                 until.set(touch.time);
-                *first = Some(touch);
+                first = Some(touch);
             }
         },
     );
+    first
 }
 
-fn placed(touch: &ShapeTouch, pose: &RigidPose) -> ShapeTouch {
-    ShapeTouch {
-        contact: ShapeContact {
-            point: pose.transform(touch.contact.point),
-            normal: pose.rotation * touch.contact.normal,
-            ..touch.contact
-        },
-        away: pose.rotation * touch.away,
-        ..*touch
+impl ShapeSweep {
+    /// The capsule as the shape sees it from where it is at each time.
+    fn seen_from_shape(&self) -> MovingCapsule {
+        let start = |end: DVec3| match &self.before {
+            Some(before) => before.inverse_transform(end),
+            None => end,
+        };
+        MovingCapsule {
+            start: self.path.start.map(start),
+            ..self.path
+        }
     }
-}
 
-fn sweep_triangle(corners: [Vec3; 3], path: &MovingCapsule, limit: f64) -> Option<ShapeTouch> {
-    let touch = path.cast_at_triangle(corners, TOLERANCE, limit)?;
-    Some(ShapeTouch {
-        time: touch.time,
-        contact: ShapeContact {
-            point: touch.point,
-            normal: outward(corners).unwrap_or(touch.away),
-            distance: touch.distance,
-        },
-        away: touch.away,
-        on_axis: touch.on_axis,
-        started_inside: touch.started_inside,
-        undecided: touch.undecided,
-    })
-}
-
-fn sweep_solid(convex: &Convex<'_>, path: &MovingCapsule, limit: f64) -> Option<ShapeTouch> {
-    let touch = convex.advance(path, TOLERANCE, limit)?;
-    let ends = path.at(touch.time);
-    let contact = match touch.nearest {
-        Some(nearest) => ShapeContact {
-            point: nearest.on_core + nearest.normal * convex.round,
-            normal: nearest.normal,
-            distance: nearest.distance - convex.round,
-        },
-        None => solid(convex, ends),
-    };
-    let on_axis = contact.point + contact.normal * contact.distance;
-    Some(ShapeTouch {
-        time: touch.time,
-        contact,
-        away: contact.normal,
-        on_axis: share(ends, on_axis),
-        started_inside: touch.time == 0.0 && contact.distance <= path.radius,
-        undecided: touch.undecided,
-    })
-}
-
-fn sweep_half_space(normal: DVec3, path: &MovingCapsule) -> Option<ShapeTouch> {
-    let starts = path.start.map(|end| normal.dot(end) - path.radius);
-    let ends = path.end.map(|end| normal.dot(end) - path.radius);
-    let time = |k: usize| match (starts[k] <= 0.0, ends[k] <= 0.0) {
-        (true, _) => 0.0,
-        (false, true) => starts[k] / (starts[k] - ends[k]),
-        (false, false) => f64::INFINITY,
-    };
-    let time = time(0).min(time(1));
-    if time > 1.0 {
-        return None;
+    /// What comes within reach of the shape at rest.
+    ///
+    /// Let x go straight, as the shape sees it, from x0 to x1, and R be the turn. In this space that is
+    /// `t (1 - t) (1 - R) (x1 - x0)` off a straight line: at most half the sine of half the angle, times the length of
+    /// the way. And points on straight lines come nearer to each other meanwhile, by the cosine at most.
+    fn reach(&self) -> Reach {
+        let path = self.seen_from_shape();
+        let touch = path.radius + 2.0 * TOLERANCE;
+        let Some(before) = &self.before else {
+            return Reach::new(&path, touch);
+        };
+        let half_sine = before.rotation.xyz().length();
+        let half_cosine = before.rotation.w.abs();
+        let ways = [0, 1].map(|k| (path.end[k] - path.start[k]).length());
+        let slack = 0.5 * half_sine * ways[0].max(ways[1]);
+        Reach::new(&path, (touch + slack) / half_cosine.max(f64::MIN_POSITIVE))
     }
-    let at = path.at(time);
-    let contact = half_space(normal, at);
-    Some(ShapeTouch {
-        time,
-        contact,
-        away: normal,
-        on_axis: share(at, contact.point),
-        started_inside: time == 0.0 && contact.distance <= path.radius,
-        undecided: false,
-    })
-}
 
-/// Where on a segment its point nearest to `point` lies, 0..=1.
-fn share([a, b]: [DVec3; 2], point: DVec3) -> f64 {
-    let axis = b - a;
-    let share = (point - a).dot(axis) / axis.length_squared();
-    if share > 0.0 { share.min(1.0) } else { 0.0 }
+    fn meet(&self, part: Part<'_>, limit: f64) -> Option<ShapeTouch> {
+        match part {
+            Part::Triangle(corners) => self.meet_triangle(corners, limit),
+            Part::Convex(convex) => self.meet_solid(&convex, limit),
+            Part::HalfSpace(normal) => self.meet_half_space(normal),
+            Part::Posed(pose, part) => {
+                let inner = Self {
+                    path: MovingCapsule {
+                        start: self.path.start.map(|end| pose.inverse_transform(end)),
+                        end: self.path.end.map(|end| pose.inverse_transform(end)),
+                        ..self.path
+                    },
+                    before: self
+                        .before
+                        .map(|before| pose.inverse().then(&before.then(&pose))),
+                };
+                let touch = sweep_shape(part, &inner, limit)?;
+                Some(ShapeTouch {
+                    contact: ShapeContact {
+                        point: pose.transform(touch.contact.point),
+                        normal: pose.rotation * touch.contact.normal,
+                        ..touch.contact
+                    },
+                    away: pose.rotation * touch.away,
+                    ..touch
+                })
+            }
+        }
+    }
+
+    fn meet_triangle(&self, corners: [Vec3; 3], limit: f64) -> Option<ShapeTouch> {
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let start = match &self.before {
+            Some(before) => [a, b, c].map(|corner| before.transform(corner)),
+            None => [a, b, c],
+        };
+        let touch = self
+            .path
+            .cast_at_triangle([start, [a, b, c]], TOLERANCE, limit)?;
+        let weights = touch.barycentric;
+        Some(ShapeTouch {
+            time: touch.time,
+            contact: ShapeContact {
+                point: a * weights.x + b * weights.y + c * weights.z,
+                normal: touch.normal.unwrap_or(touch.away),
+                distance: touch.distance,
+            },
+            away: touch.away,
+            started_inside: touch.started_inside,
+            undecided: touch.undecided,
+        })
+    }
+
+    fn meet_solid(&self, convex: &Convex<'_>, limit: f64) -> Option<ShapeTouch> {
+        let moving = Moving {
+            convex,
+            before: self.before,
+        };
+        let touch = moving.advance(&self.path, TOLERANCE, limit)?;
+        let time = touch.time;
+        let ends = self.path.at(time);
+        let contact = match touch.nearest {
+            Some(nearest) => {
+                let round = moving.at_rest(time, nearest.normal).normalize_or_zero() * convex.round;
+                ShapeContact {
+                    point: nearest.on_core + round,
+                    normal: nearest.normal,
+                    distance: nearest.distance - convex.round,
+                }
+            }
+            // At the start; or, of radius zero, when the segment comes to lie on the core.
+            None => {
+                let place = moving.place(time);
+                let contact = solid(convex, ends.map(|end| place.inverse_transform(end)));
+                ShapeContact {
+                    normal: place.rotation * contact.normal,
+                    ..contact
+                }
+            }
+        };
+        Some(ShapeTouch {
+            time,
+            contact,
+            away: contact.normal,
+            started_inside: time == 0.0 && contact.distance <= self.path.radius,
+            undecided: touch.undecided,
+        })
+    }
+
+    /// As seen from the half space: all of it that turns would be endlessly fast somewhere.
+    fn meet_half_space(&self, normal: DVec3) -> Option<ShapeTouch> {
+        let path = self.seen_from_shape();
+        let starts = path.start.map(|end| normal.dot(end) - path.radius);
+        let ends = path.end.map(|end| normal.dot(end) - path.radius);
+        let time = |k: usize| match (starts[k] <= 0.0, ends[k] <= 0.0) {
+            (true, _) => 0.0,
+            (false, true) => starts[k] / (starts[k] - ends[k]),
+            (false, false) => f64::INFINITY,
+        };
+        let time = time(0).min(time(1));
+        if time > 1.0 {
+            return None;
+        }
+        let at = path.at(time);
+        let contact = half_space(normal, at);
+        Some(ShapeTouch {
+            time,
+            contact,
+            away: normal,
+            started_inside: time == 0.0 && contact.distance <= path.radius,
+            undecided: false,
+        })
+    }
 }

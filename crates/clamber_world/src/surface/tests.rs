@@ -6,7 +6,7 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
-use crate::Obstacle;
+use crate::{Obstacle, WorldCapsule};
 
 /// A level square of side 2 around the model's origin, on one joint.
 fn square() -> SkinnedSurface {
@@ -161,4 +161,95 @@ fn bounds_hold_the_creature_over_the_tick_and_little_more() {
     let (center, radius) = Obstacle::bounds(&surface).unwrap();
     assert!((center - moved.translation).length() < 1e-3, "{center}");
     assert!(radius < 24.7, "{radius}");
+}
+
+#[test]
+fn capsules_meet_a_creature_in_metres_of_the_world() {
+    // The square is 20 m wide, upright, and faces +Z.
+    let (mut surface, world_from_model) = placed();
+    let center = world_from_model.translation;
+    let at = |x: f64, z: f64| center + DVec3::new(x, 2.0, z);
+    let ball = WorldCapsule::ball(at(1.0, 4.0), 1.0);
+    let met = Obstacle::cast_capsule(&surface, &ball, DVec3::Z * -6.0).unwrap();
+    assert!((met.time - 0.5).abs() < 2e-5, "{met:?}");
+    assert!((met.away - DVec3::Z).length() < 1e-6, "{met:?}");
+    assert!((met.contact.normal - DVec3::Z).length() < 1e-6, "{met:?}");
+    assert!(
+        (met.contact.point - at(1.0, 0.0)).length() < 1e-5,
+        "{met:?}"
+    );
+    assert!((met.contact.distance - 1.0).abs() < 1.1e-4, "{met:?}");
+    assert!(!met.started_inside);
+    assert_eq!(
+        Obstacle::cast_capsule(&surface, &ball, DVec3::Z * -2.9),
+        None
+    );
+
+    // A rod that leans towards it: 4 m and 2 m away, its near end beyond the square's edge by 10 cm.
+    let rod = WorldCapsule {
+        ends: [at(1.0, 4.0), at(10.1, 2.0)],
+        radius: 0.5,
+    };
+    let mut contacts = Vec::new();
+    Obstacle::overlap_capsule(&surface, &rod.with_radius(2.01), &mut contacts);
+    assert!(!contacts.is_empty());
+    for contact in &contacts {
+        let measured = (rod.nearest_on_axis(contact.point) - contact.point).length();
+        assert!((contact.distance - measured).abs() < 1e-5, "{contact:?}");
+    }
+    let nearest = contacts.iter().map(|contact| contact.distance);
+    let nearest = nearest.fold(f64::INFINITY, f64::min);
+    // On the line from 4 m to 2 m, 9.1 m along, the place over the edge is 2.022 m high; a little nearer, aslant.
+    assert!((1.98..2.01).contains(&nearest), "{contacts:?}");
+    let met = Obstacle::cast_capsule(&surface, &rod, DVec3::Z * -3.0).unwrap();
+    assert!((met.time - 0.5).abs() < 0.02, "{met:?}");
+
+    // It comes nearer by 2 m over the tick.
+    let moved = Similarity {
+        translation: center + DVec3::Z * 2.0,
+        ..world_from_model
+    };
+    let palette = Palette::from_matrices([Affine::IDENTITY]);
+    surface.advance(&palette, moved).unwrap();
+    let met = Obstacle::sweep_capsule(&surface, &ball, DVec3::Z * -4.0).unwrap();
+    assert!((met.time - 0.5).abs() < 3e-5, "{met:?}");
+    assert!(
+        (met.contact.point - at(1.0, 1.0)).length() < 2e-4,
+        "{met:?}"
+    );
+    let met = Obstacle::sweep_capsule(&surface, &ball, DVec3::ZERO);
+    assert_eq!(met, None, "a metre is left");
+    let inside = WorldCapsule::ball(at(1.0, 0.5), 1.0);
+    let met = Obstacle::sweep_capsule(&surface, &inside, DVec3::ZERO).unwrap();
+    assert!(met.started_inside && met.time == 0.0, "{met:?}");
+    assert!((met.contact.distance - 0.5).abs() < 1e-5, "{met:?}");
+}
+
+#[test]
+fn capsules_that_are_not_finite_meet_nothing() {
+    let (surface, world_from_model) = placed();
+    let center = world_from_model.translation;
+    let good = WorldCapsule::ball(center, 1.0);
+    assert!(Obstacle::cast_capsule(&surface, &good, DVec3::X).is_some());
+    let mut contacts = Vec::new();
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let place = WorldCapsule {
+            ends: [center, center + DVec3::X * bad],
+            radius: 1.0,
+        };
+        for capsule in [place, WorldCapsule::ball(place.ends[1], 1.0)] {
+            assert_eq!(Obstacle::cast_capsule(&surface, &capsule, DVec3::X), None);
+            assert_eq!(Obstacle::sweep_capsule(&surface, &capsule, DVec3::X), None);
+            Obstacle::overlap_capsule(&surface, &capsule, &mut contacts);
+        }
+        let by = DVec3::X * bad;
+        assert_eq!(Obstacle::cast_capsule(&surface, &good, by), None, "{bad}");
+        assert_eq!(Obstacle::sweep_capsule(&surface, &good, by), None, "{bad}");
+        let endless = good.with_radius(bad);
+        assert_eq!(Obstacle::cast_capsule(&surface, &endless, DVec3::X), None);
+    }
+    let negative = good.with_radius(-1.0);
+    assert_eq!(Obstacle::cast_capsule(&surface, &negative, DVec3::X), None);
+    Obstacle::overlap_capsule(&surface, &negative, &mut contacts);
+    assert!(contacts.is_empty(), "{contacts:?}");
 }

@@ -15,7 +15,12 @@ const LOOSE: f32 = 1e-3;
 pub(super) struct Moving {
     pub(super) entity: Entity,
     pub(super) pose: RigidPose,
+    /// A step before, if it was elsewhere.
+    pub(super) before: Option<RigidPose>,
+    /// Of the pose now.
     pub(super) bounds: Aabb,
+    /// Of both poses, and so of all lines between.
+    pub(super) swept: Aabb,
 }
 
 /// Colliders of bodies that are not static, after the last step and before it; each by ascending entity.
@@ -32,18 +37,18 @@ impl MovingColliders {
 
     /// Where a collider is; `None` if it does not move.
     pub(super) fn pose(&self, entity: Entity) -> Option<RigidPose> {
-        find(&self.now, entity)
+        find(&self.now, entity).map(|moving| moving.pose)
     }
 
-    /// Where it was; `None` if it did not move, or was not there.
+    /// Where it was; `None` if it has not moved, or was not there.
     pub(super) fn previous_pose(&self, entity: Entity) -> Option<RigidPose> {
-        find(&self.before, entity)
+        find(&self.now, entity)?.before
     }
 }
 
-fn find(all: &[Moving], entity: Entity) -> Option<RigidPose> {
+fn find(all: &[Moving], entity: Entity) -> Option<&Moving> {
     let index = all.binary_search_by_key(&entity, |moving| moving.entity);
-    index.ok().map(|index| all[index].pose)
+    index.ok().map(|index| &all[index])
 }
 
 /// After a step. What a game moves between two steps is motion, too, as this looks at nothing but where colliders
@@ -68,10 +73,14 @@ pub(super) fn note(
             pose = pose.then(&RigidPose::new(on_body.rotation, on_body.translation));
         }
         let bounds = collider.shape_scaled().compute_aabb(&in_f32(&pose));
+        let bounds = bounds.loosened(LOOSE);
+        let earlier = find(before, entity).filter(|earlier| earlier.pose != pose);
         now.push(Moving {
             entity,
             pose,
-            bounds: bounds.loosened(LOOSE),
+            before: earlier.map(|earlier| earlier.pose),
+            bounds,
+            swept: earlier.map_or(bounds, |earlier| bounds.merged(&earlier.bounds)),
         });
     }
     now.sort_unstable_by_key(|moving| moving.entity);

@@ -5,12 +5,14 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::SurfaceTag;
-use clamber_world::shapes::{RigidPose, closest_by_overlap, overlap_shape, sort_contacts};
-use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion};
+use clamber_world::shapes::{
+    FirstContact, Reach, RigidPose, Tick, closest_by_overlap, overlap_shape, sort_contacts,
+};
+use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use super::AvianObstacles;
-use super::moving::in_f32;
+use super::moving::{Moving, in_f32};
 
 /// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
 const LOOSE: f32 = 1e-4;
@@ -79,6 +81,16 @@ impl<'a> AvianTerrain<'a> {
 
     /// Calls `visit` with what may lie in a box.
     fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
+        self.near_still(bounds, visit);
+        for moving in self.world.moving.iter() {
+            if moving.bounds.intersects(bounds) {
+                visit(moving.entity);
+            }
+        }
+    }
+
+    /// Calls `visit` with what may lie in a box and stands still.
+    fn near_still(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
         let trees = &self.world.trees;
         let still = ColliderAabb::from_min_max(bounds.mins, bounds.maxs);
         for tree in [&trees.static_tree, &trees.standalone_tree] {
@@ -89,11 +101,31 @@ impl<'a> AvianTerrain<'a> {
                 true
             });
         }
-        for moving in self.world.moving.iter() {
-            if moving.bounds.intersects(bounds) {
-                visit(moving.entity);
+    }
+
+    /// Tries what stands still, and what moves as `moving` says: by which box, and over which tick.
+    fn first_contact(
+        &self,
+        capsule: &WorldCapsule,
+        displacement: DVec3,
+        moving: impl Fn(&Moving) -> (Aabb, Tick),
+    ) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        self.near_still(&first.bounds(), &mut |entity| {
+            if let Some((collider, pose)) = self.solid(entity) {
+                let shape = &**collider.shape_scaled();
+                first.meet(shape, &Tick::still(pose), entity.to_bits());
+            }
+        });
+        for body in self.world.moving.iter() {
+            let (bounds, tick) = moving(body);
+            if first.may_meet(&bounds)
+                && let Some((collider, _)) = self.solid(body.entity)
+            {
+                first.meet(&**collider.shape_scaled(), &tick, body.entity.to_bits());
             }
         }
+        first.contact(self.origin)
     }
 
     /// Casts a ray at one collider; keeps the nearest hit, of equals that of the smaller entity.
@@ -196,30 +228,39 @@ impl Obstacle for AvianTerrain<'_> {
         })
     }
 
-    fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
-        let Some(local) = self.local(center) else {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let local = capsule.moved(-self.origin);
+        let Some(reach) = Reach::around(local.ends, capsule.radius) else {
             return;
         };
-        let radius = radius as f32;
-        if radius.is_nan() || radius < 0.0 {
-            return;
-        }
         let start = contacts.len();
-        let reach = Vec3::splat(radius);
-        self.near(&Aabb::new(local - reach, local + reach), &mut |entity| {
+        self.near(&reach.bounds(), &mut |entity| {
             let Some((collider, pose)) = self.solid(entity) else {
                 return;
             };
-            let on_shape = pose.inverse_transform(local.as_dvec3()).as_vec3();
+            let ends = local.ends.map(|end| pose.inverse_transform(end));
             let shape = &**collider.shape_scaled();
-            overlap_shape(shape, on_shape, radius, &mut |found| {
-                let point = pose.transform(found.point.as_dvec3()).as_vec3();
-                let normal = (pose.rotation * found.normal.as_dvec3()).as_vec3();
-                let distance = f64::from(found.distance);
-                contacts.push(self.contact(entity, &pose, point, normal, distance));
+            overlap_shape(shape, ends, capsule.radius, &mut |found| {
+                contacts.push(found.in_world(&pose, self.origin, entity.to_bits()));
             });
         });
         sort_contacts(&mut contacts[start..]);
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        self.first_contact(capsule, displacement, |moving| {
+            (moving.bounds, Tick::still(moving.pose))
+        })
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        self.first_contact(capsule, displacement, |moving| {
+            let tick = Tick {
+                before: moving.before,
+                now: moving.pose,
+            };
+            (moving.swept, tick)
+        })
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -70,7 +70,7 @@ fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
     let front = |tick: u32| 14.4 + 1.2 * DT * f64::from(tick);
     pose(&mut wall, &DAffine3::from_translation(DVec3::X * front(0)));
     let mut events = Vec::new();
-    for tick in 1..330 {
+    for tick in 1..340 {
         let at = DAffine3::from_translation(DVec3::X * front(tick));
         pose(&mut wall, &at);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =

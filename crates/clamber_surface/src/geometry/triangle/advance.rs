@@ -106,6 +106,30 @@ pub(crate) fn advance<const N: usize>(
         radius: core.radius,
         tolerance: core.tolerance,
     };
+    first_contact(&path, limit)
+}
+
+/// [`advance`] for what is in f64 already, relative to the start of the core.
+pub(crate) fn advance_relative<const N: usize>(
+    corners: [[DVec3; 3]; 2],
+    core: [[DVec3; N]; 2],
+    [radius, tolerance]: [f64; 2],
+    limit: f64,
+) -> Option<Contact> {
+    let [start, end] = corners.map(|corners| corners.map(Vector3::from));
+    let [core_start, core_end] = core.map(|ends| ends.map(Vector3::from));
+    let path = Path {
+        start,
+        end,
+        core_start,
+        core_end,
+        radius,
+        tolerance,
+    };
+    first_contact(&path, limit).0
+}
+
+fn first_contact<const N: usize>(path: &Path<f64, N>, limit: f64) -> (Option<Contact>, u32) {
     let (found, steps) = path.advance(limit);
     let contact = (found.verdict != MISS).then(|| Contact {
         barycentric: DVec3::from_array(found.weights),

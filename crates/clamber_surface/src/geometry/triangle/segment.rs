@@ -32,9 +32,9 @@ pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> Triang
     nearest_to_segment(from_a, from_b, (b - a).into()).into()
 }
 
-/// [`closest_to_segment`] for ends in f64, which may be one point.
-pub(crate) fn nearest_to_axis(corners: [Vec3; 3], [a, b]: [DVec3; 2]) -> TrianglePoint {
-    let from = |end: DVec3| corners.map(|corner| Vector3::from(widen(corner) - end));
+/// [`closest_to_segment`] in f64, for ends which may be one point.
+pub(crate) fn nearest_to_axis(corners: [DVec3; 3], [a, b]: [DVec3; 2]) -> TrianglePoint {
+    let from = |end: DVec3| corners.map(|corner| Vector3::from(corner - end));
     if a == b {
         nearest_to_origin(from(a)).into()
     } else {

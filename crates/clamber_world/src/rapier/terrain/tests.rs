@@ -219,4 +219,5 @@ fn what_is_not_finite_or_gone_finds_nothing() {
     assert!(terrain.motion(&material, 0.1).is_none());
 }
 
+mod agreement;
 mod capsules;

@@ -1,15 +1,16 @@
-//! First contact of a moving capsule with a convex solid that stands still, by directional conservative advancement,
+//! First contact of a moving capsule with a convex solid, which may move, too, by directional conservative advancement,
 //! as for the triangles of skinned surfaces (`clamber_surface::geometry`, whose solver says more).
 //!
-//! Along a unit direction n the gap `min n.p_i(t) - extent(n)` over the segment's ends p_i is at most the distance,
-//! whatever the solid; ends on straight lines make it a minimum of lines, so that two values not below the radius
-//! certify all times between them. n is taken from the nearest points; what takes more than a few steps looks ahead,
-//! and lets n turn: extents are convex, so that along `n0 (1 - s) + n1 s` the extent is at most the same mean of both.
+//! Along a direction n, |n| <= 1, the gap `min n.p_i(t) - extent(t)` over the segment's ends p_i is at most the distance,
+//! whatever the solid. Ends and points of the solid go on straight lines: the extent, a maximum of linear functions, is
+//! convex, and the gap is concave. So a line between its values at two times is nowhere more than it, and where both are
+//! not below the radius, there is no contact between, however poor n is. n is taken from the nearest points; what takes
+//! more than a few steps looks ahead, and lets n turn.
 
 use clamber_surface::geometry::MovingCapsule;
 use glam::DVec3;
 
-use super::{Convex, Nearest};
+use super::{Moving, Nearest};
 
 /// Most steps. Ways without turns take three to six.
 const STEPS: u32 = 256;
@@ -23,6 +24,9 @@ const FARTHEST_AHEAD: f64 = 0.875;
 /// What arithmetic may take off a gap, as a share of the lengths involved.
 const LOST: f64 = 1.0 / (1u64 << 46) as f64;
 
+/// How often a shorter while is looked at for a better line, of what turns.
+const HALVINGS: u32 = 5;
+
 /// A time that is never reached.
 const NEVER: f64 = 2.0;
 
@@ -34,22 +38,14 @@ pub(in crate::shapes) struct ConvexTouch {
     pub(in crate::shapes) undecided: bool,
 }
 
-/// A direction, and when the gap along it is large enough: from a time until another.
-struct Gaps {
-    from: f64,
-    until: f64,
-    /// The least gap falls at the time asked for.
-    falls: bool,
-}
-
 struct Advance<'a> {
-    convex: &'a Convex<'a>,
+    solid: &'a Moving<'a>,
     path: &'a MovingCapsule,
     /// What the gap has to keep: radius and rounding.
     floor: f64,
 }
 
-impl Convex<'_> {
+impl Moving<'_> {
     /// Up to the time `limit`. Never later than the first contact, at a distance of at most radius and `tolerance`
     /// unless it says undecided.
     pub(in crate::shapes) fn advance(
@@ -58,12 +54,12 @@ impl Convex<'_> {
         tolerance: f64,
         limit: f64,
     ) -> Option<ConvexTouch> {
-        let radius = path.radius + self.round;
+        let radius = path.radius + self.convex.round;
         let ends = path.start.into_iter().chain(path.end);
         let size = ends.fold(radius, |size, end| size.max(end.abs().max_element()));
         let lost = size * LOST;
         let advance = Advance {
-            convex: self,
+            solid: self,
             path,
             floor: radius + lost,
         };
@@ -78,14 +74,13 @@ impl Convex<'_> {
                     undecided,
                 })
             };
-            let Some(nearest) = self.nearest(path.at(time), guess) else {
+            let Some(nearest) = self.nearest(time, path.at(time), guess) else {
                 return touch(None, false);
             };
             let distance = nearest.distance;
-            let gaps = advance.gaps(nearest.normal, time);
-            let until = if gaps.from <= time { gaps.until } else { 0.0 };
+            let until = advance.until(nearest.normal, time).unwrap_or(0.0);
             let stuck = until <= time;
-            let approaching = gaps.falls || distance < earlier.1;
+            let approaching = distance < earlier.1 || advance.falls(nearest.normal, time);
             if until > 1.0 && distance > radius {
                 return None;
             }
@@ -118,30 +113,47 @@ impl Convex<'_> {
 }
 
 impl Advance<'_> {
-    fn gaps(&self, n: DVec3, time: f64) -> Gaps {
-        let extent = self.convex.extent(n) + self.floor;
-        let (mut from, mut until) = (0.0_f64, NEVER);
-        let (mut least, mut falls) = (f64::INFINITY, false);
-        for (start, end) in self.path.start.into_iter().zip(self.path.end) {
-            let (first, last) = (n.dot(start) - extent, n.dot(end) - extent);
-            // Where the line passes through 0, if it does.
-            let root = first / (first - last);
-            if first < 0.0 {
-                from = from.max(if last < 0.0 {
-                    NEVER
-                } else {
-                    root * (1.0 + 1e-15)
-                });
-                until = until.min(if last < 0.0 { 0.0 } else { NEVER });
-            } else if last < 0.0 {
-                until = until.min(root * (1.0 - 1e-15));
-            }
-            let now = first + (last - first) * time;
-            if now < least {
-                (least, falls) = (now, last < first);
-            }
+    /// What is left along a direction at a time, of the gap beyond the floor.
+    fn left(&self, n: DVec3, time: f64) -> f64 {
+        let ends = self.path.at(time).map(|end| n.dot(end));
+        let farthest = self.solid.point(time, self.solid.support(time, n));
+        ends[0].min(ends[1]) - n.dot(farthest) - self.floor
+    }
+
+    /// Until when the gap along a direction is large enough, from a time on; [`NEVER`] if it stays so to the end, `None`
+    /// if it is not so then.
+    fn until(&self, n: DVec3, time: f64) -> Option<f64> {
+        let first = self.left(n, time);
+        if first < 0.0 {
+            return None;
         }
-        Gaps { from, until, falls }
+        let (mut best, mut horizon) = (time, 1.0);
+        for _ in 0..=HALVINGS {
+            let last = self.left(n, horizon);
+            if last >= 0.0 {
+                return Some(if horizon == 1.0 { NEVER } else { horizon });
+            }
+            let share = first / (first - last) * (1.0 - 1e-15);
+            let root = time * (1.0 - share) + horizon * share;
+            best = f64::max(best, root);
+            // Of what turns, the line up to then falls faster than the gap now.
+            let nearer = time + 2.0 * (best - time);
+            if self.solid.before.is_none() || nearer >= horizon {
+                break;
+            }
+            horizon = nearer;
+        }
+        Some(best)
+    }
+
+    /// Whether the gap along a direction falls at a time.
+    fn falls(&self, n: DVec3, time: f64) -> bool {
+        let at = self.path.at(time).map(|end| n.dot(end));
+        let end = usize::from(at[1] < at[0]);
+        let support = self.solid.support(time, n);
+        let slide = self.path.end[end] - self.path.start[end];
+        let turn = self.solid.point(1.0, support) - self.solid.point(0.0, support);
+        n.dot(slide - turn) < 0.0
     }
 
     /// A time up to which there is no contact either, beyond the later of the two that the step went from and to:
@@ -158,22 +170,35 @@ impl Advance<'_> {
         let closes = begin + (nearest.distance - self.floor) / rate;
         let closes = if rate > 0.0 { closes.min(1.0) } else { 1.0 };
         let probe = time + (closes - time).max(0.0) * ahead;
-        let then = self.convex.nearest(self.path.at(probe), nearest.normal)?;
-        let gaps = self.gaps(then.normal, probe);
-        let turning = || self.holds_turning([nearest.normal, then.normal], [begin, probe]);
-        let holds = gaps.from <= time || (gaps.from <= probe && turning());
-        (holds && gaps.until > time).then_some(gaps.until)
+        let ends = self.path.at(probe);
+        let then = self.solid.nearest(probe, ends, nearest.normal)?;
+        let held = self.until(then.normal, time).or_else(|| {
+            let turning = self.holds_turning([nearest.normal, then.normal], [begin, probe]);
+            turning.then(|| self.until(then.normal, probe)).flatten()
+        });
+        held.filter(|held| *held > time)
     }
 
     /// Whether the gap is large enough all the time between two along a direction that turns linearly from the one to
-    /// the other. It is quadratic for each end, and nowhere less than the least coefficient of its Bernstein basis.
+    /// the other. It is quadratic for each end and point, and nowhere less than the least coefficient of its Bernstein
+    /// basis; of the solid's points the largest of each stands for all.
     fn holds_turning(&self, [n, m]: [DVec3; 2], times: [f64; 2]) -> bool {
-        let [first, last] = [n, m].map(|n| self.convex.extent(n));
+        let along = |direction: DVec3, time: f64| {
+            let point = self.solid.support(time, direction);
+            self.solid.point(time, point).dot(direction)
+        };
+        let [first, last] = times;
+        // Of `n.place(last) + m.place(first)` over the points of the solid.
+        let (a, b) = (self.solid.at_rest(last, n), self.solid.at_rest(first, m));
+        let point = self.solid.convex.support(a + b);
+        let middle = n.dot(self.solid.point(last, point)) + m.dot(self.solid.point(first, point));
+        let extents = [along(n, first), middle * 0.5, along(m, last)];
         let [from, to] = times.map(|time| self.path.at(time));
         from.into_iter().zip(to).all(|(p, q)| {
-            let between = (n.dot(q) + m.dot(p)) * 0.5 - (first + last) * 0.5;
-            let ends = (n.dot(p) - first).min(m.dot(q) - last);
-            between.min(ends) >= self.floor
+            let gaps = [n.dot(p), (n.dot(q) + m.dot(p)) * 0.5, m.dot(q)];
+            gaps.into_iter()
+                .zip(extents)
+                .all(|(gap, extent)| gap - extent >= self.floor)
         })
     }
 }

@@ -1,10 +1,12 @@
 //! Solid convex shapes in f64, as a core of which only support points are known, and what is rounded around it.
 
 mod advance;
+mod moving;
 mod nearest;
 mod simplex;
 mod way_out;
 
+pub(super) use moving::Moving;
 pub(super) use nearest::Nearest;
 
 use clamber_surface::parry::parry3d;
@@ -182,3 +184,6 @@ fn farthest(points: impl Iterator<Item = DVec3>, direction: DVec3) -> DVec3 {
     }
     best.1
 }
+
+#[cfg(test)]
+mod tests;

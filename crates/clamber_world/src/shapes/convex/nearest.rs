@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Convex;
+use super::Moving;
 use super::simplex::{Corner, Simplex};
 
 /// Most rounds. Cores with corners take some five to ten, with rims twenty or thirty.
@@ -18,41 +18,54 @@ const MEETING: f64 = 1e-14;
 /// The nearest points of a core and a segment that do not meet.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shapes) struct Nearest {
+    /// Where the core's lies at rest.
     pub(in crate::shapes) on_core: DVec3,
-    /// Unit vector from the core's to the segment's.
+    /// Unit vector from the core's to the segment's: of all directions tried that of the widest gap.
     pub(in crate::shapes) normal: DVec3,
     pub(in crate::shapes) distance: f64,
 }
 
-impl Convex<'_> {
+impl Moving<'_> {
     /// Begins with the direction from core to segment that is guessed, of any length, zero for none. `None` where core
     /// and segment meet.
-    pub(in crate::shapes) fn nearest(&self, ends: [DVec3; 2], guess: DVec3) -> Option<Nearest> {
+    pub(in crate::shapes) fn nearest(
+        &self,
+        time: f64,
+        ends: [DVec3; 2],
+        guess: DVec3,
+    ) -> Option<Nearest> {
         let corner = |towards_axis: DVec3| {
-            let on_core = self.support(towards_axis);
+            let on_core = self.support(time, towards_axis);
             let farther = towards_axis.dot(ends[1]) < towards_axis.dot(ends[0]);
             let on_axis = ends[usize::from(farther)];
             Corner {
-                apart: on_core - on_axis,
+                apart: self.point(time, on_core) - on_axis,
                 on_core,
-                on_axis,
             }
         };
+        let axis_size = ends[0].length().max(ends[1].length());
         let mut simplex = Simplex::new(corner(guess));
         let mut best = simplex.nearest();
-        let mut size = best.on_core.length() + best.on_axis.length();
+        let mut size = best.apart.length() + axis_size;
+        // The widest gap along a direction so far, and that direction.
+        let (mut gap, mut normal) = (f64::NEG_INFINITY, DVec3::Y);
         for _ in 0..ROUNDS {
             let length_sq = best.apart.length_squared();
             if length_sq <= (size * MEETING) * (size * MEETING) {
                 return None;
             }
             let next = corner(-best.apart);
-            size = size.max(next.on_core.length() + next.on_axis.length());
-            let gain = length_sq - best.apart.dot(next.apart);
-            if gain <= length_sq * GAIN || simplex.has(&next) {
+            size = size.max(next.apart.length() + axis_size);
+            let kept = best.apart.dot(next.apart);
+            let length = length_sq.sqrt();
+            if kept / length > gap {
+                (gap, normal) = (kept / length, -best.apart / length);
+            }
+            if length_sq - kept <= length_sq * GAIN || simplex.has(&next) {
                 break;
             }
-            let wider = simplex.with(next)?;
+            // What a plane parts does not meet, whatever rounding makes of four corners that are all but flat.
+            let wider = simplex.with(next, gap > 0.0)?;
             let nearest = wider.nearest();
             // Rounding allows no more.
             if nearest.apart.length_squared() >= length_sq {
@@ -60,11 +73,10 @@ impl Convex<'_> {
             }
             (simplex, best) = (wider, nearest);
         }
-        let distance = best.apart.length();
         Some(Nearest {
             on_core: best.on_core,
-            normal: -best.apart / distance,
-            distance,
+            normal,
+            distance: best.apart.length(),
         })
     }
 }

@@ -1,11 +1,10 @@
 use glam::DVec3;
 
-/// A point of the difference of core and segment, and the points that it is the difference of.
+/// A point of the difference of core and segment, and where the core's lies at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Corner {
     pub(super) apart: DVec3,
     pub(super) on_core: DVec3,
-    pub(super) on_axis: DVec3,
 }
 
 /// Up to four corners, and the weights of their point nearest to the origin.
@@ -31,8 +30,8 @@ impl Simplex {
     }
 
     /// With one corner more, reduced to those that carry the point nearest to the origin. `None` if the origin lies
-    /// inside.
-    pub(super) fn with(&self, corner: Corner) -> Option<Self> {
+    /// inside, which is not asked where it is known to be apart: four corners of a rim are all but flat.
+    pub(super) fn with(&self, corner: Corner, apart: bool) -> Option<Self> {
         let mut all = *self;
         all.corners[all.count] = corner;
         all.count += 1;
@@ -41,7 +40,7 @@ impl Simplex {
             2 => Nearest::of_segment(p, [0, 1]),
             3 => Nearest::of_triangle(p, [0, 1, 2]),
             _ => {
-                if is_inside(p) {
+                if !apart && is_inside(p) {
                     return None;
                 }
                 let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
@@ -66,7 +65,6 @@ impl Simplex {
         for (corner, weight) in self.corners.iter().zip(self.weights).take(self.count) {
             sum.apart += corner.apart * weight;
             sum.on_core += corner.on_core * weight;
-            sum.on_axis += corner.on_axis * weight;
         }
         sum
     }

@@ -1,0 +1,471 @@
+use super::*;
+use fastrand::Rng;
+
+/// The slow twin: of all sets of at most three planes, the nearest of the points that they hold and
+/// that are above all others; lowered, where there is none, until there is one.
+pub(crate) fn nearest_above_reference(target: DVec3, planes: &[Plane]) -> Above {
+    let size = planes.iter().fold(0.0, |most: f64, plane| {
+        most.max(plane.offset - plane.normal.dot(target))
+    });
+    if size == 0.0 {
+        return Above {
+            point: target,
+            missed: 0.0,
+        };
+    }
+    let walls: Vec<Wall> = planes
+        .iter()
+        .map(|plane| Wall {
+            normal: plane.normal,
+            gap: (plane.offset - plane.normal.dot(target)) / size,
+        })
+        .collect();
+    let sound = |relief: f64| {
+        let point = nearest_of_all(&walls, relief)?;
+        let probe = PROBE * (1.0 + point.length());
+        let relieved = nearest_of_all(&walls, relief + probe)?;
+        (point.length() - relieved.length() <= STEEPEST * probe).then_some(point)
+    };
+    let point = sound(0.0).unwrap_or_else(|| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let relief = 0.5 * (low + high);
+            if sound(relief).is_some() {
+                high = relief;
+            } else {
+                low = relief;
+            }
+        }
+        sound(high).unwrap_or(DVec3::ZERO)
+    });
+    let missed = walls
+        .iter()
+        .fold(0.0, |most: f64, wall| most.max(wall.missed(point)));
+    Above {
+        point: target + point * size,
+        missed: missed * size,
+    }
+}
+
+fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
+    let walls: Vec<Wall> = walls
+        .iter()
+        .map(|wall| Wall {
+            gap: wall.gap - relief,
+            ..*wall
+        })
+        .collect();
+    let mut best: Option<DVec3> = None;
+    let mut consider = |point: DVec3| {
+        let slack = HELD * (1.0 + point.length());
+        let nearer = best.is_none_or(|best| point.length() < best.length());
+        if nearer
+            && point.length() <= STEEPEST
+            && walls.iter().all(|wall| wall.missed(point) <= slack)
+        {
+            best = Some(point);
+        }
+    };
+    consider(DVec3::ZERO);
+    for (i, a) in walls.iter().enumerate() {
+        consider(a.normal * a.gap);
+        for (j, b) in walls.iter().enumerate().take(i) {
+            let crease = a.normal.cross(b.normal);
+            consider(refined(
+                &[a, b],
+                [
+                    b.normal.cross(crease) / crease.length_squared(),
+                    crease.cross(a.normal) / crease.length_squared(),
+                    DVec3::ZERO,
+                ],
+            ));
+            for c in walls.iter().take(j) {
+                let volume = crease.dot(c.normal);
+                consider(refined(
+                    &[a, b, c],
+                    [
+                        b.normal.cross(c.normal) / volume,
+                        c.normal.cross(a.normal) / volume,
+                        crease / volume,
+                    ],
+                ));
+            }
+        }
+    }
+    best
+}
+
+/// The point on walls, given for each the step that lifts by 1 from it alone: repeated, since the
+/// steps are rounded.
+fn refined(walls: &[&Wall], lift: [DVec3; 3]) -> DVec3 {
+    let mut point = DVec3::ZERO;
+    for _ in 0..4 {
+        let steps = walls
+            .iter()
+            .zip(lift)
+            .map(|(wall, lift)| lift * wall.missed(point));
+        point += steps.sum::<DVec3>();
+    }
+    point
+}
+
+fn direction(rng: &mut Rng) -> DVec3 {
+    loop {
+        let v = DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0;
+        if (0.01..1.0).contains(&v.length_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+/// Directions of which some repeat, oppose, or differ from one another by 1e-12 to 1e-6.
+fn normals(rng: &mut Rng, count: usize) -> Vec<DVec3> {
+    let mut normals: Vec<DVec3> = Vec::new();
+    for _ in 0..count {
+        let other = if normals.is_empty() {
+            DVec3::Y
+        } else {
+            normals[rng.usize(..normals.len())]
+        };
+        let tilt = direction(rng) * libm::exp(-14.0 - 14.0 * rng.f64());
+        normals.push(match rng.u32(..10) {
+            0 => other,
+            1 => -other,
+            2 => (other + tilt).normalize(),
+            3 => (tilt - other).normalize(),
+            4 => DVec3::AXES[rng.usize(..3)],
+            _ => direction(rng),
+        });
+    }
+    normals
+}
+
+/// Planes with a point above them all, on some of them, 0.5 or so from the target.
+fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<Plane> {
+    let inside = direction(rng) * rng.f64();
+    let plane = |&normal: &DVec3| {
+        let margin = [0.0, 1e-12, 0.1, 0.5][rng.usize(..4)] * rng.f64();
+        Plane {
+            normal,
+            offset: normal.dot(inside) - margin,
+        }
+    };
+    normals.iter().map(plane).collect()
+}
+
+fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<Plane> {
+    let plane = |&normal: &DVec3| Plane {
+        normal,
+        offset: rng.f64() * 2.0 - 1.0,
+    };
+    normals.iter().map(plane).collect()
+}
+
+fn size(target: DVec3, planes: &[Plane], found: &Above) -> f64 {
+    planes
+        .iter()
+        .fold(target.length().max(found.point.length()), |most, plane| {
+            most.max(plane.offset.abs())
+        })
+}
+
+/// Agreement with the slow twin. What both weigh, miss against distance, is compared in every case;
+/// miss and distance each where there is room.
+fn check(target: DVec3, planes: &[Plane]) {
+    let found = nearest_above(target, planes);
+    let sought = nearest_above_reference(target, planes);
+    let slack = 1e-9 * size(target, planes, &found);
+    let [far, least] = [found, sought].map(|above| above.point.distance(target));
+    let context = || format!("{found:?} against {sought:?}\ntarget {target:?}\nplanes {planes:?}");
+    assert!(
+        found.point.is_finite() && found.missed.is_finite(),
+        "{}",
+        context()
+    );
+    let missed = planes
+        .iter()
+        .map(|plane| plane.offset - plane.normal.dot(found.point));
+    assert!(
+        (missed.fold(0.0, f64::max) - found.missed).abs() <= 1e-15,
+        "what is missed is not what is said: {}",
+        context()
+    );
+    let weighed = |missed: f64, far: f64| missed + far / STEEPEST;
+    let (own, others) = (weighed(found.missed, far), weighed(sought.missed, least));
+    assert!(
+        (own - others).abs() <= slack,
+        "worse by {:e}: {}",
+        own - others,
+        context()
+    );
+    if sought.missed <= 1e-14 {
+        assert!(found.missed <= slack, "intrudes: {}", context());
+        assert!(far <= least + slack, "too far: {}", context());
+        assert!(
+            far >= least - slack,
+            "nearer than all that is allowed: {}",
+            context()
+        );
+    }
+}
+
+#[test]
+fn room_is_found_as_near_as_by_trying_everything() {
+    let mut rng = Rng::with_seed(1);
+    for count in 1..=17 {
+        for _ in 0..6000 / (count * count) + 12 {
+            let normals = normals(&mut rng, count);
+            let planes = with_room(&mut rng, &normals);
+            let target = direction(&mut rng) * rng.f64() * 2.0;
+            check(target, &planes);
+        }
+    }
+}
+
+#[test]
+fn without_room_the_least_miss_is_found() {
+    let mut rng = Rng::with_seed(2);
+    for count in 1..=8 {
+        for _ in 0..600 / (count * count) + 4 {
+            let normals = normals(&mut rng, count);
+            let planes = anyhow(&mut rng, &normals);
+            check(direction(&mut rng) * rng.f64(), &planes);
+        }
+    }
+}
+
+#[test]
+fn of_many_planes_none_is_intruded() {
+    let mut rng = Rng::with_seed(3);
+    for _ in 0..4000 {
+        let count = rng.usize(1..=40);
+        let normals = normals(&mut rng, count);
+        let mut planes = with_room(&mut rng, &normals);
+        // Planes that are nearly opposite need room between them.
+        for plane in &mut planes {
+            plane.offset -= 1e-3;
+        }
+        let target = direction(&mut rng) * rng.f64() * 3.0;
+        let found = nearest_above(target, &planes);
+        assert!(
+            found.missed <= 1e-11,
+            "{found:?} target {target:?} planes {planes:?}"
+        );
+    }
+}
+
+#[test]
+fn the_order_of_planes_changes_no_bit() {
+    let mut rng = Rng::with_seed(4);
+    for case in 0..3000 {
+        let count = rng.usize(2..=17);
+        let normals = normals(&mut rng, count);
+        let mut planes = if case % 3 == 0 {
+            anyhow(&mut rng, &normals)
+        } else {
+            with_room(&mut rng, &normals)
+        };
+        let target = direction(&mut rng);
+        let first = nearest_above(target, &planes);
+        rng.shuffle(&mut planes);
+        let second = nearest_above(target, &planes);
+        assert_eq!(first, second, "target {target:?} planes {planes:?}");
+    }
+}
+
+#[test]
+fn smaller_and_larger_worlds_are_alike() {
+    let mut rng = Rng::with_seed(5);
+    for case in 0..3000 {
+        let count = rng.usize(1..=12);
+        // Alike only where a rounding more does not tell a wedge from a wall.
+        let normals: Vec<DVec3> = (0..count).map(|_| direction(&mut rng)).collect();
+        let planes = if case % 3 == 0 {
+            anyhow(&mut rng, &normals)
+        } else {
+            with_room(&mut rng, &normals)
+        };
+        let target = direction(&mut rng);
+        let found = nearest_above(target, &planes);
+        let scaled = |scale: f64| {
+            let scaled = planes.iter().map(|plane| Plane {
+                offset: plane.offset * scale,
+                ..*plane
+            });
+            nearest_above(target * scale, &scaled.collect::<Vec<_>>())
+        };
+        for scale in [f64::from(1 << 20), 1.0 / f64::from(1 << 20)] {
+            let other = scaled(scale);
+            let (point, missed) = (found.point * scale, found.missed * scale);
+            assert_eq!(
+                (other.point, other.missed),
+                (point, missed),
+                "{target:?} {planes:?}"
+            );
+        }
+        // On the verge of being a wedge, rounded offsets move the point by the root of theirs.
+        let share = if found.missed < 1e-12 { 1e-9 } else { 2e-5 };
+        for scale in [1e-6, 1e6] {
+            let other = scaled(scale);
+            let apart = other.point.distance(found.point * scale);
+            assert!(
+                apart <= share * scale * size(target, &planes, &found),
+                "{apart:e}: {found:?}, times {scale}: {other:?}; target {target:?} planes {planes:?}"
+            );
+        }
+    }
+}
+
+fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [Plane; N] {
+    planes.map(|(normal, offset)| Plane {
+        normal: DVec3::from_array(normal).normalize(),
+        offset,
+    })
+}
+
+#[track_caller]
+fn expect(target: [f64; 3], planes: &[Plane], point: [f64; 3], missed: f64) {
+    let found = nearest_above(DVec3::from_array(target), planes);
+    let apart = found.point.distance(DVec3::from_array(point));
+    assert!(apart <= 1e-9, "{found:?}, {apart:e} off, planes {planes:?}");
+    assert!((found.missed - missed).abs() <= 1e-10, "{found:?}");
+}
+
+#[test]
+fn above_all_nothing_moves() {
+    let target = DVec3::new(0.1, 0.2, 0.3);
+    let floor = planes([([0.0, 1.0, 0.0], 0.2)]);
+    for planes in [&floor[..], &[]] {
+        let found = nearest_above(target, planes);
+        assert_eq!((found.point, found.missed), (target, 0.0));
+    }
+}
+
+#[test]
+fn a_floor_a_crease_and_a_corner() {
+    let all = planes([
+        ([0.0, 1.0, 0.0], 0.0),
+        ([1.0, 0.0, 0.0], 0.5),
+        ([0.0, 0.0, 1.0], -1.0),
+    ]);
+    expect([0.0, -2.0, 0.0], &all[..1], [0.0, 0.0, 0.0], 0.0);
+    expect([0.0, -2.0, 0.0], &all[..2], [0.5, 0.0, 0.0], 0.0);
+    expect([0.0, -2.0, -3.0], &all, [0.5, 0.0, -1.0], 0.0);
+}
+
+#[test]
+fn a_slab_too_thin_is_missed_on_both_sides() {
+    let closing = planes([([0.0, 1.0, 0.0], 1.0), ([0.0, -1.0, 0.0], 0.0)]);
+    expect([3.0, 0.0, 2.0], &closing, [3.0, 0.5, 2.0], 0.5);
+    let beside = planes([
+        ([0.0, 1.0, 0.0], 1.0),
+        ([0.0, -1.0, 0.0], 0.0),
+        ([1.0, 0.0, 0.0], 4.0),
+    ]);
+    expect([3.0, 0.0, 2.0], &beside, [3.5, 0.5, 2.0], 0.5);
+    let thin = planes([([0.0, 1.0, 0.0], 1.0), ([0.0, -1.0, 0.0], -1.0 - 1e-12)]);
+    expect([3.0, 0.0, 2.0], &thin, [3.0, 1.0, 2.0], 0.0);
+}
+
+#[test]
+fn walls_that_are_opposite_but_for_rounding_throw_nothing_far() {
+    for tilt in [0.0, 1e-12, 1e-9, 1e-7, 1e-5] {
+        let closing = planes([([tilt, 1.0, 0.0], 0.001), ([tilt, -1.0, 0.0], 0.001)]);
+        let found = nearest_above(DVec3::ZERO, &closing);
+        assert!(
+            found.point.length() < 1e-4 && (found.missed - 0.001).abs() < 1e-8,
+            "tilt {tilt}: {found:?}"
+        );
+    }
+    // Of a degree of difference, the way out is taken.
+    let wedge = planes([([0.01, 1.0, 0.0], 0.001), ([0.01, -1.0, 0.0], 0.001)]);
+    expect(
+        [0.0; 3],
+        &wedge,
+        [0.001 * 1.00005_f64 / 0.01, 0.0, 0.0],
+        0.0,
+    );
+}
+
+#[test]
+fn a_closed_box_is_missed_evenly() {
+    let tetrahedron = planes([
+        ([1.0, 1.0, 1.0], 1.0),
+        ([1.0, -1.0, -1.0], 1.0),
+        ([-1.0, 1.0, -1.0], 1.0),
+        ([-1.0, -1.0, 1.0], 1.0),
+    ]);
+    expect([5.0, -3.0, 2.0], &tetrahedron, [0.0; 3], 1.0);
+}
+
+#[test]
+fn cones_of_many_planes_have_one_apex() {
+    for tilt in [1.0, 1e-3, 1e-6, 1e-9] {
+        let cone: Vec<Plane> = (0..32)
+            .map(|k| {
+                let angle = f64::from(k) * 0.2;
+                let normal = DVec3::new(tilt * libm::cos(angle), 1.0, tilt * libm::sin(angle));
+                Plane {
+                    normal: normal.normalize(),
+                    offset: 0.0,
+                }
+            })
+            .collect();
+        let found = nearest_above(DVec3::new(0.0, -1.0, 0.0), &cone);
+        assert!(found.missed < 1e-12, "tilt {tilt}: {found:?}");
+        // Of flat cones the apex is no nearer than the planes themselves, to second order.
+        let far = found.point.distance(DVec3::new(0.0, -1.0, 0.0));
+        assert!((far - 1.0).abs() < 1e-9, "tilt {tilt}: {found:?}");
+    }
+}
+
+#[test]
+fn normals_of_no_use_are_ignored() {
+    let mut all = vec![Plane {
+        normal: DVec3::Y,
+        offset: 1.0,
+    }];
+    for normal in [
+        DVec3::ZERO,
+        DVec3::NAN,
+        DVec3::INFINITY,
+        DVec3::X * 1e-200,
+        DVec3::X * 1e200,
+    ] {
+        all.push(Plane {
+            normal,
+            offset: 1.0,
+        });
+    }
+    for offset in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        all.push(Plane {
+            normal: DVec3::X,
+            offset,
+        });
+    }
+    expect([0.0; 3], &all, [0.0, 1.0, 0.0], 0.0);
+}
+
+#[test]
+fn extremes_stay_finite() {
+    let sizes = [
+        0.0, 5e-324, 1e-310, 1e-200, 1e-20, 1.0, 1e20, 1e200, 1e307, -1.0, -1e307,
+    ];
+    let mut rng = Rng::with_seed(6);
+    for _ in 0..4000 {
+        let count = rng.usize(1..=6);
+        let planes: Vec<Plane> = normals(&mut rng, count)
+            .into_iter()
+            .map(|normal| Plane {
+                normal,
+                offset: sizes[rng.usize(..sizes.len())],
+            })
+            .collect();
+        let target = direction(&mut rng) * sizes[rng.usize(..sizes.len())];
+        let found = nearest_above(target, &planes);
+        assert!(
+            found.point.is_finite() && !found.missed.is_nan(),
+            "{found:?} target {target:?} planes {planes:?}"
+        );
+    }
+}

@@ -1,0 +1,121 @@
+//! A conveyor: a shape that stands while its material moves, as an obstacle around another.
+
+use clamber_climber::{Climber, ClimberInput};
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+};
+use glam::{DQuat, DVec3};
+
+use crate::stage::Stage;
+
+/// How far its material has come.
+pub(crate) struct Belt {
+    velocity: DVec3,
+    ticks: u32,
+}
+
+/// One tick of it: material points are known by where they were on the belt at its start.
+struct Running<'a> {
+    shape: &'a dyn Obstacle,
+    shift: DVec3,
+    velocity: DVec3,
+}
+
+impl Belt {
+    pub(crate) fn new(velocity: DVec3) -> Self {
+        Self { velocity, ticks: 0 }
+    }
+
+    pub(crate) fn rides(
+        &mut self,
+        climber: &mut Climber,
+        stage: &mut Stage,
+        input: &ClimberInput,
+        ticks: u32,
+    ) {
+        for _ in 0..ticks {
+            self.ticks += 1;
+            stage.advance();
+            let dt = stage.dt;
+            stage.obstacles(|obstacles| {
+                let running = obstacles.iter().map(|(id, shape)| {
+                    let shift = self.velocity * (f64::from(self.ticks) * dt);
+                    (
+                        *id,
+                        Running {
+                            shape: *shape,
+                            shift,
+                            velocity: self.velocity,
+                        },
+                    )
+                });
+                let running: Vec<_> = running.collect();
+                let belts: Vec<(ObstacleId, &dyn Obstacle)> = running
+                    .iter()
+                    .map(|(id, belt)| (*id, belt as &dyn Obstacle))
+                    .collect();
+                climber.step(input, &belts, dt).unwrap();
+            });
+        }
+    }
+}
+
+impl Running<'_> {
+    fn on_belt(&self, contact: Contact) -> Contact {
+        let coordinates = (contact.point - self.shift).to_array();
+        Contact {
+            material: MaterialPoint {
+                coordinates,
+                ..contact.material
+            },
+            ..contact
+        }
+    }
+
+    fn met(&self, hit: SweepContact) -> SweepContact {
+        SweepContact {
+            contact: self.on_belt(hit.contact),
+            ..hit
+        }
+    }
+}
+
+impl Obstacle for Running<'_> {
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        let hit = self.shape.cast_ray(origin, direction, max_distance)?;
+        Some(self.on_belt(hit))
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        Some(self.on_belt(self.shape.closest_point(point, max_distance)?))
+    }
+
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let start = contacts.len();
+        self.shape.overlap_capsule(capsule, contacts);
+        for contact in &mut contacts[start..] {
+            *contact = self.on_belt(*contact);
+        }
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        Some(self.met(self.shape.cast_capsule(capsule, displacement)?))
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        Some(self.met(self.shape.sweep_capsule(capsule, displacement)?))
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let position = DVec3::from_array(point.coordinates) + self.shift;
+        Some(PointMotion {
+            position,
+            previous_position: position - self.velocity * dt,
+            velocity: self.velocity,
+            frame: Some(DQuat::IDENTITY),
+            turn: DQuat::IDENTITY,
+            area_ratio: 1.0,
+            stretches: [1.0; 2],
+        })
+    }
+}

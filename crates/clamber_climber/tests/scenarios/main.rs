@@ -1,0 +1,21 @@
+//! What others test characters with, and where others fail: fifty scenarios in a table that is checked, each played
+//! on skin and on bodies, and scenes after known failures.
+//!
+//! `cargo test -p clamber_climber --test scenarios -- --nocapture the_table_in_markdown` prints the table.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+mod belt;
+mod failures;
+mod frames;
+mod ground;
+mod platforms;
+mod queries;
+mod skins;
+mod stage;
+mod stairs;
+mod table;
+mod walls;

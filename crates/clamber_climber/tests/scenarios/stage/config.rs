@@ -1,0 +1,30 @@
+//! Climbers of the sources.
+
+use clamber_climber::{ClimberConfig, GroundConfig};
+
+/// Jolt's capsule: radius .3 and padding .02 are a radius of .32, at which ours rests, with a skin width of .02.
+pub(crate) fn jolt() -> ClimberConfig {
+    let mut config = ClimberConfig::walker();
+    config.body.radius = 0.32;
+    config.body.height = 1.35;
+    config.body.skin_width = 0.02;
+    config.ground = GroundConfig {
+        max_slope: radians(50.0),
+        snap_distance: 0.5,
+        step_height: 0.4,
+        throw_acceleration: f64::INFINITY,
+        ..config.ground
+    };
+    config
+}
+
+/// [`jolt`] that walks at a speed.
+pub(crate) fn walker_at(speed: f64) -> ClimberConfig {
+    let mut config = jolt();
+    config.ground.walk_speed = speed;
+    config
+}
+
+pub(crate) fn radians(degrees: f64) -> f64 {
+    degrees * core::f64::consts::PI / 180.0
+}

@@ -1,0 +1,317 @@
+//! The same triangles as skin and as a body of rapier's.
+
+use std::sync::Arc;
+
+use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::SkinnedSurface;
+use glam::{DQuat, Vec3};
+
+use super::*;
+
+/// At the origin and 100 km out.
+const ORIGINS: [DVec3; 2] = [DVec3::ZERO, DVec3::new(8e4, -3e3, 6e4)];
+
+/// A bumpy patch of about 4 m, and a lone sliver above it.
+fn patch(rng: &mut fastrand::Rng) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let side = 7;
+    let mut positions = Vec::new();
+    for i in 0..side {
+        for j in 0..side {
+            let (x, z) = (i as f32 * 0.7 - 2.1, j as f32 * 0.7 - 2.1);
+            positions.push(Vec3::new(x, rng.f32() * 0.6, z));
+        }
+    }
+    let mut triangles = Vec::new();
+    for i in 0..side - 1 {
+        for j in 0..side - 1 {
+            let at = i * side + j;
+            triangles.push([at, at + 1, at + side]);
+            triangles.push([at + 1, at + side + 1, at + side]);
+        }
+    }
+    let first = positions.len() as u32;
+    let sliver = [(-1.0, 1.5, 0.0), (1.0, 1.6, 0.3), (0.0, 1.55, 0.16)];
+    positions.extend(sliver.map(|(x, y, z)| Vec3::new(x, y, z)));
+    triangles.push([first, first + 1, first + 2]);
+    (positions, triangles)
+}
+
+struct Both {
+    surface: SkinnedSurface,
+    world: PhysicsWorld,
+    before: BodyPoses,
+    origin: DVec3,
+}
+
+impl Both {
+    /// Moved over a tick from the one place to the other, both relative to the origin.
+    fn new(rng: &mut fastrand::Rng, origin: DVec3, places: [Pose; 2]) -> Self {
+        let (positions, triangles) = patch(rng);
+        let influence = Influence {
+            joint: JointId(0),
+            weight: 1.0,
+        };
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &vec![influence; positions.len()],
+            joint_count: 1,
+            ..MeshSource::default()
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let mut surface = SkinnedSurface::new(Arc::new(mesh));
+        let palette = Palette::from_matrices([Affine::IDENTITY]);
+        let roots = places.map(|place| Similarity {
+            rotation: place.rotation.as_dquat().normalize(),
+            scale: 1.0,
+            translation: origin + place.translation.as_dvec3(),
+        });
+        surface.place(&palette, roots[0]).unwrap();
+        surface.advance(&palette, roots[1]).unwrap();
+        let mut world = PhysicsWorld::default();
+        let body = RigidBodyBuilder::kinematic_position_based().pose(places[0]);
+        let collider = ColliderBuilder::trimesh(positions, triangles).unwrap();
+        let (body, _) = world.insert(body, collider);
+        world.step();
+        let mut before = BodyPoses::new();
+        before.record(&world.bodies);
+        world.bodies[body].set_next_kinematic_position(places[1]);
+        world.step();
+        Self {
+            surface,
+            world,
+            before,
+            origin,
+        }
+    }
+
+    fn terrain(&self) -> RapierTerrain<'_> {
+        RapierTerrain::of_world(&self.world, &self.before).with_origin(self.origin)
+    }
+}
+
+fn random_point(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
+    DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5) * 2.0 * size
+}
+
+fn capsule(rng: &mut fastrand::Rng, center: DVec3) -> WorldCapsule {
+    let center = center + random_point(rng, 2.5);
+    let along = random_point(rng, 0.6);
+    let radius = [0.0, 0.05, 0.3][rng.usize(0..3)];
+    if rng.bool() {
+        WorldCapsule::ball(center, radius)
+    } else {
+        WorldCapsule {
+            ends: [center - along, center + along],
+            radius,
+        }
+    }
+}
+
+/// Where the patch is before and after a tick in which it turns by an angle and goes some way.
+fn places(rng: &mut fastrand::Rng, angle: f64) -> [Pose; 2] {
+    let first = rotation_from_axis_angle(random_point(rng, 1.0).normalize(), 1.0);
+    let turn = rotation_from_axis_angle(random_point(rng, 1.0).normalize(), angle);
+    let pose = |rotation: DQuat, translation: DVec3| {
+        Pose::from_parts(translation.as_vec3(), rotation.as_quat())
+    };
+    let [from, to] = [random_point(rng, 0.5), random_point(rng, 0.5)];
+    let first_f32 = pose(first, from);
+    if angle == 0.0 {
+        return [
+            first_f32,
+            Pose::from_parts(to.as_vec3(), first_f32.rotation),
+        ];
+    }
+    [first_f32, pose(turn * first, to)]
+}
+
+#[test]
+fn overlaps_are_the_same() {
+    let mut rng = fastrand::Rng::with_seed(61);
+    let mut found = 0;
+    for round in 0..60 {
+        for origin in ORIGINS {
+            let places = places(&mut rng, 0.3);
+            let both = Both::new(&mut rng, origin, places);
+            for case in 0..20 {
+                let capsule = capsule(&mut rng, origin);
+                let (mut of_skin, mut of_body) = (Vec::new(), Vec::new());
+                Obstacle::overlap_capsule(&both.surface, &capsule, &mut of_skin);
+                both.terrain().overlap_capsule(&capsule, &mut of_body);
+                // A body's contacts are sorted by place, skin's by triangle.
+                for contacts in [&mut of_skin, &mut of_body] {
+                    contacts.retain(|contact| contact.distance < capsule.radius - 1e-5);
+                    contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+                }
+                let same = of_skin.len().abs_diff(of_body.len()) == 0;
+                assert!(same, "{round} {case} {capsule:?}: {of_skin:?} {of_body:?}");
+                for (a, b) in of_skin.iter().zip(&of_body) {
+                    let off = (a.distance - b.distance).abs();
+                    assert!(off < 1e-5, "{round} {case} {capsule:?}: {a:?} {b:?}");
+                    let nearest = capsule.nearest_on_axis(b.point);
+                    let measured = (nearest - b.point).length();
+                    assert!((measured - b.distance).abs() < 1e-5, "{capsule:?} {b:?}");
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found > 500, "{found}");
+}
+
+/// How two answers to one question differ.
+#[derive(Default, Debug)]
+struct Tally {
+    /// Both met something.
+    met: u32,
+    inside: u32,
+    /// One only met something: at the very end, or all but sideways.
+    grazed: u32,
+}
+
+impl Tally {
+    /// `way` is what the capsule makes as the patch sees it; ways may differ by `slack` metres.
+    fn compare(
+        &mut self,
+        [skin, body]: [Option<SweepContact>; 2],
+        capsule: &WorldCapsule,
+        way: DVec3,
+        slack: f64,
+    ) {
+        let input = (capsule, way);
+        for met in [&skin, &body].into_iter().flatten() {
+            let apart = met.contact.distance - capsule.radius;
+            assert!(
+                apart <= 1e-4 + 1e-5,
+                "{input:?}: {met:?} is {apart} from touching"
+            );
+            assert!((met.away.length() - 1.0).abs() < 1e-6, "{input:?}: {met:?}");
+            assert!((0.0..=1.0).contains(&met.time), "{input:?}: {met:?}");
+            assert!(!met.started_inside || met.time == 0.0, "{input:?}: {met:?}");
+        }
+        // A gap that closes slowly takes long to close by the tolerance.
+        let slowness = |met: &SweepContact| (met.away.dot(way) / way.length()).abs().max(1e-9);
+        match (skin, body) {
+            (Some(skin), Some(body)) => {
+                self.met += 1;
+                self.inside += u32::from(skin.started_inside);
+                let off = (skin.time - body.time).abs() * way.length();
+                let slowest = slowness(&skin).min(slowness(&body));
+                assert!(
+                    off <= slack / slowest,
+                    "{input:?}: {off} m, {slowest}: {skin:?} {body:?}"
+                );
+                if skin.started_inside && body.started_inside {
+                    let off = (skin.contact.distance - body.contact.distance).abs();
+                    assert!(off < 1e-5, "{input:?}: {skin:?} {body:?}");
+                }
+            }
+            (Some(met), None) | (None, Some(met)) => {
+                self.grazed += 1;
+                let left = (1.0 - met.time) * way.length();
+                let touches = slack.max(1e-3) / slowness(&met);
+                assert!(
+                    left.min(1.0 / touches) < 0.2,
+                    "{input:?}: {skin:?} {body:?}"
+                );
+            }
+            (None, None) => {}
+        }
+    }
+}
+
+#[test]
+fn casts_are_the_same() {
+    let mut rng = fastrand::Rng::with_seed(62);
+    let mut tally = Tally::default();
+    for _ in 0..60 {
+        for origin in ORIGINS {
+            let places = places(&mut rng, 0.3);
+            let both = Both::new(&mut rng, origin, places);
+            for _ in 0..20 {
+                let capsule = capsule(&mut rng, origin);
+                let by = random_point(&mut rng, 3.0);
+                let skin = Obstacle::cast_capsule(&both.surface, &capsule, by);
+                let body = both.terrain().cast_capsule(&capsule, by);
+                tally.compare([skin, body], &capsule, by, 1.2e-4);
+            }
+        }
+    }
+    let Tally {
+        met,
+        inside,
+        grazed,
+    } = tally;
+    assert!(met > 500 && inside > 50 && grazed < 5, "{tally:?}");
+}
+
+#[test]
+fn sweeps_of_what_slides_are_the_same() {
+    let mut rng = fastrand::Rng::with_seed(63);
+    let mut tally = Tally::default();
+    for _ in 0..60 {
+        for origin in ORIGINS {
+            let places = places(&mut rng, 0.0);
+            let both = Both::new(&mut rng, origin, places);
+            for case in 0..20 {
+                let capsule = capsule(&mut rng, origin);
+                let by = random_point(&mut rng, 3.0) * f64::from(case % 3);
+                let skin = Obstacle::sweep_capsule(&both.surface, &capsule, by);
+                let body = both.terrain().sweep_capsule(&capsule, by);
+                let slide = places[1].translation - places[0].translation;
+                tally.compare([skin, body], &capsule, by - slide.as_dvec3(), 1.2e-4);
+            }
+        }
+    }
+    let Tally {
+        met,
+        inside,
+        grazed,
+    } = tally;
+    assert!(met > 500 && inside > 50 && grazed < 5, "{tally:?}");
+}
+
+#[test]
+fn sweeps_of_what_turns_are_the_same() {
+    let mut rng = fastrand::Rng::with_seed(64);
+    let mut tally = Tally::default();
+    for round in 0..60 {
+        for origin in ORIGINS {
+            let places = places(&mut rng, [0.05, 0.5, 2.0][round % 3]);
+            let both = Both::new(&mut rng, origin, places);
+            for _ in 0..20 {
+                let capsule = capsule(&mut rng, origin);
+                let by = random_point(&mut rng, 3.0);
+                let skin = Obstacle::sweep_capsule(&both.surface, &capsule, by);
+                let body = both.terrain().sweep_capsule(&capsule, by);
+                // How fast they close on each other is not asked of what turns.
+                let off = |a: SweepContact, b: SweepContact| (a.time - b.time).abs();
+                match (skin, body) {
+                    (Some(a), Some(b)) => {
+                        tally.met += 1;
+                        tally.inside += u32::from(a.started_inside);
+                        tally.grazed += u32::from(off(a, b) > 2e-4);
+                        assert!(off(a, b) < 5e-3, "{capsule:?} {by}: {a:?} {b:?}");
+                        let reach = capsule.radius + 1.1e-4;
+                        assert!(b.contact.distance <= reach, "{capsule:?} {by}: {b:?}");
+                        let axis = capsule.moved(by * b.time);
+                        let apart = axis.nearest_on_axis(b.contact.point) - b.contact.point;
+                        let seen = apart - b.away * b.contact.distance;
+                        assert!(seen.length() < 1e-6, "{capsule:?} {by}: {seen} {b:?}");
+                    }
+                    (None, None) => {}
+                    _ => tally.grazed += 1,
+                }
+            }
+        }
+    }
+    let Tally {
+        met,
+        inside,
+        grazed,
+    } = tally;
+    assert!(met > 500 && inside > 50 && grazed < 10, "{tally:?}");
+}

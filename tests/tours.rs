@@ -1,0 +1,50 @@
+//! Climbing tours from foot to head of creatures that idle, walk and shake gently.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber_scenes::tour::{Motion, Outcome, Stage, Ways, climb, config};
+use clamber_scenes::{Creature, giant, test_data};
+
+/// Metres.
+const HEIGHT: f64 = 20.0;
+
+fn tours(creature: &Creature, tempo: f64, seeds: u64) {
+    let ways = Ways::new(creature).unwrap();
+    let mut failed = Vec::new();
+    for motion in [Motion::Idle, Motion::Walk, Motion::Shake] {
+        let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
+        for seed in (motion as u64..seeds).step_by(3) {
+            let mut stage = Stage::new(creature, (HEIGHT, tempo), motion).unwrap();
+            let route = ways.climb(seed).unwrap();
+            let outcome = climb(&mut stage, &route, config(), 120.0).unwrap();
+            outcomes.push((seed, outcome));
+        }
+        for (seed, outcome) in outcomes {
+            println!("{} {motion:?} {seed}: {outcome:?}", creature.name);
+            let good = outcome.arrived && outcome.falls == 0 && outcome.penetration <= 1e-3;
+            if !good {
+                failed.push((motion, seed, outcome));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}: {failed:#?}", creature.name);
+}
+
+#[test]
+fn from_the_giants_foot_to_its_head() {
+    tours(&giant::giant().unwrap(), 1.0, 20);
+}
+
+#[test]
+fn up_five_models() {
+    for name in ["Trex", "Apatosaurus", "Triceratops", "Stag", "Bull"] {
+        let Some(path) = test_data::file("tours", &format!("models/{name}.glb")) else {
+            return;
+        };
+        // Made for animals some two metres tall, or robots.
+        tours(&Creature::load(&path).unwrap(), 0.12, 20);
+    }
+}
