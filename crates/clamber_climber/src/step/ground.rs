@@ -80,14 +80,21 @@ impl Step<'_> {
         self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 
-    /// Of what the last movement touched, what holds the climber up, as it touches it where it is now.
+    /// Of what the last movement touched, what holds the climber up. It stands on it then: what turns while it lands
+    /// keeps it off by some millimetres.
     pub(super) fn held_up_by(&mut self, slope_limit: f64) -> Option<Touch> {
-        let touch = self.holding_up(slope_limit)?;
-        Some(self.underfoot(&touch))
+        let met = self.holding_up(slope_limit)?;
+        let mut touch = self.underfoot(&met);
+        let gap = touch.contact.distance - self.config.body.radius;
+        if gap > 0.0 && gap <= self.config.body.skin_width {
+            self.state.position -= touch.away * gap;
+            touch.contact.distance -= gap;
+        }
+        Some(touch)
     }
 
     /// Level ground, else the least steep of slopes that leave it no way down.
-    fn holding_up(&self, slope_limit: f64) -> Option<Touch> {
+    pub(super) fn holding_up(&self, slope_limit: f64) -> Option<Touch> {
         let up = self.config.up();
         let flattest = |touches: &[Touch]| {
             touches.iter().copied().reduce(|best, touch| {

@@ -183,7 +183,7 @@ impl Step<'_> {
         let pushed_out = self.report.pushed_out;
         self.slide(carried.start, down, carried.swept);
         self.report.pushed_out = pushed_out;
-        self.held_up_by(0.0).is_some()
+        self.holding_up(0.0).is_some()
     }
 
     /// What the input asks for, along the ground.

@@ -1,5 +1,6 @@
 //! In the air, and down what is too steep.
 
+use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DAffine3, DVec3};
 
@@ -71,6 +72,34 @@ fn lands_on_the_point_that_is_underfoot_not_on_the_one_that_it_met_first() {
         }
     }
     panic!("never landed: {:?}", climber.state());
+}
+
+#[test]
+fn lands_on_ground_that_turns_and_touches_it() {
+    for (x, turning) in [(3.0, 1.6), (3.0, -1.0), (-6.0, 0.5), (8.0, -0.4)] {
+        let mut ground = level();
+        let mut climber = climber_at(x, 4.0, 0.3);
+        for tick in 0..120 {
+            // Level about when it lands.
+            let angle = turning * (f64::from(tick) * DT - 0.8);
+            let turn = rotation_from_axis_angle(DVec3::Z, angle);
+            pose(&mut ground, &DAffine3::from_quat(turn));
+            if tick > 0 {
+                step_on(&mut climber, &ground, &IDLE);
+            }
+            let state = climber.state();
+            if let Some(support) = state.support {
+                let off = support.contact.distance(state.position) - 0.4;
+                assert!(off.abs() < 2e-5, "{x}, {turning}, tick {tick}: {off}");
+                break;
+            }
+        }
+        assert_eq!(
+            climber.state().mode,
+            ClimberMode::Standing,
+            "{x}, {turning}"
+        );
+    }
 }
 
 #[test]
