@@ -156,11 +156,13 @@ impl<'a> RapierTerrain<'a> {
 
     /// Where a collider was; `None` if it has not moved.
     fn previous_pose(&self, collider: &Collider) -> Option<RigidPose> {
-        let on_body = collider.position_wrt_parent()?;
-        let body = self.before.get(collider.parent()?)?;
-        // By rapier's own arithmetic, so that what stands still has not moved by rounding.
-        let has_moved = *body * *on_body != *collider.position();
-        has_moved.then(|| pose_of(body).then(&pose_of(on_body)))
+        let body = collider.parent()?;
+        let before = self.before.get(body)?;
+        // Poses of colliders are products, which rounding may change where nothing moves.
+        if self.bodies.get(body)?.position() == before {
+            return None;
+        }
+        Some(pose_of(before).then(&pose_of(collider.position_wrt_parent()?)))
     }
 
     fn moved(&self) -> &MovedColliders {

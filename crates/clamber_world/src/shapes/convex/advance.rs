@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::{Moving, Nearest};
 
-/// Most steps. Ways without turns take three to six.
+/// Most steps. In the tests half of the ways take two at most, 99 of 100 up to six, and long levers that swing up to 21.
 const STEPS: u32 = 256;
 
 /// From this step on, directions are taken from ahead as well.

@@ -6,7 +6,8 @@ use glam::DVec3;
 use super::Moving;
 use super::simplex::{Corner, Simplex};
 
-/// Most rounds. Cores with corners take some five to ten, with rims twenty or thirty.
+/// Most rounds. In the tests' thousands of cases cores with corners take four, at most nine, and cores with rims fourteen,
+/// at most 61: those a micrometre away.
 const ROUNDS: u32 = 128;
 
 /// What another corner has to gain, as a share of the square of the distance: directions are then right to a millionth.

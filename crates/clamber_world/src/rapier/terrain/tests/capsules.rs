@@ -142,6 +142,32 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
 }
 
 #[test]
+fn what_rests_is_met_alike_however_it_hangs_on_its_body() {
+    let mut rng = fastrand::Rng::with_seed(72);
+    for _ in 0..200 {
+        let mut vector =
+            |size: f32| Vector::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5) * size;
+        let turned = rotation_from_axis_angle(vector(1.0).as_dvec3().normalize(), 2.0);
+        let place = Pose::from_parts(vector(9.0), turned.as_quat());
+        let collider = ColliderBuilder::cuboid(0.5, 0.4, 0.3)
+            .translation(vector(3.0))
+            .rotation(vector(3.0));
+        let moving = Moving::new([(collider, [place, place])]);
+        let terrain = moving.terrain();
+        assert!(terrain.moved().moved.is_empty());
+        let middle = moving.world.colliders.iter().next().unwrap().1;
+        let middle = middle.position().translation.as_dvec3();
+        let ball = WorldCapsule::ball(middle + vector(4.0).as_dvec3(), 0.2);
+        let by = middle - ball.ends[0];
+        let swept = terrain.sweep_capsule(&ball, by);
+        assert_eq!(swept, terrain.cast_capsule(&ball, by));
+        let swept = swept.unwrap();
+        let motion = terrain.motion(&swept.contact.material, 0.1).unwrap();
+        assert_eq!(motion.velocity, DVec3::ZERO);
+    }
+}
+
+#[test]
 fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
     // 1 mm thick, 1.67 m a tick: far beyond the box that it has now.
     let plate = ColliderBuilder::cuboid(0.0005, 1.0, 1.0);
