@@ -8,7 +8,7 @@ use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 
 /// Changes whenever a result does, if only by one bit, or rapier: then see that it should have, and put the new one in.
-const BATTLE: u64 = 0xc5d2_cedc_59f7_c6b3;
+const BATTLE: u64 = 0x9236_1663_31fb_efce;
 
 #[test]
 fn a_battle_has_the_same_bits_in_every_build() {
