@@ -16,7 +16,7 @@ use clamber_world::WorldCapsule;
 use glam::DVec3;
 
 use super::{Touch, World};
-use crate::planes::{Plane, nearest_above};
+use crate::planes::{Above, Plane, nearest_above};
 
 /// Most sweeps of one movement. Two or three do for corners; what is left after eight stands where it met.
 const ROUNDS: u32 = 8;
@@ -210,10 +210,42 @@ impl World<'_> {
 
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
         let wanted = path.target - path.start;
-        let above = nearest_above(wanted, &self.scratch.planes);
+        let above = self.nearest_above(wanted);
         moved.position = path.start + above.point;
         moved.missed = above.missed;
         self.keep_arm(path, moved);
+    }
+
+    /// The displacement nearest to what is wanted above all planes, if it is not far off; else that above all planes
+    /// lowered by as little as it takes.
+    ///
+    /// Walls that are all but opposite meet somewhere, dozens of times as far away as they overlap: no body slips out
+    /// there within a tick, and whatever is on the way is in its way. They crush it.
+    fn nearest_above(&mut self, wanted: DVec3) -> Above {
+        let planes = &mut self.scratch.planes;
+        let above = nearest_above(wanted, planes);
+        let gaps = planes
+            .iter()
+            .map(|plane| plane.offset - plane.normal.dot(wanted));
+        let gap = gaps.fold(0.0, f64::max);
+        let is_near = |above: &Above| above.point.distance(wanted) <= FARTHEST * gap;
+        if is_near(&above) {
+            return above;
+        }
+        let (mut too_little, mut enough) = (0.0, gap);
+        for _ in 0..HALVINGS {
+            let relief = (too_little + enough) * 0.5;
+            if is_near(&lowered(wanted, planes, relief)) {
+                enough = relief;
+            } else {
+                too_little = relief;
+            }
+        }
+        let above = lowered(wanted, planes, enough);
+        Above {
+            missed: above.missed + enough,
+            ..above
+        }
     }
 
     /// A body at the end of a taut arm stays there: planes that touch the ball of its reach where it is.
@@ -232,13 +264,29 @@ impl World<'_> {
                 normal: inward,
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
-            let above = nearest_above(path.target - path.start, &self.scratch.planes);
+            let above = self.nearest_above(path.target - path.start);
             moved.position = path.start + above.point;
             moved.missed = above.missed;
         }
         self.scratch.planes.truncate(count);
     }
 }
+
+/// Above planes that all are lowered by a length.
+fn lowered(wanted: DVec3, planes: &mut [Plane], by: f64) -> Above {
+    planes.iter_mut().for_each(|plane| plane.offset -= by);
+    let above = nearest_above(wanted, planes);
+    planes.iter_mut().for_each(|plane| plane.offset += by);
+    above
+}
+
+/// A push of more than this many times the deepest overlap is none: walls that differ by less than 3.6 degrees from
+/// opposite are no wedge to slip out of. More throws who is crushed by a few centimetres by metres, through what is
+/// there; less takes acute corners for closed.
+const FARTHEST: f64 = 32.0;
+
+/// To a thousandth of the overlap.
+const HALVINGS: u32 = 10;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;
