@@ -14,6 +14,10 @@ pub(super) struct Ground {
     pub(super) position: DVec3,
 }
 
+/// Ground this little below is underfoot, however little it snaps, metres: far above the rounding of f32, by which one who
+/// stands may be above it, and far below what one sees.
+const UNDERFOOT: f64 = 1e-3;
+
 /// What is left of a step down where slopes on all sides support: sine of some degrees.
 const SUPPORTED: f64 = 0.1;
 
@@ -23,6 +27,7 @@ impl Step<'_> {
         let body = &self.config.body;
         let (radius, core) = (body.radius, body.hard_radius());
         let up = self.config.up();
+        let reach = reach.max(UNDERFOOT);
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         let down = -up * (reach + body.skin_width);
         let ball = WorldCapsule::ball(position, core);
