@@ -109,7 +109,7 @@ impl Step<'_> {
         let limit = self.config.ground.max_slope;
         if let Some(ground) = self.ground_below(over, depth)
             && self.config.slope(ground.touch.away) <= limit
-            && (ground.position - self.state.position).dot(up) > 0.0
+            && (ground.position - self.state.position).dot(up) > self.config.body.skin_width
         {
             self.state.position = ground.position;
         }
