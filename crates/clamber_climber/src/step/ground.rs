@@ -1,6 +1,6 @@
 //! What is underfoot.
 
-use clamber_world::WorldCapsule;
+use clamber_world::{SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use super::{SLOPE_HYSTERESIS, Step};
@@ -22,44 +22,61 @@ const UNDERFOOT: f64 = 1e-3;
 const SUPPORTED: f64 = 0.1;
 
 impl Step<'_> {
-    /// The ground below a position, as far as `reach` below its feet, no steeper than one who stands may stand on.
+    /// The ground below a position, as far as `reach` below its feet, or beside it, no steeper than one who stands may
+    /// stand on.
     pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
-        let body = &self.config.body;
-        let (radius, core) = (body.radius, body.hard_radius());
-        let up = self.config.up();
         let reach = reach.max(UNDERFOOT);
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
-        let down = -up * (reach + body.skin_width);
-        let ball = WorldCapsule::ball(position, core);
-        if let Some((touch, hit)) = self.world.cast(&ball, down)
-            && !hit.started_inside
-            && self.config.slope(touch.away) <= limit
-        {
-            // Up again, so that the whole ball touches what its core has met.
-            let rise = (radius - touch.contact.distance) / touch.away.dot(up);
-            let position = position + down * hit.time + up * rise;
-            return Some(Ground { touch, position });
-        }
-        self.ground_beside(position, radius + reach, limit)
+        self.ground_straight_below(position, reach)
+            .or_else(|| self.ground_beside(position, reach))
     }
 
-    /// The nearest contact of the ball that is no steeper than `limit`.
-    fn ground_beside(&mut self, position: DVec3, reach: f64, limit: f64) -> Option<Ground> {
-        let slope_of = |up: DVec3, away: DVec3| libm::acos(away.dot(up).clamp(-1.0, 1.0));
+    /// What a ball comes down on first, if that is ground.
+    pub(super) fn ground_straight_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
+        let down = -self.config.up() * (reach + self.config.body.skin_width);
+        let (touch, hit) = self.ground_towards(position, down)?;
+        // Up again, so that the whole ball touches what its core has met.
         let up = self.config.up();
-        let radius = self.config.body.radius;
-        let ball = WorldCapsule::ball(position, reach);
+        let rise = (self.config.body.radius - touch.contact.distance) / touch.away.dot(up);
+        let position = position + down * hit.time + up * rise;
+        Some(Ground { touch, position })
+    }
+
+    /// The nearest of what is no steeper than `limit`, where what is below is steeper.
+    fn ground_beside(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
+        let (up, limit) = (self.config.up(), self.stood_on());
+        let slope_of = |away: DVec3| libm::acos(away.dot(up).clamp(-1.0, 1.0));
+        let body = &self.config.body;
+        let (radius, core) = (body.radius, body.hard_radius());
+        let ball = WorldCapsule::ball(position, radius + reach);
         let mut best: Option<Touch> = None;
         for touch in self.world.touching(&ball) {
             let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
-            if nearer && slope_of(up, touch.away) <= limit {
+            if nearer && slope_of(touch.away) <= limit {
                 best = Some(*touch);
             }
         }
-        best.map(|touch| Ground {
-            position: position + touch.away * (radius - touch.contact.distance),
-            touch,
-        })
+        let best = best?;
+        // A triangle's nearest point may be on an edge within a wall, and look like a ledge: only what the ball comes to
+        // first is there.
+        let way = (best.contact.distance - core).max(0.0) + UNDERFOOT;
+        let toward = -best.away * way;
+        let (touch, hit) = self.ground_towards(position, toward)?;
+        let position =
+            position + toward * hit.time + touch.away * (radius - touch.contact.distance);
+        Some(Ground { touch, position })
+    }
+
+    /// What the core of the ball meets first on a way, if that is ground.
+    fn ground_towards(&mut self, position: DVec3, way: DVec3) -> Option<(Touch, SweepContact)> {
+        let core = WorldCapsule::ball(position, self.config.body.hard_radius());
+        let (touch, hit) = self.world.cast(&core, way)?;
+        let is_ground = !hit.started_inside && self.config.slope(touch.away) <= self.stood_on();
+        is_ground.then_some((touch, hit))
+    }
+
+    /// The steepest slope that one who stands stays on.
+    fn stood_on(&self) -> f64 {
+        self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 
     /// Of what the last movement touched, what holds the climber up: level ground, else the least steep of slopes
