@@ -87,8 +87,8 @@ impl Step<'_> {
         let up = self.config.up();
         let level = |v: DVec3| v - up * v.dot(up);
         let wanted = level(target - from);
-        let made = level(self.state.position - from);
-        let missing = wanted.length() - made.dot(wanted.normalize_or_zero());
+        let direction = wanted.normalize_or_zero();
+        let missing = wanted.length() - level(self.state.position - from).dot(direction);
         let height = self.config.ground.step_height;
         if height == 0.0 || missing <= wanted.length() * BLOCKED {
             return;
@@ -98,21 +98,31 @@ impl Step<'_> {
         let room = self.world.cast(&core, up * height);
         let rise = up * (height * room.map_or(1.0, |(_, hit)| hit.time));
         let raised = core.moved(rise);
-        let forward = wanted.normalize_or_zero() * missing.max(self.config.body.skin_width * 2.0);
-        let way = self.world.cast(&raised, forward);
-        let share = way.map_or(1.0, |(_, hit)| hit.time);
-        if share < BLOCKED {
-            return;
-        }
-        let over = self.state.position + rise + forward * share;
-        let depth = rise.length();
-        let limit = self.config.ground.max_slope;
-        if let Some(ground) = self.ground_below(over, depth)
-            && self.config.slope(ground.touch.away) <= limit
-            && (ground.position - self.state.position).dot(up) > self.config.body.skin_width
-        {
-            self.state.position = ground.position;
-        }
+        let position = [missing, self.onto_a_tread().max(missing)]
+            .into_iter()
+            .find_map(|way| {
+                let forward = direction * way;
+                let is_free = self.world.cast(&raised, forward).is_none();
+                let over = self.state.position + rise + forward;
+                is_free
+                    .then(|| self.tread_below(over, rise.length()))
+                    .flatten()
+            });
+        self.state.position = position.unwrap_or(self.state.position);
+    }
+
+    /// How far the ball has to go from where an edge first stops it to where it stands on that edge.
+    fn onto_a_tread(&self) -> f64 {
+        let steepest = libm::sin(self.config.ground.max_slope);
+        self.config.body.radius * (1.0 - steepest) + self.config.body.skin_width
+    }
+
+    /// Where it stands after a step up, if that is level enough, and higher than here.
+    fn tread_below(&mut self, over: DVec3, depth: f64) -> Option<DVec3> {
+        let ground = self.ground_straight_below(over, depth)?;
+        let rise = (ground.position - self.state.position).dot(self.config.up());
+        let is_level = self.config.slope(ground.touch.away) <= self.config.ground.max_slope;
+        (is_level && rise > self.config.body.skin_width).then_some(ground.position)
     }
 
     /// Stands on what is below it now, or leaves the ground.
