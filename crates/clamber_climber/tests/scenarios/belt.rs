@@ -40,11 +40,20 @@ impl Belt {
             stage.obstacles(|obstacles| {
                 let running = obstacles.iter().map(|(id, shape)| {
                     let shift = self.velocity * (f64::from(self.ticks) * dt);
-                    (*id, Running { shape: *shape, shift, velocity: self.velocity })
+                    (
+                        *id,
+                        Running {
+                            shape: *shape,
+                            shift,
+                            velocity: self.velocity,
+                        },
+                    )
                 });
                 let running: Vec<_> = running.collect();
-                let belts: Vec<(ObstacleId, &dyn Obstacle)> =
-                    running.iter().map(|(id, belt)| (*id, belt as &dyn Obstacle)).collect();
+                let belts: Vec<(ObstacleId, &dyn Obstacle)> = running
+                    .iter()
+                    .map(|(id, belt)| (*id, belt as &dyn Obstacle))
+                    .collect();
                 climber.step(input, &belts, dt).unwrap();
             });
         }
@@ -55,13 +64,19 @@ impl Running<'_> {
     fn on_belt(&self, contact: Contact) -> Contact {
         let coordinates = (contact.point - self.shift).to_array();
         Contact {
-            material: MaterialPoint { coordinates, ..contact.material },
+            material: MaterialPoint {
+                coordinates,
+                ..contact.material
+            },
             ..contact
         }
     }
 
     fn met(&self, hit: SweepContact) -> SweepContact {
-        SweepContact { contact: self.on_belt(hit.contact), ..hit }
+        SweepContact {
+            contact: self.on_belt(hit.contact),
+            ..hit
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::stage::{
     IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, radians, shifted, walk, walker_at,
+    within,
 };
 
 pub(crate) fn falls_lands_and_jumps() {
@@ -25,7 +26,7 @@ pub(crate) fn falls_lands_and_jumps() {
         run.step(&JUMP);
         assert_eq!(run.mode(), Falling);
         let off = run.state().velocity.y - (1.0 - 9.81 / 60.0);
-        assert!(off.abs() <= 1e-12, "{off}");
+        within!(off.abs(), 1e-12, "{off}");
         run.steps(59, &IDLE);
         let landed = run.feet();
         assert_eq!(run.mode(), Standing);
@@ -58,7 +59,7 @@ pub(crate) fn slopes_are_stood_on_to_the_limit_and_slid_down_beyond() {
             let before = run.position();
             run.step(&IDLE);
             let slip = run.position().distance(before);
-            assert!(slip <= 1e-5, "{degrees} degrees: slips {slip}");
+            within!(slip, 1e-5, "{degrees} degrees: slips {slip}");
             for along in [uphill, -uphill, DVec3::Z, (uphill + DVec3::Z).normalize()] {
                 let before = run.position();
                 let level = DVec3::new(along.x, 0.0, along.z).normalize();
@@ -66,7 +67,11 @@ pub(crate) fn slopes_are_stood_on_to_the_limit_and_slid_down_beyond() {
                 let made = run.position() - before;
                 let flat = level - normal * level.dot(normal);
                 let off = made.distance(flat.normalize() * 3.0);
-                assert!(off <= 1e-4, "{played:?}, {degrees} degrees: {made} is off by {off}");
+                within!(
+                    off,
+                    1e-4,
+                    "{played:?}, {degrees} degrees: {made} is off by {off}"
+                );
             }
             assert!(run.trace.always(Standing), "{degrees} degrees");
             run.sound()
@@ -83,10 +88,10 @@ fn slides(run: &mut Run, uphill: DVec3, angle: f64) {
         let ticks = f64::from(tick);
         let way = 9.81 * libm::sin(angle) * TICK * TICK * ticks * (ticks + 1.0) * 0.5;
         let off = run.position().distance(start - uphill * way);
-        assert!(off <= 1e-4, "{angle} rad, tick {tick}: {off}");
+        within!(off, 1e-4, "{angle} rad, tick {tick}: {off}");
         let speed = 9.81 * libm::sin(angle) * TICK * ticks;
         let off = run.state().velocity.distance(-uphill * speed);
-        assert!(off <= 1e-4, "{angle} rad, tick {tick}: velocity off by {off}");
+        within!(off, 1e-4, "{angle} rad, tick {tick}: velocity off by {off}");
     }
 }
 
@@ -118,7 +123,10 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
         for (tick, position) in run.trace.positions.iter().enumerate() {
             if position.x > 1.0 {
                 let above = (position.x + position.y) / libm::sqrt(2.0) - radius;
-                assert!(above.abs() <= 1e-4, "{played:?}, tick {tick}: {above} above");
+                assert!(
+                    above.abs() <= 1e-4,
+                    "{played:?}, tick {tick}: {above} above"
+                );
             }
         }
         assert!(run.position().x > 9.5, "{}", run.position());
@@ -142,7 +150,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
             let fall = -9.81 * TICK * TICK * ticks * (ticks + 1.0) * 0.5;
             let expected = from + speed * (TICK * ticks) + DVec3::Y * fall;
             let off = run.position().distance(expected);
-            assert!(off <= 1e-4, "{played:?}, tick {tick}: {off}");
+            within!(off, 1e-4, "{played:?}, tick {tick}: {off}");
         }
         run.sound()
     });
@@ -150,7 +158,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
 
 /// Level up to 2 m along +X, then up by an angle.
 fn ramp(angle: f64) -> Shape {
-    let (rise, run) = (12.0 * libm::sin(angle), 12.0 * libm::cos(angle));
+    let (rise, run) = (30.0 * libm::sin(angle), 30.0 * libm::cos(angle));
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let level = Shape::quad([
         corner(-10.0, 0.0, -5.0),
@@ -257,7 +265,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
             let angle = 0.7 + f64::from(tick / 30) * 2.2;
             run.step(&walk(DVec3::new(libm::cos(angle), 0.0, libm::sin(angle))));
             let jump = (run.position().y - height).abs();
-            assert!(jump <= 1e-4, "{played:?}, tick {tick}: by {jump}");
+            within!(jump, 1e-4, "{played:?}, tick {tick}: by {jump}");
             height = run.position().y;
         }
         assert!(run.trace.always(Standing));
@@ -273,7 +281,7 @@ pub(crate) fn a_metre_a_second_is_one_at_any_rate() {
             let mut run = Run::new(stage, walker_at(1.0), DVec3::ZERO).settle();
             run.steps(rate, &walk(DVec3::Z));
             let off = run.feet().distance(DVec3::Z);
-            assert!(off <= 1e-3, "{rate} Hz: off by {off}");
+            within!(off, 1e-3, "{rate} Hz: off by {off}");
             run.sound()
         });
     }
@@ -294,7 +302,7 @@ pub(crate) fn a_hitch_keeps_the_velocity_until_something_is_in_the_way() {
         }
         run.steps(3, &IDLE);
         let off = run.position().x - (17.0 - 0.32);
-        assert!(off.abs() <= 1e-6, "{played:?}: {off} m from the wall");
+        within!(off.abs(), 1e-6, "{played:?}: {off} m from the wall");
         assert!(run.state().velocity.x.abs() < 1e-9);
         run.sound()
     });

@@ -9,8 +9,12 @@
 )]
 
 mod belt;
+mod failures;
+mod frames;
 mod ground;
 mod platforms;
+mod queries;
+mod skins;
 mod stage;
 mod stairs;
 mod table;

@@ -3,7 +3,7 @@
 use clamber_climber::ClimberMode::Standing;
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at};
+use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at, within};
 
 const RATES: [u32; 4] = [60, 120, 240, 360];
 
@@ -26,7 +26,10 @@ pub(crate) fn stairs_are_walked_up_at_any_rate() {
                 z = p.z;
                 // From 1 m before the first riser to the tenth.
                 let ideal = (1.0 + 9.0 * 0.3) / 4.0;
-                assert!(f64::from(ticks) * dt <= 1.5 * ideal, "{rate} Hz, {played:?}: slow at {p}");
+                assert!(
+                    f64::from(ticks) * dt <= 1.5 * ideal,
+                    "{rate} Hz, {played:?}: slow at {p}"
+                );
             }
             run.sound()
         });
@@ -44,7 +47,10 @@ pub(crate) fn stairs_block_who_cannot_step() {
             let mut run = Run::new(stage, config, -DVec3::Z).settle();
             run.steps(rate, &walk(DVec3::Z));
             let end = run.feet();
-            assert!((end.z + 0.32).abs() <= 1.1e-2, "{rate} Hz, {played:?}: ends at {end}");
+            assert!(
+                (end.z + 0.32).abs() <= 1.1e-2,
+                "{rate} Hz, {played:?}: ends at {end}"
+            );
             assert!(end.y.abs() <= 1e-4, "{rate} Hz, {played:?}: ends at {end}");
             run.sound()
         });
@@ -67,7 +73,12 @@ pub(crate) fn a_wall_alongside_gives_no_speed() {
             let mut run = Run::new(stage, walker_at(want.length()), DVec3::ZERO).settle();
             run.steps(rate, &walk(want.normalize()));
             let off = run.feet().distance(DVec3::X * 5.0);
-            assert!(off <= 1e-2, "{rate} Hz, {played:?}: {} is off by {off}", run.feet());
+            within!(
+                off,
+                1e-2,
+                "{rate} Hz, {played:?}: {} is off by {off}",
+                run.feet()
+            );
             assert!(run.trace.always(Standing));
             run.sound()
         });
@@ -90,8 +101,16 @@ pub(crate) fn bumps_are_walked_over() {
             let mut run = Run::new(stage, walker_at(3.0), DVec3::ZERO).settle();
             run.steps(240, &walk(DVec3::X));
             assert!(run.trace.always(Standing), "{played:?}, {height} m");
-            assert!(run.feet().x >= 11.0, "{played:?}, {height} m: to {}", run.feet());
-            assert!(run.feet().z.abs() <= 1e-4, "{played:?}, {height} m: to {}", run.feet());
+            assert!(
+                run.feet().x >= 11.0,
+                "{played:?}, {height} m: to {}",
+                run.feet()
+            );
+            assert!(
+                run.feet().z.abs() <= 1e-4,
+                "{played:?}, {height} m: to {}",
+                run.feet()
+            );
             run.sound()
         });
     }
@@ -103,7 +122,12 @@ pub(crate) fn what_only_looks_like_stairs_is_a_wall() {
         let stage = Stage::new(played).with_still(&stairs);
         let mut run = Run::new(stage, walker_at(3.0), -DVec3::Z).settle();
         run.steps(180, &walk(DVec3::Z));
-        let highest = run.trace.positions.iter().map(|p| p.y - 0.32).fold(0.0, f64::max);
+        let highest = run
+            .trace
+            .positions
+            .iter()
+            .map(|p| p.y - 0.32)
+            .fold(0.0, f64::max);
         assert!(highest < 0.35, "{played:?}: climbs to {highest}");
         run.sound()
     });
@@ -113,7 +137,10 @@ pub(crate) fn what_only_looks_like_stairs_is_a_wall() {
 fn pillars() -> Shape {
     (0..30u32).fold(Shape::default(), |shape, k| {
         let x = -1.0 + 0.2 * f64::from(k);
-        shape.and(Shape::boxed(DVec3::new(x, -0.5, -0.52), DVec3::new(x + 0.2, 2.0, -0.32)))
+        shape.and(Shape::boxed(
+            DVec3::new(x, -0.5, -0.52),
+            DVec3::new(x + 0.2, 2.0, -0.32),
+        ))
     })
 }
 
@@ -127,12 +154,14 @@ fn segments() -> Shape {
 pub(crate) fn walls_of_pillars_and_of_segments_do_not_snag() {
     for wall in [pillars(), segments()] {
         every(0.0, |played| {
-            let stage = Stage::new(played).with_still(&Shape::floor(20.0)).with_still(&wall);
+            let stage = Stage::new(played)
+                .with_still(&Shape::floor(20.0))
+                .with_still(&wall);
             let want = DVec3::new(2.0, 0.0, -1.0);
             let mut run = Run::new(stage, walker_at(want.length()), DVec3::ZERO).settle();
             run.steps(120, &walk(want.normalize()));
             let off = run.feet().distance(DVec3::X * 4.0);
-            assert!(off <= 1e-3, "{played:?}: {} is off by {off}", run.feet());
+            within!(off, 1e-3, "{played:?}: {} is off by {off}", run.feet());
             run.sound()
         });
     }
@@ -155,7 +184,7 @@ pub(crate) fn a_funnel_holds_who_falls_into_it() {
         run.steps(60, &IDLE);
         assert_eq!(run.mode(), Standing, "{played:?}: {:?}", run.state());
         let drift = run.position().distance(rest);
-        assert!(drift <= 1e-4, "{played:?}: moves by {drift}");
+        within!(drift, 1e-4, "{played:?}: moves by {drift}");
         run.sound()
     });
 }
@@ -180,12 +209,20 @@ pub(crate) fn an_acute_corner_below_a_ceiling_stops_gently() {
         for _ in 0..60 {
             run.step(&walk(DVec3::X));
             let jump = run.position().distance(rest);
-            assert!(jump <= 1e-3, "{played:?}: jumps by {jump} to {}", run.position());
+            within!(
+                jump,
+                1e-3,
+                "{played:?}: jumps by {jump} to {}",
+                run.position()
+            );
         }
         // The upper ball touches the slope that falls by a half.
         let top = DVec3::new(rest.x, rest.y + 1.35, 0.0);
         let room = (3.0 - top.y - top.x * 0.5) * 2.0 / libm::sqrt(5.0);
-        assert!((room - 0.32).abs() <= 0.021, "{played:?}: {room} of room at {rest}");
+        assert!(
+            (room - 0.32).abs() <= 0.021,
+            "{played:?}: {room} of room at {rest}"
+        );
         run.sound()
     });
 }

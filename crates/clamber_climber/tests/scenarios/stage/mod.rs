@@ -2,12 +2,14 @@
 
 mod bodies;
 mod config;
+mod reached;
 mod run;
 mod shape;
 mod skin;
 
 pub(crate) use bodies::Bodies;
 pub(crate) use config::{jolt, radians, walker_at};
+pub(crate) use reached::{demand, within};
 pub(crate) use run::{IDLE, JUMP, Run, Trace, every, walk};
 pub(crate) use shape::Shape;
 pub(crate) use skin::{Pose, Skin};
@@ -81,12 +83,14 @@ impl Stage {
                     root.translation += origin;
                     (vec![DAffine3::IDENTITY], root)
                 };
-                self.skins.push(Skin::new(shape, &|_| vec![1.0], Box::new(root)));
+                self.skins
+                    .push(Skin::new(shape, &|_| vec![1.0], Box::new(root)));
             }
             Played::Joint => {
                 let root = Similarity::from_translation(origin);
                 let joint = move |time: f64| (vec![motion(time).to_affine()], root);
-                self.skins.push(Skin::new(shape, &|_| vec![1.0], Box::new(joint)));
+                self.skins
+                    .push(Skin::new(shape, &|_| vec![1.0], Box::new(joint)));
             }
             Played::Body => self.bodies.add(shape, Rc::new(motion)),
         }
@@ -131,10 +135,7 @@ impl Stage {
     }
 
     /// What there is to touch: surfaces from 1 on, the rapier world as 0.
-    pub(crate) fn obstacles<T>(
-        &self,
-        ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T,
-    ) -> T {
+    pub(crate) fn obstacles<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let terrain = self.bodies.terrain();
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
         if !self.bodies.is_empty() {

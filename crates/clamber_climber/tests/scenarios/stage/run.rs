@@ -5,7 +5,7 @@ use clamber_climber::{
 };
 use glam::DVec3;
 
-use super::{Played, Stage};
+use super::{Played, Stage, within};
 
 /// What a climber did, tick by tick.
 #[derive(Clone, Debug, Default)]
@@ -98,7 +98,12 @@ impl Run {
                 break;
             }
         }
-        assert_eq!(self.mode(), ClimberMode::Standing, "did not settle: {:?}", self.state());
+        assert_eq!(
+            self.mode(),
+            ClimberMode::Standing,
+            "did not settle: {:?}",
+            self.state()
+        );
         self.trace = Trace::default();
         self
     }
@@ -142,9 +147,16 @@ impl Run {
 impl Trace {
     pub(crate) fn assert_sound(&self) {
         assert_eq!(self.unclear, 0, "ticks with something left on the way");
-        assert!(self.penetration <= 1e-3, "{} m below the skin width", self.penetration);
+        assert!(
+            self.penetration <= 1e-3,
+            "{} m below the skin width",
+            self.penetration
+        );
         let strange = self.events.iter().find(|event| {
-            matches!(event, ClimberEvent::NotFinite | ClimberEvent::Crushed { .. })
+            matches!(
+                event,
+                ClimberEvent::NotFinite | ClimberEvent::Crushed { .. }
+            )
         });
         assert_eq!(strange, None);
         assert!(self.positions.iter().all(|p| p.is_finite()));
@@ -159,9 +171,12 @@ impl Trace {
         assert_eq!(self.positions.len(), other.positions.len());
         let pairs = self.positions.iter().zip(&other.positions);
         let apart = pairs.map(|(a, b)| a.distance(*b)).enumerate();
-        apart.fold((0.0, 0), |most, (tick, apart)| {
-            if apart > most.0 { (apart, tick) } else { most }
-        })
+        apart.fold(
+            (0.0, 0),
+            |most, (tick, apart)| {
+                if apart > most.0 { (apart, tick) } else { most }
+            },
+        )
     }
 
     /// Every mode is one that the other has at that tick or beside it.
@@ -188,7 +203,11 @@ pub(crate) fn every(chord: f64, play: impl Fn(Played) -> Trace) {
         let other = play(played);
         let (apart, tick) = root.apart(&other);
         let name = format!("{played:?}");
-        assert!(apart <= tolerance, "{name}: {apart} m from the root's at tick {tick}");
+        within!(
+            apart,
+            tolerance,
+            "{name}: {apart} m from the root's at tick {tick}"
+        );
         root.assert_same_modes(&other, &name);
         other.assert_same_modes(&root, &name);
     }

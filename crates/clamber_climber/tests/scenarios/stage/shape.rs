@@ -35,7 +35,9 @@ impl Shape {
             [0, 2, 3, 1],
             [4, 5, 7, 6],
         ];
-        let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+        let triangles = faces
+            .iter()
+            .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
         Self {
             positions: (0..8).map(corner).collect(),
             triangles: triangles.collect(),
@@ -140,7 +142,8 @@ impl Shape {
         let first = self.positions.len() as u32;
         self.positions.extend(other.positions);
         let triangles = other.triangles.into_iter();
-        self.triangles.extend(triangles.map(|t| t.map(|v| v + first)));
+        self.triangles
+            .extend(triangles.map(|t| t.map(|v| v + first)));
         self
     }
 

@@ -82,5 +82,9 @@ fn build(shape: &Shape, kind: SurfaceKind, weights: Weights<'_>) -> Arc<Collider
         joint_count,
         ..MeshSource::default()
     };
-    Arc::new(ColliderMesh::build(&source, &BuildOptions::default()).unwrap().0)
+    Arc::new(
+        ColliderMesh::build(&source, &BuildOptions::default())
+            .unwrap()
+            .0,
+    )
 }

@@ -1,0 +1,357 @@
+//! What may not matter: where the world is, how it moves as a whole, how its triangles are numbered; and what is no
+//! number at all.
+
+use core::f64::consts::{PI, TAU};
+
+use clamber_climber::ClimberMode::{Falling, Standing};
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberState,
+};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+};
+use glam::DVec3;
+
+use crate::platforms::chord;
+use crate::stage::{
+    IDLE, JUMP, Played, Run, Shape, Stage, TICK, Trace, every, jolt, shifted, turned, walk,
+    walker_at, within,
+};
+
+const ALL: [Played; 3] = [Played::Root, Played::Joint, Played::Body];
+
+/// Hills with a wall on them.
+fn hills() -> Shape {
+    let field = Shape::field(DVec3::new(-8.0, 0.0, -8.0), 0.5, [32, 32], |x, z| {
+        0.3 * libm::sin(1.3 * x) * libm::cos(0.9 * z)
+    });
+    field.and(Shape::boxed(
+        DVec3::new(3.0, -1.0, -8.0),
+        DVec3::new(3.5, 2.0, 8.0),
+    ))
+}
+
+/// About the hills, into the wall and along it, with jumps.
+fn tour(tick: u32) -> ClimberInput {
+    let direction = match tick / 60 {
+        0 => DVec3::new(1.0, 0.0, 0.3),
+        1 => DVec3::new(0.8, 0.0, -0.6),
+        2 => DVec3::new(-0.5, 0.0, -1.0),
+        3 => DVec3::ZERO,
+        _ => DVec3::new(-0.3, 0.0, 1.0),
+    };
+    ClimberInput {
+        jump: tick % 80 == 50,
+        ..walk(direction)
+    }
+}
+
+const TOUR: u32 = 300;
+
+fn tour_of(stage: Stage) -> Run {
+    let mut run = Run::new(stage, walker_at(3.0), DVec3::new(0.1, 0.4, -0.2)).settle();
+    for tick in 0..TOUR {
+        run.step(&tour(tick));
+    }
+    run
+}
+
+pub(crate) fn ten_thousand_kilometres_out_is_as_good_as_here() {
+    let origin = DVec3::new(1e7, -1e7, 1e7);
+    for played in ALL {
+        let tour = |origin: DVec3| {
+            let motion = |time: f64| {
+                let mut pose = turned(DVec3::Y, 0.5 * time);
+                pose.translation = DVec3::Y * libm::sin(2.0 * time);
+                pose
+            };
+            tour_of(Stage::at(played, TICK, origin).with(&hills(), motion)).sound()
+        };
+        let (apart, tick) = tour(origin).apart(&tour(DVec3::ZERO));
+        within!(apart, 1e-3, "{played:?}: {apart} at tick {tick}");
+    }
+}
+
+pub(crate) fn motion_of_the_whole_world_changes_nothing() {
+    let still = tour_of(Stage::new(Played::Root).with_still(&hills())).sound();
+    // What is far from its origin is rounded more coarsely: a root in f64 never is, a joint and a body in f32 are after
+    // some seconds.
+    let (fast, slow) = (DVec3::new(7.0, 3.0, -11.0), DVec3::new(1.0, 0.5, -1.5));
+    for (played, velocity) in [
+        (Played::Root, fast),
+        (Played::Root, slow),
+        (Played::Joint, slow),
+        (Played::Body, slow),
+    ] {
+        let stage = Stage::new(played).with(&hills(), move |time| shifted(velocity * time));
+        let mut moving = tour_of(stage).sound();
+        for (tick, position) in moving.positions.iter_mut().enumerate() {
+            *position -= velocity * (TICK * (tick as f64 + 1.0));
+        }
+        let (apart, tick) = moving.apart(&still);
+        within!(apart, 1e-4, "{played:?}: {apart} at tick {tick}");
+        assert_eq!(moving.modes, still.modes, "{played:?}");
+    }
+}
+
+pub(crate) fn a_world_turned_by_any_angle_changes_nothing() {
+    let still = tour_of(Stage::new(Played::Root).with_still(&hills())).sound();
+    let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
+    for eighth in 1..=8 {
+        let angle = TAU / 8.0 * f64::from(eighth);
+        let turn = rotation_from_axis_angle(axis, angle);
+        let config = ClimberConfig {
+            gravity: turn * walker_at(3.0).gravity,
+            ..walker_at(3.0)
+        };
+        for played in ALL {
+            let stage = Stage::new(played).with(&hills(), move |_| turned(axis, angle));
+            let up = turn * DVec3::Y;
+            let start = turn * (DVec3::new(0.1, 0.4, -0.2) + DVec3::Y * 0.32) - up * 0.32;
+            let mut run = Run::new(stage, config, start).settle();
+            for tick in 0..TOUR {
+                let input = tour(tick);
+                run.step(&ClimberInput {
+                    walk: turn * input.walk,
+                    ..input
+                });
+            }
+            let mut there = run.sound();
+            for position in &mut there.positions {
+                *position = turn.conjugate() * *position;
+            }
+            let (apart, tick) = there.apart(&still);
+            within!(apart, 1e-4, "{played:?} at {angle}: {apart} at tick {tick}");
+        }
+    }
+}
+
+pub(crate) fn numbers_of_triangles_and_vertices_do_not_matter() {
+    let plain = tour_of(Stage::new(Played::Root).with_still(&hills())).sound();
+    let others = [
+        ("renumbered", hills().renumbered(50)),
+        ("renumbered anew", hills().renumbered(51)),
+        ("split", hills().split()),
+        ("split and renumbered", hills().split().renumbered(52)),
+    ];
+    for (name, shape) in others {
+        for played in ALL {
+            let other = tour_of(Stage::new(played).with_still(&shape)).sound();
+            let (apart, tick) = other.apart(&plain);
+            // A cast of a body may stop 0.1 mm before the touch, and which triangle it stops at may change.
+            let allowed = if played == Played::Body { 1e-4 } else { 1e-6 };
+            within!(apart, allowed, "{name}, {played:?}: {apart} at tick {tick}");
+        }
+    }
+}
+
+/// In all six degrees of freedom.
+fn storm(time: f64) -> Similarity {
+    let pitch = rotation_from_axis_angle(DVec3::X, 0.2 * libm::sin(2.0 * time));
+    let roll = rotation_from_axis_angle(DVec3::Z, 0.25 * libm::sin(1.7 * time));
+    let yaw = rotation_from_axis_angle(DVec3::Y, 0.8 * time);
+    Similarity {
+        rotation: (yaw * pitch * roll).normalize(),
+        scale: 1.0,
+        translation: DVec3::new(
+            3.0 * libm::sin(time),
+            1.5 * libm::sin(2.3 * time),
+            2.0 * libm::cos(0.7 * time),
+        ),
+    }
+}
+
+pub(crate) fn root_joint_and_body_carry_alike_through_a_storm() {
+    // A rider is up to 8 m from where it turns, at up to 1.3 rad/s.
+    every(chord(8.0, 1.3), |played| {
+        let stage = Stage::new(played).with(&Shape::floor(12.0), storm);
+        let start = storm(0.0).translation + DVec3::new(2.0, 0.2, 1.0);
+        let mut run = Run::new(stage, jolt(), start).settle();
+        run.steps(600, &IDLE);
+        assert!(run.trace.always(Standing), "{played:?}");
+        run.sound()
+    });
+}
+
+pub(crate) fn root_and_joint_are_alike_for_who_walks_in_a_storm() {
+    let play = |played: Played| {
+        let stage = Stage::new(played).with(&hills(), storm);
+        let start = storm(0.0).translation + DVec3::new(0.1, 0.5, -0.2);
+        let mut run = Run::new(stage, walker_at(3.0), start).settle();
+        for tick in 0..TOUR {
+            run.step(&tour(tick));
+        }
+        run.sound()
+    };
+    let root = play(Played::Root);
+    for (played, tolerance) in [
+        (Played::Joint, 1e-4),
+        (Played::Body, 1e-4 + chord(8.0, 1.3)),
+    ] {
+        let (apart, tick) = root.apart(&play(played));
+        within!(apart, tolerance, "{played:?}: {apart} at tick {tick}");
+    }
+}
+
+/// An obstacle that answers nonsense.
+struct Broken<'a> {
+    inner: &'a dyn Obstacle,
+    bad: DVec3,
+}
+
+impl Obstacle for Broken<'_> {
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        self.inner.cast_ray(origin, direction, max_distance)
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        self.inner.closest_point(point, max_distance)
+    }
+
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        self.inner.overlap_capsule(capsule, contacts);
+        contacts.extend(contacts.last().map(|contact| Contact {
+            point: self.bad,
+            ..*contact
+        }));
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let hit = self.inner.cast_capsule(capsule, displacement)?;
+        Some(SweepContact {
+            away: self.bad,
+            ..hit
+        })
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let hit = self.inner.sweep_capsule(capsule, displacement)?;
+        Some(SweepContact {
+            time: self.bad.x,
+            ..hit
+        })
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let motion = self.inner.motion(point, dt)?;
+        Some(PointMotion {
+            velocity: self.bad,
+            ..motion
+        })
+    }
+}
+
+pub(crate) fn nonsense_of_an_obstacle_does_not_spread() {
+    for bad in [
+        DVec3::NAN,
+        DVec3::INFINITY,
+        DVec3::NEG_INFINITY,
+        DVec3::splat(f64::MAX),
+    ] {
+        let stage = Stage::new(Played::Root).with_still(&hills());
+        let mut run = Run::new(stage, walker_at(3.0), DVec3::Y).settle();
+        for tick in 0..20 {
+            run.stage.advance();
+            let climber = &mut run.climber;
+            let report = run.stage.obstacles(|obstacles| {
+                let (id, inner) = obstacles[0];
+                let broken = Broken { inner, bad };
+                let input = tour(tick);
+                climber
+                    .step(&input, &[(id, &broken as &dyn Obstacle)], TICK)
+                    .unwrap()
+            });
+            assert!(
+                is_finite(run.state()),
+                "{bad}, tick {tick}: {:?}",
+                run.state()
+            );
+            let p = run.position();
+            assert!(p.length() < 100.0, "{bad}, tick {tick}: {p}, {report:?}");
+        }
+        // And goes on where answers are sound again.
+        run.steps(60, &IDLE);
+        assert!(is_finite(run.state()), "{bad}");
+    }
+}
+
+fn is_finite(state: &ClimberState) -> bool {
+    state.position.is_finite() && state.velocity.is_finite() && state.shake.is_finite()
+}
+
+pub(crate) fn nonsense_of_a_caller_is_refused() {
+    let stage = Stage::new(Played::Root).with_still(&hills());
+    let mut run = Run::new(stage, jolt(), DVec3::Y).settle();
+    let before = *run.state();
+    let mut climber = run.climber.clone();
+    for bad in [f64::NAN, f64::INFINITY] {
+        let state = ClimberState {
+            velocity: DVec3::X * bad,
+            ..before
+        };
+        assert_eq!(
+            climber.restore(state),
+            Err(ClimberError::NotFinite("state"))
+        );
+        let input = walk(DVec3::Z * bad);
+        let refused = climber.step(&input, &[], TICK);
+        assert_eq!(refused, Err(ClimberError::NotFinite("input")));
+        assert!(climber.step(&IDLE, &[], bad).is_err());
+        assert!(Climber::new(jolt(), DVec3::Y * bad).is_err());
+    }
+    assert_eq!(*climber.state(), before);
+    run.step(&IDLE);
+    assert_eq!(run.mode(), Standing);
+}
+
+/// So fast that the next position is no number any more.
+pub(crate) fn a_velocity_without_end_is_told() {
+    let stage = Stage::new(Played::Root);
+    let mut run = Run::new(stage, jolt(), DVec3::Y).thrown(DVec3::X * f64::MAX);
+    let obstacles: [(ObstacleId, &dyn Obstacle); 0] = [];
+    for _ in 0..100 {
+        let report = run.climber.step(&IDLE, &obstacles, 1.0).unwrap();
+        assert!(is_finite(run.state()));
+        if report.events.contains(&ClimberEvent::NotFinite) {
+            return;
+        }
+    }
+    panic!("never told: {:?}", run.state());
+}
+
+/// Jumps on what moves evenly land where they began.
+pub(crate) fn a_jump_on_an_even_motion_lands_where_it_began() {
+    for velocity in [DVec3::X * 30.0, DVec3::new(5.0, -8.0, 2.0)] {
+        every(0.0, |played| {
+            let motion = move |time: f64| shifted(velocity * time);
+            let stage = Stage::new(played).with(&Shape::floor(5.0), motion);
+            let mut run = Run::new(stage, jolt(), DVec3::X).settle();
+            run.steps(30, &IDLE);
+            run.step(&JUMP);
+            assert_eq!(run.mode(), Falling);
+            run.steps(90, &IDLE);
+            assert_eq!(run.mode(), Standing);
+            let local = run.feet() - velocity * run.stage.time();
+            let off = local.distance(DVec3::X);
+            within!(off, 1e-4, "{played:?} at {velocity}: {off}");
+            run.sound()
+        });
+    }
+}
+
+/// Around a full turn, and what was measured on the way.
+pub(crate) fn a_full_turn_of_the_ground_ends_where_it_began() {
+    every(chord(3.0, PI), |played| {
+        let stage = Stage::new(played).with(&Shape::floor(5.0), |time| turned(DVec3::Y, PI * time));
+        let mut run = Run::new(stage, jolt(), DVec3::X * 3.0).settle();
+        let (position, heading) = (run.position(), run.state().heading);
+        run.steps(120, &IDLE);
+        let off = run.position().distance(position);
+        within!(off, 1e-4, "{played:?}: {off}");
+        let off = run.state().heading.distance(heading);
+        within!(off, 1e-4, "{played:?}: heading off by {off}");
+        let trace: Trace = run.sound();
+        trace
+    });
+}

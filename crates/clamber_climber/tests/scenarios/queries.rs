@@ -1,0 +1,331 @@
+//! Queries of surfaces and bodies, through the trait that a climber asks them by.
+
+use clamber_world::rapier3d::prelude::ColliderBuilder;
+use clamber_world::{Contact, Obstacle, WorldCapsule};
+use glam::DVec3;
+
+use crate::stage::{Played, Shape, Stage, shifted, within};
+
+const ALL: [Played; 3] = [Played::Root, Played::Joint, Played::Body];
+
+/// Asks the only obstacle of a stage.
+fn ask<T>(stage: &Stage, question: impl FnOnce(&dyn Obstacle) -> T) -> T {
+    stage.obstacles(|obstacles| question(obstacles[0].1))
+}
+
+fn overlaps(stage: &Stage, capsule: &WorldCapsule) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    ask(stage, |obstacle| {
+        obstacle.overlap_capsule(capsule, &mut contacts)
+    });
+    contacts
+}
+
+/// A random point of a cube around the origin.
+fn point(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
+    let mut side = || (rng.f64() * 2.0 - 1.0) * size;
+    DVec3::new(side(), side(), side())
+}
+
+fn triangle(corners: [DVec3; 3]) -> Shape {
+    Shape {
+        positions: corners.to_vec(),
+        triangles: vec![[0, 1, 2]],
+    }
+}
+
+/// The least of a convex function of [0, 1].
+fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..200 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if f(a) < f(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    f((low + high) * 0.5)
+}
+
+fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let share = (p - a).dot(b - a) / (b - a).length_squared().max(1e-300);
+    p.distance(a + (b - a) * share.clamp(0.0, 1.0))
+}
+
+/// Distance from a point to a triangle: within its prism to its plane, else to its edges.
+fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let edges = to_segment(p, a, b)
+        .min(to_segment(p, b, c))
+        .min(to_segment(p, c, a));
+    let normal = (b - a).cross(c - a);
+    let inside = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).cross(p - from).dot(normal));
+    let plane = (p - a).dot(normal.normalize_or_zero()).abs();
+    if normal != DVec3::ZERO && inside.iter().all(|x| *x >= 0.0) {
+        plane.min(edges)
+    } else {
+        edges
+    }
+}
+
+/// Between a segment and a triangle, in f64.
+fn apart(ends: [DVec3; 2], corners: [DVec3; 3]) -> f64 {
+    least(|share| to_triangle(ends[0].lerp(ends[1], share), corners))
+}
+
+/// As the mesh and the query have them.
+fn rounded(p: DVec3) -> DVec3 {
+    p.as_vec3().as_dvec3()
+}
+
+pub(crate) fn a_sliver_is_met_where_it_is_and_nowhere_else() {
+    let mut rng = fastrand::Rng::with_seed(15);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..300 {
+        let (a, along) = (point(&mut rng, 3.0), point(&mut rng, 1.0).normalize() * 5.0);
+        let aside = along.any_orthonormal_vector() * 0.0004;
+        let corners = [a, a + along, a + along * rng.f64() + aside].map(rounded);
+        // Past a point near it.
+        let aim = a + along * rng.f64() + point(&mut rng, 0.5);
+        let from = rounded(aim + point(&mut rng, 3.0));
+        let way = rounded((aim - from) * 2.0);
+        let truth = least_on_way(from, way, corners);
+        if (truth - 0.2).abs() < 1e-3 {
+            continue;
+        }
+        for played in [Played::Root, Played::Body] {
+            let stage = Stage::new(played).with_still(&triangle(corners));
+            let ball = WorldCapsule::ball(from, 0.2);
+            let hit = ask(&stage, |obstacle| obstacle.cast_capsule(&ball, way));
+            assert_eq!(
+                hit.is_some(),
+                truth < 0.2,
+                "{played:?}: {truth} from {corners:?}"
+            );
+            if let Some(hit) = hit {
+                let at = from + way * hit.time;
+                let distance = to_triangle(at, corners);
+                let allowed = if hit.started_inside {
+                    0.0..=0.2
+                } else {
+                    0.2 - 1e-5..=0.2 + 1.1e-4
+                };
+                assert!(
+                    allowed.contains(&distance),
+                    "{played:?}: stops at {distance}"
+                );
+                hits += 1;
+            } else {
+                misses += 1;
+            }
+        }
+    }
+    assert!(hits > 100 && misses > 100, "{hits} hits, {misses} misses");
+}
+
+/// Least distance between a point on its way and a triangle.
+fn least_on_way(from: DVec3, way: DVec3, corners: [DVec3; 3]) -> f64 {
+    least(|share| to_triangle(from + way * share, corners))
+}
+
+pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
+    let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
+    for played in ALL {
+        let stage = Stage::new(played).with_still(&triangle(corners));
+        for (a, b) in [
+            // Above the inside, above an edge, along an edge, beside, and through.
+            ((0.0, 0.25, 0.0), (1.0, 0.25, 0.5)),
+            ((-3.0, 0.25, 0.0), (0.0, 0.25, 0.0)),
+            ((-2.0, 0.25, -1.0), (-2.0, 0.25, 1.0)),
+            ((-2.2, 0.1, -1.0), (-2.2, 0.1, 1.0)),
+            ((-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
+        ] {
+            let ends = [a, b].map(DVec3::from);
+            let capsule = WorldCapsule { ends, radius: 0.3 };
+            let found = overlaps(&stage, &capsule);
+            let truth = apart(ends, corners);
+            assert_eq!(found.len(), 1, "{played:?}: {ends:?}, {truth} away");
+            let off = found[0].distance - truth;
+            within!(off.abs(), 1e-6, "{played:?}: {ends:?}: off by {off}");
+            let away = found[0].away(capsule.nearest_on_axis(found[0].point));
+            assert!((away.length() - 1.0).abs() <= 1e-9, "{away}");
+        }
+    }
+}
+
+pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
+    let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
+    for played in ALL {
+        let stage = Stage::new(played).with_still(&shape);
+        // From outside of the face, from within it, and away from it.
+        for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
+            let ball = WorldCapsule::ball(DVec3::Y * height, 0.5);
+            let hit = ask(&stage, |obstacle| {
+                obstacle.cast_capsule(&ball, DVec3::Y * way)
+            });
+            let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing at {height}"));
+            assert_eq!(hit.time, 0.0, "{played:?}");
+            assert!(hit.started_inside, "{played:?}");
+            assert!(
+                (hit.contact.normal - DVec3::Y).length() <= 1e-6,
+                "{:?}",
+                hit.contact
+            );
+        }
+    }
+}
+
+pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
+    let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
+    let [a, b, _] = corners;
+    for played in ALL {
+        let stage = Stage::new(played).with_still(&triangle(corners));
+        for center in [DVec3::ZERO, (a + b) * 0.5, a] {
+            for capsule in [
+                WorldCapsule::ball(center, 0.5),
+                // Through, along, and with an end on it.
+                WorldCapsule {
+                    ends: [center - DVec3::Y, center + DVec3::Y],
+                    radius: 0.5,
+                },
+                WorldCapsule {
+                    ends: [center - DVec3::Z, center + DVec3::Z],
+                    radius: 0.5,
+                },
+                WorldCapsule {
+                    ends: [center, center + DVec3::Y],
+                    radius: 0.5,
+                },
+            ] {
+                let found = overlaps(&stage, &capsule);
+                assert_eq!(found.len(), 1, "{played:?}: {capsule:?}");
+                assert!(
+                    found[0].distance.abs() <= 1e-5,
+                    "{played:?}: {:?}",
+                    found[0]
+                );
+                let away = found[0].away(capsule.nearest_on_axis(found[0].point));
+                assert!((away.length() - 1.0).abs() <= 1e-5, "{played:?}: {away}");
+                let hit = ask(&stage, |obstacle| obstacle.cast_capsule(&capsule, DVec3::X));
+                let away = hit.map(|hit| hit.away);
+                let is_unit = away.is_some_and(|away| (away.length() - 1.0).abs() <= 1e-5);
+                assert!(is_unit, "{played:?}: {away:?} of {capsule:?}");
+            }
+        }
+    }
+}
+
+pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
+    let mut rng = fastrand::Rng::with_seed(37);
+    let mut near = 0;
+    for _ in 0..400 {
+        let [a, b, c, d] = [(); 4].map(|()| rounded(point(&mut rng, 2.0)));
+        let two = Shape {
+            positions: vec![a, b, c, d],
+            triangles: vec![[0, 1, 2], [0, 3, 1]],
+        };
+        // Half of them about the common edge.
+        let middle = if rng.bool() {
+            a.lerp(b, rng.f64())
+        } else {
+            DVec3::ZERO
+        };
+        let ends = [(); 2].map(|()| rounded(middle + point(&mut rng, 1.0)));
+        let radius = 0.25;
+        let truth = apart(ends, [a, b, c]).min(apart(ends, [a, d, b]));
+        if (truth - radius).abs() < 1e-5 {
+            continue;
+        }
+        for played in [Played::Root, Played::Body] {
+            let stage = Stage::new(played).with_still(&two);
+            let found = overlaps(&stage, &WorldCapsule { ends, radius });
+            let nearest = found
+                .iter()
+                .map(|c| c.distance)
+                .fold(f64::INFINITY, f64::min);
+            assert_eq!(found.is_empty(), truth > radius, "{played:?}: {truth}");
+            if truth <= radius {
+                near += 1;
+                assert!(
+                    (nearest - truth).abs() <= 2e-6,
+                    "{played:?}: {nearest}, not {truth}"
+                );
+            }
+        }
+    }
+    assert!(near > 100, "{near}");
+}
+
+pub(crate) fn motions_too_small_to_be_any_end() {
+    let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
+    for played in ALL {
+        let stage = Stage::new(played).with_still(&shape);
+        for size in [6.9e-39, 5e-324, 1e-45, 1e-20] {
+            for direction in [DVec3::X, -DVec3::Y, DVec3::new(1.0, -1.0, 1.0)] {
+                let ball = WorldCapsule::ball(DVec3::Y * 2.0, 0.5);
+                let hits = ask(&stage, |obstacle| {
+                    [
+                        obstacle.cast_capsule(&ball, direction * size),
+                        obstacle.sweep_capsule(&ball, direction * size),
+                    ]
+                });
+                assert_eq!(hits, [None; 2], "{played:?}: {size}");
+            }
+        }
+    }
+}
+
+pub(crate) fn what_stands_or_goes_away_meets_nothing() {
+    let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
+    for played in ALL {
+        // The box goes the same way as the ball: no relative motion.
+        let mut stage = Stage::new(played).with(&shape, |time| shifted(DVec3::Y * (60.0 * time)));
+        stage.advance();
+        let ball = WorldCapsule::ball(DVec3::Y * 1.6, 0.5);
+        for way in [1.0, 1.5, 30.0] {
+            let hit = ask(&stage, |obstacle| {
+                obstacle.sweep_capsule(&ball, DVec3::Y * way)
+            });
+            assert_eq!(hit, None, "{played:?}: {way}");
+        }
+        let hit = ask(&stage, |obstacle| {
+            obstacle.sweep_capsule(&ball, DVec3::ZERO)
+        });
+        let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing where the box comes"));
+        assert!((hit.time - 0.1).abs() <= 1e-3, "{played:?}: {}", hit.time);
+        // Standing both.
+        stage.hold();
+        let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
+        for way in [DVec3::ZERO, DVec3::Y, DVec3::X] {
+            let hits = ask(&stage, |obstacle| {
+                [
+                    obstacle.cast_capsule(&ball, way),
+                    obstacle.sweep_capsule(&ball, way),
+                ]
+            });
+            assert_eq!(hits, [None; 2], "{played:?}: {way}");
+        }
+    }
+}
+
+pub(crate) fn a_solid_that_holds_the_core_shows_the_way_out() {
+    let stage = Stage::new(Played::Body)
+        .with_bodies(|bodies| bodies.add_fixed(ColliderBuilder::cuboid(1.0, 1.0, 1.0)));
+    for (center, out, distance) in [
+        (DVec3::new(0.8, 0.3, 0.0), DVec3::X, -0.2),
+        (DVec3::new(0.0, -0.9, 0.2), -DVec3::Y, -0.1),
+    ] {
+        let found = overlaps(&stage, &WorldCapsule::ball(center, 0.5));
+        assert_eq!(found.len(), 1);
+        assert!(
+            (found[0].distance - distance).abs() <= 1e-5,
+            "{:?}",
+            found[0]
+        );
+        assert!(
+            (found[0].away(center) - out).length() <= 1e-5,
+            "{:?}",
+            found[0]
+        );
+    }
+}

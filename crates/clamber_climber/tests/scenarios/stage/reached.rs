@@ -1,0 +1,47 @@
+//! What tests demand, and by how much it was met.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt::Arguments;
+use std::panic::Location;
+
+/// The most that each place of a test has seen, and what it allows.
+struct Reached(BTreeMap<(&'static str, u32), (f64, f64)>);
+
+thread_local! {
+    static REACHED: RefCell<Reached> = const { RefCell::new(Reached(BTreeMap::new())) };
+}
+
+impl Drop for Reached {
+    /// At the end of a test's thread: with CLAMBER_REACHED set, its numbers.
+    fn drop(&mut self) {
+        if std::env::var_os("CLAMBER_REACHED").is_none() {
+            return;
+        }
+        let thread = std::thread::current();
+        let test = thread.name().unwrap_or("?").to_owned();
+        for ((_, line), (most, allowed)) in &self.0 {
+            println!("{test}, line {line}: {most:.1e} of {allowed:.0e}");
+        }
+    }
+}
+
+/// Fails if a number is more than allowed, or none; remembers the largest.
+#[track_caller]
+pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
+    assert!(found <= allowed, "{found:e} of at most {allowed:e}: {case}");
+    let place = Location::caller();
+    REACHED.with_borrow_mut(|reached| {
+        let entry = reached.0.entry((place.file(), place.line()));
+        let (most, _) = entry.or_insert((found, allowed));
+        *most = most.max(found);
+    });
+}
+
+/// [`demand`], with what to say when it fails.
+macro_rules! within {
+    ($found:expr, $allowed:expr, $($case:tt)+) => {
+        $crate::stage::demand($found, $allowed, format_args!($($case)+))
+    };
+}
+pub(crate) use within;
