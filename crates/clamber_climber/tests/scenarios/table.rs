@@ -51,45 +51,45 @@ macro_rules! scenarios {
 // Jolt's, then. Unless a row says otherwise: 60 Hz, gravity 9.81, slopes to 50 degrees, snap .5, steps .4, feet that
 // stick to any ground (Jolt's do), no tumbling, no stamina.
 scenarios! {
-    01 "Jolt TestFallingAndJumping" Climber
+    1 "Jolt TestFallingAndJumping" Climber
         "Drops 2 m onto a box, jumps at 1 m/s, lands."
         "At rest within 1e-6 m both times; the jump's first velocity 1 - 9.81/60 to 1e-12."
         [ground::falls_lands_and_jumps, ground::landing_is_told_once];
-    02 "Jolt TestMovingOnSlope" Climber
+    2 "Jolt TestMovingOnSlope" Climber
         "Slopes of 5, 15 .. 75 degrees; after the landing tick stands, then walks up, down, across and askew at 2 m/s. Ours walks \
          2 m/s along the slope, Jolt's velocity is level and projected."
         "Slip in a tick 1e-5; each way 3 m to 1e-4; beyond 50 degrees Euler's slide to 1e-4."
         [ground::slopes_are_stood_on_to_the_limit_and_slid_down_beyond];
-    03 "Jolt TestStickToFloor" Climber
+    3 "Jolt TestStickToFloor" Climber
         "Runs at 10 m/s from the level over a brink of 45 degrees. Ours walks along slopes, so only a brink can lose it."
         "With snap .5 stands at each tick, on the slope to 1e-4; with none flies off, ballistic to 1e-4."
         [ground::a_run_downhill_sticks_to_the_floor_or_flies_off];
-    04 "Jolt TestWalkStairs" Climber
+    4 "Jolt TestWalkStairs" Climber
         "Ten steps of .3 by .3 m at 60, 120, 240 and 360 Hz, 4 m/s; and without stepping."
         "Stands at each tick, always onward, sideways 1e-6, at the top in 1.5 of the straight way's time; without: stops at \
          -.32 to 1.1e-2. Stepping may gain up to r (1 - sin 50 degrees) + skin a step."
         [stairs::stairs_are_walked_up_at_any_rate, stairs::stairs_block_who_cannot_step];
-    05 "Jolt TestStairWalkAlongWall" Climber
+    5 "Jolt TestStairWalkAlongWall" Climber
         "Walks (5, 0, -1) m/s along a wall at -Z, at four rates, with stepping on."
         "After 1 s at (5, 0, 0) to 1e-2."
         [stairs::a_wall_alongside_gives_no_speed];
-    06 "Jolt TestRotatingPlatform" Climber
+    6 "Jolt TestRotatingPlatform" Climber
         "9 m out on a platform that turns once a second."
         "Stands; where its point is, to 1e-3, without Jolt's lag of a tick."
         [platforms::a_turning_platform_carries_without_lag];
-    07 "Jolt TestMovingPlatformUp" Climber
+    7 "Jolt TestMovingPlatformUp" Climber
         "Up, still and down at .5, 5 and 20 m/s; up and down without a pause."
         "Stands; 1e-4 (Jolt's 1e-2)."
         [
             platforms::a_lift_carries_up_and_down_at_any_speed,
             platforms::a_lift_that_reverses_in_one_tick_keeps_who_sticks_to_it,
         ];
-    08 "Jolt TestContactPointLimit" Climber
+    8 "Jolt TestContactPointLimit" Climber
         "In a half-pipe of 768 faces, 1 cm wider than the ball, to either cap. No limit of contacts to report: all are taken. \
          Stepping is off, or it would step onto the rim."
         "More than 256 contacts; caps to 1e-4; ground normal y > .999."
         [walls::a_gutter_of_768_faces_is_walked_along_to_its_caps];
-    09 "Jolt TestInitiallyIntersecting" Mover
+    9 "Jolt TestInitiallyIntersecting" Mover
         ".005, .05 and .2 m into a wall. Recovery has no share to choose: Jolt's rows with less than 1 have no counterpart."
         "Out after one tick, and for two more, to 1e-6."
         [walls::an_overlap_is_left_in_one_tick];

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt::Arguments;
 use std::panic::Location;
 
-/// The most that each place of a test has seen, and what it allows.
-struct Reached(BTreeMap<(&'static str, u32), (f64, f64)>);
+/// The most that each place of a test has seen, by its line and the bits of what it allows.
+struct Reached(BTreeMap<(&'static str, u32, u64), f64>);
 
 thread_local! {
     static REACHED: RefCell<Reached> = const { RefCell::new(Reached(BTreeMap::new())) };
@@ -20,7 +20,8 @@ impl Drop for Reached {
         }
         let thread = std::thread::current();
         let test = thread.name().unwrap_or("?").to_owned();
-        for ((_, line), (most, allowed)) in &self.0 {
+        for ((_, line, allowed), most) in &self.0 {
+            let allowed = f64::from_bits(*allowed);
             println!("{test}, line {line}: {most:.1e} of {allowed:.0e}");
         }
     }
@@ -32,8 +33,8 @@ pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
     assert!(found <= allowed, "{found:e} of at most {allowed:e}: {case}");
     let place = Location::caller();
     REACHED.with_borrow_mut(|reached| {
-        let entry = reached.0.entry((place.file(), place.line()));
-        let (most, _) = entry.or_insert((found, allowed));
+        let key = (place.file(), place.line(), allowed.to_bits());
+        let most = reached.0.entry(key).or_insert(found);
         *most = most.max(found);
     });
 }
