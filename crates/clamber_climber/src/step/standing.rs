@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::{Carried, SLOPE_HYSTERESIS, Step};
 use crate::{ClimberEvent, ClimberMode, Support};
 
-/// Pushed farther than this share of the radius from where its support carries it, it looks for new ground.
+/// Pushed farther than this share of the radius, and two skin widths, from where it stands straight on its point, it looks
+/// for new ground. On slopes a core that came straight down leaves it up to a skin width or so off.
 const SHOVED: f64 = 0.1;
 
 impl Step<'_> {
@@ -57,8 +58,11 @@ impl Step<'_> {
         if moved.position == carried.position {
             return;
         }
-        let shoved = moved.position.distance(carried.position);
-        if shoved > SHOVED * self.config.body.radius {
+        // In all, not in this tick: what pushes slowly would else push it off its point by metres.
+        let body = &self.config.body;
+        let upright = carried.support.normal_in_world() * body.radius;
+        let leaning = (moved.position - carried.support.contact).distance(upright);
+        if leaning > SHOVED * body.radius + 2.0 * body.skin_width {
             self.find_ground(carried, DVec3::ZERO);
             return;
         }
