@@ -13,10 +13,10 @@ use clamber_world::{
 };
 use glam::DVec3;
 
-use crate::platforms::chord;
+use crate::platforms::{chord, drift};
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, Trace, every, jolt, shifted, turned, walk,
-    walker_at, within,
+    IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, shifted, turned, walk, walker_at,
+    within,
 };
 
 const ALL: [Played; 3] = [Played::Root, Played::Joint, Played::Body];
@@ -168,8 +168,12 @@ pub(crate) fn root_joint_and_body_carry_alike_through_a_storm() {
         let stage = Stage::new(played).with(&Shape::floor(12.0), storm);
         let start = storm(0.0).translation + DVec3::new(2.0, 0.2, 1.0);
         let mut run = Run::new(stage, jolt(), start).settle();
+        let start = run.position();
         run.steps(600, &IDLE);
         assert!(run.trace.always(Standing), "{played:?}");
+        // Alike is not right yet.
+        let off = drift(&run.trace, start, storm);
+        within!(off, 1e-3, "{played:?}");
         run.sound()
     });
 }
@@ -346,12 +350,14 @@ pub(crate) fn a_full_turn_of_the_ground_ends_where_it_began() {
         let stage = Stage::new(played).with(&Shape::floor(5.0), |time| turned(DVec3::Y, PI * time));
         let mut run = Run::new(stage, jolt(), DVec3::X * 3.0).settle();
         let (position, heading) = (run.position(), run.state().heading);
-        run.steps(120, &IDLE);
+        for tick in 0..120 {
+            run.step(&IDLE);
+            let turn = turned(DVec3::Y, PI * run.stage.time()).rotation;
+            let off = run.state().heading.distance(turn * heading);
+            within!(off, 1e-4, "{played:?}, tick {tick}: heading");
+        }
         let off = run.position().distance(position);
         within!(off, 1e-4, "{played:?}: {off}");
-        let off = run.state().heading.distance(heading);
-        within!(off, 1e-4, "{played:?}: heading off by {off}");
-        let trace: Trace = run.sound();
-        trace
+        run.sound()
     });
 }

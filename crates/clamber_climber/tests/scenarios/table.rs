@@ -142,9 +142,10 @@ scenarios! {
         "Stands; 1e-4."
         [ground::any_direction_is_up];
     21 "rapier issue_485 kinematic_platform_pushes_idle_character" Climber
-        "A wall at 2 m/s for 240 ticks and at 30 m/s for 120 against one who stands idle on a floor."
-        "Never 2e-2 into it; on the floor to 1e-3."
-        [walls::a_wall_pushes_who_does_nothing];
+        "A wall at 2 m/s for 240 ticks and at 30 m/s for 120 against one who stands idle on a floor; and slow ones that push off its \
+         edge."
+        "Never 2e-2 into it; on the floor to 1e-3; falls from the edge."
+        [walls::a_wall_pushes_who_does_nothing, walls::a_slow_wall_pushes_off_an_edge];
     22 "rapier issue_485 overlapping_character_is_depenetrated" Mover
         "A ball of .5 whose centre is in a cube of half side 1. A body only: a skin is no solid, and one within it is inside a \
          hollow (28)."
@@ -224,9 +225,10 @@ scenarios! {
         "The same within 1e-3."
         [frames::ten_thousand_kilometres_out_is_as_good_as_here];
     36 "avian check_agreement" Mover
-        "1 to 17 walls that touch a ball, 60 velocities each: of the climber itself; the solver's own property test is beside it."
-        "At most .005 into any, and not backwards."
-        [skins::no_velocity_enters_any_of_seventeen_planes];
+        "1 to 17 walls that touch a ball, 60 velocities each: of the climber itself, for its solver of planes is private; and a corner \
+         at 243 m/s."
+        "At most .005 into any, and not backwards; into the corner to 1e-6, and at rest."
+        [skins::no_velocity_enters_any_of_seventeen_planes, walls::a_corner_takes_all_velocity];
     37 "box3d SphereHullSeam, CapsuleHullSeam, EdgeAxisRandomOracle" Query
         "400 random pairs of triangles with an edge in common, capsules about it."
         "Touched if and only if an f64 search says so, at its distance to 2e-6."

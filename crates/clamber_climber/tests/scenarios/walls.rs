@@ -329,3 +329,52 @@ pub(crate) fn the_seam_between_terrain_and_a_foot_is_not_felt() {
     assert!(run.trace.always(Standing));
     run.sound();
 }
+
+pub(crate) fn a_slow_wall_pushes_off_an_edge() {
+    for speed in [0.1, 0.5, 1.5] {
+        // Each by itself: whether what rolls off an edge slides or falls past it is a matter of the last digit.
+        for played in [Played::Root, Played::Joint, Played::Body] {
+            let wall = Shape::boxed(DVec3::new(-3.0, -0.5, -5.0), DVec3::new(-0.4, 4.0, 5.0));
+            let stage = Stage::new(played)
+                .with_still(&Shape::floor(1.0))
+                .with(&wall, move |time| shifted(DVec3::X * (speed * time)));
+            let mut run = Run::new(stage, jolt(), DVec3::ZERO).settle();
+            let mut ticks = 0;
+            while run.mode() == Standing {
+                run.step(&IDLE);
+                ticks += 1;
+                let p = run.position();
+                // Beyond the edge it rolls over it, as far as it can stand there.
+                assert!(
+                    p.x <= 1.0 + 0.32,
+                    "{played:?} at {speed} m/s: stands on nothing at {p}"
+                );
+                assert!(ticks < 2000, "{played:?} at {speed} m/s: is not pushed");
+            }
+            run.steps(60, &IDLE);
+            assert!(
+                run.feet().y < -1.0,
+                "{played:?} at {speed} m/s: {}",
+                run.feet()
+            );
+            run.sound();
+        }
+    }
+}
+
+pub(crate) fn a_corner_takes_all_velocity() {
+    every(0.0, |played| {
+        let mut config = jolt();
+        config.gravity = DVec3::ZERO;
+        config.body.height = 0.0;
+        let hollow = Shape::boxed(DVec3::splat(-2.0), DVec3::splat(2.0));
+        let stage = Stage::new(played).with_still(&hollow);
+        let start = -DVec3::Y * 0.32;
+        let mut run = Run::new(stage, config, start).thrown(DVec3::new(-150.0, 140.0, -130.0));
+        run.step(&IDLE);
+        let off = run.position().distance(DVec3::new(-1.68, 1.68, -1.68));
+        within!(off, 1e-6, "{played:?}");
+        within!(run.state().velocity.length(), 1e-3, "{played:?}: velocity");
+        run.sound()
+    });
+}
