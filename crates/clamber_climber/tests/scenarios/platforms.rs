@@ -139,8 +139,10 @@ pub(crate) fn an_idle_rider_of_a_lift_stays_on_it() {
     });
 }
 
+type Platform = (&'static str, f64, fn(f64) -> Similarity);
+
 /// Jolt's platforms, and what their turning adds at the rider.
-fn samples() -> Vec<(&'static str, f64, fn(f64) -> Similarity)> {
+fn samples() -> Vec<Platform> {
     let radius = libm::sqrt(5.0);
     vec![
         ("turns to and fro", chord(radius, PI), |time| {

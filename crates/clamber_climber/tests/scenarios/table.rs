@@ -145,7 +145,7 @@ scenarios! {
         "A wall at 2 m/s for 240 ticks and at 30 m/s for 120 against one who stands idle on a floor; and slow ones that push off its \
          edge."
         "Never 2e-2 into it; on the floor to 1e-3; falls from the edge."
-        [walls::a_wall_pushes_who_does_nothing, walls::a_slow_wall_pushes_off_an_edge];
+        [walls::a_wall_pushes_who_does_nothing, walls::a_slow_wall_pushes_off_an_edge, walls::ground_that_goes_on_leaves_who_is_held_by_a_wall];
     22 "rapier issue_485 overlapping_character_is_depenetrated" Mover
         "A ball of .5 whose centre is in a cube of half side 1. A body only: a skin is no solid, and one within it is inside a \
          hollow (28)."
@@ -271,8 +271,8 @@ scenarios! {
         "No change of mode; one for each passage."
         [skins::ground_that_trembles_about_the_limit_is_lost_once_at_most];
     46 "ours: closing" Climber
-        "Two sheets of one skin that close to .6 m."
-        "Between them, not squeezed aside; told as crushed once there is less room than the body."
+        "Two sheets of one skin that close and open: on a ball to .2 m, on a capsule to 1.5 m. Less than its axis has no between."
+        "Between them, not squeezed aside by 1e-3; told as crushed once there is less room than the body; stands again."
         [skins::two_sheets_that_close_crush_and_let_nothing_through];
     47 "ours: no area" Climber
         "Skin that is a plane, a line or a point for a tick, under feet and under hands."
@@ -287,11 +287,12 @@ scenarios! {
             frames::root_and_joint_are_alike_for_who_walks_in_a_storm,
         ];
     49 "ours: frames" Climber
-        "A tour in a world that moves evenly, and in one turned by eighths about a skew axis with its gravity; jumps at 30 m/s; a \
+        "A tour in a world that moves evenly, stairs that do, and in one turned by eighths about a skew axis with its gravity; jumps at 30 m/s; a \
          full turn."
         "1e-4."
         [
             frames::motion_of_the_whole_world_changes_nothing,
+            frames::stairs_that_move_evenly_are_walked_as_ones_that_stand,
             frames::a_world_turned_by_any_angle_changes_nothing,
             frames::a_jump_on_an_even_motion_lands_where_it_began,
             frames::a_full_turn_of_the_ground_ends_where_it_began,

@@ -100,7 +100,7 @@ pub(crate) fn two_walls_through_the_body_lift_it_out_and_let_it_go() {
         run.steps(120, &walk(DVec3::Z));
         assert!(run.feet().z > 1.0, "{played:?}: {}", run.feet());
         assert!(run.feet().y.abs() <= 0.05, "{played:?}: {}", run.feet());
-        run.trace
+        run.sound()
     });
 }
 
@@ -377,4 +377,31 @@ pub(crate) fn a_corner_takes_all_velocity() {
         within!(run.state().velocity.length(), 1e-3, "{played:?}: velocity");
         run.sound()
     });
+}
+
+pub(crate) fn ground_that_goes_on_leaves_who_is_held_by_a_wall() {
+    for speed in [0.2, 1.0, 5.0] {
+        every(0.0, |played| {
+            let wall = Shape::boxed(DVec3::new(0.5, -0.5, -5.0), DVec3::new(1.0, 4.0, 5.0));
+            let stage = Stage::new(played)
+                .with_still(&wall)
+                .with(&Shape::floor(10.0).moved(-DVec3::Y), move |time| {
+                    shifted(DVec3::X * (speed * time))
+                });
+            let mut run = Run::new(stage, jolt(), -DVec3::Y).settle();
+            let ticks = (8.0 / (speed * run.stage.dt)) as u32;
+            run.steps(ticks, &IDLE);
+            let off = run.feet().distance(DVec3::new(0.18, -1.0, 0.0));
+            within!(off, 1e-4, "{played:?} at {speed} m/s: {}", run.feet());
+            assert_eq!(run.mode(), Standing);
+            // The ground ends behind it.
+            run.steps(ticks, &IDLE);
+            assert!(
+                run.feet().y < -1.5,
+                "{played:?} at {speed} m/s: {}",
+                run.feet()
+            );
+            run.sound()
+        });
+    }
 }
