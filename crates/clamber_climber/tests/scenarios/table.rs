@@ -183,12 +183,13 @@ scenarios! {
         [platforms::a_belt_carries_at_its_speed];
     28 "Jolt's sample obstacles" Climber
         "Bumps of .05 x .01 and .3 x .1 m, steps .3 high and .05 deep, walls of 30 pillars and of 25 segments 1 m high, a funnel of \
-         65 degrees, a floor and ceiling that meet, a hollow box."
-        "Walks over; does not climb; slides along to 1e-3; stands still; does not jump by 1e-3; stays in, at 300 m/s too."
+         65 degrees, a floor and ceiling that meet, a hollow box; ours: a wall of tiles along a drop."
+        "Walks over; does not climb; slides along to 1e-3; falls down the drop; stands still; does not jump by 1e-3; stays in, at 300 m/s too."
         [
             stairs::bumps_are_walked_over,
             stairs::what_only_looks_like_stairs_is_a_wall,
             stairs::walls_of_pillars_and_of_segments_do_not_snag,
+            stairs::a_wall_along_a_drop_is_no_ground,
             stairs::a_funnel_holds_who_falls_into_it,
             stairs::an_acute_corner_below_a_ceiling_stops_gently,
             stairs::a_hollow_box_is_solid_from_within,
