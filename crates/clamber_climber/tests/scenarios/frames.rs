@@ -1,14 +1,10 @@
-//! What may not matter: where the world is, how it moves as a whole, how its triangles are numbered; and what is no
-//! number at all.
+//! What may not matter: where the world is, how it moves as a whole, how its triangles are numbered.
 
 use core::f64::consts::{PI, TAU};
 
 use clamber_climber::ClimberMode::{Falling, Standing};
-use clamber_climber::{
-    Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput, ClimberState,
-};
+use clamber_climber::{ClimberConfig, ClimberInput};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
-use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 use glam::DVec3;
 
 use crate::platforms::{chord, drift};
@@ -20,7 +16,7 @@ use crate::stage::{
 const ALL: [Played; 3] = [Played::Root, Played::Joint, Played::Body];
 
 /// Hills with a wall on them.
-fn hills() -> Shape {
+pub(crate) fn hills() -> Shape {
     let field = Shape::field(DVec3::new(-8.0, 0.0, -8.0), 0.5, [32, 32], |x, z| {
         0.3 * libm::sin(1.3 * x) * libm::cos(0.9 * z)
     });
@@ -31,7 +27,7 @@ fn hills() -> Shape {
 }
 
 /// About the hills, into the wall and along it, with jumps.
-fn tour(tick: u32) -> ClimberInput {
+pub(crate) fn tour(tick: u32) -> ClimberInput {
     let direction = match tick / 60 {
         0 => DVec3::new(1.0, 0.0, 0.3),
         1 => DVec3::new(0.8, 0.0, -0.6),
@@ -225,129 +221,6 @@ pub(crate) fn root_and_joint_are_alike_for_who_walks_in_a_storm() {
         let (apart, tick) = root.apart(&play(played));
         within!(apart, tolerance, "{played:?}: {apart} at tick {tick}");
     }
-}
-
-/// An obstacle that answers nonsense.
-struct Broken<'a> {
-    inner: &'a dyn Obstacle,
-    bad: DVec3,
-}
-
-impl Obstacle for Broken<'_> {
-    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
-        self.inner.cast_ray(origin, direction, max_distance)
-    }
-
-    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
-        self.inner.closest_point(point, max_distance)
-    }
-
-    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        self.inner.overlap_capsule(capsule, contacts);
-        contacts.extend(contacts.last().map(|contact| Contact {
-            point: self.bad,
-            ..*contact
-        }));
-    }
-
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let hit = self.inner.cast_capsule(capsule, displacement)?;
-        Some(SweepContact {
-            away: self.bad,
-            ..hit
-        })
-    }
-
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let hit = self.inner.sweep_capsule(capsule, displacement)?;
-        Some(SweepContact {
-            time: self.bad.x,
-            ..hit
-        })
-    }
-
-    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let motion = self.inner.motion(point, dt)?;
-        Some(PointMotion {
-            velocity: self.bad,
-            ..motion
-        })
-    }
-}
-
-pub(crate) fn nonsense_of_an_obstacle_does_not_spread() {
-    for bad in [
-        DVec3::NAN,
-        DVec3::INFINITY,
-        DVec3::NEG_INFINITY,
-        DVec3::splat(f64::MAX),
-    ] {
-        let stage = Stage::new(Played::Root).with_still(&hills());
-        let mut run = Run::new(stage, walker_at(3.0), DVec3::Y).settle();
-        for tick in 0..20 {
-            run.stage.advance();
-            let climber = &mut run.climber;
-            let report = run.stage.obstacles(|obstacles| {
-                let (id, inner) = obstacles[0];
-                let broken = Broken { inner, bad };
-                let input = tour(tick);
-                climber
-                    .step(&input, &[(id, &broken as &dyn Obstacle)], TICK)
-                    .unwrap()
-            });
-            assert!(
-                is_finite(run.state()),
-                "{bad}, tick {tick}: {:?}",
-                run.state()
-            );
-            let p = run.position();
-            assert!(p.length() < 100.0, "{bad}, tick {tick}: {p}, {report:?}");
-        }
-        // And goes on where answers are sound again.
-        run.steps(60, &IDLE);
-        assert!(is_finite(run.state()), "{bad}");
-    }
-}
-
-fn is_finite(state: &ClimberState) -> bool {
-    state.position.is_finite() && state.velocity.is_finite() && state.shake.is_finite()
-}
-
-pub(crate) fn nonsense_of_a_caller_is_refused() {
-    let stage = Stage::new(Played::Root).with_still(&hills());
-    let mut run = Run::new(stage, jolt(), DVec3::Y).settle();
-    let before = *run.state();
-    let mut climber = run.climber.clone();
-    for bad in [f64::NAN, f64::INFINITY] {
-        let state = ClimberState {
-            velocity: DVec3::X * bad,
-            ..before
-        };
-        assert_eq!(
-            climber.restore(state),
-            Err(ClimberError::NotFinite("state"))
-        );
-        let input = walk(DVec3::Z * bad);
-        let refused = climber.step(&input, &[], TICK);
-        assert_eq!(refused, Err(ClimberError::NotFinite("input")));
-        assert!(climber.step(&IDLE, &[], bad).is_err());
-        assert!(Climber::new(jolt(), DVec3::Y * bad).is_err());
-    }
-    assert_eq!(*climber.state(), before);
-    run.step(&IDLE);
-    assert_eq!(run.mode(), Standing);
-}
-
-/// So fast that the next position is no number any more.
-pub(crate) fn a_velocity_without_end_is_told() {
-    let stage = Stage::new(Played::Root);
-    let mut run = Run::new(stage, jolt(), DVec3::Y).thrown(DVec3::X * f64::MAX);
-    let told = (0..100).any(|_| {
-        let report = run.climber.step(&IDLE, &[], 1.0).unwrap();
-        assert!(is_finite(run.climber.state()));
-        report.events.contains(&ClimberEvent::NotFinite)
-    });
-    assert!(told, "{:?}", run.state());
 }
 
 /// Jumps on what moves evenly land where they began.

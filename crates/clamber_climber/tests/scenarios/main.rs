@@ -10,9 +10,11 @@
 )]
 
 mod belt;
+mod edges;
 mod failures;
 mod frames;
 mod ground;
+mod nonsense;
 mod platforms;
 mod queries;
 mod skins;

@@ -88,7 +88,7 @@ scenarios! {
         "In a half-pipe of 768 faces, 1 cm wider than the ball, to either cap. No limit of contacts to report: all are taken. \
          Stepping is off, or it would step onto the rim."
         "More than 256 contacts; caps to 1e-4; ground normal y > .999."
-        [walls::a_gutter_of_768_faces_is_walked_along_to_its_caps];
+        [edges::a_gutter_of_768_faces_is_walked_along_to_its_caps];
     9 "Jolt TestInitiallyIntersecting" Mover
         ".005, .05 and .2 m into a wall. Recovery has no share to choose: Jolt's rows with less than 1 have no counterpart."
         "Out after one tick, and for two more, to 1e-6."
@@ -107,15 +107,15 @@ scenarios! {
     12 "Jolt DiscreteCubeSlideMesh" Mover
         "Slides across 7 by 7 quadrilaterals, and along their edges, on a slope of 60 degrees: on the level it would stand."
         "Euler's way on a plane, to 1e-3 m and 2e-3 m/s, for 110 ticks; the mesh ends after that."
-        [walls::edges_within_a_slope_are_not_felt];
+        [edges::edges_within_a_slope_are_not_felt];
     13 "Jolt LinearCastCubeSlideMesh" Mover
         "The same at 360 m/s in one tick, on edges and beside, and mirrored."
         "1e-4 m and 1e-4 m/s."
-        [walls::edges_within_a_slope_are_not_felt_at_360_metres_a_second];
+        [edges::edges_within_a_slope_are_not_felt_at_360_metres_a_second];
     14 "Jolt TestNonManifoldMesh" Mover
         "Floor and fin, three triangles on one edge; walks into the fin, either side out."
         "Stops at it, and stays on the floor, to 1e-4."
-        [walls::a_fin_on_an_edge_of_the_floor_is_met];
+        [edges::a_fin_on_an_edge_of_the_floor_is_met];
     15 "Jolt TestCastSphereVsDegenerateTriangle" Query
         "300 slivers 5 m long and .4 mm thin, a ball of .2 cast past and at them. Not Jolt's vertices: any of that shape."
         "Hit if and only if an f64 search says so; stops at .2 to 1.1e-4, the tolerance of a cast."
@@ -155,8 +155,8 @@ scenarios! {
         "Over the seam of two flush fields of 16 m at 2 m/s for 480 ticks; and from a body's field onto a skin's."
         "Never .05 below rest, beyond 12 m; skin and body: 16 m to 1e-3."
         [
-            walls::the_seam_of_two_fields_is_not_felt,
-            walls::the_seam_between_terrain_and_a_foot_is_not_felt,
+            edges::the_seam_of_two_fields_is_not_felt,
+            edges::the_seam_between_terrain_and_a_foot_is_not_felt,
         ];
     24 "rapier #809" Climber
         "30 Hz, gravity 30, radius .36 with a skin of .01, 9 m/s on a box of 30 m, turning twice."
@@ -255,9 +255,9 @@ scenarios! {
          NaN velocity cannot be injected: restoring it is refused."
         "Finite at each tick and within 100 m; typed errors, nothing changed; an event."
         [
-            frames::nonsense_of_an_obstacle_does_not_spread,
-            frames::nonsense_of_a_caller_is_refused,
-            frames::a_velocity_without_end_is_told,
+            nonsense::nonsense_of_an_obstacle_does_not_spread,
+            nonsense::nonsense_of_a_caller_is_refused,
+            nonsense::a_velocity_without_end_is_told,
         ];
     43 "ours: breathing" Climber
         "Ground that breathes by .5 m once a second, evenly and as a hump, for a minute."
