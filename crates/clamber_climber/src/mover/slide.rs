@@ -219,8 +219,8 @@ impl World<'_> {
     /// The displacement nearest to what is wanted above all planes, if it is not far off; else that above all planes
     /// lowered by as little as it takes.
     ///
-    /// Walls that are all but opposite meet somewhere, dozens of times as far away as they overlap: no body slips out
-    /// there within a tick, and whatever is on the way is in its way. They crush it.
+    /// Walls that are all but opposite meet somewhere, many times as far away as they overlap: no body slips out there
+    /// within a tick, and whatever is on the way is in its way. They crush it.
     fn nearest_above(&mut self, wanted: DVec3) -> Above {
         let planes = &mut self.scratch.planes;
         let above = nearest_above(wanted, planes);
@@ -228,7 +228,8 @@ impl World<'_> {
             .iter()
             .map(|plane| plane.offset - plane.normal.dot(wanted));
         let gap = gaps.fold(0.0, f64::max);
-        let is_near = |above: &Above| above.point.distance(wanted) <= FARTHEST * gap;
+        let farthest = wanted.length() + FARTHEST * gap;
+        let is_near = |above: &Above| above.point.length() <= farthest;
         if is_near(&above) {
             return above;
         }
@@ -280,10 +281,10 @@ fn lowered(wanted: DVec3, planes: &mut [Plane], by: f64) -> Above {
     above
 }
 
-/// A push of more than this many times the deepest overlap is none: walls that differ by less than 3.6 degrees from
-/// opposite are no wedge to slip out of. More throws who is crushed by a few centimetres by metres, through what is
-/// there; less takes acute corners for closed.
-const FARTHEST: f64 = 32.0;
+/// A push that leads farther than what is wanted, and this many times the deepest overlap, is none: walls that differ by
+/// less than 29 degrees from opposite are no wedge to slip out of. More throws who is crushed by a few centimetres by
+/// metres, through what is there; less holds on to who could slip out.
+const FARTHEST: f64 = 4.0;
 
 /// To a thousandth of the overlap.
 const HALVINGS: u32 = 10;

@@ -1,9 +1,9 @@
 //! Known failures of others, each a scene that is named after its thread.
 //!
-//! Elsewhere, for they are about pictures or the price of engines: bevy#25605, hits in mid-air beside an animated body,
-//! is `bevy_clamber/tests/picking.rs`; avian#813, eight overlapping moving meshes, and Unity's thread 875257, 18 ms to bake
-//! 30,000 faces anew and no velocities, are what the benches `tick` and `scene` of the workspace's root measure. Here are
-//! only the velocities.
+//! Elsewhere, for they are about pictures or a price: bevy#25605, hits in mid-air beside an animated body, is in
+//! `bevy_clamber/tests/picking.rs`; what avian#813 (eight overlapping moving meshes) and Unity's thread 875257 (18 ms to bake
+//! 30,000 faces anew) paid for is what the benches `scene` and `tick` of the root measure of our skins. That a posed mesh
+//! has velocities is here.
 
 use core::f64::consts::TAU;
 

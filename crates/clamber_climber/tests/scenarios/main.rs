@@ -6,14 +6,15 @@
 
 #![expect(
     clippy::unwrap_used,
-    clippy::panic,
     reason = "a test's helpers may fail like the test"
 )]
 
 mod belt;
+mod edges;
 mod failures;
 mod frames;
 mod ground;
+mod nonsense;
 mod platforms;
 mod queries;
 mod skins;

@@ -29,11 +29,10 @@ pub(crate) fn on(
 }
 
 /// The most that it is away from where the motion takes its first place.
-fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similarity) -> f64 {
+pub(crate) fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similarity) -> f64 {
     let local = motion(0.0).inverse_transform_point(start);
     let off = trace.positions.iter().enumerate().map(|(tick, p)| {
         let time = TICK * (tick as f64 + 1.0);
-        // The body stays upright: what is below its centre turns with the ground.
         motion(time).transform_point(local).distance(*p)
     });
     off.fold(0.0, f64::max)
@@ -140,11 +139,10 @@ pub(crate) fn an_idle_rider_of_a_lift_stays_on_it() {
     });
 }
 
-/// A name, what turning adds, and how it moves.
-type Sample = (&'static str, f64, fn(f64) -> Similarity);
+type Platform = (&'static str, f64, fn(f64) -> Similarity);
 
 /// Jolt's platforms, and what their turning adds at the rider.
-fn samples() -> Vec<Sample> {
+fn samples() -> Vec<Platform> {
     let radius = libm::sqrt(5.0);
     vec![
         ("turns to and fro", chord(radius, PI), |time| {

@@ -163,7 +163,8 @@ pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
             let hit = ask(&stage, |obstacle| {
                 obstacle.cast_capsule(&ball, DVec3::Y * way)
             });
-            let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing at {height}"));
+            assert!(hit.is_some(), "{played:?}: nothing at {height}");
+            let hit = hit.unwrap();
             assert_eq!(hit.time, 0.0, "{played:?}");
             assert!(hit.started_inside, "{played:?}");
             assert!(
@@ -291,7 +292,8 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
         let hit = ask(&stage, |obstacle| {
             obstacle.sweep_capsule(&ball, DVec3::ZERO)
         });
-        let hit = hit.unwrap_or_else(|| panic!("{played:?}: nothing where the box comes"));
+        assert!(hit.is_some(), "{played:?}: nothing where the box comes");
+        let hit = hit.unwrap();
         assert!((hit.time - 0.1).abs() <= 1e-3, "{played:?}: {}", hit.time);
         // Standing both.
         stage.hold();

@@ -1,6 +1,6 @@
 //! Steps, bumps, pillars, funnels.
 
-use clamber_climber::ClimberMode::Standing;
+use clamber_climber::ClimberMode::{Falling, Standing};
 use glam::DVec3;
 
 use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at, within};
@@ -165,6 +165,28 @@ pub(crate) fn walls_of_pillars_and_of_segments_do_not_snag() {
             run.sound()
         });
     }
+}
+
+/// Beside it a drop of 20 m: edges within the wall are no ledges.
+pub(crate) fn a_wall_along_a_drop_is_no_ground() {
+    every(0.0, |played| {
+        let tiles = Shape::field(DVec3::new(-3.0, 0.0, -1.0), 0.35, [25, 12], |_, _| 0.0);
+        let upright = tiles.turned(DVec3::X, core::f64::consts::FRAC_PI_2);
+        let cliff = Shape::boxed(DVec3::new(-10.0, -20.0, -5.0), DVec3::new(0.0, 0.0, 5.0));
+        let stage = Stage::new(played)
+            .with_still(&cliff)
+            .with_still(&upright.moved(DVec3::new(0.0, 0.0, -0.33)));
+        let mut run = Run::new(stage, walker_at(2.0), -DVec3::X).settle();
+        run.steps(90, &walk(DVec3::X));
+        for (mode, position) in run.trace.modes.iter().zip(&run.trace.positions) {
+            // Until there it rolls over the edge.
+            if position.x > 0.32 {
+                assert_eq!(*mode, Falling, "{played:?}: at {position}");
+            }
+        }
+        assert!(run.feet().y < -1.0, "{played:?}: {}", run.feet());
+        run.sound()
+    });
 }
 
 /// Four slopes of 65 degrees that meet in a point.

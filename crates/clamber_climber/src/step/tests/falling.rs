@@ -193,3 +193,36 @@ fn a_fast_fall_does_not_pass_through() {
     }
     assert_eq!(climber.state().mode, ClimberMode::Standing);
 }
+
+#[test]
+fn walls_that_are_all_but_opposite_crush_and_throw_nobody_far() {
+    // They overlap the ball by a quarter of a metre, and leave it free only 27 m farther up.
+    let wall = |x: f32, lean: f32| {
+        let corners = [
+            (x, -40., -40.),
+            (x, -40., 40.),
+            (x + lean, 40., 40.),
+            (x + lean, 40., -40.),
+        ];
+        let quad = if x < 0.0 {
+            [[0, 3, 2], [0, 2, 1]]
+        } else {
+            [[0, 1, 2], [0, 2, 3]]
+        };
+        patch(&corners, &quad)
+    };
+    let walls = [wall(0.15, 0.3), wall(-0.15, -0.3)];
+    let mut climber = climber_at(0.0, 0.0, 0.0);
+    let mut is_crushed = false;
+    for tick in 0..30 {
+        let before = climber.state().position;
+        let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+            [(ObstacleId(0), &walls[0]), (ObstacleId(1), &walls[1])];
+        let report = climber.step(&IDLE, &obstacles, DT).unwrap();
+        let way = climber.state().position.distance(before);
+        assert!(way < 1.1, "tick {tick}: {way} m, {:?}", climber.state());
+        let crushed = |event: &ClimberEvent| matches!(event, ClimberEvent::Crushed { .. });
+        is_crushed |= report.events.iter().any(crushed);
+    }
+    assert!(is_crushed);
+}
