@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod body;
 mod climber;
 mod config;
 mod discrete;
@@ -14,6 +15,7 @@ mod state;
 mod step;
 mod surroundings;
 
+pub use body::ClimberBody;
 pub use climber::{CanGrip, Climber};
 pub use config::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,

@@ -1,0 +1,198 @@
+//! A climber as an obstacle to others.
+
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, PointMotion, SurfaceTag, SweepContact, WorldCapsule,
+};
+use glam::{DQuat, DVec3};
+
+use crate::Climber;
+
+/// Most steps of a sweep. Two capsules that pass take a few; what just grazes a few dozen.
+const STEPS: u32 = 64;
+
+/// How far from touching a sweep may stop, metres.
+const TOLERANCE: f64 = 1e-4;
+
+/// What a climber is to other climbers in a tick: a solid capsule that goes on as it went.
+///
+/// Take the bodies of all before any is stepped, and give each climber those of the others: then it does not matter in
+/// which order, or on which threads, they are stepped. They stop each other, and neither pushes the other: the velocity
+/// of its points is told as zero, though they go on.
+///
+/// ```
+/// use clamber_climber::{Climber, ClimberBody, ClimberConfig, ClimberInput};
+/// use clamber_world::{Obstacle, ObstacleId};
+/// use glam::DVec3;
+///
+/// let dt = 1.0 / 60.0;
+/// let at = |x| Climber::new(ClimberConfig::walker(), DVec3::new(x, 0.0, 0.0));
+/// let mut climbers = [at(0.0)?, at(3.0)?];
+///
+/// let bodies: Vec<ClimberBody> = climbers.iter().map(|climber| ClimberBody::new(climber, dt)).collect();
+/// for (index, climber) in climbers.iter_mut().enumerate() {
+///     let others = bodies.iter().enumerate().filter(|(other, _)| *other != index);
+///     let obstacles: Vec<(ObstacleId, &dyn Obstacle)> =
+///         others.map(|(other, body)| (ObstacleId(100 + other as u32), body as &dyn Obstacle)).collect();
+///     climber.step(&ClimberInput::default(), &obstacles, dt)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClimberBody {
+    /// At the end of the tick, if it goes on.
+    now: WorldCapsule,
+    /// Its way there.
+    way: DVec3,
+}
+
+/// How two capsules lie.
+struct Apart {
+    /// From the other's axis to this one's, unit; any where the axes meet.
+    away: DVec3,
+    /// Between the axes.
+    distance: f64,
+    /// The nearest point of this body's axis.
+    on_axis: DVec3,
+}
+
+impl ClimberBody {
+    /// Of a climber before a tick of `dt` seconds.
+    pub fn new(climber: &Climber, dt: f64) -> Self {
+        let way = climber.state().velocity * dt;
+        Self {
+            now: climber.body().moved(way),
+            way,
+        }
+    }
+
+    fn contact(&self, apart: &Apart) -> Contact {
+        let point = apart.on_axis + apart.away * self.now.radius;
+        Contact {
+            point,
+            normal: apart.away,
+            distance: apart.distance - self.now.radius,
+            material: MaterialPoint {
+                key: 0,
+                coordinates: (point - self.now.ends[0]).to_array(),
+            },
+            tag: SurfaceTag::default(),
+        }
+    }
+
+    /// The first contact of a capsule that moves by `way` relative to this body, which ends where it is now.
+    fn meet(&self, capsule: &WorldCapsule, way: DVec3) -> Option<SweepContact> {
+        let sum = self.now.radius + capsule.radius;
+        let mut time = 0.0;
+        for step in 0..STEPS {
+            let moved = capsule.moved(way * time);
+            let apart = between(&self.now, &moved);
+            let gap = apart.distance - sum;
+            if gap <= TOLERANCE && (gap <= 0.0 || apart.away.dot(way) < 0.0) {
+                return Some(SweepContact {
+                    time,
+                    contact: self.contact(&apart),
+                    away: apart.away,
+                    started_inside: step == 0 && gap <= 0.0,
+                });
+            }
+            // Both stay on their sides of the plane between them until then.
+            let closing = -apart.away.dot(way);
+            if closing <= 0.0 || time + gap / closing > 1.0 {
+                return None;
+            }
+            time += gap / closing;
+        }
+        None
+    }
+}
+
+/// The nearest points of two axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
+fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
+    let ([a, b], [c, d]) = (body.ends, other.ends);
+    let (u, v, w) = (b - a, d - c, a - c);
+    let (uu, vv, uv) = (u.length_squared(), v.length_squared(), u.dot(v));
+    let share = |x: f64, y: f64| {
+        if y > 0.0 {
+            (x / y).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let crossed = uu * vv - uv * uv;
+    let first = share(uv * v.dot(w) - vv * u.dot(w), crossed);
+    let on_other = share(v.dot(w + u * first), vv);
+    let first = share(u.dot(v * on_other - w), uu);
+    let on_axis = a + u * first;
+    let between = c + v * on_other - on_axis;
+    let away = between.try_normalize().unwrap_or_else(|| {
+        let aside = u.cross(v);
+        aside
+            .try_normalize()
+            .unwrap_or(u.any_orthogonal_vector().normalize_or(DVec3::X))
+    });
+    Apart {
+        away,
+        distance: between.length(),
+        on_axis,
+    }
+}
+
+impl Obstacle for ClimberBody {
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        let (middle, radius) = self.now.bounding_ball();
+        Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))
+    }
+
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        let (middle, radius) = self.now.bounding_ball();
+        // As far as it can be met, so that an endless ray has a length.
+        let length = max_distance.min(origin.distance(middle) + radius);
+        let way = direction.try_normalize()? * length;
+        let hit = self.cast_capsule(&WorldCapsule::ball(origin, 0.0), way)?;
+        Some(Contact {
+            distance: hit.time * length,
+            ..hit.contact
+        })
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        let contact = self.contact(&between(&self.now, &WorldCapsule::ball(point, 0.0)));
+        (contact.distance <= max_distance).then_some(contact)
+    }
+
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let contact = self.contact(&between(&self.now, capsule));
+        if contact.distance <= capsule.radius {
+            contacts.push(contact);
+        }
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        self.meet(capsule, displacement)
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        // As seen from this body, which then stands where it ends.
+        let mut hit = self.meet(&capsule.moved(self.way), displacement - self.way)?;
+        hit.contact.point -= self.way * (1.0 - hit.time);
+        Some(hit)
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let position = self.now.ends[0] + DVec3::from_array(point.coordinates);
+        let usable = dt > 0.0 && position.is_finite();
+        usable.then(|| PointMotion {
+            position,
+            previous_position: position - self.way,
+            // Or two that run into each other would swap their speeds, as balls do.
+            velocity: DVec3::ZERO,
+            frame: Some(DQuat::IDENTITY),
+            turn: DQuat::IDENTITY,
+            area_ratio: 1.0,
+            stretches: [1.0, 1.0],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,135 @@
+use clamber_world::ObstacleId;
+
+use super::*;
+use crate::{ClimberConfig, ClimberInput, ClimberMode, ClimberState};
+
+const DT: f64 = 1.0 / 60.0;
+
+fn capsule(rng: &mut fastrand::Rng) -> WorldCapsule {
+    let mut point = || DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 4.0 - 2.0;
+    let (a, b) = (point(), point());
+    let is_ball = rng.u32(0..3) == 0;
+    WorldCapsule {
+        ends: if is_ball { [a, a] } else { [a, b] },
+        radius: 0.05 + 0.5 * rng.f64(),
+    }
+}
+
+/// The distance of two axes by halving, over and over, the range of either around its best of many points.
+fn distance_by_search(a: &WorldCapsule, b: &WorldCapsule) -> f64 {
+    let at = |c: &WorldCapsule, s: f64| c.ends[0].lerp(c.ends[1], s);
+    let (mut s, mut width) = (0.5, 0.5);
+    for _ in 0..60 {
+        let shares = (-10..=10).map(|k| (s + width * f64::from(k) / 10.0).clamp(0.0, 1.0));
+        let far = |s: f64| b.nearest_on_axis(at(a, s)).distance(at(a, s));
+        s = shares.min_by(|x, y| far(*x).total_cmp(&far(*y))).unwrap();
+        width *= 0.5;
+    }
+    b.nearest_on_axis(at(a, s)).distance(at(a, s))
+}
+
+#[test]
+fn axes_are_as_far_apart_as_a_search_finds() {
+    let mut rng = fastrand::Rng::with_seed(1);
+    for _ in 0..2_000 {
+        let (a, mut b) = (capsule(&mut rng), capsule(&mut rng));
+        if rng.u32(0..4) == 0 {
+            // Parallel.
+            b.ends[1] = b.ends[0] + (a.ends[1] - a.ends[0]) * rng.f64();
+        }
+        let apart = between(&a, &b);
+        let found = distance_by_search(&a, &b);
+        assert!(
+            (apart.distance - found).abs() < 1e-6,
+            "{a:?} {b:?}: {found}"
+        );
+        assert!((apart.away.length() - 1.0).abs() < 1e-9, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn sweeps_stop_where_small_steps_first_touch() {
+    let mut rng = fastrand::Rng::with_seed(2);
+    let mut met = 0;
+    for _ in 0..500 {
+        let (now, other) = (capsule(&mut rng), capsule(&mut rng));
+        let mut way = || DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 8.0 - 4.0;
+        let (way, displacement) = (way(), way());
+        let body = ClimberBody { now, way };
+        let gap = |time: f64| {
+            let here = now.moved(way * (time - 1.0));
+            between(&here, &other.moved(displacement * time)).distance - now.radius - other.radius
+        };
+        let touch = (0..=20_000)
+            .map(|k| f64::from(k) / 20_000.0)
+            .find(|time| gap(*time) <= 0.0);
+        let hit = body.sweep_capsule(&other, displacement);
+        let told = || format!("{body:?} {other:?} by {displacement}: {hit:?}, {touch:?}");
+        if let Some(touch) = touch {
+            let hit = hit.unwrap();
+            assert!(hit.time <= touch, "{}", told());
+            assert!(gap(hit.time) <= TOLERANCE + 1e-9, "{}", told());
+            let away = other
+                .moved(displacement * hit.time)
+                .nearest_on_axis(hit.contact.point);
+            let distance = away.distance(hit.contact.point);
+            assert!(
+                (distance - other.radius).abs() < 2e-4 || hit.started_inside,
+                "{}",
+                told()
+            );
+            met += 1;
+        } else if let Some(hit) = hit {
+            assert!(gap(hit.time) <= TOLERANCE + 1e-9, "{}", told());
+        }
+    }
+    assert!(met > 50, "{met}");
+}
+
+/// Climbers without weight that are pushed at each other, in an order.
+fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
+    let mut config = ClimberConfig::walker();
+    config.gravity = DVec3::ZERO;
+    config.body.height = 0.9;
+    let mut climbers: Vec<Climber> = (0..4)
+        .map(|index| {
+            let side = [DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z][index];
+            let mut climber = Climber::new(config, side * 4.0).unwrap();
+            let state = ClimberState {
+                velocity: -side * (3.0 + index as f64),
+                ..*climber.state()
+            };
+            climber.restore(state).unwrap();
+            climber
+        })
+        .collect();
+    for _ in 0..ticks {
+        let bodies: Vec<_> = climbers.iter().map(|c| ClimberBody::new(c, DT)).collect();
+        for &index in order {
+            let others = (0..4).filter(|other| *other != index);
+            let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = others
+                .map(|other| (ObstacleId(other as u32), &bodies[other] as &dyn Obstacle))
+                .collect();
+            let report = climbers[index].step(&ClimberInput::default(), &obstacles, DT);
+            assert!(report.unwrap().events.is_empty());
+        }
+    }
+    climbers.iter().map(|climber| *climber.state()).collect()
+}
+
+#[test]
+fn a_crowd_stops_before_itself_in_any_order() {
+    let states = crowd(&[0, 1, 2, 3], 200);
+    for (index, state) in states.iter().enumerate() {
+        assert_eq!(state.mode, ClimberMode::Falling);
+        for other in &states[..index] {
+            let apart = state.position.distance(other.position);
+            assert!(apart > 0.8 - 0.02, "{apart}");
+        }
+        assert!(state.position.length() < 3.0, "{state:?}");
+    }
+    let other = crowd(&[2, 0, 3, 1], 200);
+    let prints = |states: &[ClimberState]| states.iter().map(ClimberState::fingerprint).collect();
+    let (a, b): (Vec<u64>, Vec<u64>) = (prints(&states), prints(&other));
+    assert_eq!(a, b);
+}
