@@ -42,7 +42,6 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
         Standing,
         "climbs onto what can be stood on, or lets go there",
     ),
-    (Holding, Sliding, "lets go of what is too steep"),
     (Holding, Hanging, "the hold shakes or leans over too far"),
     (Holding, LedgeHanging, "reaches a ledge"),
     (Holding, Falling, "jumps, lets go, tires, or the hold ends"),

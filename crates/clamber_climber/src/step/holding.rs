@@ -23,6 +23,9 @@ const CORNER: f64 = 0.7;
 /// Cosine of the angle up to which it lies flat on a face: 10 degrees.
 const FLAT: f64 = 0.985;
 
+/// Who makes less than this share of a step upwards is as high as the hold goes, and looks for a ledge.
+const STUCK: f64 = 0.25;
+
 /// What opposes its way by more than this cosine is climbed onto rather than along.
 const AHEAD: f64 = 0.3;
 
@@ -35,17 +38,22 @@ impl Step<'_> {
         if let Some(grip) = self.config.grip
             && let Some(touch) = self.grip_near(self.state.position, &grip, None)
         {
-            self.attach(&touch);
-            self.face(-touch.away);
-            self.event(ClimberEvent::Grabbed {
-                obstacle: touch.obstacle,
-                point: touch.contact.point,
-            });
-            self.change_to(ClimberMode::Holding);
+            self.take_hold(&touch);
             self.hold();
             return true;
         }
         self.catch_ledge()
+    }
+
+    /// Grips something.
+    pub(super) fn take_hold(&mut self, touch: &Touch) {
+        self.attach(touch);
+        self.face(-touch.away);
+        self.event(ClimberEvent::Grabbed {
+            obstacle: touch.obstacle,
+            point: touch.contact.point,
+        });
+        self.change_to(ClimberMode::Holding);
     }
 
     pub(super) fn hold(&mut self) {
@@ -128,6 +136,12 @@ impl Step<'_> {
             return;
         }
         self.state.position = moved.position;
+        let step = wish * (grip.climb_speed * dt);
+        let made = (moved.position - carried.position).dot(wish.normalize_or_zero());
+        let is_stuck = made < STUCK * step.length();
+        if is_stuck && wish.dot(self.config.up()) > 0.0 && self.catch_ledge() {
+            return;
+        }
         if let Some(touch) = self.grip_near(moved.position, grip, Some(normal)) {
             self.climb_on_to(carried, &touch);
             self.state.velocity =
@@ -161,7 +175,7 @@ impl Step<'_> {
 
     /// What it grips at a position: the nearest that can be gripped, and of those as near the one that it climbs onto:
     /// against which it pushes, and which does not lead it back against what it `holds` now, in a crease.
-    fn grip_near(
+    pub(super) fn grip_near(
         &mut self,
         position: DVec3,
         grip: &GripConfig,

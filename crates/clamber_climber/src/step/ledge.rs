@@ -115,9 +115,23 @@ impl Step<'_> {
         let wish = self.ledge_wish();
         if self.state.pull_up > 0.0 || wish.up > 0.5 {
             self.pull_up(&carried, &config);
+        } else if wish.up < -0.5 && self.grip_below(carried.position) {
+            self.hold();
         } else {
             self.shimmy(&carried, &config, wish.aside);
         }
+    }
+
+    /// Grips the wall that it hangs before, if it can.
+    fn grip_below(&mut self, position: DVec3) -> bool {
+        let Some(grip) = self.config.grip else {
+            return false;
+        };
+        let Some(touch) = self.grip_near(position, &grip, None) else {
+            return false;
+        };
+        self.take_hold(&touch);
+        true
     }
 
     fn ledge_wish(&self) -> LedgeWish {
@@ -125,9 +139,14 @@ impl Step<'_> {
         let facing = self.state.heading;
         let side = facing.cross(up);
         let (walk, climb) = (self.input.walk, self.input.climb);
+        let (over, along) = if climb == DVec3::ZERO {
+            (walk.dot(facing), walk.dot(side))
+        } else {
+            (climb.dot(up) + climb.dot(facing), climb.dot(side))
+        };
         LedgeWish {
-            up: walk.dot(facing).max(climb.dot(up)).max(climb.dot(facing)),
-            aside: side * (walk.dot(side) + climb.dot(side)).clamp(-1.0, 1.0),
+            up: over,
+            aside: side * along.clamp(-1.0, 1.0),
         }
     }
 
@@ -209,7 +228,7 @@ impl Step<'_> {
 /// What the input asks for on a ledge.
 #[derive(Clone, Copy, Debug)]
 struct LedgeWish {
-    /// Over it.
+    /// Over it; negative down the wall.
     up: f64,
     /// Along it, in world space.
     aside: DVec3,

@@ -1,11 +1,13 @@
-use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode};
+use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode, ClimberState};
 use glam::{DQuat, DVec3, Vec3};
 
-use crate::scene::{DT, HOLD, STONE, assert_mode, climber, cuboid, moved, run, step};
+use crate::scene::{
+    DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, cuboid_with, moved, placed, run, step,
+};
 
 /// Hangs from the upper front edge of a block of stone.
 fn hung(block: &clamber_surface::surface::SkinnedSurface) -> clamber_climber::Climber {
-    let mut climber = climber(DVec3::new(0.3, 2.5, 3.5));
+    let mut climber = climber(DVec3::new(0.3, 2.75, 3.5));
     let toward = ClimberInput {
         walk: -DVec3::Z * 0.1,
         ..HOLD
@@ -121,4 +123,60 @@ fn rides_a_ledge_that_moves() {
         let off = climber.state().position - at - offset;
         assert!(off.length() < 1e-3, "{tick}: {off}");
     }
+}
+
+fn caught(events: &[ClimberEvent]) -> bool {
+    let is_catch = |event: &ClimberEvent| matches!(event, ClimberEvent::LedgeCaught { .. });
+    events.iter().any(is_catch)
+}
+
+#[test]
+fn who_stands_or_slides_before_a_ledge_catches_it() {
+    let block = block();
+    let mut step_below = cuboid(Vec3::new(4.0, 2.0, 2.0), STONE);
+    placed(&mut step_below, DVec3::new(0.0, 0.0, 5.0), DQuat::IDENTITY);
+    let surfaces = [&block, &step_below];
+    let toward = ClimberInput {
+        walk: -DVec3::Z,
+        ..HOLD
+    };
+    let mut climber = climber(DVec3::new(0.3, 2.4, 3.45));
+    run(&mut climber, &surfaces, &ClimberInput::default(), 5);
+    assert_mode(&climber, ClimberMode::Standing);
+    let mut sliding = climber.clone();
+    let events = run(&mut climber, &surfaces, &toward, 1);
+    assert!(caught(&events), "{events:?} {:?}", climber.state());
+    let state = ClimberState {
+        mode: ClimberMode::Sliding,
+        support: None,
+        ..*sliding.state()
+    };
+    sliding.restore(state).unwrap();
+    let events = run(&mut sliding, &surfaces, &toward, 1);
+    assert!(caught(&events), "{events:?} {:?}", sliding.state());
+}
+
+#[test]
+fn climbs_up_to_a_ledge_over_it_and_down_again() {
+    let fur_below = |p: Vec3| if p.y > 2.1 { STONE } else { FUR };
+    let block = cuboid_with(Vec3::new(4.0, 3.0, 3.0), fur_below);
+    let mut climber = climber(DVec3::new(0.3, 0.0, 3.4));
+    let toward = |sign: f64| ClimberInput {
+        walk: -DVec3::Z * sign,
+        ..HOLD
+    };
+    let events = run(&mut climber, &[&block], &toward(1.0), 240);
+    assert!(caught(&events), "{events:?} {:?}", climber.state());
+    assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
+    // Hung from it again, and down to the fur.
+    let mut climber = hung(&block);
+    let events = run(&mut climber, &[&block], &toward(-1.0), 60);
+    let gripped = |event: &ClimberEvent| matches!(event, ClimberEvent::Grabbed { .. });
+    assert!(
+        events.iter().any(gripped),
+        "{events:?} {:?}",
+        climber.state()
+    );
+    assert_mode(&climber, ClimberMode::Holding);
+    assert!(climber.state().position.y < 2.0, "{:?}", climber.state());
 }

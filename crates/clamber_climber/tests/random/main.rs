@@ -9,7 +9,7 @@
 mod creature;
 mod scene;
 
-use clamber_climber::{Climber, ClimberEvent, ClimberMode};
+use clamber_climber::{Climber, ClimberEvent, ClimberMode, TRANSITIONS};
 
 use scene::Scene;
 
@@ -18,11 +18,27 @@ use scene::Scene;
 struct Seen {
     ticks: u32,
     in_mode: [u32; 7],
-    transitions: u32,
+    /// How often each mode became each other.
+    transitions: [[u32; 7]; 7],
     crushed: u32,
     unclear: u32,
     deepest: f64,
     deep: u32,
+}
+
+/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them.
+const ELSEWHERE: [(ClimberMode, ClimberMode); 4] = [
+    (ClimberMode::Standing, ClimberMode::LedgeHanging),
+    (ClimberMode::Sliding, ClimberMode::LedgeHanging),
+    (ClimberMode::Holding, ClimberMode::LedgeHanging),
+    (ClimberMode::LedgeHanging, ClimberMode::Holding),
+];
+
+fn index(mode: ClimberMode) -> usize {
+    ClimberMode::ALL
+        .iter()
+        .position(|other| *other == mode)
+        .unwrap()
 }
 
 /// Random ticks; at a random one the climber is put back into its state elsewhere, and goes on beside itself.
@@ -58,7 +74,7 @@ fn run(seed: u64, ticks: u32, seen: &mut Seen) {
                 assert_eq!(from, mode, "{}", told());
                 assert!(from != to && from.may_become(to), "{}", told());
                 mode = to;
-                seen.transitions += 1;
+                seen.transitions[index(from)][index(to)] += 1;
             }
         }
         assert_eq!(mode, state.mode, "{}", told());
@@ -82,10 +98,7 @@ fn run(seed: u64, ticks: u32, seen: &mut Seen) {
             .iter()
             .any(|event| matches!(event, ClimberEvent::Crushed { .. }));
         seen.ticks += 1;
-        seen.in_mode[ClimberMode::ALL
-            .iter()
-            .position(|mode| *mode == state.mode)
-            .unwrap()] += 1;
+        seen.in_mode[index(state.mode)] += 1;
         seen.crushed += u32::from(is_crushed);
         seen.unclear += u32::from(!report.is_clear);
         if !is_crushed && report.is_clear {
@@ -109,6 +122,12 @@ fn runs(count: u64, ticks: u32) {
     println!("{seen:?}");
     assert!(seen.in_mode.iter().all(|ticks| *ticks > 100), "{seen:?}");
     assert_eq!(seen.deep, 0, "{seen:?}");
+    let never = TRANSITIONS.iter().filter(|(from, to, _)| {
+        let is_elsewhere = ELSEWHERE.contains(&(*from, *to));
+        seen.transitions[index(*from)][index(*to)] == 0 && !is_elsewhere
+    });
+    let never: Vec<_> = never.collect();
+    assert!(never.is_empty(), "in the table, and never seen: {never:?}");
 }
 
 #[test]
