@@ -82,12 +82,17 @@ impl ClimberBody {
     /// The first contact of a capsule that moves by `way` relative to this body, which ends where it is now.
     fn meet(&self, capsule: &WorldCapsule, way: DVec3) -> Option<SweepContact> {
         let sum = self.now.radius + capsule.radius;
+        if !is_capsule(capsule) || !way.is_finite() {
+            return None;
+        }
         let mut time = 0.0;
-        for step in 0..STEPS {
+        for step in 0..=STEPS {
             let moved = capsule.moved(way * time);
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
-            if gap <= TOLERANCE && (gap <= 0.0 || apart.away.dot(way) < 0.0) {
+            // At the last step it is said to touch rather than missed: no contact is late.
+            let is_near = gap <= TOLERANCE || step == STEPS;
+            if is_near && (gap <= 0.0 || apart.away.dot(way) < 0.0) {
                 return Some(SweepContact {
                     time,
                     contact: self.contact(&apart),
@@ -104,6 +109,12 @@ impl ClimberBody {
         }
         None
     }
+}
+
+/// It is finite, and its radius no less than zero.
+fn is_capsule(capsule: &WorldCapsule) -> bool {
+    let is_finite = capsule.ends.iter().all(|end| end.is_finite());
+    is_finite && capsule.radius >= 0.0 && capsule.radius.is_finite()
 }
 
 /// The nearest points of two axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
@@ -144,6 +155,9 @@ impl Obstacle for ClimberBody {
     }
 
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        if max_distance.is_nan() || max_distance < 0.0 || !origin.is_finite() {
+            return None;
+        }
         let (middle, radius) = self.now.bounding_ball();
         // As far as it can be met, so that an endless ray has a length.
         let length = max_distance.min(origin.distance(middle) + radius);
@@ -157,12 +171,13 @@ impl Obstacle for ClimberBody {
 
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
         let contact = self.contact(&between(&self.now, &WorldCapsule::ball(point, 0.0)));
-        (contact.distance <= max_distance).then_some(contact)
+        let is_within = max_distance >= 0.0 && contact.distance <= max_distance;
+        is_within.then_some(contact)
     }
 
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
         let contact = self.contact(&between(&self.now, capsule));
-        if contact.distance <= capsule.radius {
+        if capsule.radius >= 0.0 && contact.distance <= capsule.radius {
             contacts.push(contact);
         }
     }

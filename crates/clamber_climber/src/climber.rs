@@ -53,7 +53,8 @@ impl Climber {
     ///
     /// # Errors
     /// [`ClimberError::NotFinite`] if the state is not finite, [`ClimberError::Support`] if it stands, holds or hangs
-    /// from nothing, or falls with a support, [`ClimberError::OutOfRange`] for shares that are none.
+    /// from nothing, or falls with a support, [`ClimberError::OutOfRange`] for shares that are none, lengths and times below
+    /// zero, and a heading that is no unit vector.
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
         state.validate()?;
         self.state = state;

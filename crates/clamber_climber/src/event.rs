@@ -101,6 +101,7 @@ pub struct StepReport {
     pub penetration: f64,
     /// Rounds that the movement took.
     pub rounds: u32,
-    /// The rounds sufficed: there is nothing on the way from where it was to where it is.
+    /// The rounds sufficed: there is nothing on the way from where it was to where it is. Says nothing of a body that began
+    /// inside something, or whose support was put elsewhere: these are pushed out of what is there.
     pub is_clear: bool,
 }

@@ -133,3 +133,60 @@ fn a_crowd_stops_before_itself_in_any_order() {
     let (a, b): (Vec<u64>, Vec<u64>) = (prints(&states), prints(&other));
     assert_eq!(a, b);
 }
+
+#[test]
+fn what_is_no_query_finds_nothing() {
+    let body = ClimberBody {
+        now: WorldCapsule::ball(DVec3::ZERO, 0.5),
+        way: DVec3::ZERO,
+    };
+    let mut contacts = Vec::new();
+    for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        let ray = body.cast_ray(DVec3::X * 2.0, -DVec3::X, bad);
+        assert_eq!((bad.to_bits(), ray), (bad.to_bits(), None));
+        // Behind, where a length less than nothing would lead.
+        assert_eq!(body.cast_ray(DVec3::X * 2.0, DVec3::X, bad), None);
+        assert_eq!(body.closest_point(DVec3::ZERO, bad), None);
+        let ball = WorldCapsule::ball(DVec3::ZERO, bad);
+        body.overlap_capsule(&ball, &mut contacts);
+        assert_eq!(body.cast_capsule(&ball, DVec3::X), None);
+        assert_eq!(body.sweep_capsule(&ball, DVec3::X), None);
+    }
+    for bad in [DVec3::NAN, DVec3::INFINITY] {
+        let ball = WorldCapsule::ball(bad, 0.1);
+        body.overlap_capsule(&ball, &mut contacts);
+        assert_eq!(body.cast_ray(bad, DVec3::X, 9.0), None);
+        assert_eq!(body.cast_ray(DVec3::X, bad, 9.0), None);
+        assert_eq!(body.closest_point(bad, 9.0), None);
+        assert_eq!(body.cast_capsule(&ball, DVec3::X), None);
+        assert_eq!(
+            body.sweep_capsule(&WorldCapsule::ball(DVec3::X, 0.1), bad),
+            None
+        );
+    }
+    assert!(contacts.is_empty(), "{contacts:?}");
+    let ray = body
+        .cast_ray(DVec3::X * 2.0, -DVec3::X, f64::INFINITY)
+        .unwrap();
+    assert!((ray.distance - 1.5).abs() <= TOLERANCE, "{ray:?}");
+}
+
+#[test]
+fn grazes_are_never_late() {
+    let body = ClimberBody {
+        now: WorldCapsule {
+            ends: [DVec3::ZERO, DVec3::Y],
+            radius: 0.4,
+        },
+        way: DVec3::ZERO,
+    };
+    // Past a round end, deeper by less and less.
+    for exponent in 0..40 {
+        let deep = libm::exp2(-f64::from(exponent)) * 0.1;
+        let ball = WorldCapsule::ball(DVec3::new(-30.0, 1.0 + 0.8 - deep, 0.0), 0.4);
+        let hit = body.cast_capsule(&ball, DVec3::X * 60.0).unwrap();
+        let height = 0.8 - deep;
+        let touch = (30.0 - (0.64 - height * height).sqrt()) / 60.0;
+        assert!(hit.time <= touch + 1e-12, "{deep}: {hit:?}, {touch}");
+    }
+}

@@ -116,7 +116,7 @@ impl World<'_> {
         }
     }
 
-    /// What the last movement touched or was kept from entering, each at most once.
+    /// What the last movement touched or was kept from entering, in that order; some perhaps more than once.
     pub(crate) fn touched(&self) -> &[Touch] {
         &self.scratch.touched
     }

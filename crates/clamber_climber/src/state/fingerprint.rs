@@ -26,17 +26,7 @@ impl ClimberState {
         if let Some(velocity) = self.support_velocity {
             hash.vector(velocity);
         }
-        let numbers = [
-            self.stamina,
-            self.hit_points,
-            self.arm,
-            self.pull_up,
-            self.calm,
-            self.coyote,
-            self.jump_buffer,
-            self.open_handed,
-        ];
-        for x in numbers {
+        for (_, x) in self.numbers() {
             hash.word(x.to_bits());
         }
         hash.word(u64::from(self.crouched));

@@ -48,6 +48,9 @@ pub struct ClimberState {
     pub crouched: bool,
 }
 
+/// How far from 1 the length of a unit vector may be that was written down and read again.
+const UNIT: f64 = 1e-6;
+
 impl ClimberState {
     pub(crate) fn new(position: DVec3, up: DVec3) -> Self {
         Self {
@@ -78,34 +81,46 @@ impl ClimberState {
         if self.mode.is_supported() != self.support.is_some() {
             return Err(ClimberError::Support(self.mode));
         }
-        let shares = [
-            ("stamina", self.stamina),
-            ("hit_points", self.hit_points),
-            ("pull_up", self.pull_up),
-        ];
-        for (name, found) in shares {
-            if !(0.0..=1.0).contains(&found) {
-                let range = "from 0 to 1";
+        for (name, found) in self.numbers() {
+            let is_share = matches!(name, "stamina" | "hit_points" | "pull_up");
+            let (range, most) = if is_share {
+                ("from 0 to 1", 1.0)
+            } else {
+                ("not negative", f64::INFINITY)
+            };
+            if !(0.0..=most).contains(&found) {
                 return Err(ClimberError::OutOfRange { name, range, found });
             }
+        }
+        let length = self.heading.length();
+        if (length - 1.0).abs() > UNIT {
+            return Err(ClimberError::OutOfRange {
+                name: "length of heading",
+                range: "1",
+                found: length,
+            });
         }
         Ok(())
     }
 
+    /// Each with its name.
+    fn numbers(&self) -> [(&'static str, f64); 8] {
+        [
+            ("stamina", self.stamina),
+            ("hit_points", self.hit_points),
+            ("arm", self.arm),
+            ("pull_up", self.pull_up),
+            ("calm", self.calm),
+            ("coyote", self.coyote),
+            ("jump_buffer", self.jump_buffer),
+            ("open_handed", self.open_handed),
+        ]
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         let vectors = [self.position, self.velocity, self.heading, self.shake];
-        let numbers = [
-            self.stamina,
-            self.hit_points,
-            self.arm,
-            self.pull_up,
-            self.calm,
-            self.coyote,
-            self.jump_buffer,
-            self.open_handed,
-        ];
         vectors.iter().all(|v| v.is_finite())
-            && numbers.iter().all(|x| x.is_finite())
+            && self.numbers().iter().all(|(_, x)| x.is_finite())
             && self.support.is_none_or(|support| support.is_finite())
             && self.support_velocity.is_none_or(DVec3::is_finite)
     }

@@ -127,7 +127,9 @@ impl Step<'_> {
         if self.config.health.is_some() && damage > 0.0 {
             let damage = damage.min(self.state.hit_points);
             self.state.hit_points -= damage;
-            self.event(ClimberEvent::Hurt { damage });
+            if damage > 0.0 {
+                self.event(ClimberEvent::Hurt { damage });
+            }
         }
     }
 }

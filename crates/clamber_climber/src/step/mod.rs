@@ -188,7 +188,7 @@ impl<'a> Step<'a> {
                 depth: moved.missed - path.skin,
             });
         }
-        self.push_aside(path, moved.position);
+        self.push_aside(path);
         moved
     }
 

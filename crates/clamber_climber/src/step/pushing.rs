@@ -1,18 +1,15 @@
 //! What it runs into is pushed, if it can be.
 
-use glam::DVec3;
-
 use super::Step;
 use crate::event::Push;
 use crate::mover::Path;
 
 impl Step<'_> {
-    /// Pushes everything that kept the body from where it wanted to be, and weighs on what it stands on.
-    pub(super) fn push_aside(&mut self, path: &Path, position: DVec3) {
+    /// Pushes everything that kept the body from where it wanted to be.
+    pub(super) fn push_aside(&mut self, path: &Path) {
         let body = &self.config.body;
         let dt = self.dt();
         let wanted = (path.target - path.start) / dt;
-        let _ = position;
         for index in 0..self.world.touched().len() {
             let touch = self.world.touched()[index];
             let response = self.world.push_response(&touch, -touch.away);

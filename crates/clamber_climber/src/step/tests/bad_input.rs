@@ -212,3 +212,25 @@ fn an_obstacle_that_answers_nonsense_does_not_spread_it() {
         climber.state()
     );
 }
+
+#[test]
+fn states_with_lengths_times_or_headings_that_are_none_are_refused() {
+    let mut climber = climber_at(0.0, 2.0, 0.0);
+    let good = *climber.state();
+    let changes: [fn(&mut ClimberState); 6] = [
+        |state| state.stamina = 1.5,
+        |state| state.hit_points = -0.1,
+        |state| state.arm = -1.0,
+        |state| state.open_handed = -1e-3,
+        |state| state.heading = DVec3::ZERO,
+        |state| state.heading *= 2.0,
+    ];
+    for (index, change) in changes.into_iter().enumerate() {
+        let mut bad = good;
+        change(&mut bad);
+        let refused = climber.restore(bad);
+        let is_range = matches!(refused, Err(ClimberError::OutOfRange { .. }));
+        assert!(is_range, "{index}: {refused:?}");
+        assert_eq!(climber.state(), &good, "{index}");
+    }
+}
