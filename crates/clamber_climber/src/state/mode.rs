@@ -67,6 +67,7 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Falling, LedgeHanging, "catches a ledge"),
     (Falling, Tumbling, "is struck by a blow"),
     (Tumbling, Standing, "lies still on what can be stood on"),
+    (Tumbling, Falling, "its configuration knows no tumbling"),
 ];
 
 impl ClimberMode {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Carried, Step};
+use crate::config::GripConfig;
 use crate::mover::Arm;
 use crate::pendulum::{Pendulum, PendulumTick};
 use crate::planes::Plane;
@@ -19,6 +20,10 @@ const CLOSE: f64 = 1.25;
 
 impl Step<'_> {
     pub(super) fn hang(&mut self) {
+        let Some(grip) = self.config.grip else {
+            self.leave(ClimberMode::Falling);
+            return self.fly();
+        };
         let was = self.state.velocity;
         let pivot_was = self.state.support_velocity;
         let Some(carried) = self.carry() else {
@@ -44,15 +49,12 @@ impl Step<'_> {
         } else {
             DVec3::ZERO
         };
-        self.reach_or_pull(&carried);
+        self.reach_or_pull(&carried, &grip);
         self.swing(&carried, pivot_was, relative);
     }
 
     /// Lets its arms go long, or pulls itself in once it has been calm.
-    fn reach_or_pull(&mut self, carried: &Carried) {
-        let Some(grip) = self.config.grip else {
-            return;
-        };
+    fn reach_or_pull(&mut self, carried: &Carried, grip: &GripConfig) {
         let leans_over = self.config.slope(carried.support.normal_in_world()) > grip.max_overhang;
         let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
         let dt = self.dt();

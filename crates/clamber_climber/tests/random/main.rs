@@ -26,12 +26,14 @@ struct Seen {
     deep: u32,
 }
 
-/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them.
-const ELSEWHERE: [(ClimberMode, ClimberMode); 4] = [
+/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them. The last needs a state of
+/// another configuration: a unit test has it.
+const ELSEWHERE: [(ClimberMode, ClimberMode); 5] = [
     (ClimberMode::Standing, ClimberMode::LedgeHanging),
     (ClimberMode::Sliding, ClimberMode::LedgeHanging),
     (ClimberMode::Holding, ClimberMode::LedgeHanging),
     (ClimberMode::LedgeHanging, ClimberMode::Holding),
+    (ClimberMode::Tumbling, ClimberMode::Falling),
 ];
 
 fn index(mode: ClimberMode) -> usize {

@@ -234,3 +234,30 @@ fn states_with_lengths_times_or_headings_that_are_none_are_refused() {
         assert_eq!(climber.state(), &good, "{index}");
     }
 }
+
+#[test]
+fn every_mode_is_left_in_peace_by_a_configuration_that_does_not_know_it() {
+    let ground = level();
+    for mode in ClimberMode::ALL {
+        for grip in [false, true] {
+            let mut climber = landed(0.0, 0.5, 0.0, &ground);
+            let good = *climber.state();
+            let state = ClimberState {
+                mode,
+                support: good.support.filter(|_| mode.is_supported()),
+                ..good
+            };
+            climber.restore(state).unwrap();
+            let input = ClimberInput { grip, ..IDLE };
+            for _ in 0..60 {
+                step_on(&mut climber, &ground, &input);
+            }
+            assert_eq!(
+                climber.state().mode,
+                ClimberMode::Standing,
+                "{mode:?}, grip {grip}: {:?}",
+                climber.state()
+            );
+        }
+    }
+}
