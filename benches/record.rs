@@ -55,9 +55,8 @@ fn measure(
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
     let creature = giant()?;
-    let settings = [("rocks".to_owned(), rocks.to_string())].into();
-    let options = BattleOptions::from_settings(&settings)?;
-    let battle = || Battle::new(&creature, options.height(), options.seed, rocks as usize);
+    let options = BattleOptions::ride(rocks, 1);
+    let battle = || Battle::new(&creature, &options);
     let (mut plain, mut recorded) = (battle()?, battle()?);
     let path = std::env::temp_dir().join(format!("clamber-record-{}.mcap", std::process::id()));
     let file = BufWriter::new(File::create(&path)?);

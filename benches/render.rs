@@ -83,7 +83,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
 /// Giant, ground and climber, from tick to tick; the tick itself is not counted.
 fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let creature = giant()?;
-    let options = BattleOptions::from_settings(&[].into())?;
+    let options = BattleOptions::ride(0, 1);
     let height = options.height();
     let [width, rows] = SIZE;
     let what = format!("battle of {width} x {rows} on {}", gpu.name());
@@ -92,7 +92,7 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     let stage = Stage::new(&mut renderer, seen)?;
     // What a frame costs for the first time is not counted.
     let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {
-        let mut battle = Battle::new(&creature, height, options.seed, 0)?;
+        let mut battle = Battle::new(&creature, &options)?;
         let mut times = Vec::new();
         for tick in 0..=effort.frames {
             battle.step(options.input_at(tick.into()))?;
@@ -126,9 +126,9 @@ fn measure_bytes(
     most: Option<f64>,
     cells: &mut Cells,
 ) -> Result<f64, Box<dyn Error>> {
-    let options = BattleOptions::from_settings(&[].into())?;
+    let options = BattleOptions::ride(0, 1);
     let height = options.height();
-    let battle = Battle::new(creature, height, options.seed, 0)?;
+    let battle = Battle::new(creature, &options)?;
     let mut renderer = Renderer::new(Gpu::new()?, 64, 64)?;
     let mesh = add_collider(&mut renderer, &creature.collider, COLOR)?;
     let stage = Stage::new(&mut renderer, vec![mesh])?;

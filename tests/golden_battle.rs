@@ -4,18 +4,39 @@
 //!
 //! `cargo test --release --features deterministic --test golden_battle`
 
+use std::collections::BTreeSet;
+
+use clamber::climber::ClimberMode;
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 
 /// Changes whenever a result does, if only by one bit, or rapier: then see that it should have, and put the new one in.
 const BATTLE: u64 = 0x9236_1663_31fb_efce;
 
+/// The same of a climb.
+const CLIMB: u64 = 0;
+
+#[test]
+fn a_climb_has_the_same_bits_in_every_build() {
+    let creature = giant().unwrap();
+    let options = BattleOptions::default();
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    let mut modes = BTreeSet::new();
+    for tick in 0..2_400 {
+        battle.step(options.input_at(tick)).unwrap();
+        modes.insert(battle.climber().state().mode as u8);
+    }
+    // Or the hash is of little.
+    assert!(modes.len() == ClimberMode::ALL.len(), "modes {modes:?}");
+    let found = battle.recording().hash();
+    assert!(found == CLIMB, "the hash is {found:#018x}");
+}
+
 #[test]
 fn a_battle_has_the_same_bits_in_every_build() {
     let creature = giant().unwrap();
-    let options = BattleOptions::default();
-    let rocks = options.rocks as usize;
-    let mut battle = Battle::new(&creature, options.height(), options.seed, rocks).unwrap();
+    let options = BattleOptions::ride(24, 1);
+    let mut battle = Battle::new(&creature, &options).unwrap();
     let mut carried = 0;
     for tick in 0..1_200 {
         battle.step(options.input_at(tick)).unwrap();

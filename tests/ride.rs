@@ -12,7 +12,11 @@ use clamber_scenes::{Creature, test_data};
 
 /// Stands without input for so many seconds; gives the ticks.
 fn stand(creature: &Creature, height: f64, seed: u64, seconds: u32) -> Recording {
-    let mut battle = Battle::new(creature, height, seed, 0).unwrap();
+    let options = BattleOptions {
+        height: Some(height),
+        ..BattleOptions::ride(0, seed)
+    };
+    let mut battle = Battle::new(creature, &options).unwrap();
     for _ in 0..seconds * 60 {
         battle.step(Intent::Stand).unwrap();
     }
@@ -67,7 +71,7 @@ fn the_whole_battle_passes_its_checks_and_repeats_bit_for_bit() {
     let folder = std::env::temp_dir().join(format!("clamber-battle-{}", std::process::id()));
     let options = BattleOptions {
         out: folder.clone(),
-        ..BattleOptions::default()
+        ..BattleOptions::ride(24, 1)
     };
     let first = run(&options).unwrap();
     assert!(first.holds(), "{first}");

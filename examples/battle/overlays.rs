@@ -482,12 +482,34 @@ fn state(battle: &Battle<'_>) -> String {
     let tick = surface.diagnostics();
     let skinned = 100.0 * tick.vertices_skinned as f64 / tick.vertices.max(1) as f64;
     format!(
-        "time     {:5.2} s, tick {}\nclimber  {doing}\n{speeds}\nskinned  {skinned:5.1} % of vertices\n\
+        "time     {:5.2} s, tick {}\nclimber  {doing}\n{}{speeds}\nskinned  {skinned:5.1} % of vertices\n\
          rocks    {:2}",
         battle.tick() as f64 * TICK,
         battle.tick(),
+        strength(battle),
         battle.rocks().len()
     )
+}
+
+/// What is left of stamina and hit points, and how hard the hold shakes, if the climber knows of these.
+fn strength(battle: &Battle<'_>) -> String {
+    const CELLS: f64 = 20.0;
+    let (config, state) = (battle.climber().config(), battle.climber().state());
+    let bar = |share: f64| {
+        let full = (share * CELLS).ceil() as usize;
+        format!("[{:<width$}]", "#".repeat(full), width = CELLS as usize)
+    };
+    let mut lines = String::new();
+    if config.stamina.is_some() {
+        lines += &format!("stamina  {}\n", bar(state.stamina));
+    }
+    if config.health.is_some() {
+        lines += &format!("health   {}\n", bar(state.hit_points));
+    }
+    if config.stamina.is_some() {
+        lines += &format!("shake    {:5.2} m/s2\n", state.shake.length());
+    }
+    lines
 }
 
 /// What it does; to what, if it is supported.

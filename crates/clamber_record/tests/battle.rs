@@ -12,31 +12,32 @@ use clamber_record::{
     Difference, Ending, RecordError, RecordOptions, RecordedTick, Recorder, Recording, Replayed,
     TickView, palette_fingerprint, replay, topics,
 };
-use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::battle::{self, Battle, BattleOptions, BattleRecorder, Story};
 use clamber_scenes::giant::giant;
 use clamber_surface::rig::Palette;
+use glam::DVec3;
 
 /// Long enough for a landing and a jump.
 const TICKS: u64 = 300;
 
 fn options(rocks: u32, seed: u64) -> BattleOptions {
-    let settings = [
-        ("rocks", rocks.to_string()),
-        ("seed", seed.to_string()),
-        ("seconds", "5".to_owned()),
-    ];
-    let settings: BTreeMap<_, _> = settings.map(|(k, v)| (k.to_owned(), v)).into();
-    BattleOptions::from_settings(&settings).unwrap()
+    BattleOptions {
+        seconds: Some(5.0),
+        ..BattleOptions::ride(rocks, seed)
+    }
 }
 
 fn record(options: &BattleOptions) -> Vec<u8> {
+    record_ticks(options, TICKS)
+}
+
+fn record_ticks(options: &BattleOptions, ticks: u64) -> Vec<u8> {
     let creature = giant().unwrap();
-    let (height, rocks) = (options.height(), options.rocks as usize);
-    let mut battle = Battle::new(&creature, height, options.seed, rocks).unwrap();
+    let mut battle = Battle::new(&creature, options).unwrap();
     let how = RecordOptions::default();
     let mut recorder = BattleRecorder::new(Vec::new(), &battle, options, how).unwrap();
     recorder.tick(&battle).unwrap();
-    for tick in 0..TICKS {
+    for tick in 0..ticks {
         battle.step(options.input_at(tick)).unwrap();
         recorder.tick(&battle).unwrap();
     }
@@ -55,6 +56,25 @@ fn a_battle_is_fought_again_bit_for_bit() {
     // It was worth it: something happened.
     let inputs = recording.ticks().map(|tick| tick.unwrap().input);
     assert!(inputs.filter(|input| input.jump).count() == 1);
+}
+
+/// Blows, grips and all: from the outcrop to the leg.
+#[test]
+fn a_climb_is_fought_again_bit_for_bit() {
+    let options = BattleOptions {
+        story: Some(Story::Climb),
+        seconds: Some(15.0),
+        ..BattleOptions::ride(0, 1)
+    };
+    let recording = Recording::from_bytes(record_ticks(&options, options.ticks())).unwrap();
+    let replay = battle::replay(&recording, None).unwrap();
+    assert_eq!(replay.difference, None);
+    assert_eq!(replay.agreed, options.ticks() + 1);
+    let replay = battle::replay(&recording, Some(600)).unwrap();
+    assert_eq!((replay.difference, replay.from), (None, 600));
+    let inputs: Vec<_> = recording.ticks().map(|tick| tick.unwrap().input).collect();
+    assert!(inputs.iter().any(|input| input.blow.is_some()));
+    assert!(inputs.iter().any(|input| input.climb != DVec3::ZERO));
 }
 
 #[test]
@@ -95,13 +115,7 @@ fn first_difference(
     change: impl Fn(&mut RecordedTick),
 ) -> Option<u64> {
     let creature = giant().unwrap();
-    let mut battle = Battle::new(
-        &creature,
-        options.height(),
-        options.seed,
-        options.rocks as usize,
-    )
-    .unwrap();
+    let mut battle = Battle::new(&creature, options).unwrap();
     let ticks = recording.ticks().map(|tick| {
         let mut tick = tick?;
         change(&mut tick);
@@ -217,7 +231,7 @@ fn other_peoples_reader_finds_every_tick_in_order_and_the_metadata() {
 fn recording_changes_nothing() {
     let creature = giant().unwrap();
     let options = options(8, 3);
-    let battle = || Battle::new(&creature, options.height(), 3, 8).unwrap();
+    let battle = || Battle::new(&creature, &options).unwrap();
     let (mut plain, mut recorded) = (battle(), battle());
     // All views each tick: they skin the whole creature and read what was touched.
     let how = RecordOptions {
@@ -240,7 +254,7 @@ fn recording_changes_nothing() {
 fn a_tick_that_is_refused_changes_nothing() {
     let creature = giant().unwrap();
     let options = options(0, 1);
-    let battle = Battle::new(&creature, options.height(), 1, 0).unwrap();
+    let battle = Battle::new(&creature, &options).unwrap();
     let whole = Recording::from_bytes(record(&options)).unwrap();
     let out = Vec::new();
     let how = RecordOptions::default();

@@ -19,9 +19,8 @@ fn file() -> &'static [u8] {
     static FILE: OnceLock<Vec<u8>> = OnceLock::new();
     FILE.get_or_init(|| {
         let creature = giant().unwrap();
-        let settings = [("rocks".to_owned(), "0".to_owned())].into();
-        let options = BattleOptions::from_settings(&settings).unwrap();
-        let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+        let options = BattleOptions::ride(0, 1);
+        let mut battle = Battle::new(&creature, &options).unwrap();
         let how = RecordOptions {
             skin_points: 50,
             ..RecordOptions::default()
@@ -191,11 +190,10 @@ fn a_writer_that_fails_gives_its_error() {
         }
     }
     let creature = giant().unwrap();
-    let settings = [("rocks".to_owned(), "0".to_owned())].into();
-    let options = BattleOptions::from_settings(&settings).unwrap();
+    let options = BattleOptions::ride(0, 1);
     // Long after the disk is full, and before a tick could tell of it.
     for ticks in [600, 50] {
-        let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+        let mut battle = Battle::new(&creature, &options).unwrap();
         let (how, out) = (RecordOptions::default(), Full(50_000));
         let mut recorder = BattleRecorder::new(out, &battle, &options, how).unwrap();
         let mut told = Vec::new();
@@ -216,9 +214,8 @@ fn a_writer_that_fails_gives_its_error() {
 #[test]
 fn a_run_that_is_killed_leaves_its_whole_seconds() {
     let creature = giant().unwrap();
-    let settings = [("rocks".to_owned(), "0".to_owned())].into();
-    let options = BattleOptions::from_settings(&settings).unwrap();
-    let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+    let options = BattleOptions::ride(0, 1);
+    let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions::default();
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed.mcap");
     let file = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
@@ -267,9 +264,8 @@ fn record_into<W: std::io::Write + Send + 'static>(
     end: impl FnOnce(BattleRecorder<W>),
 ) {
     let creature = giant().unwrap();
-    let settings = [("rocks".to_owned(), "0".to_owned())].into();
-    let options = BattleOptions::from_settings(&settings).unwrap();
-    let mut battle = Battle::new(&creature, options.height(), options.seed, 0).unwrap();
+    let options = BattleOptions::ride(0, 1);
+    let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions {
         chunk_ticks,
         skin_points: 50,

@@ -24,9 +24,8 @@ fn python_decodes_a_recording() {
         return;
     }
     let creature = giant().unwrap();
-    let settings = [("rocks".to_owned(), "4".to_owned())].into();
-    let options = BattleOptions::from_settings(&settings).unwrap();
-    let mut battle = Battle::new(&creature, options.height(), options.seed, 4).unwrap();
+    let options = BattleOptions::ride(4, 1);
+    let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions::default();
     let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
     recorder.tick(&battle).unwrap();

@@ -111,9 +111,9 @@ fn a_battle_looks_as_stored_and_no_mistake_does() {
     };
     let plain = [SurfaceKind::Fur, SurfaceKind::Stone].map(|kind| (kind, stage(&[kind])));
     let stage = stage(&[]);
-    let options = BattleOptions::from_settings(&[].into()).unwrap();
+    let options = BattleOptions::ride(0, 1);
     let height = options.height();
-    let mut battle = Battle::new(&creature, height, options.seed, 0).unwrap();
+    let mut battle = Battle::new(&creature, &options).unwrap();
     let mut wrong = Vec::new();
     for shot in SHOTS {
         while battle.tick() < shot.tick {

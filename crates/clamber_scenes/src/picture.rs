@@ -1,5 +1,6 @@
 //! What of a battle is to be seen: its creature, its climber and the ground, as meshes of a renderer.
 
+use clamber_climber::{Climber, ClimberMode};
 use clamber_gltf::Rig;
 use clamber_render::{
     Camera, Drawn, Light, Look, MeshId, MeshSource, RenderError, Renderer, SkinSource,
@@ -8,7 +9,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, SurfaceKind, SurfaceTag, VertexId};
 use clamber_surface::rig::Palette;
 use clamber_world::rapier3d::prelude::*;
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
 use crate::battle::Battle;
 use crate::valley;
@@ -21,9 +22,20 @@ const GROUND_CELL: f64 = 2.0;
 pub struct Stage {
     creature: Vec<MeshId>,
     ground: MeshId,
-    /// Body and head.
-    climber: [MeshId; 2],
+    outcrop: MeshId,
+    /// Body, head, and an arm.
+    climber: [MeshId; 3],
 }
+
+/// Radii of body, head and arms, metres, and half the lengths of the first and last without their ends.
+const BODY: [f32; 2] = [0.42, 0.24];
+const HEAD: f32 = 0.17;
+const ARM: [f32; 2] = [0.24, 0.075];
+
+/// From the middle of the body to the shoulders, and to the middle of the head, along it; from there to a shoulder, across.
+const SHOULDER: f64 = 0.45;
+const CROWN: f64 = 0.84;
+const ACROSS: f64 = 0.3;
 
 impl Stage {
     /// Takes the ground, the climber and a creature, [`add_visual`] or [`add_collider`], to a renderer.
@@ -31,41 +43,133 @@ impl Stage {
     /// # Errors
     /// [`RenderError`].
     pub fn new(renderer: &mut Renderer, creature: Vec<MeshId>) -> Result<Self, RenderError> {
-        let body = SharedShape::capsule_y(0.42, 0.24).as_capsule().copied();
-        let body = body.map(|capsule| capsule.to_trimesh(24, 12));
-        let (body, head) = (body.unwrap_or_default(), Ball::new(0.17).to_trimesh(24, 16));
+        let capsule = |[half, radius]: [f32; 2]| {
+            let shape = SharedShape::capsule_y(half, radius);
+            let capsule = shape.as_capsule().map(|capsule| capsule.to_trimesh(24, 12));
+            capsule.unwrap_or_default()
+        };
+        let head = Ball::new(HEAD).to_trimesh(24, 16);
         Ok(Self {
             creature,
             ground: add_ground(renderer)?,
+            outcrop: add_outcrop(renderer)?,
             climber: [
-                add_plain(renderer, &body, [0.36, 0.08, 0.06])?,
+                add_plain(renderer, &capsule(BODY), [0.36, 0.08, 0.06])?,
                 add_plain(renderer, &head, [0.55, 0.36, 0.26])?,
+                add_plain(renderer, &capsule(ARM), [0.55, 0.36, 0.26])?,
             ],
         })
     }
 
     /// All of it as it stands now, the creature in a pose: [`Battle::palette`], or another one.
     pub fn drawn<'a>(&self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
-        let config = battle.climber().config();
-        let up = config.up();
-        let feet = battle.climber().state().position - up * config.body.radius;
-        let at = |mesh, place| Drawn {
+        let posture = Posture::of(battle.climber());
+        let along = DQuat::from_rotation_arc(DVec3::Y, posture.along);
+        let at = |mesh, rotation, translation| Drawn {
             mesh,
-            world_from_model: Similarity::from_translation(place),
+            world_from_model: Similarity {
+                rotation,
+                scale: 1.0,
+                translation,
+            },
             palette: None,
         };
-        let [body, head] = self.climber;
+        let [body, head, arm] = self.climber;
         let mut drawn = vec![
-            at(self.ground, DVec3::ZERO),
-            at(body, feet + up * 0.72),
-            at(head, feet + up * 1.56),
+            at(self.ground, DQuat::IDENTITY, DVec3::ZERO),
+            at(body, along, posture.middle),
+            at(head, along, posture.middle + posture.along * CROWN),
         ];
+        for side in [-1.0, 1.0] {
+            let shoulder =
+                posture.middle + posture.along * SHOULDER + posture.across * (side * ACROSS);
+            let reach = posture.hands + posture.across * (side * ACROSS) - shoulder;
+            let direction = reach.normalize_or(-posture.along);
+            let half = f64::from(ARM[0]);
+            drawn.push(at(
+                arm,
+                DQuat::from_rotation_arc(DVec3::Y, direction),
+                shoulder + direction * half,
+            ));
+        }
+        if battle.has_outcrop() {
+            drawn.push(at(self.outcrop, DQuat::IDENTITY, DVec3::ZERO));
+        }
         drawn.extend(self.creature.iter().map(|mesh| Drawn {
             mesh: *mesh,
             world_from_model: *battle.surface().world_from_model(),
             palette: Some(palette),
         }));
         drawn
+    }
+}
+
+/// How a climber is drawn: a figure where its ball is, which shows what it does.
+struct Posture {
+    /// Middle of the body.
+    middle: DVec3,
+    /// Unit vectors to the head and to the right.
+    along: DVec3,
+    across: DVec3,
+    hands: DVec3,
+}
+
+impl Posture {
+    fn of(climber: &Climber) -> Self {
+        let (config, state) = (climber.config(), climber.state());
+        let (up, position) = (config.up(), state.position);
+        let contact = state.support.map_or(position, |support| support.contact);
+        let across = state.heading.cross(up).normalize_or(DVec3::X);
+        let standing = |along: DVec3, hands: DVec3| {
+            let middle = position + along * (0.72 - config.body.radius);
+            Self {
+                middle,
+                along,
+                across,
+                hands: middle + hands,
+            }
+        };
+        match state.mode {
+            ClimberMode::Standing => standing(up, -up * 0.3),
+            ClimberMode::Sliding => {
+                let along = (up - state.heading * 0.5).normalize_or(up);
+                standing(along, state.heading - along * 0.2)
+            }
+            ClimberMode::Falling => standing(up, up),
+            ClimberMode::Tumbling => {
+                let middle = position - up * (config.body.radius - f64::from(BODY[1]));
+                Self {
+                    middle,
+                    along: state.heading,
+                    across,
+                    hands: middle + state.heading * 0.2,
+                }
+            }
+            ClimberMode::Holding => {
+                let normal = (position - contact).normalize_or(up);
+                let along = (up - normal * up.dot(normal)).normalize_or(state.heading);
+                Self {
+                    middle: position,
+                    along,
+                    across: along.cross(normal).normalize_or(across),
+                    hands: contact + along * 0.9,
+                }
+            }
+            ClimberMode::Hanging | ClimberMode::LedgeHanging => {
+                let arm = contact - position;
+                let along = if state.mode == ClimberMode::Hanging {
+                    arm.normalize_or(up)
+                } else {
+                    up
+                };
+                Self {
+                    middle: contact - along * (arm.dot(along) + 0.2),
+                    along,
+                    across,
+                    hands: contact,
+                }
+            }
+        }
     }
 }
 
@@ -185,6 +289,26 @@ fn add_ground(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
     renderer.add_mesh(&MeshSource {
         positions: &positions,
         looks: &vec![Look::Ground; positions.len()],
+        triangles: &triangles,
+        ..MeshSource::default()
+    })
+}
+
+fn add_outcrop(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
+    let (corners, triangles) = crate::battle::outcrop();
+    // Corners of their own, so that edges stay sharp.
+    let positions: Vec<Vec3> = triangles
+        .iter()
+        .flatten()
+        .map(|corner| corners[*corner as usize])
+        .collect();
+    let triangles: Vec<[u32; 3]> = (0..triangles.len() as u32)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    renderer.add_mesh(&MeshSource {
+        positions: &positions,
+        colors: &vec![[0.3, 0.28, 0.25]; positions.len()],
+        looks: &vec![Look::Stone; positions.len()],
         triangles: &triangles,
         ..MeshSource::default()
     })

@@ -249,12 +249,14 @@ impl World<'_> {
         }
     }
 
-    /// A body at the end of a taut arm stays there: planes that touch the ball of its reach where it is.
+    /// A body at the end of a taut arm stays there: planes that touch the ball of its reach where it is. Walls are harder
+    /// than arms: where both leave no room, the arm gives way.
     fn keep_arm(&mut self, path: &Path, moved: &mut Moved) {
         let Some(arm) = path.arm else {
             return;
         };
         let count = self.scratch.planes.len();
+        let without = *moved;
         for _ in 0..4 {
             let reach = moved.position - arm.pivot;
             if reach.length() <= arm.length * (1.0 + 1e-9) {
@@ -266,6 +268,10 @@ impl World<'_> {
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
             let above = self.nearest_above(path.target - path.start);
+            if above.missed > without.missed + TOUCH {
+                *moved = without;
+                break;
+            }
             moved.position = path.start + above.point;
             moved.missed = above.missed;
         }

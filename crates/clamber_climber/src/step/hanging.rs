@@ -15,6 +15,9 @@ const PULL_SPEED: f64 = 2.0;
 /// Below this share of what made it hang, shake is calm.
 const CALM: f64 = 0.7;
 
+/// Arms that something stretches beyond their length by this factor let go.
+const STRETCH: f64 = 1.5;
+
 /// As close to its hands as this share of its radius, it climbs again.
 const CLOSE: f64 = 1.25;
 
@@ -103,6 +106,12 @@ impl Step<'_> {
         } else {
             self.stopped(velocity, carried, moved.position - pivot)
         };
+        if moved.position.distance(pivot) > self.state.arm.max(self.config.body.radius) * STRETCH {
+            // Something in its way has torn it off.
+            self.event(ClimberEvent::LostFooting);
+            self.leave(ClimberMode::Falling);
+            return;
+        }
         let close = CLOSE * self.config.body.radius;
         let is_in = moved.position.distance(pivot) <= close;
         if self.state.calm > 0.0 && is_in {

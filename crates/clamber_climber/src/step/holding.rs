@@ -61,6 +61,7 @@ impl Step<'_> {
             self.leave(ClimberMode::Falling);
             return self.fly();
         };
+        let was = self.state.velocity;
         let Some(carried) = self.carry() else {
             self.event(ClimberEvent::LostFooting);
             self.leave(ClimberMode::Falling);
@@ -68,7 +69,7 @@ impl Step<'_> {
         };
         let normal = carried.support.normal_in_world();
         if !self.input.grip {
-            return self.let_go(normal);
+            return self.let_go(&carried, was);
         }
         if self.state.jump_buffer > 0.0 {
             return self.jump_off(normal, grip.jump_speed);
@@ -84,11 +85,12 @@ impl Step<'_> {
     }
 
     /// Opens its hands.
-    fn let_go(&mut self, normal: DVec3) {
+    fn let_go(&mut self, carried: &Carried, was: DVec3) {
         self.event(ClimberEvent::Released);
+        let normal = carried.support.normal_in_world();
         if self.config.slope(normal) <= self.config.ground.max_slope {
             self.change_to(ClimberMode::Standing);
-            self.stand();
+            self.stand_carried(carried, was);
         } else {
             self.state.open_handed = OPEN_HANDED;
             self.leave(ClimberMode::Falling);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::holding::OPEN_HANDED;
 use super::{Carried, SLOPE_HYSTERESIS, Step};
 use crate::config::LedgeConfig;
-use crate::mover::Touch;
+use crate::mover::{Moved, Touch};
 use crate::{ClimberEvent, ClimberMode};
 
 /// Radius of a hand, metres: what is narrower is no ledge.
@@ -21,8 +21,9 @@ const BEYOND: f64 = 0.1;
 /// Share of the pull-up after which it goes in over the ledge; before it goes up.
 const OVER: f64 = 0.6;
 
-/// How far it may be kept from where pulling up leads before it counts as blocked, metres.
-const KEPT: f64 = 0.05;
+/// How far it may be kept back on the way that pulling up leads before it counts as blocked, as a share of its radius:
+/// under an overhang it goes out as it goes up, and lags.
+const KEPT: f64 = 0.5;
 
 impl Step<'_> {
     /// Hangs from a ledge in front of it, if there is one.
@@ -34,6 +35,11 @@ impl Step<'_> {
         let Some(top) = self.find_ledge(self.state.position, facing, &config) else {
             return false;
         };
+        let lift = (top.contact.point - self.state.position).dot(self.config.up()) - config.drop;
+        if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
+            // It would hang with its feet on the ground.
+            return false;
+        }
         self.face(facing);
         self.attach(&top);
         self.state.pull_up = 0.0;
@@ -166,6 +172,9 @@ impl Step<'_> {
         let target = carried.position + drawn + step;
         let moved = self.slide(carried.start, target, carried.swept);
         self.settle(carried, moved.position);
+        if self.is_pressed_off(&moved) {
+            return;
+        }
         if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
             self.attach(&touch);
             self.change_to(ClimberMode::Standing);
@@ -183,6 +192,17 @@ impl Step<'_> {
             let moved = self.slide(carried.start, carried.position + drawn, carried.swept);
             self.settle(carried, moved.position);
         }
+    }
+
+    /// Lets go where its ledge crushes it: it has no room there, and would be dragged on through what is.
+    fn is_pressed_off(&mut self, moved: &Moved) -> bool {
+        let is_crushed = moved.missed > self.config.body.skin_width;
+        if is_crushed {
+            self.event(ClimberEvent::LostFooting);
+            self.state.open_handed = OPEN_HANDED;
+            self.leave(ClimberMode::Falling);
+        }
+        is_crushed
     }
 
     /// Up, and in over the ledge.
@@ -203,7 +223,12 @@ impl Step<'_> {
         };
         let moved = self.slide(carried.start, at(after), carried.swept);
         self.settle(carried, moved.position);
-        if moved.position.distance(at(after)) > KEPT {
+        if self.is_pressed_off(&moved) {
+            return;
+        }
+        // Walls and grounds that bulge push it ahead or aside; only what keeps it back is in its way.
+        let onwards = (at(after) - at(before)).normalize_or_zero();
+        if (at(after) - moved.position).dot(onwards) > KEPT * radius {
             // No room: back down, unless it is carried on in the next tick.
             self.state.pull_up = (before - self.dt() / config.pull_up_time).max(0.0);
             return;

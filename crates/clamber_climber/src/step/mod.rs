@@ -33,6 +33,8 @@ pub(crate) struct Step<'a> {
     state: ClimberState,
     world: World<'a>,
     report: StepReport,
+    /// It got its support in this tick, which therefore has not carried it yet.
+    attached: bool,
 }
 
 /// What carried a climber since the last tick.
@@ -80,6 +82,7 @@ impl<'a> Step<'a> {
                 is_clear: true,
                 ..StepReport::default()
             },
+            attached: false,
         }
     }
 
@@ -135,7 +138,10 @@ impl<'a> Step<'a> {
     /// Where its support carries the climber; `None` if it has none any more.
     fn carry(&mut self) -> Option<Carried> {
         let mut support = self.state.support?;
-        let motion = self.world.motion(support.obstacle, &support.point)?;
+        let mut motion = self.world.motion(support.obstacle, &support.point)?;
+        if self.attached {
+            (motion.previous_position, motion.turn) = (motion.position, DQuat::IDENTITY);
+        }
         let was_placed = motion.previous_position.distance(support.contact) > PLACED;
         let start = if was_placed {
             motion.previous_position + support.offset_in_world()
@@ -212,6 +218,7 @@ impl<'a> Step<'a> {
             frame,
         });
         self.state.support_velocity = motion.map(|motion| motion.velocity);
+        self.attached = true;
     }
 
     /// Does something else from now on.

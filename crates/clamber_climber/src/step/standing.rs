@@ -18,6 +18,11 @@ impl Step<'_> {
             self.leave(ClimberMode::Falling);
             return self.fly();
         };
+        self.stand_carried(&carried, was);
+    }
+
+    /// Once it has been carried; `was` is its velocity before that.
+    pub(super) fn stand_carried(&mut self, carried: &Carried, was: DVec3) {
         let normal = carried.support.normal_in_world();
         if self.is_thrown(normal, was) || self.is_knocked_down(was) {
             return self.fly();
@@ -26,7 +31,7 @@ impl Step<'_> {
             return;
         }
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
-        if self.config.slope(normal) > limit && !self.is_wedged(&carried) {
+        if self.config.slope(normal) > limit && !self.is_wedged(carried) {
             self.event(ClimberEvent::Slipped);
             self.leave(ClimberMode::Sliding);
             return self.fly();
@@ -36,9 +41,9 @@ impl Step<'_> {
             return self.jump(walk);
         }
         if walk == DVec3::ZERO {
-            self.stay(&carried);
+            self.stay(carried);
         } else {
-            self.walk(&carried, walk);
+            self.walk(carried, walk);
         }
     }
 

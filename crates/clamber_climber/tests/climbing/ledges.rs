@@ -1,4 +1,5 @@
 use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode, ClimberState};
+use clamber_world::{Obstacle, ObstacleId};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::scene::{
@@ -179,4 +180,93 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
     );
     assert_mode(&climber, ClimberMode::Holding);
     assert!(climber.state().position.y < 2.0, "{:?}", climber.state());
+}
+
+#[test]
+fn who_stands_leaves_ledges_alone_that_would_not_lift_its_feet() {
+    let ground = cuboid(Vec3::new(6.0, 1.0, 6.0), STONE);
+    for (height, lifts) in [(0.9, false), (1.2, true)] {
+        let mut block = cuboid(Vec3::new(4.0, 1.0, 1.0), STONE);
+        placed(&mut block, DVec3::new(0.0, height, -1.5), DQuat::IDENTITY);
+        let surfaces = [&ground, &block];
+        let mut climber = climber(DVec3::new(0.3, 1.4, 0.0));
+        run(&mut climber, &surfaces, &ClimberInput::default(), 5);
+        assert_mode(&climber, ClimberMode::Standing);
+        let toward = ClimberInput {
+            walk: -DVec3::Z * 0.01,
+            ..HOLD
+        };
+        let events = run(&mut climber, &surfaces, &toward, 20);
+        assert_eq!(caught(&events), lifts, "{height}: {events:?}");
+    }
+}
+
+#[test]
+fn pulls_itself_up_out_from_under_an_overhang() {
+    let mut block = block();
+    // The wall leans over by 35 degrees, its edge in front.
+    let half = 17.5f64.to_radians();
+    let lean = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
+    placed(&mut block, DVec3::ZERO, lean);
+    let edge = lean * DVec3::new(0.3, 3.0, 3.0);
+    let mut climber = climber(edge + DVec3::new(0.0, -0.25, 0.5));
+    let up = ClimberInput {
+        walk: -DVec3::Z,
+        ..HOLD
+    };
+    let events = run(&mut climber, &[&block], &up, 60);
+    assert!(caught(&events), "{events:?} {:?}", climber.state());
+    assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
+}
+
+/// Pressed between a ledge that leans over, the ground and a wall behind it, a climber that wants up lets go, and is not
+/// dragged into it.
+#[test]
+fn a_ledge_that_crushes_it_lets_go() {
+    let ground = cuboid(Vec3::new(8.0, 1.0, 8.0), STONE);
+    let mut behind = cuboid(Vec3::new(8.0, 4.0, 0.5), STONE);
+    let mut block = block();
+    let half = 10f64.to_radians();
+    let lean = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
+    let middle = DVec3::Y * 3.0;
+    placed(&mut block, middle, lean);
+    let edge = middle + lean * DVec3::new(0.3, 3.0, 3.0);
+    placed(
+        &mut behind,
+        DVec3::new(0.0, 3.0, edge.z + 1.15),
+        DQuat::IDENTITY,
+    );
+    let mut climber = climber(edge + DVec3::new(0.0, -0.25, 0.5));
+    run(&mut climber, &[&ground, &block, &behind], &HOLD, 30);
+    let pull = ClimberInput {
+        climb: DVec3::Y,
+        ..HOLD
+    };
+    assert_mode(&climber, ClimberMode::LedgeHanging);
+    let mut crushed: f64 = 0.0;
+    for tick in 1..=240 {
+        let down = 3.4 * (1.0 - (f64::from(tick) / 120.0 - 1.0).abs());
+        moved(&mut block, middle - DVec3::Y * down, lean);
+        let obstacles: [(ObstacleId, &dyn Obstacle); 3] = [
+            (ObstacleId(0), &ground),
+            (ObstacleId(1), &block),
+            (ObstacleId(2), &behind),
+        ];
+        let report = climber.step(&pull, &obstacles, DT).unwrap();
+        for event in report.events {
+            if let ClimberEvent::Crushed { depth } = event {
+                crushed = crushed.max(depth);
+            }
+        }
+    }
+    assert!(crushed > 0.01 && crushed < 0.1, "{crushed}");
+    run(
+        &mut climber,
+        &[&ground, &block, &behind],
+        &ClimberInput::default(),
+        60,
+    );
+    assert_mode(&climber, ClimberMode::Standing);
+    let height = climber.state().position.y;
+    assert!((height - 1.4).abs() < 0.02, "{height}");
 }

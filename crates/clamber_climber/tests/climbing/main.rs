@@ -6,6 +6,7 @@
 )]
 
 mod corners;
+mod gripping;
 mod hanging;
 mod ledges;
 mod scene;

@@ -1,7 +1,7 @@
 //! Whole battles, watched for numbers that are none.
 
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleOptions, Summary};
+use clamber_scenes::battle::{Battle, BattleOptions, Story, Summary};
 
 /// Seconds that a battle takes.
 const SECONDS: f64 = 15.0;
@@ -9,17 +9,19 @@ const SECONDS: f64 = 15.0;
 /// Fights a battle; gives how many ticks and checks there were. Panics where a check fails, a number is not finite, or
 /// the battle ends with an error.
 pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
-    let options = BattleOptions {
-        creature: None,
-        height: None,
-        seconds: SECONDS,
-        rocks: 24,
-        seed,
-        out: "target/soak".into(),
-        record: None,
+    // Half of them climb, half ride.
+    let story = if seed.is_multiple_of(2) {
+        Story::Climb
+    } else {
+        Story::Ride
     };
-    let rocks = options.rocks as usize;
-    let mut battle = match Battle::new(giant, options.height(), seed, rocks) {
+    let options = BattleOptions {
+        story: Some(story),
+        seconds: Some(SECONDS),
+        out: "target/soak".into(),
+        ..BattleOptions::ride(24, seed)
+    };
+    let mut battle = match Battle::new(giant, &options) {
         Ok(battle) => battle,
         Err(error) => panic!("no battle: {error}"),
     };

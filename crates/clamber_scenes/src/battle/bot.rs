@@ -1,4 +1,4 @@
-//! The scripted climber.
+//! The scripted climber on the creature's back.
 
 use clamber_climber::{ClimberInput, ClimberState};
 use clamber_surface::surface::SkinnedSurface;
@@ -14,6 +14,8 @@ pub enum Intent {
     Patrol,
     /// Jump.
     Jump,
+    /// Come over the ground and climb to the top.
+    Climb,
 }
 
 /// Seconds in one direction.
@@ -35,7 +37,7 @@ pub(super) fn input(
     height: f64,
 ) -> ClimberInput {
     match intent {
-        Intent::Stand => ClimberInput::default(),
+        Intent::Stand | Intent::Climb => ClimberInput::default(),
         Intent::Jump => ClimberInput {
             jump: true,
             ..ClimberInput::default()

@@ -26,13 +26,14 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Looks at one tick; gives the drift if the climber rode through all of it without input.
+    /// Looks at one tick; gives the drift if the climber rode through all of it without input, and has to stay `fast`, or
+    /// if it need not, how far its contact is from its own material point.
     pub(super) fn tick(
         &mut self,
         surface: &SkinnedSurface,
         palette: &Palette,
         climber: &Climber,
-        idle: bool,
+        (idle, fast): (bool, bool),
         tick: u64,
     ) -> Option<f64> {
         let state = climber.state();
@@ -41,6 +42,11 @@ impl Watch {
         let under_ground = center.y < valley::height(center.x, center.z);
         if under_ground || look_inside && is_inside(surface, center) {
             self.fell_through += 1;
+        }
+        if !fast {
+            let support = state.support.filter(|s| s.obstacle == CREATURE)?;
+            let place = reference_position(surface, palette, &support.point);
+            return Some(place.map_or(f64::INFINITY, |place| support.contact.distance(place)));
         }
         let riding = state
             .support

@@ -5,7 +5,7 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
-use super::BattleError;
+use super::{BattleError, Story};
 use crate::{Creature, valley};
 
 /// Seconds over which one clip fades into the next.
@@ -17,11 +17,27 @@ const PATH: f64 = 50.0;
 /// Metres a second for each metre of height, for creatures whose walk says no speed: a slow walk.
 const SPEED_PER_HEIGHT: f64 = 0.2;
 
+/// When the foot comes down in a clip of a stomp, as a share of its length.
+const STOMP: f64 = 0.51;
+
 /// A stretch of time with one clip.
 struct Act {
     clip: Option<usize>,
     seconds: f64,
-    walks: bool,
+    kind: Kind,
+}
+
+/// What of an act matters to others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Stands where it is.
+    Calm,
+    /// Goes on along its path.
+    Walk,
+    /// Stands, but not still.
+    Wild,
+    /// Plays its clip once, from its own beginning, and a foot comes down in it.
+    Stomp,
 }
 
 /// The creature's part in the battle.
@@ -47,8 +63,8 @@ impl<'a> Choreography<'a> {
     ///
     /// # Errors
     /// [`BattleError::NoHeight`], [`BattleError::Creature`].
-    pub fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
-        let acts = acts(creature);
+    pub fn new(creature: &'a Creature, height: f64, story: Story) -> Result<Self, BattleError> {
+        let acts = acts(creature, story);
         let rest = creature.skeleton.rest_pose();
         let mut first = rest.clone();
         if let Some(clip) = acts[0].clip {
@@ -88,7 +104,7 @@ impl<'a> Choreography<'a> {
     pub fn advance(&mut self, dt: f64) -> Result<(), BattleError> {
         self.time += dt;
         let (now, before, share) = self.moment();
-        let walking = |act: usize| if self.acts[act].walks { 1.0 } else { 0.0 };
+        let walking = |act: usize| f64::from(u8::from(self.acts[act].kind == Kind::Walk));
         let pace = walking(before) * (1.0 - share) + walking(now) * share;
         self.walked += pace * self.speed * dt;
         Ok(())
@@ -101,13 +117,13 @@ impl<'a> Choreography<'a> {
     pub fn pose(&mut self) -> Result<(&Palette, Similarity), BattleError> {
         let (now, before, share) = self.moment();
         self.pose.clone_from(&self.rest);
-        if let Some(clip) = self.clip(before) {
-            clip.sample_into(self.time, Playback::Loop, &mut self.pose)?;
+        if let Some((clip, time, playback)) = self.clip(before) {
+            clip.sample_into(time, playback, &mut self.pose)?;
         }
         if share > 0.0 && now != before {
             self.fading.clone_from(&self.rest);
-            if let Some(clip) = self.clip(now) {
-                clip.sample_into(self.time, Playback::Loop, &mut self.fading)?;
+            if let Some((clip, time, playback)) = self.clip(now) {
+                clip.sample_into(time, playback, &mut self.fading)?;
             }
             self.pose.blend_in(&self.fading, share)?;
         }
@@ -136,8 +152,39 @@ impl<'a> Choreography<'a> {
         self.creature
     }
 
-    fn clip(&self, act: usize) -> Option<&'a Clip> {
-        Some(&self.creature.clips[self.acts[act].clip?])
+    /// Whether one may go near its feet.
+    pub fn is_calm(&self) -> bool {
+        let (now, ..) = self.moment();
+        self.acts[now].kind == Kind::Calm
+    }
+
+    /// Whether a foot came down in the last `dt` seconds to shake the ground.
+    pub fn has_stomped(&self, dt: f64) -> bool {
+        let (now, ..) = self.moment();
+        let act = &self.acts[now];
+        let Some(clip) = act.clip.filter(|_| act.kind == Kind::Stomp) else {
+            return false;
+        };
+        let down = self.creature.clips[clip].duration() * STOMP;
+        let within = self.within(now);
+        (within - dt..within).contains(&down)
+    }
+
+    /// What an act plays: the clip, at what time of it, and how.
+    fn clip(&self, act: usize) -> Option<(&'a Clip, f64, Playback)> {
+        let clip = &self.creature.clips[self.acts[act].clip?];
+        Some(if self.acts[act].kind == Kind::Stomp {
+            (clip, self.within(act), Playback::Clamp)
+        } else {
+            (clip, self.time, Playback::Loop)
+        })
+    }
+
+    /// Seconds since an act last began.
+    fn within(&self, act: usize) -> f64 {
+        let total: f64 = self.acts.iter().map(|act| act.seconds).sum();
+        let begins: f64 = self.acts[..act].iter().map(|act| act.seconds).sum();
+        (self.time - begins).rem_euclid(total)
     }
 
     /// The act now, the one that it fades in from, and how far it has faded in.
@@ -181,8 +228,9 @@ impl<'a> Choreography<'a> {
     }
 }
 
-/// Idle, walk, shake, walk, where clips are named so; every clip but dying in turn where not.
-fn acts(creature: &Creature) -> Vec<Act> {
+/// Where clips are named so: idle, walk, shake, walk to ride; idle, stomp, idle, shake, walk to climb. Every clip but
+/// dying in turn where not.
+fn acts(creature: &Creature, story: Story) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;
         creature
@@ -190,28 +238,45 @@ fn acts(creature: &Creature) -> Vec<Act> {
             .iter()
             .position(|other| std::ptr::eq(other, clip))
     };
-    let act = |clip, seconds, walks| Act {
+    let act = |clip, seconds, kind| Act {
         clip: Some(clip),
         seconds,
-        walks,
+        kind,
     };
-    if let (Some(idle), Some(walk)) = (index(&["idle"]), index(&["walk", "run"])) {
-        let mut acts = vec![act(idle, 6.0, false), act(walk, 16.0, true)];
-        if let Some(shake) = index(&["shake", "attack"]) {
-            acts.extend([act(shake, 4.0, false), act(walk, 12.0, true)]);
+    let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
+    let (shake, stomp) = (index(&["shake", "attack"]), index(&["stomp"]));
+    match (story, idle, walk, shake, stomp) {
+        (Story::Climb, Some(idle), Some(walk), Some(shake), Some(stomp)) => {
+            let once = creature.clips[stomp].duration();
+            return vec![
+                act(idle, 3.0, Kind::Calm),
+                act(stomp, once, Kind::Stomp),
+                act(idle, 24.0, Kind::Calm),
+                act(shake, 2.6, Kind::Wild),
+                act(idle, 6.0, Kind::Calm),
+                act(walk, 20.0, Kind::Walk),
+                act(idle, 20.0, Kind::Calm),
+            ];
         }
-        return acts;
+        (_, Some(idle), Some(walk), shake, _) => {
+            let mut acts = vec![act(idle, 6.0, Kind::Calm), act(walk, 16.0, Kind::Walk)];
+            if let Some(shake) = shake {
+                acts.extend([act(shake, 4.0, Kind::Wild), act(walk, 12.0, Kind::Walk)]);
+            }
+            return acts;
+        }
+        _ => {}
     }
     let lively = creature.clips.iter().enumerate().filter(|(_, clip)| {
         let name = clip.name.to_lowercase();
         !name.contains("death") && !name.contains("die")
     });
-    let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, false)).collect();
+    let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, Kind::Calm)).collect();
     if acts.is_empty() {
         acts.push(Act {
             clip: None,
             seconds: 8.0,
-            walks: false,
+            kind: Kind::Calm,
         });
     }
     acts

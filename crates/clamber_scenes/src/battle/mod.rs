@@ -1,5 +1,5 @@
-//! The main scene: a valley, a creature that walks and shakes, a climber that is dropped on its back and
-//! rides it, and rocks that fall on it and roll off.
+//! The main scene: a valley, a creature that walks, stomps and shakes, a climber that comes over the ground, climbs to its
+//! top and rides there, or is dropped on its back, and rocks that fall on it and roll off.
 //!
 //! One tick, in this order: the creature is posed, the climber steps, the physics steps with the rocks, the
 //! scene checks what came of it.
@@ -8,12 +8,15 @@ pub mod bot;
 mod checks;
 mod choreography;
 mod options;
+mod outcrop;
+mod pilot;
 #[cfg(feature = "record")]
 mod record;
 mod recording;
 mod rockfall;
 mod scene;
 mod snapshot;
+mod story;
 mod summary;
 mod timeline;
 
@@ -21,13 +24,15 @@ use std::path::PathBuf;
 
 pub use choreography::Choreography;
 pub use options::BattleOptions;
+pub use outcrop::mesh as outcrop;
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
 pub use recording::{Recording, Sample};
 pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
 pub use snapshot::BattleSnapshot;
-pub use summary::{Check, Summary};
+pub use story::Story;
+pub use summary::{Check, ModeTicks, Summary};
 
 use crate::CreatureError;
 use clamber_climber::ClimberError;
@@ -46,6 +51,14 @@ pub enum BattleError {
     /// The creature has no place where a climber could stand.
     #[error("found no place on {creature} to drop a climber on: no skin under the sky")]
     NoPerch {
+        /// Its name.
+        creature: String,
+    },
+    /// The creature has no way from the ground to its top.
+    #[error(
+        "found no way up {creature}: no skin near the ground from which a climber gets to the top; try --story ride"
+    )]
+    NoWay {
         /// Its name.
         creature: String,
     },
@@ -138,12 +151,7 @@ fn fight(
         reason: error.to_string(),
     })?;
     let creature = options.load_creature()?;
-    let mut battle = Battle::new(
-        &creature,
-        options.height(),
-        options.seed,
-        options.rocks as usize,
-    )?;
+    let mut battle = Battle::new(&creature, options)?;
     let ticks = options.ticks();
     let progress = options::Progress::new(ticks);
     watch(&battle)?;

@@ -6,7 +6,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::bot::Intent;
-use super::{BattleError, Recording, TICK};
+use super::{BattleError, Recording, Story, TICK};
 use crate::{Creature, giant::giant};
 
 /// Metres; what a creature from a file is scaled to.
@@ -15,11 +15,16 @@ const FILE_HEIGHT: f64 = 20.0;
 /// Metres; what the giant is scaled to, and about what it has.
 const GIANT_HEIGHT: f64 = 40.0;
 
-/// A climber rides a walking, shaking creature on which rocks fall.
+/// How long battles take.
+const CLIMB_SECONDS: f64 = 90.0;
+const RIDE_SECONDS: f64 = 60.0;
+
+/// A climber climbs and rides a walking, stomping, shaking creature on which rocks fall.
 ///
-/// Drops a climber on the creature's back, where it stands, walks and jumps by script. Checks at
-/// every tick that it is carried exactly and stays above the ground, and several times a second that neither
-/// it nor a rock is inside the creature. Ends with a table, and exits with 1 if a check failed.
+/// The climber comes over an outcrop, is knocked down by a stomp, grips a leg and climbs to the creature's top, where it
+/// stays; or it is dropped on the back, where it stands, walks and jumps. Checks at every tick that it is carried exactly
+/// and stays above the ground, and several times a second that neither it nor a rock is inside the creature. Ends with
+/// a table, and exits with 1 if a check failed.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {
@@ -32,10 +37,14 @@ pub struct BattleOptions {
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
 
-    /// Length of the battle.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    /// What the climber does [default: climb the giant, ride a creature from a file].
+    #[arg(long, value_enum)]
+    pub story: Option<Story>,
+
+    /// Length of the battle [default: 90 to climb, 60 to ride].
+    #[arg(long, value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
-    pub seconds: f64,
+    pub seconds: Option<f64>,
 
     /// Rocks that fall on the creature; the climber does not feel them.
     #[arg(long, value_name = "COUNT", default_value_t = 24)]
@@ -75,6 +84,16 @@ impl BattleOptions {
         Self::parse()
     }
 
+    /// A minute's ride on the giant, the climber's and the rocks' places by a seed.
+    pub fn ride(rocks: u32, seed: u64) -> Self {
+        Self {
+            story: Some(Story::Ride),
+            rocks,
+            seed,
+            ..Self::default()
+        }
+    }
+
     /// What makes the same battle again, by the names of the options: all but where results go.
     ///
     /// # Errors
@@ -82,7 +101,8 @@ impl BattleOptions {
     pub fn to_settings(&self) -> Result<BTreeMap<String, String>, BattleError> {
         let mut settings = BTreeMap::from([
             ("height".to_owned(), self.height().to_string()),
-            ("seconds".to_owned(), self.seconds.to_string()),
+            ("story".to_owned(), self.story().name().to_owned()),
+            ("seconds".to_owned(), self.seconds().to_string()),
             ("rocks".to_owned(), self.rocks.to_string()),
             ("seed".to_owned(), self.seed.to_string()),
         ]);
@@ -122,14 +142,33 @@ impl BattleOptions {
         self.height.unwrap_or(default)
     }
 
-    /// How many ticks it lasts.
-    pub fn ticks(&self) -> u64 {
-        ((self.seconds / TICK).round() as u64).max(1)
+    /// What the climber does.
+    pub fn story(&self) -> Story {
+        self.story.unwrap_or(match &self.creature {
+            Some(_) => Story::Ride,
+            None => Story::Climb,
+        })
     }
 
-    /// The script: stands for four tenths of the battle, walks up and down the back for the next
+    /// How long it lasts.
+    pub fn seconds(&self) -> f64 {
+        self.seconds.unwrap_or(match self.story() {
+            Story::Climb => CLIMB_SECONDS,
+            Story::Ride => RIDE_SECONDS,
+        })
+    }
+
+    /// How many ticks it lasts.
+    pub fn ticks(&self) -> u64 {
+        ((self.seconds() / TICK).round() as u64).max(1)
+    }
+
+    /// The script. To climb: all the way. To ride: stands for four tenths of the battle, walks up and down the back for the next
     /// third, jumps once in the middle of that, and stands again.
     pub fn input_at(&self, tick: u64) -> Intent {
+        if self.story() == Story::Climb {
+            return Intent::Climb;
+        }
         let part = tick as f64 / self.ticks() as f64;
         let jump = self.ticks() * 57 / 100;
         if tick == jump {

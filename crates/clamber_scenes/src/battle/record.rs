@@ -146,11 +146,8 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
             creature.name
         )));
     }
-    let rocks = match from {
-        Some(_) => 0,
-        None => options.rocks as usize,
-    };
-    let mut battle = Battle::new(&creature, options.height(), options.seed, rocks)?;
+    let rocks = if from.is_some() { 0 } else { options.rocks };
+    let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
     let start = match from {
         Some(from) => {
             let snapshot = recording.snapshot(from)?;

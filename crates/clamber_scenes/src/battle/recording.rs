@@ -92,6 +92,11 @@ impl Recording {
         sum / self.samples.len().max(1) as f64
     }
 
+    /// How many ticks end in a mode.
+    pub fn ticks_in(&self, mode: ClimberMode) -> usize {
+        self.samples.iter().filter(|s| s.mode == mode).count()
+    }
+
     /// The share of ticks spent on the creature.
     pub fn riding_share(&self) -> f64 {
         let riding = self.samples.iter().filter(|s| s.riding).count();

@@ -2,7 +2,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber_climber::{
-    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
@@ -13,8 +13,11 @@ use glam::DVec3;
 
 use super::bot::{self, Intent};
 use super::checks::Watch;
+use super::pilot::{Grips, Pilot};
 use super::rockfall::Rockfall;
-use super::{BattleError, BattleSnapshot, Choreography, Recording, Sample};
+use super::{
+    BattleError, BattleOptions, BattleSnapshot, Choreography, Recording, Sample, Story, outcrop,
+};
 use crate::{Creature, valley};
 
 /// Seconds of a tick.
@@ -32,8 +35,19 @@ const DROP: f64 = 2.0;
 /// How far above the perch rocks fall from, as a share of the creature's height.
 const ROCKS_ABOVE: f64 = 0.5;
 
-/// Ticks on the ground after which the climber is lifted back onto the creature.
+/// Ticks on the ground after which a rider is lifted back onto the creature.
 const GROUNDED_TICKS: u32 = 60;
+
+/// How far before the outcrop's wall a climb begins, and how far aside at most, metres.
+const RUN_UP: f64 = 4.0;
+const ASIDE: f64 = 1.5;
+
+/// How far a stomp knocks down who is on the ground, as a share of the creature's height, or how little above it, metres;
+/// how fast it throws them up and away, metres a second; and what it costs in hit points.
+const STOMP_REACH: f64 = 0.6;
+const STOMP_HEIGHT: f64 = 2.0;
+const STOMP_SPEED: [f64; 2] = [4.0, 2.0];
+const STOMP_DAMAGE: f64 = 0.1;
 
 /// The running scene.
 pub struct Battle<'a> {
@@ -43,7 +57,11 @@ pub struct Battle<'a> {
     before: BodyPoses,
     rocks: Rockfall,
     climber: Climber,
+    grips: Grips,
+    /// Where it is dropped to ride.
     perch: MaterialPoint,
+    /// How it climbs, if it does.
+    pilot: Option<Pilot>,
     height: f64,
     tick: u64,
     grounded: u32,
@@ -57,34 +75,32 @@ pub struct Battle<'a> {
 }
 
 impl<'a> Battle<'a> {
-    /// A creature of `height` metres in the valley, a climber above its back, and so many rocks above that;
-    /// `seed` shifts where.
+    /// A creature in the valley, a climber before an outcrop or above the creature's back, and rocks above that.
     ///
     /// # Errors
     /// [`BattleError`].
-    pub fn new(
-        creature: &'a Creature,
-        height: f64,
-        seed: u64,
-        rocks: usize,
-    ) -> Result<Self, BattleError> {
-        let mut choreography = Choreography::new(creature, height)?;
+    pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
+        let (height, seed, story) = (options.height(), options.seed, options.story());
+        let mut choreography = Choreography::new(creature, height, story)?;
         let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
         let (palette, world_from_model) = choreography.pose()?;
         surface.place(palette, world_from_model)?;
         let perch = find_perch(&surface, height, seed).ok_or_else(|| BattleError::NoPerch {
             creature: creature.name.clone(),
         })?;
-        let mut config = ClimberConfig::walker();
-        // It rides whatever the creature does.
-        config.ground.throw_acceleration = f64::INFINITY;
-        let climber = Climber::new(
-            config,
-            perch.point + config.up() * (DROP + config.body.radius),
-        )?;
         let mut world = valley::world();
+        let (climber, pilot) = match story {
+            Story::Climb => {
+                outcrop::insert(&mut world);
+                (
+                    climber_before_the_outcrop(seed)?,
+                    Some(Pilot::new(creature)?),
+                )
+            }
+            Story::Ride => (rider_above(perch.point)?, None),
+        };
         let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
-        let rocks = Rockfall::new(&mut world, rocks, seed, above, height)?;
+        let rocks = Rockfall::new(&mut world, options.rocks as usize, seed, above, height)?;
         Ok(Self {
             rocks_fingerprint: rocks.fingerprint(&world.bodies),
             choreography,
@@ -93,11 +109,13 @@ impl<'a> Battle<'a> {
             before: BodyPoses::default(),
             rocks,
             climber,
+            grips: Grips::of(creature),
             perch: perch.material,
+            drops: u32::from(pilot.is_none()),
+            pilot,
             height,
             tick: 0,
             grounded: 0,
-            drops: 1,
             landings: 0,
             input: ClimberInput::default(),
             report: StepReport::default(),
@@ -116,8 +134,33 @@ impl<'a> Battle<'a> {
         let seconds = self.tick as f64 * TICK;
         let state = self.climber.state();
         let (surface, perch) = (&self.surface, &self.perch);
-        let input = bot::input(intent, state, surface, perch, seconds, self.height);
+        let mut input = match &mut self.pilot {
+            Some(pilot) if intent == Intent::Climb => {
+                pilot.input(&self.climber, surface, self.choreography.is_calm(), seconds)
+            }
+            _ => bot::input(intent, state, surface, perch, seconds, self.height),
+        };
+        input.blow = self.stomp();
         self.step_posed(input, start)
+    }
+
+    /// What a foot that comes down in this tick does to who stands on the ground near by.
+    fn stomp(&self) -> Option<Blow> {
+        let state = self.climber.state();
+        let up = self.climber.config().up();
+        let away = state.position - self.surface.world_from_model().translation;
+        let height = away.dot(up);
+        let level = away - up * height;
+        let is_struck = state
+            .support
+            .is_none_or(|support| support.obstacle == TERRAIN)
+            && height < STOMP_HEIGHT
+            && level.length() < STOMP_REACH * self.height
+            && self.choreography.has_stomped(TICK);
+        is_struck.then(|| Blow {
+            velocity: up * STOMP_SPEED[0] + level.normalize_or_zero() * STOMP_SPEED[1],
+            damage: STOMP_DAMAGE,
+        })
     }
 
     /// One tick with an input from elsewhere, such as a recording.
@@ -148,7 +191,11 @@ impl<'a> Battle<'a> {
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(TERRAIN, &terrain), (CREATURE, &self.surface)];
-        let report = self.climber.step(&input, &obstacles, TICK)?;
+        let grips = self.grips;
+        let can_grip =
+            |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
+        let climber = &mut self.climber;
+        let report = climber.step_where(&input, &obstacles, &can_grip, TICK)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let touched = self.surface.diagnostics();
 
@@ -170,9 +217,15 @@ impl<'a> Battle<'a> {
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
         let idle = input == ClimberInput::default();
         let palette = self.choreography.palette();
-        let drift = self
-            .watch
-            .tick(&self.surface, palette, &self.climber, idle, self.tick);
+        // Who climbs may be shoved by a crease that closes where it rests; who rides may not.
+        let fast = self.pilot.is_none();
+        let drift = self.watch.tick(
+            &self.surface,
+            palette,
+            &self.climber,
+            (idle, fast),
+            self.tick,
+        );
         let sample = Sample {
             seconds: self.tick as f64 * TICK,
             height: state.position.y,
@@ -190,8 +243,11 @@ impl<'a> Battle<'a> {
         self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
-    /// Once it has stood on the ground for a while, the climber is dropped on the back again.
+    /// Once it has stood on the ground for a while, a rider is dropped on the back again.
     fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
+        if self.pilot.is_some() {
+            return Ok(());
+        }
         let state = *self.climber.state();
         let on_ground = state
             .support
@@ -308,6 +364,16 @@ impl<'a> Battle<'a> {
         &self.recording
     }
 
+    /// Whether there is an outcrop in the valley, which is climbed over.
+    pub fn has_outcrop(&self) -> bool {
+        self.pilot.is_some()
+    }
+
+    /// Seconds after which the climber came to the creature's top; `None` if it has not, or rides.
+    pub fn arrived(&self) -> Option<f64> {
+        self.pilot.as_ref().and_then(Pilot::arrived)
+    }
+
     /// How often the climber was dropped on the creature.
     pub fn drops(&self) -> u32 {
         self.drops
@@ -321,6 +387,31 @@ impl<'a> Battle<'a> {
     pub(super) fn watch(&self) -> &Watch {
         &self.watch
     }
+}
+
+/// A climber with all that one can do, somewhere before the outcrop.
+fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
+    let mut config = ClimberConfig::colossus_climber();
+    config.ground.jump_speed = 6.0;
+    if let Some(stamina) = &mut config.stamina {
+        // A strong one, whom the walk of a creature so tall does not tire: high up it swings by metres.
+        stamina.hold_drain = 1.0 / 90.0;
+        stamina.shake_threshold = 10.0;
+    }
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let aside = (2.0 * rng.f64() - 1.0) * ASIDE;
+    let (x, z) = (outcrop::WALL - RUN_UP, aside);
+    let feet = DVec3::new(x, valley::height(x, z), z);
+    let position = feet + config.up() * (config.body.radius + 0.1);
+    Ok(Climber::new(config, position)?)
+}
+
+/// A climber that rides whatever the creature does, in the air above a place.
+fn rider_above(place: DVec3) -> Result<Climber, BattleError> {
+    let mut config = ClimberConfig::walker();
+    config.ground.throw_acceleration = f64::INFINITY;
+    let position = place + config.up() * (DROP + config.body.radius);
+    Ok(Climber::new(config, position)?)
 }
 
 /// The most level place near the middle of the creature's back: rays from above on a grid around

@@ -1,9 +1,10 @@
 use std::fmt;
 use std::path::Path;
 
+use clamber_climber::ClimberMode;
 use serde::Serialize;
 
-use super::{Battle, BattleError, BattleOptions};
+use super::{Battle, BattleError, BattleOptions, Story};
 use crate::measure::quantile;
 
 /// Farthest that a standing climber's contact may be from its material point, metres.
@@ -29,6 +30,15 @@ pub struct Check {
     pub holds: bool,
 }
 
+/// How long a climber did something.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeTicks {
+    /// What.
+    pub mode: String,
+    /// For how many ticks.
+    pub ticks: usize,
+}
+
 /// What came of a battle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
@@ -52,7 +62,11 @@ pub struct Summary {
     pub drops: u32,
     /// Times that it landed on anything.
     pub landings: u32,
-    /// Share of the ticks spent standing on the creature.
+    /// Ticks in each mode of the climber.
+    pub modes: Vec<ModeTicks>,
+    /// When it came to the creature's top, if it climbed there, seconds.
+    pub arrived_s: Option<f64>,
+    /// Share of the ticks spent on the creature.
     pub riding_share: f64,
     /// Largest distance from a standing climber's contact to the material point recorded when its
     /// input ended.
@@ -94,6 +108,33 @@ impl Summary {
             at_most,
             holds: found <= at_most,
         };
+        let modes = ClimberMode::ALL.map(|mode| ModeTicks {
+            mode: format!("{mode:?}"),
+            ticks: recording.ticks_in(mode),
+        });
+        let never = modes.iter().filter(|mode| mode.ticks == 0).count();
+        let mut checks = vec![
+            check("anchor drift, m", recording.max_drift(), MAX_DRIFT),
+            check("ticks inside or below", f64::from(watch.fell_through), 0.0),
+            check("rocks inside or below", f64::from(report.fell_through), 0.0),
+            check(
+                "share of ticks not riding",
+                1.0 - recording.riding_share(),
+                MAX_OFF,
+            ),
+        ];
+        if options.story() == Story::Ride {
+            let push_out = recording.max_push_out();
+            let push_out = check("push-out while standing, m", push_out, MAX_PUSH_OUT);
+            checks.insert(1, push_out);
+        } else {
+            let arrived = battle.arrived().unwrap_or(f64::INFINITY);
+            checks.push(check("seconds to the top", arrived, options.seconds()));
+            // A creature from a file need not have a clip that shakes and one that stomps.
+            if options.creature.is_none() {
+                checks.push(check("modes never seen", never as f64, 0.0));
+            }
+        }
         Self {
             creature: battle.creature().name.clone(),
             joints: mesh.joint_count(),
@@ -105,6 +146,8 @@ impl Summary {
             hash: format!("{:016x}", recording.hash()),
             drops: battle.drops(),
             landings: battle.landings(),
+            modes: modes.to_vec(),
+            arrived_s: battle.arrived(),
             riding_share: recording.riding_share(),
             max_anchor_drift_m: recording.max_drift(),
             max_push_out_m: recording.max_push_out(),
@@ -117,21 +160,7 @@ impl Summary {
             rocks_us_median: quantile(&mut rocks.times().to_vec(), 0.5),
             tick_us_median: recording.tick_us(0.5),
             tick_us_p99: recording.tick_us(0.99),
-            checks: vec![
-                check("anchor drift, m", recording.max_drift(), MAX_DRIFT),
-                check(
-                    "push-out while standing, m",
-                    recording.max_push_out(),
-                    MAX_PUSH_OUT,
-                ),
-                check("ticks inside or below", f64::from(watch.fell_through), 0.0),
-                check("rocks inside or below", f64::from(report.fell_through), 0.0),
-                check(
-                    "share of ticks not riding",
-                    1.0 - recording.riding_share(),
-                    MAX_OFF,
-                ),
-            ],
+            checks,
         }
     }
 
@@ -177,6 +206,14 @@ impl fmt::Display for Summary {
             "drops, landings",
             format!("{}, {}", self.drops, self.landings),
         )?;
+        let seen = self.modes.iter().filter(|mode| mode.ticks > 0);
+        let seen: Vec<String> = seen
+            .map(|mode| format!("{} {}", mode.mode, mode.ticks))
+            .collect();
+        row(f, "ticks by mode", seen.join(", "))?;
+        if let Some(seconds) = self.arrived_s {
+            row(f, "at the top", format!("after {seconds:.1} s"))?;
+        }
         row(
             f,
             "vertices skinned per tick",

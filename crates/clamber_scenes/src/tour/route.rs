@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use clamber_surface::mesh::VertexId;
+use clamber_surface::mesh::{SurfaceTag, VertexId};
 use glam::Vec3;
 
 use crate::{Creature, CreatureError};
@@ -18,7 +18,7 @@ pub struct Route {
     pub waypoints: Vec<VertexId>,
 }
 
-/// All ways over a creature.
+/// All ways over a creature, or over what of it can be gripped.
 #[derive(Clone, Debug)]
 pub struct Ways {
     rest: Vec<Vec3>,
@@ -39,10 +39,25 @@ impl Ways {
     /// # Errors
     /// [`CreatureError`] if its rest pose does not fit it.
     pub fn new(creature: &Creature) -> Result<Self, CreatureError> {
+        Self::over(creature, |_| true)
+    }
+
+    /// At rest, over triangles with certain tags alone.
+    ///
+    /// # Errors
+    /// As [`Ways::new`].
+    pub fn over(
+        creature: &Creature,
+        is_way: impl Fn(&SurfaceTag) -> bool,
+    ) -> Result<Self, CreatureError> {
         let palette = creature.skeleton.palette(&creature.skeleton.rest_pose())?;
         let rest = clamber_surface::skin::skin(&creature.collider, palette.matrices())?;
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
-        for corners in creature.collider.triangles() {
+        let mesh = &creature.collider;
+        for (corners, tag) in mesh.triangles().iter().zip(mesh.tags()) {
+            if !is_way(tag) {
+                continue;
+            }
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 neighbours[a.index()].push(b.0);
@@ -92,14 +107,51 @@ impl Ways {
     }
 
     fn between(&self, from: u32, to: u32) -> Option<Route> {
+        let (before, _) = self.tree(&[from]);
+        let mut waypoints = vec![VertexId(to)];
+        let mut vertex = to;
+        while vertex != from {
+            vertex = before[vertex as usize]?;
+            waypoints.push(VertexId(vertex));
+        }
+        waypoints.reverse();
+        Some(Route { waypoints })
+    }
+
+    /// Vertices near the bottom.
+    pub(super) fn feet(&self) -> &[u32] {
+        &self.feet
+    }
+
+    /// All vertices at rest.
+    pub(super) fn rest(&self) -> &[Vec3] {
+        &self.rest
+    }
+
+    /// Where ways lead from a vertex.
+    pub(super) fn neighbours(&self, vertex: u32) -> &[u32] {
+        &self.neighbours[vertex as usize]
+    }
+
+    /// Vertices that ways lead over.
+    pub(super) fn used(&self) -> impl Iterator<Item = u32> {
+        let vertices = 0..self.rest.len() as u32;
+        vertices.filter(|vertex| !self.neighbours[*vertex as usize].is_empty())
+    }
+
+    /// The shortest ways from the nearest of some vertices to all others: for each the vertex before it, and how long
+    /// the way is.
+    pub(super) fn tree(&self, from: &[u32]) -> (Vec<Option<u32>>, Vec<f32>) {
         let mut best = vec![f32::INFINITY; self.rest.len()];
         let mut before = vec![None; self.rest.len()];
         let mut open = BinaryHeap::new();
-        best[from as usize] = 0.0;
-        open.push(Open {
-            distance: 0.0,
-            vertex: from,
-        });
+        for &vertex in from {
+            best[vertex as usize] = 0.0;
+            open.push(Open {
+                distance: 0.0,
+                vertex,
+            });
+        }
         while let Some(Open { distance, vertex }) = open.pop() {
             if distance > best[vertex as usize] {
                 continue;
@@ -117,14 +169,7 @@ impl Ways {
                 }
             }
         }
-        let mut waypoints = vec![VertexId(to)];
-        let mut vertex = to;
-        while vertex != from {
-            vertex = before[vertex as usize]?;
-            waypoints.push(VertexId(vertex));
-        }
-        waypoints.reverse();
-        Some(Route { waypoints })
+        (before, best)
     }
 }
 

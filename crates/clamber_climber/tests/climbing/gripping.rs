@@ -1,0 +1,71 @@
+//! The tick in which it gets hold of something that moves.
+
+use clamber_climber::{Climber, ClimberConfig, ClimberMode};
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DQuat, DVec3, Vec3};
+
+use crate::scene::{DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, moved, placed};
+
+/// A wall comes as fast as a limb that strikes, and is gripped in flight.
+#[test]
+fn who_grips_what_comes_at_it_stays_in_front_of_it() {
+    for tag in [FUR, STONE] {
+        for start in 0..20 {
+            let mut wall = cuboid(Vec3::new(4.0, 3.0, 0.3), tag);
+            let z = -1.0 - 0.07 * f64::from(start);
+            let speed = 60.0;
+            let at = |tick: u32| DVec3::new(0.0, 0.0, z + speed * DT * f64::from(tick));
+            placed(&mut wall, at(0), DQuat::IDENTITY);
+            let mut climber = climber(DVec3::new(0.3, 2.3, 0.5));
+            for tick in 1..=6 {
+                moved(&mut wall, at(tick), DQuat::IDENTITY);
+                let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &wall)];
+                climber.step(&HOLD, &obstacles, DT).unwrap();
+                let front = at(tick).z + 0.3;
+                let gap = climber.state().position.z - front;
+                let over = climber.state().position.y > 3.3;
+                assert!(
+                    gap > 0.38 || over,
+                    "{tag:?} {start} {tick}: {gap} {:?}",
+                    climber.state()
+                );
+            }
+        }
+    }
+}
+
+/// What it hangs from swings it against a wall that stands: the arm gives way, not the wall.
+#[test]
+fn who_is_dragged_against_a_wall_is_torn_off_and_not_dragged_through() {
+    let wall = cuboid(Vec3::new(0.5, 6.0, 6.0), STONE);
+    let mut beam = cuboid(Vec3::new(1.0, 0.3, 1.0), FUR);
+    let mut config = ClimberConfig::colossus_climber();
+    if let Some(grip) = &mut config.grip {
+        grip.max_overhang = 2.0;
+    }
+    let at = |tick: u32| DVec3::new(4.0 - 0.2 * f64::from(tick), 7.0, 0.0);
+    placed(&mut beam, at(0), DQuat::IDENTITY);
+    let mut climber = Climber::new(config, DVec3::new(4.0, 6.2, 0.0)).unwrap();
+    let tick_among = |climber: &mut Climber, beam: &dyn Obstacle| {
+        let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+            [(ObstacleId(0), &wall), (ObstacleId(1), beam)];
+        climber.step(&HOLD, &obstacles, DT).unwrap();
+    };
+    for _ in 0..60 {
+        moved(&mut beam, at(0), DQuat::IDENTITY);
+        tick_among(&mut climber, &beam);
+    }
+    assert_mode(&climber, ClimberMode::Hanging);
+    for tick in 1..=40 {
+        // Over the wall's top and down on its other side.
+        moved(
+            &mut beam,
+            at(tick) - DVec3::Y * 0.04 * f64::from(tick),
+            DQuat::IDENTITY,
+        );
+        tick_among(&mut climber, &beam);
+        let p = climber.state().position;
+        let inside = (DVec3::new(0.5, 6.0, 6.0) - p.abs()).min_element();
+        assert!(inside < -0.35, "{tick}: {inside} {:?}", climber.state());
+    }
+}

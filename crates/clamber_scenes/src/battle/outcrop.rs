@@ -1,0 +1,67 @@
+//! An outcrop on the way to the creature: a wall with an edge to hang from, and a slope behind it that is too steep to
+//! stand on.
+
+use clamber_world::rapier3d::prelude::*;
+use glam::{DVec3, Vec3};
+
+use crate::valley;
+
+/// Where its wall stands, and its middle across: it is climbed along X.
+pub(super) const WALL: f64 = 33.0;
+const MIDDLE: f64 = 0.0;
+
+/// How high its top is above the ground there, and how far it reaches: out of reach from the ground, in reach of a jump.
+const HEIGHT: f64 = 2.3;
+const TOP: f64 = 2.5;
+
+/// How far it falls away behind, by so much for each metre: 60 degrees.
+const SLOPE: f64 = 2.2;
+const STEEPNESS: f64 = 1.732;
+
+/// Half of its width.
+const HALF_WIDTH: f64 = 3.5;
+
+/// Where its foot is behind, along X.
+pub(super) const END: f64 = WALL + TOP + SLOPE;
+
+/// Its corners and triangles, in the world.
+pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let top = valley::height(WALL, MIDDLE) + HEIGHT;
+    let behind = top - SLOPE * STEEPNESS;
+    let profile = [
+        (WALL, behind),
+        (WALL, top),
+        (WALL + TOP, top),
+        (END, behind),
+    ];
+    let sides = [MIDDLE - HALF_WIDTH, MIDDLE + HALF_WIDTH];
+    let corners = sides
+        .iter()
+        .flat_map(|z| profile.map(|(x, y)| DVec3::new(x, y, *z).as_vec3()));
+    let triangles = vec![
+        // Wall, top and slope.
+        [0, 4, 5],
+        [0, 5, 1],
+        [1, 5, 6],
+        [1, 6, 2],
+        [2, 6, 7],
+        [2, 7, 3],
+        // Below, and both sides.
+        [3, 7, 4],
+        [3, 4, 0],
+        [0, 1, 2],
+        [0, 2, 3],
+        [4, 6, 5],
+        [4, 7, 6],
+    ];
+    (corners.collect(), triangles)
+}
+
+/// Puts it into the valley.
+pub(super) fn insert(world: &mut PhysicsWorld) {
+    let (corners, triangles) = mesh();
+    if let Ok(collider) = ColliderBuilder::trimesh(corners, triangles) {
+        world.insert_collider(collider, None);
+        world.detect_collisions(&(), &());
+    }
+}

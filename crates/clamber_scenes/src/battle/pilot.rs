@@ -1,0 +1,323 @@
+//! The scripted climber on its way from the ground to the creature's top: it sees where it is and what it does, and
+//! remembers what it climbs towards. Shaken off, it comes again.
+
+use clamber_climber::{Climber, ClimberInput, ClimberMode};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
+use clamber_surface::surface::SkinnedSurface;
+use glam::DVec3;
+
+use super::scene::CREATURE;
+use super::{BattleError, outcrop};
+use crate::Creature;
+use crate::tour::{Ascent, Ways};
+
+/// How far ahead on its way up it aims, metres: more than the width of creases that its ball does not enter. And how far
+/// once it has come no nearer to the top for so many seconds.
+const AHEAD: f64 = 1.2;
+const FAR_AHEAD: f64 = 4.0;
+const PATIENCE: f64 = 2.0;
+
+/// How near to the outcrop's wall, and to the foot of its way up, it jumps, metres.
+const JUMP: f64 = 0.9;
+
+/// How far it keeps from the feet of a creature that does not stand still, metres, and how much nearer or farther is as good.
+const SAFE: f64 = 11.0;
+const SWAY: f64 = 0.2;
+
+/// Who wants to walk and is slower than this, metres a second, for so many seconds stands before something.
+const KEPT: f64 = 0.5;
+const PUZZLED: f64 = 0.3;
+
+/// Seconds between two jumps.
+const BETWEEN_JUMPS: f64 = 1.2;
+
+/// How often it jumps for a foothold before it looks for another one, so many metres away.
+const TRIES: u32 = 3;
+const ELSEWHERE: f64 = 1.5;
+
+/// How many metres along the ground are worth a metre less to jump.
+const HEIGHT_COUNTS: f64 = 5.0;
+
+/// Stamina that it rests for where it can stand.
+const RESTED: f64 = 0.95;
+
+/// Shake in which it stands at the top; in more it holds on, metres a second squared.
+const CALM: f64 = 3.0;
+
+/// What it is about to do, and what it has seen.
+#[derive(Clone, Debug)]
+pub(super) struct Pilot {
+    ascent: Ascent,
+    /// Where it means to get on, how often it has jumped for it, and where it could not get on.
+    foothold: Option<VertexId>,
+    tries: u32,
+    given_up: Vec<VertexId>,
+    /// How near it has come to the top since it got on, in the units of the creature's file, and when, seconds.
+    left: f32,
+    since: f64,
+    /// When it last jumped, and when it last walked freely or wanted not to, seconds.
+    jumped: f64,
+    free: f64,
+    /// It is over the outcrop.
+    crossed: bool,
+    /// It has been on the creature since it was last on the ground.
+    mounted: bool,
+    /// When it came to the top, seconds.
+    arrived: Option<f64>,
+}
+
+impl Pilot {
+    /// For a creature with a way up over what can be gripped.
+    pub(super) fn new(creature: &Creature) -> Result<Self, BattleError> {
+        let grips = Grips::of(creature);
+        let ways = Ways::over(creature, |tag| grips.can(tag))?;
+        let ascent = Ascent::new(creature, &ways);
+        if ascent.feet().is_empty() {
+            return Err(BattleError::NoWay {
+                creature: creature.name.clone(),
+            });
+        }
+        Ok(Self {
+            ascent,
+            foothold: None,
+            tries: 0,
+            given_up: Vec::new(),
+            left: f32::INFINITY,
+            since: 0.0,
+            jumped: f64::NEG_INFINITY,
+            free: 0.0,
+            crossed: false,
+            mounted: false,
+            arrived: None,
+        })
+    }
+
+    /// When it came to the top.
+    pub(super) fn arrived(&self) -> Option<f64> {
+        self.arrived
+    }
+
+    /// The input of the tick that begins at `seconds`, with a creature that stands still, or not.
+    pub(super) fn input(
+        &mut self,
+        climber: &Climber,
+        surface: &SkinnedSurface,
+        is_calm: bool,
+        seconds: f64,
+    ) -> ClimberInput {
+        let state = climber.state();
+        let on_creature = state
+            .support
+            .filter(|support| support.obstacle == CREATURE)
+            .map(|support| TriangleId(support.point.key as u32));
+        match (state.mode, on_creature) {
+            (ClimberMode::Tumbling, _) => {
+                self.free = seconds;
+                ClimberInput::default()
+            }
+            (ClimberMode::LedgeHanging, _) => ClimberInput {
+                climb: climber.config().up(),
+                grip: true,
+                ..ClimberInput::default()
+            },
+            (ClimberMode::Hanging, _) => ClimberInput {
+                grip: true,
+                ..ClimberInput::default()
+            },
+            (_, Some(triangle)) => {
+                if !self.mounted {
+                    self.given_up.clear();
+                    (self.mounted, self.left, self.since) = (true, f32::INFINITY, seconds);
+                }
+                self.go_up(climber, surface, triangle, is_calm, seconds)
+            }
+            _ => self.come(climber, surface, is_calm, seconds),
+        }
+    }
+
+    /// On the creature.
+    fn go_up(
+        &mut self,
+        climber: &Climber,
+        surface: &SkinnedSurface,
+        triangle: TriangleId,
+        is_calm: bool,
+        seconds: f64,
+    ) -> ClimberInput {
+        let state = climber.state();
+        let stands = state.mode == ClimberMode::Standing;
+        if self.arrived.is_some() {
+            return ClimberInput {
+                grip: !is_calm || state.shake.length() > CALM,
+                ..ClimberInput::default()
+            };
+        }
+        if stands && state.stamina < RESTED {
+            return ClimberInput::default();
+        }
+        let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
+            return ClimberInput::default();
+        };
+        let toward = place(surface, target) - state.position;
+        ClimberInput {
+            climb: toward.normalize_or(climber.config().up()),
+            walk: toward,
+            grip: true,
+            jump: stands && self.jumps(seconds - self.since > PATIENCE, seconds),
+            ..ClimberInput::default()
+        }
+    }
+
+    /// What to climb towards: some way ahead of where it is; farther ahead for a while if it comes no nearer to the top.
+    fn follow(
+        &mut self,
+        surface: &SkinnedSurface,
+        triangle: TriangleId,
+        position: DVec3,
+        seconds: f64,
+    ) -> Option<VertexId> {
+        let corners = surface.mesh().triangles().get(triangle.index())?;
+        let here = self.enter(surface, corners, position)?;
+        let left = self.ascent.left(here);
+        if left < self.left {
+            (self.left, self.since) = (left, seconds);
+        }
+        let stuck = (seconds - self.since).rem_euclid(2.0 * PATIENCE) > PATIENCE;
+        let ahead = if stuck { FAR_AHEAD } else { AHEAD };
+        let mut way = std::iter::successors(Some(here), |vertex| self.ascent.next(*vertex));
+        let target = way.find(|vertex| place(surface, *vertex).distance(position) > ahead);
+        if target.is_none() {
+            self.arrived = Some(seconds);
+        }
+        target
+    }
+
+    /// The vertex of the triangle that it is on from which the way to the top is shortest, or else the nearest one.
+    fn enter(
+        &self,
+        surface: &SkinnedSurface,
+        corners: &[VertexId; 3],
+        position: DVec3,
+    ) -> Option<VertexId> {
+        let by_way = |a: &VertexId, b: &VertexId| {
+            let [a, b] = [a, b].map(|vertex| self.ascent.left(*vertex));
+            a.total_cmp(&b)
+        };
+        let leads_up = |vertex: &VertexId| self.ascent.left(*vertex).is_finite();
+        let here = corners.iter().copied().filter(leads_up).min_by(by_way);
+        here.or_else(|| nearest(surface, self.ascent.vertices(), position))
+    }
+
+    /// On the ground, or in the air.
+    fn come(
+        &mut self,
+        climber: &Climber,
+        surface: &SkinnedSurface,
+        is_calm: bool,
+        seconds: f64,
+    ) -> ClimberInput {
+        let state = climber.state();
+        if self.mounted && state.mode == ClimberMode::Standing {
+            (self.mounted, self.foothold, self.tries) = (false, None, 0);
+        }
+        let position = state.position;
+        self.crossed |= position.x > outcrop::END;
+        let (walk, near) = if self.crossed {
+            self.foothold = self
+                .foothold
+                .or_else(|| self.find_foothold(surface, position));
+            let Some(foot) = self.foothold else {
+                return ClimberInput::default();
+            };
+            let toward = (place(surface, foot) - position) * DVec3::new(1.0, 0.0, 1.0);
+            let away = toward.length() - if is_calm { 0.0 } else { SAFE };
+            let ahead = if away.abs() > SWAY {
+                away.signum()
+            } else {
+                0.0
+            };
+            let walk = toward.normalize_or_zero() * ahead;
+            if walk == DVec3::ZERO || state.velocity.length() > KEPT {
+                self.free = seconds;
+            }
+            (
+                walk,
+                toward.length() < JUMP || seconds - self.free > PUZZLED,
+            )
+        } else {
+            let gap = outcrop::WALL - climber.config().body.radius - position.x;
+            (DVec3::X, (0.0..JUMP).contains(&gap))
+        };
+        let jump = state.mode == ClimberMode::Standing && self.jumps(near, seconds);
+        if jump && let Some(foothold) = self.foothold {
+            self.tries += 1;
+            if self.tries > TRIES {
+                self.given_up.push(foothold);
+                (self.foothold, self.tries) = (None, 0);
+            }
+        }
+        ClimberInput {
+            walk,
+            jump,
+            grip: true,
+            ..ClimberInput::default()
+        }
+    }
+
+    /// Where to get on: low, and near.
+    fn find_foothold(&self, surface: &SkinnedSurface, position: DVec3) -> Option<VertexId> {
+        let cost = |vertex: &VertexId| {
+            let way = place(surface, *vertex) - position;
+            HEIGHT_COUNTS * way.y.max(0.0) + way.length()
+        };
+        let is_other = |vertex: &VertexId| {
+            let here = place(surface, *vertex);
+            let mut given_up = self.given_up.iter();
+            given_up.all(|other| place(surface, *other).distance(here) > ELSEWHERE)
+        };
+        let feet = self.ascent.feet().iter().copied().filter(is_other);
+        feet.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+    }
+
+    /// Whether to jump now.
+    fn jumps(&mut self, wanted: bool, seconds: f64) -> bool {
+        let jumps = wanted && seconds - self.jumped > BETWEEN_JUMPS;
+        if jumps {
+            self.jumped = seconds;
+        }
+        jumps
+    }
+}
+
+/// What of a creature can be gripped: its fur and its rough stone, or all of it if it has no fur.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grips {
+    has_fur: bool,
+}
+
+impl Grips {
+    pub(super) fn of(creature: &Creature) -> Self {
+        let mut tags = creature.collider.tags().iter();
+        Self {
+            has_fur: tags.any(|tag| tag.kind == SurfaceKind::Fur),
+        }
+    }
+
+    pub(super) fn can(self, tag: &SurfaceTag) -> bool {
+        !self.has_fur || matches!(tag.kind, SurfaceKind::Fur | SurfaceKind::Stone)
+    }
+}
+
+fn nearest(
+    surface: &SkinnedSurface,
+    vertices: impl Iterator<Item = VertexId>,
+    to: DVec3,
+) -> Option<VertexId> {
+    let distance = |vertex: &VertexId| place(surface, *vertex).distance_squared(to);
+    vertices.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+fn place(surface: &SkinnedSurface, vertex: VertexId) -> DVec3 {
+    let position = surface.position(vertex).unwrap_or_default();
+    surface.world_from_model().transform_point_f32(position)
+}

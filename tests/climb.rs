@@ -1,0 +1,56 @@
+//! The battle from the ground to the head, by its own checks.
+
+use clamber::climber::ClimberMode;
+use clamber_scenes::battle::{Battle, BattleOptions, CREATURE, Story, Summary, run};
+use clamber_scenes::giant::giant;
+
+#[test]
+fn the_climb_goes_from_the_ground_to_the_head_through_all_modes() {
+    let folder = std::env::temp_dir().join(format!("clamber-climb-{}", std::process::id()));
+    let options = BattleOptions {
+        out: folder.clone(),
+        ..BattleOptions::default()
+    };
+    assert_eq!(options.story(), Story::Climb);
+    let summary = run(&options).unwrap();
+    println!("{summary}");
+    assert!(summary.holds(), "{summary}");
+    assert!(summary.modes.iter().all(|mode| mode.ticks > 0), "{summary}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Whatever becomes of a climber, it is never inside the giant, and its material point carries it.
+#[test]
+fn other_climbs_are_as_sound() {
+    let creature = giant().unwrap();
+    let (mut arrived, seeds) = (0, 2..8);
+    for seed in seeds.clone() {
+        let options = BattleOptions {
+            seed,
+            rocks: 0,
+            ..BattleOptions::default()
+        };
+        let mut battle = Battle::new(&creature, &options).unwrap();
+        let mut on_head = false;
+        for tick in 0..options.ticks() {
+            battle.step(options.input_at(tick)).unwrap();
+            let state = battle.climber().state();
+            let on_creature = state.support.is_some_and(|s| s.obstacle == CREATURE);
+            let stands = state.mode == ClimberMode::Standing;
+            on_head |= battle.arrived().is_some() && on_creature && stands;
+        }
+        let summary = Summary::new(&battle, &options);
+        println!(
+            "seed {seed}: top after {:?} s, stood there: {on_head}",
+            summary.arrived_s
+        );
+        let failed = summary.checks.iter().filter(|check| !check.holds);
+        // That it is shaken off and does not make it in time is its own affair.
+        let failed: Vec<_> = failed
+            .filter(|check| check.name != "seconds to the top")
+            .collect();
+        assert!(failed.is_empty(), "seed {seed}: {failed:?}");
+        arrived += usize::from(on_head);
+    }
+    assert!(2 * arrived >= seeds.len(), "{arrived} of {}", seeds.len());
+}
