@@ -134,7 +134,8 @@ fn check_files(package: &Package) -> Result<(), String> {
     let files = cargo_output(&list)?;
     let source = |file: &str| {
         let code = file.ends_with(".rs") && (file.contains("src/") || file.starts_with("tests/"));
-        code || file.ends_with(".wgsl") && file.starts_with("src/")
+        let other = [".wgsl", ".md", ".svg"];
+        code || file.starts_with("src/") && other.iter().any(|end| file.ends_with(end))
     };
     for file in files.lines() {
         if !TOP_LEVEL.contains(&file) && !source(file) {

@@ -1,3 +1,5 @@
+// Of two targets of a link the first counts: here the README's picture is in no folder.
+#![doc = include_str!("guide/modes_link.md")]
 #![doc = include_str!("../README.md")]
 
 mod body;
@@ -6,6 +8,7 @@ mod config;
 mod discrete;
 mod error;
 mod event;
+pub mod guide;
 mod input;
 mod mover;
 mod pendulum;
