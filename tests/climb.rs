@@ -19,12 +19,15 @@ fn the_climb_goes_from_the_ground_to_the_head_through_all_modes() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Of the other climbs.
+const SEEDS: [u64; 6] = [2, 3, 4, 5, 6, 7];
+
 /// Whatever becomes of a climber, it is never inside the giant, and its material point carries it.
 #[test]
 fn other_climbs_are_as_sound() {
     let creature = giant().unwrap();
-    let (mut arrived, seeds) = (0, 2..8);
-    for seed in seeds.clone() {
+    let mut arrived = 0;
+    for seed in SEEDS {
         let options = BattleOptions {
             seed,
             rocks: 0,
@@ -52,5 +55,5 @@ fn other_climbs_are_as_sound() {
         assert!(failed.is_empty(), "seed {seed}: {failed:?}");
         arrived += usize::from(on_head);
     }
-    assert!(2 * arrived >= seeds.len(), "{arrived} of {}", seeds.len());
+    assert!(2 * arrived >= SEEDS.len(), "{arrived}");
 }

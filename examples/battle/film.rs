@@ -23,6 +23,9 @@ const TICKS_A_SECOND: u64 = 60;
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
 
+/// How far before the skin a chasing camera stays, metres.
+const FUR: f64 = 1.2;
+
 /// A camera, what it films, and where the pictures go.
 pub(crate) struct Film {
     renderer: Renderer,
@@ -142,21 +145,37 @@ impl Film {
                 camera.field_of_view = 65f64.to_radians();
                 camera
             }
-            CameraKind::Chase => {
-                let state = battle.climber().state();
-                let outward = (state.position - middle) * DVec3::new(1.0, 0.0, 1.0);
-                let behind = -(root.rotation * DVec3::Z) + outward.normalize_or_zero() * 0.6;
-                let wanted =
-                    state.position + (behind.normalize_or(DVec3::X) * 8.0 + DVec3::Y * 4.0);
-                let wanted = [wanted, state.position];
-                let [eye, target] = self.eye.unwrap_or(wanted);
-                let mut eye = eye.lerp(wanted[0], 0.06);
-                eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
-                let target = target.lerp(wanted[1], 0.3);
-                self.eye = Some([eye, target]);
-                Camera::new(eye, target)
-            }
+            CameraKind::Chase => self.chase(battle, middle),
         }
+    }
+
+    /// Behind who stands or flies, out from what one holds on to, and in front of whatever would hide it.
+    fn chase(&mut self, battle: &Battle<'_>, middle: DVec3) -> Camera {
+        let (config, state) = (battle.climber().config(), battle.climber().state());
+        let out = match state.support {
+            Some(support) if state.mode.is_holding() => support.normal_in_world(),
+            _ => {
+                let root = battle.surface().world_from_model();
+                let outward = (state.position - middle) * DVec3::new(1.0, 0.0, 1.0);
+                -(root.rotation * DVec3::Z) + outward.normalize_or_zero() * 0.6
+            }
+        };
+        let level = out * DVec3::new(1.0, 0.0, 1.0);
+        let up = config.up();
+        let away = level.normalize_or(DVec3::X) * 8.0 + up * 4.0;
+        let wanted = [state.position + away, state.position];
+        let [eye, target] = self.eye.unwrap_or(wanted);
+        let target = target.lerp(wanted[1], 0.3);
+        let mut eye = eye.lerp(wanted[0], 0.06);
+        eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
+        self.eye = Some([eye, target]);
+        // What is seen through is in front of the skin by as much as fur is long.
+        let (way, start) = (eye - target, state.position);
+        let far = way.length();
+        let hit = Obstacle::cast_ray(battle.surface(), start, way / far, far + FUR);
+        let before = |skin: f64| (skin - FUR).max(0.5 * skin).min(far);
+        let free = hit.map_or(far, |hit| before(hit.distance));
+        Camera::new(target + way * (free / far), target)
     }
 
     fn add_rocks(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {

@@ -44,6 +44,8 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
         ));
     }
     println!("   battle: hash {fast} in both profiles");
+    let folder = metadata.target_directory.join("xtask-climb");
+    program(find(&released, "battle")?, &["--out", folder.as_str()])?;
     let recording = metadata.target_directory.join("xtask-battle.mcap");
     let recorded = ["--record", recording.as_str()];
     let recorded = battle_hash(metadata, find(&examples, "battle")?, &recorded)?;
@@ -81,7 +83,7 @@ fn film(metadata: &Metadata, battle: &Utf8Path, hash: &str) -> Result<(), String
     }
     let overlays = "joints,capsules,spheres,clusters,contact,anchors,sweeps,rocks,state";
     let size = ["--width", "320", "--rows", "180", "--overlay", overlays];
-    let when = ["--from", "4", "--rate", "4", "--camera", "chase"];
+    let when = ["--from", "11", "--rate", "4", "--camera", "chase"];
     let to = ["--frames", frames.as_str(), "--gif", gif.as_str()];
     let filmed = battle_hash(metadata, battle, &[&size[..], &when, &to].concat())?;
     if filmed != hash {
@@ -133,7 +135,7 @@ fn query_files(metadata: &Metadata) -> Result<Vec<String>, String> {
 /// A battle of some seconds, with these options beside; gives its hash.
 fn battle_hash(metadata: &Metadata, battle: &Utf8Path, more: &[&str]) -> Result<String, String> {
     let folder = metadata.target_directory.join("xtask-battle");
-    let fight = ["--seconds", "5", "--out", folder.as_str()];
+    let fight = ["--seconds", "12", "--out", folder.as_str()];
     program(battle, &[&fight, more].concat())?;
     let path = folder.join("summary.json");
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{path}: {e}"))?;

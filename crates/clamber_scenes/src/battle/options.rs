@@ -16,7 +16,7 @@ const FILE_HEIGHT: f64 = 20.0;
 const GIANT_HEIGHT: f64 = 40.0;
 
 /// How long battles take.
-const CLIMB_SECONDS: f64 = 90.0;
+const CLIMB_SECONDS: f64 = 78.0;
 const RIDE_SECONDS: f64 = 60.0;
 
 /// A climber climbs and rides a walking, stomping, shaking creature on which rocks fall.
@@ -41,7 +41,7 @@ pub struct BattleOptions {
     #[arg(long, value_enum)]
     pub story: Option<Story>,
 
-    /// Length of the battle [default: 90 to climb, 60 to ride].
+    /// Length of the battle [default: 78 to climb, 60 to ride].
     #[arg(long, value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
@@ -156,6 +156,15 @@ impl BattleOptions {
             Story::Climb => CLIMB_SECONDS,
             Story::Ride => RIDE_SECONDS,
         })
+    }
+
+    /// It lasts as long as its story takes, or longer.
+    pub(super) fn is_whole(&self) -> bool {
+        let whole = Self {
+            seconds: None,
+            ..self.clone()
+        };
+        self.seconds() >= whole.seconds()
     }
 
     /// How many ticks it lasts.

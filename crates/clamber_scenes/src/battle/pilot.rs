@@ -184,12 +184,17 @@ impl Pilot {
         }
         let stuck = (seconds - self.since).rem_euclid(2.0 * PATIENCE) > PATIENCE;
         let ahead = if stuck { FAR_AHEAD } else { AHEAD };
-        let mut way = std::iter::successors(Some(here), |vertex| self.ascent.next(*vertex));
-        let target = way.find(|vertex| place(surface, *vertex).distance(position) > ahead);
-        if target.is_none() {
+        if self.ascent.next(here).is_none() {
             self.arrived = Some(seconds);
         }
-        target
+        let mut target = here;
+        while let Some(next) = self.ascent.next(target) {
+            target = next;
+            if place(surface, target).distance(position) > ahead {
+                break;
+            }
+        }
+        Some(target)
     }
 
     /// The vertex of the triangle that it is on from which the way to the top is shortest, or else the nearest one.

@@ -117,17 +117,14 @@ impl Summary {
             check("anchor drift, m", recording.max_drift(), MAX_DRIFT),
             check("ticks inside or below", f64::from(watch.fell_through), 0.0),
             check("rocks inside or below", f64::from(report.fell_through), 0.0),
-            check(
-                "share of ticks not riding",
-                1.0 - recording.riding_share(),
-                MAX_OFF,
-            ),
         ];
+        let off = 1.0 - recording.riding_share();
         if options.story() == Story::Ride {
             let push_out = recording.max_push_out();
             let push_out = check("push-out while standing, m", push_out, MAX_PUSH_OUT);
             checks.insert(1, push_out);
-        } else {
+            checks.push(check("share of ticks not riding", off, MAX_OFF));
+        } else if options.is_whole() {
             let arrived = battle.arrived().unwrap_or(f64::INFINITY);
             checks.push(check("seconds to the top", arrived, options.seconds()));
             // A creature from a file need not have a clip that shakes and one that stomps.

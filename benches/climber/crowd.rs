@@ -1,0 +1,258 @@
+//! A thousand climbers on ten walking giants: what of two cores does a tick at 60 Hz take?
+
+use std::error::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clamber::prelude::*;
+use clamber_scenes::giant::giant_of;
+use clamber_scenes::measure::{Bound, Cells, quantile};
+use clamber_scenes::tour::{self, RATE};
+use clamber_scenes::{Creature, valley};
+use glam::DVec3;
+use rayon::prelude::*;
+
+const DT: f64 = 1.0 / RATE;
+
+/// Metres between giants, ten in a row of five.
+const APART: f64 = 60.0;
+const ROW: usize = 5;
+
+/// Least part along Y of the normal of a seat to stand on.
+const LEVEL: f64 = 0.85;
+
+/// Who is this far from its seat, metres, is put back: it fell, or has gone far enough.
+const AWAY: f64 = 6.0;
+
+/// Ticks before any is timed.
+const SETTLE: usize = 30;
+
+/// Climbers at most that a thread takes at a time.
+const GRAIN: usize = 16;
+
+/// What a climber does all the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Stands,
+    Walks,
+    Climbs,
+}
+
+/// Of five two stand, one walks, two climb.
+const PARTS: [Part; 5] = [
+    Part::Stands,
+    Part::Climbs,
+    Part::Walks,
+    Part::Climbs,
+    Part::Stands,
+];
+
+struct Rider {
+    climber: Climber,
+    part: Part,
+    giant: usize,
+    seat: Anchor,
+    /// Where it wants to go, in world space.
+    direction: DVec3,
+}
+
+struct Giant {
+    surface: SkinnedSurface,
+    place: Similarity,
+    phase: f64,
+    pose: Pose,
+    palette: Palette,
+}
+
+/// Adds rows for so many climbers on so many giants of so many vertices.
+pub(crate) fn measure(
+    (giants, vertices, riders): (usize, usize, usize),
+    ticks: usize,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let creature = giant_of(vertices)?;
+    let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
+    let mut giants = herd(&creature, giants, walk.duration());
+    pose(&mut giants, &creature, 0)?;
+    let mut riders = seated(&giants, riders)?;
+    let world = valley::world();
+    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
+    let mut times: [Vec<f64>; 2] = Default::default();
+    let (mut holding, mut standing) = (0, 0);
+    for tick in 0..SETTLE + ticks {
+        sit(&mut riders, &giants)?;
+        let before = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(&world, &before);
+        let start = Instant::now();
+        two.install(|| pose(&mut giants, &creature, tick + 1))?;
+        let posed = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        two.install(|| step(&mut riders, &giants, &terrain))?;
+        let stepped = start.elapsed().as_secs_f64();
+        if tick >= SETTLE {
+            for (times, seconds) in times.iter_mut().zip([posed, stepped]) {
+                times.push(seconds * 1e3);
+            }
+            let count = |mode| {
+                let modes = riders.iter().map(|rider| rider.climber.state().mode);
+                modes.filter(|other| *other == mode).count()
+            };
+            holding += count(ClimberMode::Holding);
+            standing += count(ClimberMode::Standing);
+        }
+    }
+    let all = (riders.len() * ticks) as f64;
+    let name = |what: &str| {
+        format!(
+            "{} climbers on {} giants of {vertices} vertices: {what}",
+            riders.len(),
+            giants.len()
+        )
+    };
+    cells.value(
+        &name("that stand or walk, %"),
+        100.0 * standing as f64 / all,
+    );
+    cells.value(
+        &name("that hold on and climb, %"),
+        100.0 * holding as f64 / all,
+    );
+    let [mut posed, mut stepped] = times;
+    cells.value(&name("poses on two cores, ms"), quantile(&mut posed, 0.5));
+    let mut whole: Vec<f64> = posed.iter().zip(&stepped).map(|(a, b)| a + b).collect();
+    cells.value(
+        &name("climbers on two cores, ms"),
+        quantile(&mut stepped, 0.5),
+    );
+    let share = |ms: f64| ms * 1e-3 * RATE;
+    cells.value(
+        &name("share of 60 Hz, the fastest tenth of ticks"),
+        share(quantile(&mut whole, 0.1)),
+    );
+    let share = share(quantile(&mut whole, 0.5));
+    cells.push(
+        &name("share of 60 Hz on two cores"),
+        share,
+        Bound::Most(0.5),
+    );
+    Ok(())
+}
+
+fn herd(creature: &Creature, count: usize, period: f64) -> Vec<Giant> {
+    let mut rng = fastrand::Rng::with_seed(8);
+    let giant = |index: usize| {
+        let along = |step: usize| (step as f64 - 2.0) * APART;
+        let (x, z) = (along(index % ROW), along(index / ROW));
+        Giant {
+            surface: SkinnedSurface::new(Arc::clone(&creature.collider)),
+            place: Similarity::from_translation(DVec3::new(x, valley::height(x, z), z)),
+            phase: rng.f64() * period,
+            pose: creature.skeleton.rest_pose(),
+            palette: Palette::default(),
+        }
+    };
+    (0..count).map(giant).collect()
+}
+
+fn pose(giants: &mut [Giant], creature: &Creature, tick: usize) -> Result<(), Box<dyn Error>> {
+    let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
+    let posed = giants.par_iter_mut().try_for_each(|giant| {
+        let time = giant.phase + tick as f64 * DT;
+        let posed = walk.sample_into(time, Playback::Loop, &mut giant.pose);
+        posed.map_err(|error| error.to_string())?;
+        let palette = creature
+            .skeleton
+            .palette_into(&giant.pose, &mut giant.palette);
+        palette.map_err(|error| error.to_string())?;
+        let advanced = giant.surface.advance(&giant.palette, giant.place);
+        advanced.map_err(|error| error.to_string())
+    });
+    Ok(posed?)
+}
+
+fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> {
+    let mut rng = fastrand::Rng::with_seed(9);
+    let mut riders = Vec::with_capacity(count);
+    while riders.len() < count {
+        // Those of one giant side by side, so that threads share few.
+        let giant = riders.len() * giants.len() / count;
+        let part = PARTS[riders.len() % PARTS.len()];
+        let surface = &giants[giant].surface;
+        let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
+        let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
+        let steep = f64::from(surface.motion(&seat, DT)?.normal.y);
+        let direction = DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5);
+        if part == Part::Climbs || steep > LEVEL {
+            riders.push(Rider {
+                climber: Climber::new(tour::config(), DVec3::Y * 1e4)?,
+                part,
+                giant,
+                seat,
+                direction: direction.normalize_or(DVec3::Y),
+            });
+        }
+    }
+    Ok(riders)
+}
+
+/// Puts those back that fell or went far: just above their seats.
+fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
+    for rider in riders {
+        let surface = &giants[rider.giant].surface;
+        let motion = surface.motion(&rider.seat, DT)?;
+        let place = surface.world_from_model();
+        let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
+        let point = place.transform_point_f32(motion.position);
+        let position = point + normal * (rider.climber.config().body.radius * 1.01);
+        let state = *rider.climber.state();
+        if state.position.distance(position) > AWAY {
+            rider.climber.restore(ClimberState {
+                position,
+                velocity: place.transform_vector(motion.velocity.as_dvec3()),
+                mode: ClimberMode::Falling,
+                support: None,
+                support_velocity: None,
+                arm: 0.0,
+                pull_up: 0.0,
+                stamina: 1.0,
+                ..state
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn step(
+    riders: &mut [Rider],
+    giants: &[Giant],
+    terrain: &RapierTerrain<'_>,
+) -> Result<(), Box<dyn Error>> {
+    let stepped = riders.par_iter_mut().with_max_len(GRAIN).try_for_each_init(
+        || {
+            let ground = (ObstacleId(0), terrain as &dyn Obstacle);
+            let ids = (1..).map(ObstacleId);
+            let giants = giants.iter().map(|giant| &giant.surface as &dyn Obstacle);
+            std::iter::once(ground)
+                .chain(ids.zip(giants))
+                .collect::<Vec<_>>()
+        },
+        |obstacles, rider| {
+            let input = match rider.part {
+                Part::Stands => ClimberInput::default(),
+                Part::Walks => ClimberInput {
+                    walk: rider.direction,
+                    ..ClimberInput::default()
+                },
+                Part::Climbs => ClimberInput {
+                    climb: rider.direction,
+                    grip: true,
+                    ..ClimberInput::default()
+                },
+            };
+            let climber = &mut rider.climber;
+            let stepped = climber.step_where(&input, obstacles, &|_, _| true, DT);
+            stepped.map(drop)
+        },
+    );
+    Ok(stepped?)
+}
