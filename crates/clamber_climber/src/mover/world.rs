@@ -34,6 +34,29 @@ pub(crate) struct World<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
+/// A body whose axis is less than this share of its radius below a skin was pressed there, and comes out where it went in.
+/// No body that was not crushed is so deep. Deeper, the nearest way out counts: one may climb on both sides of thin skin.
+const SUNK: f64 = 0.5;
+
+/// What is so much farther than the nearest contact, metres, is as near: triangles around a vertex.
+const AS_NEAR: f64 = 1e-4;
+
+/// Turns contacts that look into an obstacle outward, if its nearest ones are such, and nearer than a length.
+fn turn_back(touches: &mut [Touch], shallow: f64) {
+    let distances = touches.iter().map(|touch| touch.contact.distance);
+    let nearest = distances.fold(f64::INFINITY, f64::min);
+    if !(0.0..shallow).contains(&nearest) {
+        return;
+    }
+    for touch in touches {
+        let contact = &mut touch.contact;
+        if contact.distance <= nearest + AS_NEAR && touch.away.dot(contact.normal) < 0.0 {
+            touch.away = contact.normal;
+            contact.distance = -contact.distance;
+        }
+    }
+}
+
 impl<'a> World<'a> {
     pub(crate) fn new(
         obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
@@ -95,6 +118,7 @@ impl<'a> World<'a> {
         let (middle, reach) = capsule.bounding_ball();
         let near = scratch.surroundings.near(self.obstacles, middle, reach);
         for (id, obstacle) in near {
+            let first = scratch.touches.len();
             scratch.contacts.clear();
             obstacle.overlap_capsule(capsule, &mut scratch.contacts);
             for contact in &scratch.contacts {
@@ -107,6 +131,7 @@ impl<'a> World<'a> {
                     });
                 }
             }
+            turn_back(&mut scratch.touches[first..], SUNK * capsule.radius);
         }
         &scratch.touches
     }

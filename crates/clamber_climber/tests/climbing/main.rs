@@ -6,6 +6,7 @@
 )]
 
 mod corners;
+mod crushing;
 mod gripping;
 mod hanging;
 mod ledges;
