@@ -115,7 +115,7 @@ impl Step<'_> {
 }
 
 /// Cosine of the angle from up at which a wall is a slope.
-const GRAZING: f64 = 0.05;
+pub(super) const GRAZING: f64 = 0.05;
 
 /// What comes down more slowly does not bounce, metres a second.
 const BOUNCE: f64 = 0.5;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::flying::GRAZING;
 use super::{Carried, SLOPE_HYSTERESIS, Step};
 use crate::mover::Touch;
 use crate::{ClimberEvent, ClimberMode, Support};
@@ -164,21 +165,31 @@ impl Step<'_> {
             self.stand_on(carried, &touch);
             return;
         }
-        // Over the edge of level ground, the ground ends; a slope that tips is slipped on.
-        let up = self.config.up();
-        let is_slope = |touch: &Touch| {
-            let slope = self.config.slope(touch.contact.normal);
-            touch.away.dot(up) > 0.0 && slope > limit
-        };
-        let is_steep = self.world.touched().iter().any(is_slope);
         self.state.velocity += walk;
-        if is_steep {
+        if self.is_on_slope(limit) {
             self.event(ClimberEvent::Slipped);
             self.leave(ClimberMode::Sliding);
         } else {
             self.event(ClimberEvent::LostFooting);
             self.leave(ClimberMode::Falling);
         }
+    }
+
+    /// A slope that tips is slipped on; over the edge of level ground, the ground ends, whichever of the two faces that meet
+    /// there is said to touch.
+    fn is_on_slope(&mut self, limit: f64) -> bool {
+        let up = self.config.up();
+        let skin = self.config.body.skin_width;
+        let mut body = super::body(self.config, &self.state);
+        body.radius += skin;
+        self.world.touching(&body);
+        let is_steep = |touch: &Touch| self.config.slope(touch.contact.normal) > limit;
+        let ends = |slope: &Touch| {
+            let mut level = self.world.found().iter().filter(|touch| !is_steep(touch));
+            level.any(|touch| touch.contact.point.distance(slope.contact.point) <= skin)
+        };
+        let mut touched = self.world.touched().iter();
+        touched.any(|touch| touch.away.dot(up) > GRAZING && is_steep(touch) && !ends(touch))
     }
 
     /// Slopes on all sides hold it up.

@@ -42,10 +42,6 @@ const OPEN: &[(&str, &str)] = &[
         "ground_that_goes_on_leaves_who_is_held_by_a_wall",
         "0.102 mm apart after 4,800 ticks, 0.1 asked for",
     ),
-    (
-        "a_wall_along_a_drop_is_no_ground",
-        "over the edge it slides on a rapier body where it falls on skin, in one tick",
-    ),
 ];
 
 /// Runs a test; one that is open has to fail, so that none stays open that holds.
