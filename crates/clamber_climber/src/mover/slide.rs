@@ -6,6 +6,7 @@
 //! to what is wanted is taken, and swept again, until nothing is in the way. Then whatever overlaps the body,
 //! skin width and all, at the tick's end adds its planes, the deepest first: each is tested anew after every
 //! push, so that the edges within flat ground, which lie deeper only until the ground has pushed, give none.
+//! What is near but clear is among them, for a push may lead into it.
 //!
 //! A plane says where the body may end, not how fast it may go, so that what is pushed aside, carried, or
 //! slides does so within the same tick: a plane's velocity is in where its point ends. (Contact planes
@@ -27,6 +28,11 @@ const PUSHES: usize = 16;
 /// Overlap that counts as none, metres: above the rounding of f32 coordinates of a creature, far below what
 /// is seen.
 const TOUCH: f64 = 1e-5;
+
+/// How far around the body is looked for what a push may lead it into, as a share of the skin width; who is pushed farther
+/// is swept again. More than the half by which one who walks is pressed onto the ground, or the last digit would decide
+/// which of the two it is; less than the whole, by which the core is clear of what touches the skin.
+const NEAR: f64 = 0.75;
 
 /// Where a body is to go.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +89,7 @@ impl World<'_> {
     /// Moves a body; what it touches in the end, or was kept from entering, is in [`World::touched`].
     pub(crate) fn slide(&mut self, path: &Path) -> Moved {
         self.scratch.planes.clear();
+        self.scratch.uprights.clear();
         self.scratch.touched.clear();
         let mut moved = Moved {
             position: path.target,
@@ -92,25 +99,36 @@ impl World<'_> {
             is_clear: true,
         };
         self.keep_arm(path, &mut moved);
+        let near = path.skin * NEAR;
         let mut swept = path.swept;
+        // To there nothing was on the way.
+        let mut free: Option<DVec3> = None;
         loop {
             moved.rounds += 1;
-            if swept && let Some(inside) = self.meet(path, &mut moved) {
-                if inside {
-                    // What it is in already shows the way out, and would hide all else. Whatever else it is in is to be
-                    // seen from here, not from beyond where that alone would push it.
-                    swept = false;
-                } else if moved.rounds < ROUNDS {
-                    continue;
-                } else {
-                    moved.is_clear = false;
-                    self.stop(path, &mut moved);
+            if free.is_none_or(|free| moved.position.distance(free) > near) {
+                free = None;
+                if swept && let Some(inside) = self.meet(path, &mut moved) {
+                    if inside {
+                        // What it is in already shows the way out, and would hide all else. Whatever else it is in is to
+                        // be seen from here, not from beyond where that alone would push it.
+                        swept = false;
+                    } else if moved.rounds < ROUNDS {
+                        continue;
+                    } else {
+                        moved.is_clear = false;
+                        self.stop(path, &mut moved);
+                    }
                 }
             }
             let before = moved.position;
-            self.push_out(path, &mut moved);
-            let pushed = moved.position.distance(before);
-            if pushed <= path.skin * 0.5 || moved.rounds >= ROUNDS {
+            let from = *free.get_or_insert(before);
+            let pushes = self.push_out(path, &mut moved);
+            // One push leads straight off what it touches. Of two, each takes the other's touch elsewhere: there it is
+            // looked for anew, unless there is no room to find.
+            let is_settled = pushes < 2 || moved.position.distance(before) <= TOUCH;
+            let is_there = is_settled || moved.missed > TOUCH;
+            let is_near = moved.position.distance(from) <= near;
+            if is_there && is_near || moved.rounds >= ROUNDS {
                 return moved;
             }
         }
@@ -149,12 +167,14 @@ impl World<'_> {
         }
     }
 
-    /// Out of everything that overlaps the body where it is.
-    fn push_out(&mut self, path: &Path, moved: &mut Moved) {
+    /// Out of everything that overlaps the body where it is: by how many pushes.
+    fn push_out(&mut self, path: &Path, moved: &mut Moved) -> usize {
         let found = moved.position;
-        self.touching(&path.capsule(found));
+        let near = path.radius + path.skin * NEAR;
+        self.touching(&path.capsule(found).with_radius(near));
         let mut touches = std::mem::take(&mut self.scratch.touches);
-        for _ in 0..PUSHES {
+        let mut pushes = 0;
+        while pushes < PUSHES {
             let capsule = path.capsule(moved.position);
             let mut worst: Option<(f64, Touch)> = None;
             for touch in &touches {
@@ -169,6 +189,7 @@ impl World<'_> {
             };
             let offset = touch.away.dot(moved.position - path.start) + depth;
             self.add_plane(path, touch, offset, moved.position);
+            pushes += 1;
             let before = moved.position;
             self.solve(path, moved);
             if moved.position == before {
@@ -182,6 +203,7 @@ impl World<'_> {
         });
         moved.penetration = (overlap.fold(0.0, f64::max) - path.skin).max(0.0);
         std::mem::swap(&mut self.scratch.touches, &mut touches);
+        pushes
     }
 
     /// `position` is where the body would be without the plane.
@@ -200,7 +222,7 @@ impl World<'_> {
             if rise > LEVEL && rise < least_cosine && lean > 0.0 {
                 let displacement = position - path.start;
                 let into = offset - touch.away.dot(displacement);
-                scratch.planes.push(Plane {
+                scratch.uprights.push(Plane {
                     normal: level,
                     offset: level.dot(displacement) + into / lean,
                 });
@@ -210,7 +232,15 @@ impl World<'_> {
 
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
         let wanted = path.target - path.start;
-        let above = self.nearest_above(wanted);
+        let scratch = &mut *self.scratch;
+        let count = scratch.planes.len();
+        scratch.planes.extend_from_slice(&scratch.uprights);
+        let mut above = self.nearest_above(wanted);
+        self.scratch.planes.truncate(count);
+        if above.missed > TOUCH && !self.scratch.uprights.is_empty() {
+            // Steep slopes on all sides: they hold it up, as they do who falls between them.
+            above = self.nearest_above(wanted);
+        }
         moved.position = path.start + above.point;
         moved.missed = above.missed;
         self.keep_arm(path, moved);

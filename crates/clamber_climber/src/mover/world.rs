@@ -13,6 +13,8 @@ pub(crate) struct Scratch {
     contacts: Vec<Contact>,
     pub(super) touches: Vec<Touch>,
     pub(super) planes: Vec<Plane>,
+    /// Steep slopes once more, as walls: for who walks.
+    pub(super) uprights: Vec<Plane>,
     pub(super) touched: Vec<Touch>,
     surroundings: Surroundings,
 }

@@ -81,12 +81,18 @@ impl Step<'_> {
     /// Walks relative to what carried it, and finds new ground.
     fn walk(&mut self, carried: &Carried, walk: DVec3) {
         self.face(walk);
-        // Pressed onto the ground, so that the ground is among what it touches.
-        let press = carried.support.normal_in_world() * (PRESS * self.config.body.skin_width);
+        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
+        let (up, normal) = (self.config.up(), carried.support.normal_in_world());
+        // Pressed onto the ground, so that the ground is among what it touches; between slopes onto all of them alike.
+        let onto = if self.config.slope(normal) > limit {
+            up
+        } else {
+            normal
+        };
+        let press = onto * (PRESS * self.config.body.skin_width);
         let target = carried.position + walk * self.dt();
         let mut path = self.path(carried.start, target - press, carried.swept);
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
-        path.walkable = Some((self.config.up(), libm::cos(limit)));
+        path.walkable = Some((up, libm::cos(limit)));
         let moved = self.slide_along(&path);
         self.report.pushed_out -= press;
         self.state.position = moved.position;
