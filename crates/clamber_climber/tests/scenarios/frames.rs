@@ -203,23 +203,32 @@ pub(crate) fn root_joint_and_body_carry_alike_through_a_storm() {
     });
 }
 
+/// The rounding of a joint's positions, 5e-7 m some metres out, is 3e-5 m/s of what it throws: each second in the air adds
+/// that to what both are apart. Hence the tour without its jumps, and one jump of more than a second.
 pub(crate) fn root_and_joint_are_alike_for_who_walks_in_a_storm() {
-    let play = |played: Played| {
-        let stage = Stage::new(played).with(&hills(), storm);
-        let start = storm(0.0).translation + DVec3::new(0.1, 0.5, -0.2);
-        let mut run = Run::new(stage, walker_at(3.0), start).settle();
-        for tick in 0..TOUR {
-            run.step(&tour(tick));
+    for (ticks, jump) in [(TOUR, None), (120, Some(50))] {
+        let play = |played: Played| {
+            let stage = Stage::new(played).with(&hills(), storm);
+            let start = storm(0.0).translation + DVec3::new(0.1, 0.5, -0.2);
+            let mut run = Run::new(stage, walker_at(3.0), start).settle();
+            for tick in 0..ticks {
+                run.step(&ClimberInput {
+                    jump: jump == Some(tick),
+                    ..tour(tick)
+                });
+            }
+            assert_eq!(run.mode(), Standing, "{played:?}");
+            assert_eq!(run.trace.always(Standing), jump.is_none(), "{played:?}");
+            run.sound()
+        };
+        let root = play(Played::Root);
+        for (played, tolerance) in [
+            (Played::Joint, 1e-4),
+            (Played::Body, 1e-4 + chord(8.0, 1.3)),
+        ] {
+            let (apart, tick) = root.apart(&play(played));
+            within!(apart, tolerance, "{played:?}: {apart} at tick {tick}");
         }
-        run.sound()
-    };
-    let root = play(Played::Root);
-    for (played, tolerance) in [
-        (Played::Joint, 1e-4),
-        (Played::Body, 1e-4 + chord(8.0, 1.3)),
-    ] {
-        let (apart, tick) = root.apart(&play(played));
-        within!(apart, tolerance, "{played:?}: {apart} at tick {tick}");
     }
 }
 
