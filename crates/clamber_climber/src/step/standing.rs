@@ -127,7 +127,11 @@ impl Step<'_> {
         let mut core = super::body(self.config, &self.state);
         core.radius = self.config.body.hard_radius();
         let room = self.world.cast(&core, up * height);
-        let rise = up * (height * room.map_or(1.0, |(_, hit)| hit.time));
+        // Not up to the touch, or what is above would be on every way from there.
+        let rise = room.map_or(height, |(_, hit)| {
+            (height * hit.time - self.config.body.skin_width).max(0.0)
+        });
+        let rise = up * rise;
         let raised = core.moved(rise);
         let position = [missing, self.onto_a_tread().max(missing)]
             .into_iter()
@@ -149,12 +153,21 @@ impl Step<'_> {
         self.config.body.radius * (1.0 - steepest) + self.config.body.skin_width
     }
 
-    /// Where it stands after a step up, if that is level enough, and higher than here.
+    /// Where it stands after a step up, if that is level enough, higher than here, and below what is above it there.
     fn tread_below(&mut self, over: DVec3, depth: f64) -> Option<DVec3> {
         let ground = self.ground_straight_below(over, depth)?;
-        let rise = (ground.position - self.state.position).dot(self.config.up());
+        let up = self.config.up();
+        let rise = (ground.position - self.state.position).dot(up);
         let is_level = self.config.slope(ground.touch.away) <= self.config.ground.max_slope;
-        (is_level && rise > self.config.body.skin_width).then_some(ground.position)
+        if !is_level || rise <= self.config.body.skin_width {
+            return None;
+        }
+        // Its skin stands off what its core has come down on: perhaps higher than from where that came.
+        let lift = (ground.position - over).dot(up);
+        let body = super::body(self.config, &self.state).moved(over - self.state.position);
+        let core = body.with_radius(self.config.body.hard_radius());
+        let is_free = lift <= 0.0 || self.world.cast(&core, up * lift).is_none();
+        is_free.then_some(ground.position)
     }
 
     /// Stands on what is below it now, or leaves the ground.

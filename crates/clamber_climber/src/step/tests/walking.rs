@@ -85,3 +85,58 @@ fn ground_that_ends_or_is_removed_is_left() {
     // And without any obstacle at all.
     assert!(climber.step(&IDLE, &[], DT).unwrap().events.is_empty());
 }
+
+/// A step at x = 1, below a ceiling that is so high there, and falls by so much for each metre ahead.
+fn step_below_ceiling(step: f32, height: f32, fall: f32) -> SkinnedSurface {
+    let ceiling = |x: f32| height - fall * (x - 1.0);
+    let mut corners = Vec::new();
+    for (x, y) in [
+        (-2., 0.),
+        (1., 0.),
+        (1., step),
+        (4., step),
+        (4., ceiling(4.)),
+        (-2., ceiling(-2.)),
+    ] {
+        corners.extend([(x, y, -5.), (x, y, 5.)]);
+    }
+    let triangles = [0, 2, 4, 8].map(|a| [[a, a + 1, a + 3], [a, a + 3, a + 2]]);
+    patch(&corners, &triangles.concat())
+}
+
+#[test]
+fn a_step_is_climbed_where_there_is_room_above_it() {
+    // 3 cm above its head once it is up, of the 30 by which it may step.
+    let cave = step_below_ceiling(0.2, 1.03, 0.0);
+    let mut climber = landed(0.0, 0.45, 0.0, &cave);
+    for _ in 0..60 {
+        step_on(&mut climber, &cave, &walking(DVec3::X));
+    }
+    let state = climber.state();
+    assert!(state.position.x > 2.0, "{state:?}");
+    assert!((state.position.y - 0.6).abs() < 1e-4, "{state:?}");
+}
+
+#[test]
+fn no_step_leads_into_a_ceiling() {
+    let mut least = f64::INFINITY;
+    for millimetres in 0..60 {
+        let (height, fall) = (0.8 + 0.001 * millimetres as f32, 0.1);
+        let cave = step_below_ceiling(0.03, height, fall);
+        let mut climber = landed(0.0, 0.45, 0.0, &cave);
+        let core = climber.config().body.hard_radius();
+        let slope = f64::from(fall);
+        for tick in 0..40 {
+            step_on(&mut climber, &cave, &walking(DVec3::X));
+            let p = climber.state().position;
+            let above = f64::from(height) - slope * (p.x - 1.0) - p.y;
+            let room = above / libm::sqrt(1.0 + slope * slope) - core;
+            least = least.min(room);
+            assert!(
+                room >= -1e-4,
+                "{millimetres} mm, tick {tick}: {room} m of room at {p}"
+            );
+        }
+    }
+    assert!(least < 0.011, "none came near it: {least} m of room");
+}
