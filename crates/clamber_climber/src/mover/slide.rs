@@ -19,7 +19,8 @@ use glam::DVec3;
 use super::{Touch, World};
 use crate::planes::{Above, Plane, nearest_above};
 
-/// Most sweeps of one movement. Two or three do for corners; what is left after eight stands where it met.
+/// Most rounds of one movement, each a sweep, a look at what overlaps, or both. Two or three do for corners; what is left
+/// after eight stands where it met.
 const ROUNDS: u32 = 8;
 
 /// Most planes that the overlaps of one round add.
