@@ -76,10 +76,15 @@ impl<'a> World<'a> {
     }
 
     /// How much an impulse of 1 N s speeds it up.
-    pub(crate) fn push_response(&self, touch: &Touch, direction: DVec3) -> f64 {
-        let found = self.obstacles.iter().find(|(id, _)| *id == touch.obstacle);
+    pub(crate) fn push_response(
+        &self,
+        obstacle: ObstacleId,
+        point: &MaterialPoint,
+        direction: DVec3,
+    ) -> f64 {
+        let found = self.obstacles.iter().find(|(id, _)| *id == obstacle);
         let response = found.map_or(0.0, |(_, obstacle)| {
-            obstacle.push_response(&touch.contact.material, direction)
+            obstacle.push_response(point, direction)
         });
         if response > 0.0 && response.is_finite() {
             response

@@ -33,6 +33,8 @@ pub(crate) struct Step<'a> {
     state: ClimberState,
     world: World<'a>,
     report: StepReport,
+    /// It has moved through the air in this tick.
+    has_flown: bool,
 }
 
 /// What carried a climber since the last tick.
@@ -80,6 +82,7 @@ impl<'a> Step<'a> {
                 is_clear: true,
                 ..StepReport::default()
             },
+            has_flown: false,
         }
     }
 
@@ -96,6 +99,7 @@ impl<'a> Step<'a> {
         }
         self.stand_up();
         self.tire(before.shake);
+        self.weigh_down();
         if !self.state.is_finite() {
             // Obstacles of one's own may answer nonsense; the climber waits for better.
             let report = StepReport {
