@@ -17,6 +17,24 @@ pub(crate) struct Scratch {
     surroundings: Surroundings,
 }
 
+/// Contacts of a query and planes of a movement that there is room for from the first tick on, so that hardly a later one
+/// has to make more: within its reach a climber on the giant of 20 m finds up to 42. Together 19 KB.
+const CONTACTS: usize = 64;
+const PLANES: usize = 32;
+
+impl Scratch {
+    fn make_room(&mut self) {
+        self.contacts.clear();
+        self.contacts.reserve(CONTACTS);
+        self.touches.clear();
+        self.touches.reserve(CONTACTS);
+        self.planes.clear();
+        self.planes.reserve(PLANES);
+        self.touched.clear();
+        self.touched.reserve(PLANES);
+    }
+}
+
 /// A contact, what it belongs to, and where from it is looked at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
@@ -42,6 +60,7 @@ impl<'a> World<'a> {
         scratch: &'a mut Scratch,
     ) -> Self {
         scratch.surroundings.forget();
+        scratch.make_room();
         Self {
             obstacles,
             can_grip,
