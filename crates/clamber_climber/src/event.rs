@@ -76,6 +76,11 @@ pub enum ClimberEvent {
 }
 
 /// What a climber gave to something that can be pushed.
+///
+/// What it stands on, grips or hangs from is given its weight: mass times gravity, at the point that supports it, however
+/// it walks or climbs there. What it lands on or strikes in the air is given, along the contact, the momentum that brings
+/// both to one speed; what it runs into likewise, but at most [`BodyConfig::push_force`](crate::BodyConfig::push_force).
+/// Several that are pushed at once share that. No push comes of a jump, or of its feet as it begins to walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     /// To what.
@@ -93,7 +98,8 @@ pub struct Push {
 pub struct StepReport {
     /// In the order in which they happened; empty in most ticks, and then without memory.
     pub events: Vec<ClimberEvent>,
-    /// What it pushed; apply it to the bodies, or do not.
+    /// What it pushed; apply it to the bodies before their next step, or do not. Without memory where nothing can be
+    /// pushed.
     pub pushes: Vec<Push>,
     /// By how much contacts moved it away from where it was carried and wanted to go.
     pub pushed_out: DVec3,

@@ -16,7 +16,8 @@ pub struct BodyConfig {
     pub skin_width: f64,
     /// Kilograms, positive. 80. What it stands on and runs into feels it, if it can be pushed.
     pub mass: f64,
-    /// With what it pushes bodies at most, newtons, not negative. 600.
+    /// With what it pushes what it runs into at most, newtons, not negative. 600. Its weight, and what it strikes in the
+    /// air, are not limited by it.
     pub push_force: f64,
 }
 

@@ -19,6 +19,26 @@ pub(crate) struct Scratch {
     surroundings: Surroundings,
 }
 
+/// Contacts of a query and planes of a movement that there is room for from the first tick on, so that hardly a later one
+/// has to make more: within its reach a climber on the giant of 20 m finds up to 42. Together 19 KB.
+const CONTACTS: usize = 64;
+const PLANES: usize = 32;
+
+impl Scratch {
+    fn make_room(&mut self) {
+        self.contacts.clear();
+        self.contacts.reserve(CONTACTS);
+        self.touches.clear();
+        self.touches.reserve(CONTACTS);
+        self.planes.clear();
+        self.planes.reserve(PLANES);
+        self.uprights.clear();
+        self.uprights.reserve(PLANES);
+        self.touched.clear();
+        self.touched.reserve(PLANES);
+    }
+}
+
 /// A contact, what it belongs to, and where from it is looked at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
@@ -67,6 +87,7 @@ impl<'a> World<'a> {
         scratch: &'a mut Scratch,
     ) -> Self {
         scratch.surroundings.forget();
+        scratch.make_room();
         Self {
             obstacles,
             can_grip,
@@ -101,10 +122,15 @@ impl<'a> World<'a> {
     }
 
     /// How much an impulse of 1 N s speeds it up.
-    pub(crate) fn push_response(&self, touch: &Touch, direction: DVec3) -> f64 {
-        let found = self.obstacles.iter().find(|(id, _)| *id == touch.obstacle);
+    pub(crate) fn push_response(
+        &self,
+        obstacle: ObstacleId,
+        point: &MaterialPoint,
+        direction: DVec3,
+    ) -> f64 {
+        let found = self.obstacles.iter().find(|(id, _)| *id == obstacle);
         let response = found.map_or(0.0, |(_, obstacle)| {
-            obstacle.push_response(&touch.contact.material, direction)
+            obstacle.push_response(point, direction)
         });
         if response > 0.0 && response.is_finite() {
             response

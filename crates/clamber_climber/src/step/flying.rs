@@ -23,6 +23,7 @@ impl Step<'_> {
             self.event(ClimberEvent::Jumped);
             self.change_to(ClimberMode::Falling);
         }
+        self.has_flown = true;
         self.state.velocity += self.config.gravity * dt;
         let falling = self.state.velocity;
         let moved = self.slide(start, start + falling * dt, true);

@@ -76,7 +76,7 @@ impl Step<'_> {
     }
 
     /// The steepest slope that one who stands stays on.
-    fn stood_on(&self) -> f64 {
+    pub(super) fn stood_on(&self) -> f64 {
         self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 

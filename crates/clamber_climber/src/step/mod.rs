@@ -35,6 +35,8 @@ pub(crate) struct Step<'a> {
     report: StepReport,
     /// It got its support in this tick, which therefore has not carried it yet.
     attached: bool,
+    /// It has moved through the air in this tick.
+    has_flown: bool,
 }
 
 /// What carried a climber since the last tick.
@@ -83,6 +85,7 @@ impl<'a> Step<'a> {
                 ..StepReport::default()
             },
             attached: false,
+            has_flown: false,
         }
     }
 
@@ -99,6 +102,7 @@ impl<'a> Step<'a> {
         }
         self.stand_up();
         self.tire(before.shake);
+        self.weigh_down();
         if !self.state.is_finite() {
             // Obstacles of one's own may answer nonsense; the climber waits for better.
             let report = StepReport {

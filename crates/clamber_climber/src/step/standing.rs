@@ -215,9 +215,10 @@ impl Step<'_> {
     fn is_wedged(&mut self, carried: &Carried) -> bool {
         let down = carried.position - self.config.up() * self.config.body.skin_width;
         // A trial, that moves nothing.
-        let pushed_out = self.report.pushed_out;
+        let (pushed_out, pushes) = (self.report.pushed_out, self.report.pushes.len());
         self.slide(carried.start, down, carried.swept);
         self.report.pushed_out = pushed_out;
+        self.report.pushes.truncate(pushes);
         self.holding_up(0.0).is_some()
     }
 

@@ -9,7 +9,8 @@
 //!
 //! `motion`: a sphere that a limb swings into, or that rides on one, kept out of it by the thesis's averaged push-out,
 //! sub-steps of it, speculative contacts, and sweeps: how deep it is in the limb at the end of ticks, how often the limb
-//! passes through it, how far it drifts from its place on the skin, and what a tick costs, in the mean.
+//! passes through it, how far it drifts from its place on the skin, and what a tick costs, in the mean. The same of
+//! whole climbers, which float, stand on ground, or stand on the limb or hold it: how deep the limb is in their core.
 //!
 //! `skinning`: influences cut to 4, 2 and 1, weights of 16 and 8 bits, positions of 16 bits: the error of a vertex, the
 //! time and the bytes.

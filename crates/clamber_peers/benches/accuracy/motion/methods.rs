@@ -1,5 +1,6 @@
 //! Ways to keep a sphere out of a limb that moves.
 
+use std::error::Error;
 use std::sync::Arc;
 
 use clamber_climber::average_push_out;
@@ -10,6 +11,7 @@ use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceError, SurfaceHit,
 use clamber_world::{Contact, Obstacle};
 use glam::{DVec3, Vec3};
 
+use super::climbers::{Stance, Walker};
 use super::limb::Course;
 
 /// Sweeps, and rounds over speculative planes, in a tick.
@@ -24,15 +26,29 @@ pub(crate) enum Method {
     Speculative,
     /// Sweeps against the moving skin, each contact a plane that moves with it; then a push-out.
     Sweep,
+    /// No test sphere: a whole climber, whose ball is as large.
+    Climber(Stance),
 }
 
-pub(crate) const METHODS: [(Method, &str); 6] = [
+pub(crate) const SPHERES: [(Method, &str); 6] = [
     (Method::PushOut { steps: 1 }, "averaged push-out"),
     (Method::PushOut { steps: 2 }, "2 sub-steps"),
     (Method::PushOut { steps: 4 }, "4 sub-steps"),
     (Method::PushOut { steps: 8 }, "8 sub-steps"),
     (Method::Speculative, "speculative contacts"),
     (Method::Sweep, "sweeps"),
+];
+
+/// In the way of a limb that swings.
+pub(crate) const STRUCK: [(Method, &str); 2] = [
+    (Method::Climber(Stance::InAir), "climber, in the air"),
+    (Method::Climber(Stance::OnGround), "climber, standing"),
+];
+
+/// On a limb that heaves.
+pub(crate) const RIDING: [(Method, &str); 2] = [
+    (Method::Climber(Stance::OnLimb), "climber, standing"),
+    (Method::Climber(Stance::Holding), "climber, holding"),
 ];
 
 /// A sphere beside a limb.
@@ -42,6 +58,7 @@ pub(crate) struct Body {
     /// It rests on a material point.
     anchor: Option<Anchor>,
     method: Method,
+    walker: Option<Walker>,
     surface: SkinnedSurface,
     /// As the limb was a tick ago, for what looks ahead from there.
     before: SkinnedSurface,
@@ -56,12 +73,17 @@ impl Body {
         course: &Course,
         center: DVec3,
         radius: f64,
-    ) -> Result<Self, SurfaceError> {
+    ) -> Result<Self, Box<dyn Error>> {
+        let walker = match method {
+            Method::Climber(stance) => Some(Walker::new(stance, center)?),
+            _ => None,
+        };
         let mut body = Self {
             center,
             radius,
             anchor: None,
             method,
+            walker,
             surface: SkinnedSurface::new(Arc::clone(mesh)),
             before: SkinnedSurface::new(Arc::clone(mesh)),
             contacts: Vec::new(),
@@ -73,8 +95,21 @@ impl Body {
         Ok(body)
     }
 
-    /// Rests on the nearest skin from now on.
-    pub(crate) fn rest(&mut self) -> Result<(), SurfaceError> {
+    /// What nothing may be in: all of a sphere, but for a climber its core, without the skin width.
+    pub(crate) fn core(&self) -> f64 {
+        self.walker.as_ref().map_or(self.radius, |walker| {
+            let body = &walker.climber.config().body;
+            body.radius - body.skin_width
+        })
+    }
+
+    /// Rests on the nearest skin from now on, or on the ground.
+    pub(crate) fn rest(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
+        if let Some(walker) = &mut self.walker {
+            walker.settle(&self.surface, dt)?;
+            self.center = walker.climber.state().position;
+            return Ok(());
+        }
         let hit = self
             .surface
             .closest_point(self.center.as_vec3(), f32::INFINITY)?;
@@ -83,7 +118,12 @@ impl Body {
     }
 
     /// The tick from `time` on.
-    pub(crate) fn tick(&mut self, course: &Course, time: f64, dt: f64) -> Result<(), SurfaceError> {
+    pub(crate) fn tick(
+        &mut self,
+        course: &Course,
+        time: f64,
+        dt: f64,
+    ) -> Result<(), Box<dyn Error>> {
         match self.method {
             Method::PushOut { steps } => {
                 let step = dt / f64::from(steps);
@@ -107,6 +147,13 @@ impl Body {
                 let motion = self.sweep(wanted)?;
                 self.center += motion;
                 self.push_out();
+            }
+            Method::Climber(_) => {
+                self.pose(&course.palette(time + dt))?;
+                if let Some(walker) = &mut self.walker {
+                    walker.tick(&self.surface, dt)?;
+                    self.center = walker.climber.state().position;
+                }
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
-//! A sphere and a limb that moves: what each way of keeping them apart costs, and what it lets through.
+//! A sphere or a climber and a limb that moves: what each way of keeping them apart costs, and what it lets through.
 
+mod climbers;
 mod limb;
 mod methods;
 
@@ -9,9 +10,10 @@ use std::time::Instant;
 
 use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
 use clamber_surface::mesh::ColliderMesh;
+use climbers::{GROUND, Stance};
 use glam::DVec3;
 use limb::{AT, Course, LENGTH, RADIUS, limb, signed_distance};
-use methods::{Body, METHODS, Method};
+use methods::{Body, Method, RIDING, SPHERES, STRUCK};
 
 /// Of the sphere, metres.
 const SPHERE: f64 = 0.4;
@@ -54,7 +56,7 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut series: Vec<Series> = Vec::new();
     for rate in [30.0, 60.0, 120.0] {
         for speed in [5.0, 20.0, 60.0, 100.0] {
-            for (method, name) in METHODS {
+            for (method, name) in SPHERES.into_iter().chain(STRUCK) {
                 let swung = swing(&mesh, method, speed, rate, trials)?;
                 report(
                     &mut table,
@@ -66,7 +68,7 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
             }
         }
         for speed in [1.0, 5.0] {
-            for (method, name) in METHODS {
+            for (method, name) in SPHERES.into_iter().chain(RIDING) {
                 let rode = ride(&mesh, method, speed, rate, seconds)?;
                 report(
                     &mut table,
@@ -94,7 +96,8 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     plot.write_svg(&folder.join(format!("accuracy_motion{brief}.svg")))
 }
 
-/// A limb swings through where a sphere is, at most half beside the middle of it.
+/// A limb swings through where a sphere is, at most half beside the middle of it; through where a climber stands, a sixth
+/// beside it.
 fn swing(
     mesh: &Arc<ColliderMesh>,
     method: Method,
@@ -114,8 +117,13 @@ fn swing(
         };
         let beside = 0.5 * (RADIUS + SPHERE) * (2.0 * rng.f64() - 1.0);
         let along = AT + rng.f64() - 0.5;
-        let place = DVec3::new(along, 0.0, beside);
+        let stands = method == Method::Climber(Stance::OnGround);
+        let height = if stands { SPHERE - GROUND } else { beside };
+        let place = DVec3::new(along, 0.0, height);
         let mut body = Body::new(mesh, method, &course, place, SPHERE)?;
+        if stands {
+            body.rest(dt)?;
+        }
         let (mut was_before, mut passed) = (true, false);
         let ticks = ((before + BEYOND) * AT / speed / dt).ceil() as usize;
         for tick in 0..ticks {
@@ -133,7 +141,7 @@ fn swing(
                 .transform_point3(body.center);
             // Beyond the tip there is nothing to be deep in.
             if at.x < LENGTH {
-                let depth = SPHERE - signed_distance(mesh, &palette, body.center);
+                let depth = body.core() - signed_distance(mesh, &palette, body.center);
                 outcome.depths.push(depth.max(0.0));
             }
             // The limb swings towards its Y.
@@ -141,6 +149,10 @@ fn swing(
                 was_before = false;
                 passed |= at.z.abs() < THROUGH * (RADIUS + SPHERE) && at.x < LENGTH;
             }
+        }
+        let is_climber = matches!(method, Method::Climber(_));
+        if is_climber && body.center.distance(place) < 0.1 * SPHERE {
+            return Err(format!("no limb came to the climber at {place}").into());
         }
         outcome.trials += 1;
         outcome.passed += usize::from(passed);
@@ -162,7 +174,7 @@ fn ride(
     let top = DVec3::new(5.0, RADIUS + SPHERE, 0.0);
     let place = course.model_from_joint(0.0).transform_point3(top);
     let mut body = Body::new(mesh, method, &course, place, SPHERE)?;
-    body.rest()?;
+    body.rest(dt)?;
     let from_joint = |time: f64, point: DVec3| {
         course
             .model_from_joint(time)
@@ -182,7 +194,7 @@ fn ride(
             .microseconds
             .push(begin.elapsed().as_secs_f64() * 1e6);
         body.end(&course, time + dt)?;
-        let depth = SPHERE - signed_distance(mesh, &course.palette(time + dt), body.center);
+        let depth = body.core() - signed_distance(mesh, &course.palette(time + dt), body.center);
         outcome.depths.push(depth.max(0.0));
         // Against the limb itself; what it is lifted off counts too.
         let drift = from_joint(time + dt, body.center).distance(start);

@@ -1,0 +1,10 @@
+//! What a climber gives to rapier's bodies: its weight, its momentum, and pushes of limited force.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+mod running;
+mod scene;
+mod weighing;

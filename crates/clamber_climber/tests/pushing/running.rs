@@ -1,0 +1,175 @@
+//! What it runs into, and what cannot be pushed.
+
+use clamber_climber::{Climber, ClimberConfig, ClimberInput};
+use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, Vector};
+use clamber_world::{BodyPoses, Obstacle, ObstacleId, RapierTerrain};
+use glam::DVec3;
+
+use crate::scene::{DT, IDLE, Scene, cuboid, sum, walk};
+
+const FORCE: f64 = 600.0;
+const SPEED: f64 = 3.0;
+
+/// The point that is pushed keeps to [`SPEED`]; the box rocks a little, and its middle goes by a thousandth faster.
+const FASTEST: f64 = SPEED * 1.001;
+
+/// On the floor, half a metre from a box of a mass whose side is a metre.
+fn before_a_box(mass: f64) -> (Scene, RigidBodyHandle) {
+    let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.4, 0.0)).with_floor();
+    let place = Vector::new(1.4, 0.5, 0.0);
+    let body = RigidBodyBuilder::dynamic().translation(place);
+    let handle = scene.add(body, [(cuboid(0.5, 0.5, 0.5), mass)]);
+    (scene, handle)
+}
+
+#[test]
+fn a_box_gains_the_momentum_that_it_is_given_and_never_outruns_the_climber() {
+    let (mut scene, handle) = before_a_box(20.0);
+    let mut fastest = 0.0_f64;
+    for tick in 0..240 {
+        let given = sum(&scene.pushes);
+        let before = scene.momentum(handle);
+        scene.apply();
+        let gained = scene.momentum(handle) - before;
+        let told = format!("tick {tick}: given {given}, gained {gained}");
+        assert!(gained.distance(given) < 1e-4, "{told}");
+        assert!(given.length() <= FORCE * DT * (1.0 + 1e-9), "{told}");
+        scene.step(&walk(DVec3::X));
+        // Nothing else pushes it along the floor.
+        let over_the_tick = scene.momentum(handle) - before;
+        assert!(
+            (over_the_tick - given).x.abs() < 1e-3,
+            "{told}: {over_the_tick}"
+        );
+        fastest = fastest.max(scene.velocity(handle).x);
+        // Who runs after it has not come through.
+        let ahead = scene.place(handle).x - scene.climber.state().position.x;
+        assert!(ahead > 0.88, "{told}: {ahead}");
+    }
+    assert!(fastest <= FASTEST, "{fastest}");
+    assert!(fastest > SPEED * 0.99, "{fastest}");
+    assert!(scene.place(handle).x > 8.0, "{}", scene.place(handle));
+}
+
+#[test]
+fn ten_tonnes_gain_no_more_than_the_force_gives() {
+    let (mut scene, handle) = before_a_box(10_000.0);
+    let most = FORCE * DT / 10_000.0;
+    let mut pushed = 0;
+    for tick in 0..240 {
+        let before = scene.velocity(handle).x;
+        scene.tick(&walk(DVec3::X));
+        let gained = scene.velocity(handle).x - before;
+        assert!(gained <= most * 1.001, "tick {tick}: {gained}");
+        pushed += u32::from(!scene.pushes.is_empty());
+    }
+    assert!(pushed > 200, "{pushed}");
+    // Without friction all the force accelerates it, from the first touch on.
+    let expected = most * f64::from(pushed);
+    let speed = scene.velocity(handle).x;
+    assert!(
+        (speed / expected - 1.0).abs() < 0.05,
+        "{speed} of {expected}"
+    );
+}
+
+#[test]
+fn two_at_once_share_the_force_be_they_one_body_or_two() {
+    for is_one in [true, false] {
+        let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.4, 0.0)).with_floor();
+        // Its ball fits into the gap between them by a half.
+        let sides = [-0.7, 0.7];
+        let handles: Vec<RigidBodyHandle> = if is_one {
+            let body = RigidBodyBuilder::dynamic().translation(Vector::new(1.4, 0.5, 0.0));
+            let half = |z| cuboid(0.5, 0.5, 0.5).translation(Vector::new(0.0, 0.0, z));
+            vec![scene.add(body, sides.map(|z| (half(z), 10.0)))]
+        } else {
+            let body = |z| RigidBodyBuilder::dynamic().translation(Vector::new(1.4, 0.5, z));
+            let add = |z| scene.add(body(z), [(cuboid(0.5, 0.5, 0.5), 10.0)]);
+            sides.map(add).to_vec()
+        };
+        let mut both = 0;
+        for tick in 0..240 {
+            scene.tick(&walk(DVec3::X));
+            let given = sum(&scene.pushes);
+            let told = format!("one body {is_one}, tick {tick}: {:?}", scene.pushes);
+            assert!(given.length() <= FORCE * DT * (1.0 + 1e-9), "{told}");
+            both += u32::from(scene.pushes.len() == 2);
+            for handle in &handles {
+                let speed = scene.velocity(*handle).x;
+                assert!(speed <= FASTEST, "{told}: {speed}");
+            }
+        }
+        assert!(both > 4, "one body {is_one}: {both}");
+    }
+}
+
+/// Stands, walks against a wall, jumps and lands.
+fn course(tick: u32) -> ClimberInput {
+    ClimberInput {
+        jump: tick % 50 == 20,
+        ..if tick < 60 { IDLE } else { walk(DVec3::X) }
+    }
+}
+
+#[test]
+fn what_cannot_be_pushed_is_not_and_costs_no_memory() {
+    let bodies = [
+        RigidBodyBuilder::fixed(),
+        RigidBodyBuilder::kinematic_velocity_based().linvel(Vector::new(-0.5, 0.0, 0.0)),
+        RigidBodyBuilder::kinematic_position_based(),
+    ];
+    for body in bodies {
+        let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.6, 0.0)).with_floor();
+        let wall = body.translation(Vector::new(3.0, 0.5, 0.0));
+        scene.add(wall, [(cuboid(0.5, 0.5, 5.0), 50.0)]);
+        // And one that is pushed by nobody, far away.
+        let far = RigidBodyBuilder::dynamic().translation(Vector::new(-30.0, 0.5, 0.0));
+        scene.add(far, [(cuboid(0.5, 0.5, 0.5), 50.0)]);
+        for tick in 0..300 {
+            let report = scene.tick(&course(tick));
+            assert_eq!(report.pushes.capacity(), 0, "tick {tick}: {report:?}");
+        }
+    }
+}
+
+#[test]
+fn the_order_of_pushes_is_that_of_no_list() {
+    // A box in each of two worlds, with a gap between that is too narrow; the raft of a third one is stood on.
+    let (mut boxes, mut befores) = (Vec::new(), Vec::new());
+    for z in [-0.7, 0.7] {
+        let mut scene = Scene::new(0.0, DVec3::ZERO);
+        let body = RigidBodyBuilder::dynamic().translation(Vector::new(1.4, 0.5, z));
+        scene.add(body, [(cuboid(0.5, 0.5, 0.5), 50_000.0)]);
+        boxes.push(scene.world);
+        befores.push(BodyPoses::new());
+    }
+    let mut scene = Scene::new(0.0, DVec3::ZERO);
+    let raft = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, -0.5, 0.0));
+    scene.add(raft, [(cuboid(9.0, 0.5, 9.0), 50_000.0)]);
+    boxes.push(scene.world);
+    befores.push(BodyPoses::new());
+    let worlds: Vec<RapierTerrain<'_>> = boxes
+        .iter()
+        .zip(&befores)
+        .map(|(world, before)| RapierTerrain::of_world(world, before))
+        .collect();
+    let orders = [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1]];
+    let mut climbers =
+        orders.map(|_| Climber::new(ClimberConfig::walker(), DVec3::new(0.0, 0.6, 0.0)).unwrap());
+    let mut most = 0;
+    for tick in 0..120 {
+        let reports = std::array::from_fn::<_, 4, _>(|k| {
+            let obstacles = orders[k].map(|w| {
+                let world: &dyn Obstacle = &worlds[w];
+                (ObstacleId(w as u32), world)
+            });
+            climbers[k].step(&walk(DVec3::X), &obstacles, DT).unwrap()
+        });
+        for report in &reports {
+            assert_eq!(*report, reports[0], "tick {tick}");
+        }
+        most = most.max(reports[0].pushes.len());
+    }
+    assert_eq!(most, 3, "two boxes and the raft");
+}

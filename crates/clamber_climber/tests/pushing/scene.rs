@@ -1,0 +1,141 @@
+//! A climber in a rapier world that feels what it pushes.
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, Push, StepReport,
+};
+use clamber_world::rapier3d::prelude::{
+    ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
+};
+use clamber_world::{BodyPoses, ObstacleId, RapierTerrain, apply_push};
+use glam::DVec3;
+
+pub(crate) const DT: f64 = 1.0 / 60.0;
+
+pub(crate) const IDLE: ClimberInput = ClimberInput {
+    walk: DVec3::ZERO,
+    climb: DVec3::ZERO,
+    jump: false,
+    grip: false,
+    blow: None,
+};
+
+pub(crate) fn walk(direction: DVec3) -> ClimberInput {
+    ClimberInput {
+        walk: direction,
+        ..IDLE
+    }
+}
+
+/// A world without friction, and a climber of 80 kg that walks at 3 m/s and pushes with up to 600 N.
+pub(crate) struct Scene {
+    pub(crate) world: PhysicsWorld,
+    pub(crate) climber: Climber,
+    /// Of the last step, not applied yet.
+    pub(crate) pushes: Vec<Push>,
+    before: BodyPoses,
+}
+
+impl Scene {
+    /// With the climber's centre at a place.
+    pub(crate) fn new(gravity: f64, position: DVec3) -> Self {
+        let mut world = PhysicsWorld {
+            gravity: Vector::new(0.0, -gravity as f32, 0.0),
+            ..PhysicsWorld::default()
+        };
+        world.integration_parameters.dt = DT as f32;
+        Self {
+            world,
+            climber: Climber::new(ClimberConfig::walker(), position).unwrap(),
+            pushes: Vec::new(),
+            before: BodyPoses::new(),
+        }
+    }
+
+    /// A fixed floor, its top at height 0.
+    pub(crate) fn with_floor(mut self) -> Self {
+        let floor = cuboid(50.0, 0.5, 50.0).translation(Vector::new(0.0, -0.5, 0.0));
+        self.world.insert_collider(floor, None);
+        self
+    }
+
+    /// A body of some boxes, with the mass of each.
+    pub(crate) fn add(
+        &mut self,
+        body: RigidBodyBuilder,
+        boxes: impl IntoIterator<Item = (ColliderBuilder, f64)>,
+    ) -> RigidBodyHandle {
+        let handle = self.world.insert_body(body);
+        for (collider, mass) in boxes {
+            let collider = collider.mass(mass as f32);
+            self.world.insert_collider(collider, Some(handle));
+        }
+        // So that queries find them, and masses are known.
+        self.world.detect_collisions(&(), &());
+        handle
+    }
+
+    /// Applies the last pushes, steps the world, then the climber.
+    pub(crate) fn tick(&mut self, input: &ClimberInput) -> StepReport {
+        self.apply();
+        self.step(input)
+    }
+
+    pub(crate) fn apply(&mut self) {
+        for push in self.pushes.drain(..) {
+            let world = &mut self.world;
+            apply_push(
+                &mut world.bodies,
+                &world.colliders,
+                &push.material,
+                push.impulse,
+            );
+        }
+    }
+
+    pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
+        self.before.record(&self.world.bodies);
+        self.world.step();
+        let terrain = RapierTerrain::of_world(&self.world, &self.before);
+        let report = self
+            .climber
+            .step(input, &[(ObstacleId(0), &terrain)], DT)
+            .unwrap();
+        self.pushes.clone_from(&report.pushes);
+        report
+    }
+
+    pub(crate) fn momentum(&self, body: RigidBodyHandle) -> DVec3 {
+        let body = &self.world.bodies[body];
+        (body.linvel() * body.mass()).as_dvec3()
+    }
+
+    pub(crate) fn velocity(&self, body: RigidBodyHandle) -> DVec3 {
+        self.world.bodies[body].linvel().as_dvec3()
+    }
+
+    pub(crate) fn place(&self, body: RigidBodyHandle) -> DVec3 {
+        self.world.bodies[body].translation().as_dvec3()
+    }
+
+    pub(crate) fn assert_standing(&self, told: &str) {
+        let state = self.climber.state();
+        assert_eq!(state.mode, ClimberMode::Standing, "{told}: {state:?}");
+    }
+}
+
+/// By its half sides, without friction.
+pub(crate) fn cuboid(x: f32, y: f32, z: f32) -> ColliderBuilder {
+    ColliderBuilder::cuboid(x, y, z).friction(0.0)
+}
+
+/// Of all that was pushed.
+pub(crate) fn sum(pushes: &[Push]) -> DVec3 {
+    pushes.iter().map(|push| push.impulse).sum()
+}
+
+pub(crate) fn landing_speed(report: &StepReport) -> Option<f64> {
+    report.events.iter().find_map(|event| match event {
+        ClimberEvent::Landed { speed, .. } => Some(*speed),
+        _ => None,
+    })
+}

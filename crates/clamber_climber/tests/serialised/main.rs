@@ -1,0 +1,111 @@
+//! A climber that is written down as JSON and read again goes on with the same bits, whatever it is doing.
+//!
+//! JSON that is read as the nearest float needs `float_roundtrip` of serde_json.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+#[path = "../golden/creature.rs"]
+mod creature;
+#[path = "../random/scene.rs"]
+#[expect(dead_code, reason = "the random runs look at more of it")]
+mod scene;
+
+use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
+use glam::DVec3;
+use scene::Scene;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// What is left of a value after it was written and read.
+fn copy<T: Serialize + DeserializeOwned>(value: &T) -> T {
+    let json = serde_json::to_string(value).unwrap();
+    serde_json::from_str(&json).unwrap()
+}
+
+/// Where a run is left and taken up.
+const EVERY: u32 = 23;
+
+/// Ticks of one run; each tick of which a mode was restored counts.
+fn run(seed: u64, ticks: u32, restored: &mut [u32; 7]) {
+    let mut scene = Scene::new(seed);
+    let mut climber = scene.climber();
+    let mut other = climber.clone();
+    for tick in 0..ticks {
+        if tick % EVERY == 0 {
+            let state = climber.state();
+            // Nothing is left of the one before but what was written.
+            other = Climber::new(copy(climber.config()), DVec3::ZERO).unwrap();
+            other.restore(copy(state)).unwrap();
+            let (a, b) = (state.fingerprint(), other.state().fingerprint());
+            assert_eq!(a, b, "seed {seed} tick {tick}: {state:?}");
+            let modes = ClimberMode::ALL.iter();
+            restored[modes.take_while(|mode| **mode != state.mode).count()] += 1;
+        }
+        scene.advance();
+        let input = scene.input(&climber);
+        let report = scene.step(&mut climber, &input);
+        let again = scene.step(&mut other, &copy(&input));
+        let (a, b) = (climber.state(), other.state());
+        let told = format!("seed {seed} tick {tick}: {a:?} {b:?}");
+        assert_eq!(a.fingerprint(), b.fingerprint(), "{told}");
+        assert_eq!(report, again, "{told}");
+    }
+}
+
+#[test]
+fn a_run_goes_on_with_the_same_bits_in_every_mode() {
+    let mut restored = [0; 7];
+    for seed in 0..60 {
+        run(seed, 300, &mut restored);
+    }
+    assert!(restored.iter().all(|count| *count >= 5), "{restored:?}");
+}
+
+#[test]
+fn configurations_keep_every_bit() {
+    let mut thirds = ClimberConfig::colossus_climber();
+    thirds.gravity = DVec3::new(1.0 / 3.0, -9.81 / 7.0, f64::MIN_POSITIVE);
+    thirds.body.mass = 0.1 + 0.2;
+    for config in [
+        ClimberConfig::walker(),
+        ClimberConfig::colossus_climber(),
+        thirds,
+    ] {
+        assert_eq!(copy(&config), config);
+        assert!(Climber::new(copy(&config), DVec3::ZERO).is_ok());
+    }
+}
+
+#[test]
+fn inputs_keep_every_bit() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    for round in 0..1_000 {
+        let mut point = |size: f64| {
+            let mut one = || size * (rng.f64() - 0.5);
+            DVec3::new(one(), one(), one())
+        };
+        let blow = Blow {
+            velocity: point(20.0),
+            damage: point(1.0).x,
+        };
+        let input = ClimberInput {
+            walk: point(2.0),
+            climb: -point(0.0),
+            jump: round % 2 == 0,
+            grip: round % 3 == 0,
+            blow: (round % 5 == 0).then_some(blow),
+        };
+        let read = copy(&input);
+        let bits = |input: &ClimberInput| {
+            let blow = input.blow.unwrap_or_default();
+            let vectors = [input.walk, input.climb, blow.velocity];
+            let bits = vectors.map(|v| v.to_array().map(f64::to_bits));
+            (bits, blow.damage.to_bits(), input.jump, input.grip)
+        };
+        assert_eq!(bits(&read), bits(&input), "{input:?}");
+        assert_eq!(read.blow.is_some(), input.blow.is_some());
+    }
+}

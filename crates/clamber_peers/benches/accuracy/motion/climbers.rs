@@ -1,0 +1,123 @@
+//! Climbers in the way of a limb, or on it.
+
+use std::error::Error;
+
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+/// The ground is so far below the limb's axis, against Z, metres: the limb swings 5 cm above it.
+pub(crate) const GROUND: f64 = 0.55;
+
+/// Ticks that a climber has to come to rest.
+const SETTLE: usize = 60;
+
+/// Where a climber is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stance {
+    /// It floats, without weight, and flies where it is struck to.
+    InAir,
+    /// It stands on ground below the limb, and does nothing.
+    OnGround,
+    /// It stands on the limb, from which nothing throws it.
+    OnLimb,
+    /// It grips the limb, from which nothing shakes it.
+    Holding,
+}
+
+/// A climber, and what it stands on beside the limb.
+pub(crate) struct Walker {
+    pub(crate) climber: Climber,
+    ground: Option<SkinnedSurface>,
+    input: ClimberInput,
+}
+
+impl Walker {
+    pub(crate) fn new(stance: Stance, center: DVec3) -> Result<Self, Box<dyn Error>> {
+        let mut config = ClimberConfig::walker();
+        match stance {
+            Stance::InAir => config.gravity = DVec3::ZERO,
+            Stance::OnGround => config.gravity = DVec3::Z * -9.81,
+            Stance::OnLimb => config.ground.throw_acceleration = f64::INFINITY,
+            Stance::Holding => {
+                config = ClimberConfig::colossus_climber();
+                config.stamina = None;
+                config.tumble = None;
+                if let Some(grip) = &mut config.grip {
+                    grip.hang_acceleration = f64::INFINITY;
+                }
+            }
+        }
+        let ground = match stance {
+            Stance::OnGround => Some(ground()?),
+            _ => None,
+        };
+        Ok(Self {
+            climber: Climber::new(config, center)?,
+            ground,
+            input: ClimberInput {
+                grip: stance == Stance::Holding,
+                ..ClimberInput::default()
+            },
+        })
+    }
+
+    pub(crate) fn tick(&mut self, limb: &SkinnedSurface, dt: f64) -> Result<(), Box<dyn Error>> {
+        let limb = (ObstacleId(0), limb as &dyn Obstacle);
+        let ground = self.ground.as_ref().map(|ground| ground as &dyn Obstacle);
+        let both = [limb, (ObstacleId(1), ground.unwrap_or(limb.1))];
+        let there = &both[..1 + usize::from(ground.is_some())];
+        self.climber
+            .step_where(&self.input, there, &|_, _| true, dt)?;
+        Ok(())
+    }
+
+    /// Comes to stand or hold, while the limb is held still.
+    pub(crate) fn settle(&mut self, limb: &SkinnedSurface, dt: f64) -> Result<(), Box<dyn Error>> {
+        let wanted = if self.input.grip {
+            ClimberMode::Holding
+        } else {
+            ClimberMode::Standing
+        };
+        for _ in 0..SETTLE {
+            self.tick(limb, dt)?;
+        }
+        let state = self.climber.state();
+        if state.mode == wanted {
+            Ok(())
+        } else {
+            Err(format!("a climber is not {wanted:?}: {state:?}").into())
+        }
+    }
+}
+
+/// A square of 60 m across Z.
+fn ground() -> Result<SkinnedSurface, Box<dyn Error>> {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, -GROUND as f32);
+    let positions = [
+        corner(-30.0, -30.0),
+        corner(30.0, -30.0),
+        corner(30.0, 30.0),
+        corner(-30.0, 30.0),
+    ];
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &[[0, 1, 2], [0, 2, 3]],
+        influences: &[influence; 4],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default())?;
+    let mut ground = SkinnedSurface::new(std::sync::Arc::new(mesh));
+    let rest = Palette::from_matrices([Affine::IDENTITY]);
+    ground.place(&rest, Similarity::IDENTITY)?;
+    Ok(ground)
+}
