@@ -13,7 +13,7 @@ const SETTLE: u32 = 60;
 
 /// How a character fared.
 pub(crate) struct Outcome {
-    /// Metres.
+    /// Metres; not a number where a position is none.
     pub(crate) error: f64,
     /// Ticks in which it did not stand.
     pub(crate) in_air: u32,
@@ -43,7 +43,13 @@ pub(crate) fn play(scene: &Scene, entry: &Entry, most: u32) -> Result<Outcome, B
         seen.positions.push(character.position());
         in_air += u32::from(!character.stands());
     }
-    let error = (scene.error)(&seen).max(0.0);
+    // Here, because the largest of numbers passes over what is none.
+    let is_finite = seen.positions.iter().all(|p| p.is_finite());
+    let error = if is_finite {
+        (scene.error)(&seen).max(0.0)
+    } else {
+        f64::NAN
+    };
     Ok(Outcome {
         error,
         in_air,

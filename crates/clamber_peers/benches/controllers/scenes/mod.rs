@@ -32,10 +32,7 @@ impl Seen {
     pub(crate) fn most(&self, of: impl Fn(f64, DVec3) -> f64) -> f64 {
         self.timed()
             .map(|(time, p)| of(time, p))
-            .fold(0.0, |most: f64, found| {
-                // Not `max`, which passes over what is no number.
-                if found <= most { most } else { found }
-            })
+            .fold(0.0, f64::max)
     }
 }
 
