@@ -11,11 +11,11 @@
 //! sees one. The depth in a wall is counted from 0.3 m, so that the 2 cm are everybody's to give way. "In the air" is what a
 //! controller says of itself; who loses its footing fails where the scenario asks to stand.
 //!
-//! What the numbers are not: the climber was made with these scenarios at hand, the others were not, and of the scenarios
-//! that it does not hold yet (`OPEN` in that table) none is here, for none of them is a platform's. rapier computes in f32, and the climber's own state is f64; scenes are small, so that this
-//! matters little. Times are of the character's part of a tick alone, without the world's step, which is other work in each;
-//! each controller runs by itself, warm. On skin every solid is a surface of its own, which costs where there are thirty.
-//! Nothing here deforms, which rapier's has no way to be told.
+//! What the numbers are not: the climber was made with these scenarios at hand, the others were not; of the scenarios that
+//! it does not hold yet (`OPEN` in that table) none is here. rapier computes in f32, and the climber's own state is f64;
+//! scenes are small, so that this matters little. Times are of the character's part of a tick alone, without the world's
+//! step, which is other work in each; each controller runs by itself, warm. On skin every solid is a surface of its own,
+//! which costs where there are thirty. Nothing here deforms, which the others have no way to be told.
 //!
 //! `controller/rapier.rs` says how rapier's is used. It is given what helped it most of what was tried: the world stepped
 //! before or after, bodies moved by position or by velocity, what presses it down, what it is nudged off by.
