@@ -1,5 +1,5 @@
 //! How do character controllers fare on ground that moves? clamber's climber, on bodies and on skin, beside rapier's
-//! `KinematicCharacterController`.
+//! `KinematicCharacterController` and, with the feature `jolt`, Jolt's `CharacterVirtual`.
 //!
 //! Thirty scenes after the scenarios of `clamber_climber` (`tests/scenarios/table.rs`, whose numbers they have): those of
 //! platforms, walls that push, slopes, steps and edges that a controller on rigid bodies can be asked at all. All of them
@@ -12,18 +12,20 @@
 //! controller says of itself; who loses its footing fails where the scenario asks to stand.
 //!
 //! What the numbers are not: the climber was made with these scenarios at hand, the others were not; of the scenarios that
-//! it does not hold yet (`OPEN` in that table) none is here. rapier computes in f32, and the climber's own state is f64;
+//! it does not hold yet (`OPEN` in that table) none is here. The others compute in f32, and the climber's own state is f64;
 //! scenes are small, so that this matters little. Times are of the character's part of a tick alone, without the world's
 //! step, which is other work in each; each controller runs by itself, warm. On skin every solid is a surface of its own,
 //! which costs where there are thirty. Nothing here deforms, which the others have no way to be told.
 //!
-//! `controller/rapier.rs` says how rapier's is used. It is given what helped it most of what was tried: the world stepped
-//! before or after, bodies moved by position or by velocity, what presses it down, what it is nudged off by.
+//! `controller/rapier.rs` and `controller/jolt` say how theirs are used. Each is given what helped it most of what was
+//! tried: the world stepped before or after, bodies moved by position or by velocity, what presses it down, what it is
+//! nudged off by, how far it looks.
 //!
 //! Prints a table, and writes one with a row for each scene and controller to `target/measure/controllers.csv`. Fails if
 //! one of ours fails in a scene, or a number is none.
 //!
-//! `cargo bench -p clamber_peers --bench controllers`; brief, with 600 ticks a scene at most, with `-- --test`.
+//! `cargo bench -p clamber_peers --bench controllers`, with `--features jolt` once there is CMake; brief, with 600 ticks a
+//! scene at most, with `-- --test`.
 
 mod controller;
 mod play;

@@ -2,6 +2,8 @@
 
 mod bodies;
 mod clamber;
+#[cfg(feature = "jolt")]
+mod jolt;
 mod rapier;
 
 use std::error::Error;
@@ -38,5 +40,7 @@ pub(crate) fn all() -> Vec<Entry> {
     let mut all = Vec::new();
     all.extend(clamber::ENTRIES);
     all.extend(rapier::ENTRIES);
+    #[cfg(feature = "jolt")]
+    all.extend(jolt::ENTRIES);
     all
 }
