@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 
 use self::world::{Start, World};
 use super::{Controller, Entry};
-use crate::set::{Input, PADDING, RADIUS, Set};
+use crate::set::{Input, RADIUS, Set};
 
 pub(super) const ENTRIES: [Entry; 1] = [Entry {
     name: "Jolt 5.6",
@@ -34,7 +34,7 @@ struct Jolt {
 impl Jolt {
     fn new(set: &Set) -> Result<Self, Box<dyn Error>> {
         let start = Start {
-            feet: (set.feet + DVec3::Y * PADDING).as_vec3(),
+            feet: set.feet.as_vec3(),
             max_slope: set.max_slope as f32,
             gravity: set.gravity as f32,
         };
@@ -82,7 +82,7 @@ impl Controller for Jolt {
     }
 
     fn position(&self) -> DVec3 {
-        self.world.feet().as_dvec3() + DVec3::Y * (RADIUS - PADDING)
+        self.world.feet().as_dvec3() + DVec3::Y * RADIUS
     }
 
     fn stands(&self) -> bool {

@@ -24,7 +24,7 @@ const LAYERS: u32 = 2;
 
 /// Where a character begins, and what it is like.
 pub(super) struct Start {
-    /// The lowest point of its shape.
+    /// The lowest point of its shape, padding included.
     pub(super) feet: Vec3,
     pub(super) max_slope: f32,
     pub(super) gravity: f32,
@@ -243,7 +243,7 @@ impl World {
         state == JPH_GroundState_OnGround
     }
 
-    /// The lowest point of its shape.
+    /// The lowest point of its shape, padding included, as Jolt has it.
     pub(super) fn feet(&self) -> Vec3 {
         let mut position = vector(Vec3::ZERO);
         // SAFETY: the character lives until drop; only `position` is written to.
