@@ -17,9 +17,9 @@ const LIBRARIES: [(&str, &str, &str); 3] = [
     ("clamber_peers/fcl", "/usr/include/fcl", "libfcl-dev"),
 ];
 
-/// Features whose libraries cargo compiles: PhysX takes minutes in each profile, for one peer. Its test is run by hand,
-/// as `crates/clamber_peers/README.md` says.
-const COMPILED: [&str; 1] = ["clamber_peers/physx"];
+/// Features whose libraries cargo compiles: Jolt and PhysX take minutes in each profile, for one peer each. They are run
+/// by hand, as `crates/clamber_peers/README.md` says.
+const COMPILED: [&str; 2] = ["clamber_peers/jolt", "clamber_peers/physx"];
 
 /// The features whose libraries are here.
 pub(crate) fn installed() -> Vec<&'static str> {
