@@ -53,6 +53,8 @@ pub(crate) struct World<'a> {
     obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     can_grip: &'a CanGrip<'a>,
     pub(crate) dt: f64,
+    /// Whose axis is nearer than this to skin that it is behind was pressed there, metres.
+    sunk: f64,
     pub(super) scratch: &'a mut Scratch,
 }
 
@@ -83,7 +85,7 @@ impl<'a> World<'a> {
     pub(crate) fn new(
         obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
         can_grip: &'a CanGrip<'a>,
-        dt: f64,
+        (dt, radius): (f64, f64),
         scratch: &'a mut Scratch,
     ) -> Self {
         scratch.surroundings.forget();
@@ -92,6 +94,7 @@ impl<'a> World<'a> {
             obstacles,
             can_grip,
             dt,
+            sunk: SUNK * radius,
             scratch,
         }
     }
@@ -159,7 +162,7 @@ impl<'a> World<'a> {
                     });
                 }
             }
-            turn_back(&mut scratch.touches[first..], SUNK * capsule.radius);
+            turn_back(&mut scratch.touches[first..], self.sunk);
         }
         &scratch.touches
     }

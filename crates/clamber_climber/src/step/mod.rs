@@ -79,7 +79,7 @@ impl<'a> Step<'a> {
             config,
             input,
             state,
-            world: World::new(obstacles, can_grip, dt, scratch),
+            world: World::new(obstacles, can_grip, (dt, config.body.radius), scratch),
             report: StepReport {
                 is_clear: true,
                 ..StepReport::default()

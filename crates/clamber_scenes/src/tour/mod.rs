@@ -67,10 +67,9 @@ pub fn climb(
 ) -> Result<Outcome, Box<dyn std::error::Error>> {
     let mut outcome = Outcome::default();
     stage.place(0.0)?;
-    let (point, normal) = stage.vertex(route.waypoints[0]);
-    let start = point + normal * (config.body.radius + 0.05);
+    let (first, start) = free_place(stage, route, &config).ok_or("no room for it at the foot")?;
     let mut climber = Climber::new(config, start)?;
-    let (mut next, mut since) = (0, 0.0);
+    let (mut next, mut since) = (first, 0.0);
     let ticks = (limit * RATE) as u32;
     for tick in 1..=ticks {
         let time = f64::from(tick) / RATE;
@@ -120,6 +119,16 @@ pub fn climb(
     }
     outcome.mode = Some(climber.state().mode);
     Ok(outcome)
+}
+
+/// The first waypoint at which there is room for a climber, and where it is then: the very first may lie in a crease.
+fn free_place(stage: &Stage<'_>, route: &Route, config: &ClimberConfig) -> Option<(usize, DVec3)> {
+    let radius = config.body.radius;
+    let mut places = route.waypoints.iter().enumerate().map(|(index, vertex)| {
+        let (point, normal) = stage.vertex(*vertex);
+        (index, point + normal * (radius + 0.05))
+    });
+    places.find(|(_, place)| Obstacle::closest_point(stage.surface(), *place, radius).is_none())
 }
 
 impl Outcome {
