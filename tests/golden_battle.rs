@@ -14,7 +14,7 @@ use clamber_scenes::giant::giant;
 const BATTLE: u64 = 0x9236_1663_31fb_efce;
 
 /// The same of a climb.
-const CLIMB: u64 = 0;
+const CLIMB: u64 = 0x16ed_d9c3_9d73_6df4;
 
 #[test]
 fn a_climb_has_the_same_bits_in_every_build() {
