@@ -170,12 +170,12 @@ impl Film {
         eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
         self.eye = Some([eye, target]);
         // What is seen through is in front of the skin by as much as fur is long.
-        let (way, start) = (eye - target, state.position);
-        let far = way.length();
-        let hit = Obstacle::cast_ray(battle.surface(), start, way / far, far + FUR);
+        let far = (eye - target).length();
+        let toward = (eye - target).normalize_or(up);
+        let hit = Obstacle::cast_ray(battle.surface(), state.position, toward, far + FUR);
         let before = |skin: f64| (skin - FUR).max(0.5 * skin).min(far);
         let free = hit.map_or(far, |hit| before(hit.distance));
-        Camera::new(target + way * (free / far), target)
+        Camera::new(target + toward * free, target)
     }
 
     fn add_rocks(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {

@@ -17,7 +17,7 @@ pub enum ClimberEvent {
     Jumped,
     /// What it stood on, or hung from, became too steep.
     Slipped,
-    /// What it stood on or held ended, or was removed.
+    /// What it stood on or held ended, was removed, or left it no room.
     LostFooting,
     /// The ground was pulled away from under its feet.
     Thrown {

@@ -151,7 +151,9 @@ impl World<'_> {
             .map_or(touch.contact.point, |motion| motion.position);
         let on_axis = path.core(at).nearest_on_axis(touch.contact.point) - at;
         let offset = touch.away.dot(end - path.start - on_axis) + path.radius;
-        self.add_plane(path, touch, offset, moved.position);
+        if !(hit.started_inside && self.is_sunk(&touch)) {
+            self.add_plane(path, touch, offset, moved.position);
+        }
         if !hit.started_inside {
             self.solve(path, moved);
         }

@@ -58,26 +58,37 @@ pub(crate) struct World<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
-/// A body whose axis is less than this share of its radius below a skin was pressed there, and comes out where it went in.
+/// A body whose axis is less than this share of its core's radius below a skin was pressed there, and comes out where it went in.
 /// No body that was not crushed is so deep. Deeper, the nearest way out counts: one may climb on both sides of thin skin.
 const SUNK: f64 = 0.5;
 
 /// What is so much farther than the nearest contact, metres, is as near: triangles around a vertex.
 const AS_NEAR: f64 = 1e-4;
 
-/// Turns contacts that look into an obstacle outward, if its nearest ones are such, and nearer than a length.
-fn turn_back(touches: &mut [Touch], shallow: f64) {
-    let distances = touches.iter().map(|touch| touch.contact.distance);
+/// Turns contacts of one obstacle, from a first one on, that look into it outward, if its nearest ones are such, and nearer
+/// than a length. Others that look into it are none then: from outside they are not met.
+fn turn_back(touches: &mut Vec<Touch>, first: usize, shallow: f64) {
+    let looks_in = |touch: &Touch| touch.away.dot(touch.contact.normal) < 0.0;
+    let distances = touches[first..].iter().map(|touch| touch.contact.distance);
     let nearest = distances.fold(f64::INFINITY, f64::min);
     if !(0.0..shallow).contains(&nearest) {
         return;
     }
-    for touch in touches {
-        let contact = &mut touch.contact;
-        if contact.distance <= nearest + AS_NEAR && touch.away.dot(contact.normal) < 0.0 {
+    let mut turned = false;
+    for touch in &mut touches[first..] {
+        let contact = touch.contact;
+        if contact.distance <= nearest + AS_NEAR && looks_in(touch) {
             touch.away = contact.normal;
-            contact.distance = -contact.distance;
+            touch.contact.distance = -contact.distance;
+            turned = true;
         }
+    }
+    if turned {
+        let mut index = 0;
+        touches.retain(|touch| {
+            index += 1;
+            index <= first || !looks_in(touch)
+        });
     }
 }
 
@@ -85,7 +96,7 @@ impl<'a> World<'a> {
     pub(crate) fn new(
         obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
         can_grip: &'a CanGrip<'a>,
-        (dt, radius): (f64, f64),
+        (dt, hard_radius): (f64, f64),
         scratch: &'a mut Scratch,
     ) -> Self {
         scratch.surroundings.forget();
@@ -94,7 +105,7 @@ impl<'a> World<'a> {
             obstacles,
             can_grip,
             dt,
-            sunk: SUNK * radius,
+            sunk: SUNK * hard_radius,
             scratch,
         }
     }
@@ -162,9 +173,16 @@ impl<'a> World<'a> {
                     });
                 }
             }
-            turn_back(&mut scratch.touches[first..], self.sunk);
+            turn_back(&mut scratch.touches, first, self.sunk);
         }
         &scratch.touches
+    }
+
+    /// Whether a contact of a body that began inside looks into what it is in, and not from deep: pushing out finds the
+    /// way that it went in.
+    pub(super) fn is_sunk(&self, touch: &Touch) -> bool {
+        let looks_in = touch.away.dot(touch.contact.normal) < 0.0;
+        looks_in && touch.contact.distance < self.sunk
     }
 
     /// What the last [`World::touching`] found.

@@ -47,7 +47,11 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Holding, Falling, "jumps, lets go, tires, or the hold ends"),
     (Holding, Tumbling, "is struck by a blow"),
     (Hanging, Holding, "the hold is calm again"),
-    (Hanging, Falling, "lets go, tires, or the hold ends"),
+    (
+        Hanging,
+        Falling,
+        "lets go, tires, is torn off, or the hold ends",
+    ),
     (Hanging, Tumbling, "is struck by a blow"),
     (
         LedgeHanging,
@@ -58,7 +62,7 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         LedgeHanging,
         Falling,
-        "jumps, lets go, tires, or the ledge ends or tips",
+        "jumps, lets go, tires, or the ledge ends, tips or crushes it",
     ),
     (LedgeHanging, Tumbling, "is struck by a blow"),
     (Falling, Standing, "lands"),

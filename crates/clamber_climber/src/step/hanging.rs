@@ -106,9 +106,11 @@ impl Step<'_> {
         } else {
             self.stopped(velocity, carried, moved.position - pivot)
         };
-        if moved.position.distance(pivot) > self.state.arm.max(self.config.body.radius) * STRETCH {
+        let longest = hang.arm_length.max(self.config.body.radius) * STRETCH;
+        if moved.position.distance(pivot) > longest {
             // Something in its way has torn it off.
             self.event(ClimberEvent::LostFooting);
+            self.state.open_handed = super::holding::OPEN_HANDED;
             self.leave(ClimberMode::Falling);
             return;
         }

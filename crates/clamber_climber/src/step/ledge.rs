@@ -121,21 +121,22 @@ impl Step<'_> {
         let wish = self.ledge_wish();
         if self.state.pull_up > 0.0 || wish.up > 0.5 {
             self.pull_up(&carried, &config);
-        } else if wish.up < -0.5 && self.grip_below(carried.position) {
+        } else if wish.up < -0.5 && self.grip_below(&carried) {
             self.hold();
         } else {
             self.shimmy(&carried, &config, wish.aside);
         }
     }
 
-    /// Grips the wall that it hangs before, if it can.
-    fn grip_below(&mut self, position: DVec3) -> bool {
+    /// Grips the wall that it hangs before, if it can, from where it has been carried.
+    fn grip_below(&mut self, carried: &Carried) -> bool {
         let Some(grip) = self.config.grip else {
             return false;
         };
-        let Some(touch) = self.grip_near(position, &grip, None) else {
+        let Some(touch) = self.grip_near(carried.position, &grip, None) else {
             return false;
         };
+        self.state.position = carried.position;
         self.take_hold(&touch);
         true
     }
@@ -172,7 +173,7 @@ impl Step<'_> {
         let target = carried.position + drawn + step;
         let moved = self.slide(carried.start, target, carried.swept);
         self.settle(carried, moved.position);
-        if self.is_pressed_off(&moved) {
+        if self.is_pressed_off(carried, &moved) {
             return;
         }
         if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
@@ -195,11 +196,13 @@ impl Step<'_> {
     }
 
     /// Lets go where its ledge crushes it: it has no room there, and would be dragged on through what is.
-    fn is_pressed_off(&mut self, moved: &Moved) -> bool {
+    fn is_pressed_off(&mut self, carried: &Carried, moved: &Moved) -> bool {
         let is_crushed = moved.missed > self.config.body.skin_width;
         if is_crushed {
             self.event(ClimberEvent::LostFooting);
             self.state.open_handed = OPEN_HANDED;
+            // Not with the speed of being pressed out.
+            self.state.velocity = carried.motion.velocity;
             self.leave(ClimberMode::Falling);
         }
         is_crushed
@@ -223,7 +226,7 @@ impl Step<'_> {
         };
         let moved = self.slide(carried.start, at(after), carried.swept);
         self.settle(carried, moved.position);
-        if self.is_pressed_off(&moved) {
+        if self.is_pressed_off(carried, &moved) {
             return;
         }
         // Walls and grounds that bulge push it ahead or aside; only what keeps it back is in its way.

@@ -33,7 +33,9 @@ pub(crate) struct Step<'a> {
     state: ClimberState,
     world: World<'a>,
     report: StepReport,
-    /// It got its support in this tick, which therefore has not carried it yet.
+    /// Where it was at the beginning of the tick.
+    began: DVec3,
+    /// It got its support in this tick, which is where it will be at its end.
     attached: bool,
     /// It has moved through the air in this tick.
     has_flown: bool,
@@ -79,11 +81,17 @@ impl<'a> Step<'a> {
             config,
             input,
             state,
-            world: World::new(obstacles, can_grip, (dt, config.body.radius), scratch),
+            world: World::new(
+                obstacles,
+                can_grip,
+                (dt, config.body.hard_radius()),
+                scratch,
+            ),
             report: StepReport {
                 is_clear: true,
                 ..StepReport::default()
             },
+            began: state.position,
             attached: false,
             has_flown: false,
         }
@@ -143,18 +151,21 @@ impl<'a> Step<'a> {
     fn carry(&mut self) -> Option<Carried> {
         let mut support = self.state.support?;
         let mut motion = self.world.motion(support.obstacle, &support.point)?;
-        if self.attached {
-            (motion.previous_position, motion.turn) = (motion.position, DQuat::IDENTITY);
-        }
-        let was_placed = motion.previous_position.distance(support.contact) > PLACED;
+        let was_placed =
+            !self.attached && motion.previous_position.distance(support.contact) > PLACED;
         let start = if was_placed {
             motion.previous_position + support.offset_in_world()
         } else {
-            self.state.position
+            self.began
         };
         support.frame = motion.frame.unwrap_or(support.frame);
+        if self.attached {
+            // It felt what carried it until now.
+            (motion.previous_position, motion.turn) = (motion.position, DQuat::IDENTITY);
+        } else {
+            self.feel(&motion, was_placed);
+        }
         support.contact = motion.position;
-        self.feel(&motion, was_placed);
         self.state.velocity = motion.velocity;
         self.state.support = Some(support);
         self.turn_heading(motion.turn);

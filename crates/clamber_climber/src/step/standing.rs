@@ -28,9 +28,12 @@ impl Step<'_> {
         if self.is_thrown(normal, was) || self.is_knocked_down(was) {
             return self.fly();
         }
+        // From where it has been carried.
+        self.state.position = carried.position;
         if self.grip_or_catch() {
             return;
         }
+        self.state.position = self.began;
         let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
         if self.config.slope(normal) > limit && !self.is_wedged(carried) {
             self.event(ClimberEvent::Slipped);
@@ -214,11 +217,10 @@ impl Step<'_> {
     /// Slopes on all sides hold it up.
     fn is_wedged(&mut self, carried: &Carried) -> bool {
         let down = carried.position - self.config.up() * self.config.body.skin_width;
-        // A trial, that moves nothing.
-        let (pushed_out, pushes) = (self.report.pushed_out, self.report.pushes.len());
+        // A trial, of which nothing stays.
+        let before = (self.report.clone(), self.state.crouched);
         self.slide(carried.start, down, carried.swept);
-        self.report.pushed_out = pushed_out;
-        self.report.pushes.truncate(pushes);
+        (self.report, self.state.crouched) = before;
         self.holding_up(0.0).is_some()
     }
 

@@ -69,3 +69,40 @@ fn who_is_dragged_against_a_wall_is_torn_off_and_not_dragged_through() {
         assert!(inside < -0.35, "{tick}: {inside} {:?}", climber.state());
     }
 }
+
+/// However fast the ground goes, who grips it is carried in that tick as in any other.
+#[test]
+fn who_grips_the_ground_that_it_stands_on_stays_where_it_is_on_it() {
+    for velocity in [DVec3::X * 20.0, DVec3::Y * 9.0, DVec3::Y * -25.0] {
+        let mut ground = cuboid(Vec3::new(4.0, 1.0, 4.0), FUR);
+        let mut config = ClimberConfig::colossus_climber();
+        // The ground starts with a jerk.
+        config.ground.throw_acceleration = f64::INFINITY;
+        config.tumble = None;
+        if let Some(grip) = &mut config.grip {
+            grip.hang_acceleration = f64::INFINITY;
+        }
+        let mut climber = Climber::new(config, DVec3::new(0.0, 1.4, 0.0)).unwrap();
+        let mut off = DVec3::ZERO;
+        for tick in 0..40 {
+            let at = velocity * (f64::from(tick) * DT);
+            if tick < 10 {
+                placed(&mut ground, DVec3::ZERO, DQuat::IDENTITY);
+            } else {
+                moved(&mut ground, at, DQuat::IDENTITY);
+            }
+            let mut input = HOLD;
+            input.grip = tick >= 20;
+            let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+            climber.step(&input, &obstacles, DT).unwrap();
+            if tick == 19 {
+                assert_mode(&climber, ClimberMode::Standing);
+                off = climber.state().position - at;
+            } else if tick > 19 {
+                assert_mode(&climber, ClimberMode::Holding);
+                let slipped = climber.state().position - at - off;
+                assert!(slipped.length() < 0.01, "{velocity} {tick}: {slipped}");
+            }
+        }
+    }
+}

@@ -103,6 +103,15 @@ pub(crate) fn moved(surface: &mut SkinnedSurface, translation: DVec3, rotation: 
         .unwrap();
 }
 
+/// A tenth as large, where it is.
+pub(crate) fn scaled_down(surface: &mut SkinnedSurface) {
+    let world_from_model = Similarity {
+        scale: 0.1,
+        ..*surface.world_from_model()
+    };
+    surface.place(&rest(), world_from_model).unwrap();
+}
+
 fn rest() -> Palette {
     Palette::from_matrices([Affine::IDENTITY])
 }

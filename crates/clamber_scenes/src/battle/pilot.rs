@@ -62,7 +62,9 @@ pub(super) struct Pilot {
     crossed: bool,
     /// It has been on the creature since it was last on the ground.
     mounted: bool,
-    /// When it came to the top, seconds.
+    /// It has been at the top since it got on.
+    at_top: bool,
+    /// When it first came to the top, seconds.
     arrived: Option<f64>,
 }
 
@@ -88,6 +90,7 @@ impl Pilot {
             free: 0.0,
             crossed: false,
             mounted: false,
+            at_top: false,
             arrived: None,
         })
     }
@@ -127,6 +130,7 @@ impl Pilot {
             (_, Some(triangle)) => {
                 if !self.mounted {
                     self.given_up.clear();
+                    self.at_top = false;
                     (self.mounted, self.left, self.since) = (true, f32::INFINITY, seconds);
                 }
                 self.go_up(climber, surface, triangle, is_calm, seconds)
@@ -146,7 +150,7 @@ impl Pilot {
     ) -> ClimberInput {
         let state = climber.state();
         let stands = state.mode == ClimberMode::Standing;
-        if self.arrived.is_some() {
+        if self.at_top {
             return ClimberInput {
                 grip: !is_calm || state.shake.length() > CALM,
                 ..ClimberInput::default()
@@ -185,7 +189,8 @@ impl Pilot {
         let stuck = (seconds - self.since).rem_euclid(2.0 * PATIENCE) > PATIENCE;
         let ahead = if stuck { FAR_AHEAD } else { AHEAD };
         if self.ascent.next(here).is_none() {
-            self.arrived = Some(seconds);
+            self.at_top = true;
+            self.arrived.get_or_insert(seconds);
         }
         let mut target = here;
         while let Some(next) = self.ascent.next(target) {
@@ -232,6 +237,8 @@ impl Pilot {
                 .foothold
                 .or_else(|| self.find_foothold(surface, position));
             let Some(foot) = self.foothold else {
+                // None is left: all once more.
+                self.given_up.clear();
                 return ClimberInput::default();
             };
             let toward = (place(surface, foot) - position) * DVec3::new(1.0, 0.0, 1.0);
