@@ -22,7 +22,7 @@ fn the_climb_goes_from_the_ground_to_the_head_through_all_modes() {
 /// Of the other climbs.
 const SEEDS: [u64; 6] = [2, 3, 4, 5, 6, 7];
 
-/// Whatever becomes of a climber, it is never inside the giant, and its material point carries it.
+/// Whatever becomes of a climber, it is never inside the giant, and never far from what it holds.
 #[test]
 fn other_climbs_are_as_sound() {
     let creature = giant().unwrap();

@@ -83,7 +83,12 @@ const WARM: u32 = 20;
 fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
     let creature = giant::giant().unwrap();
     let route = Ways::new(&creature).unwrap().climb(16).unwrap();
-    for (told, aside) in [("holding", 0.0), ("up", 1.0), ("aside", 1.0)] {
+    let ways = [
+        ("holding", DVec3::ZERO),
+        ("up", DVec3::Y),
+        ("aside", DVec3::new(0.3, 0.0, 1.0)),
+    ];
+    for (told, way) in ways {
         let mut stage = Stage::new(&creature, (20.0, 1.0), Walks::Walk).unwrap();
         stage.place(0.0).unwrap();
         let (foot, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
@@ -93,12 +98,8 @@ fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
             stage.advance(f64::from(tick) * DT).unwrap();
             // Now to one side, now to the other.
             let side = if tick / 120 % 2 == 0 { 1.0 } else { -1.0 };
-            let climb = match told {
-                "up" => DVec3::Y * side,
-                _ => DVec3::new(0.3, 0.0, 1.0) * side,
-            };
             let input = ClimberInput {
-                climb: climb * aside,
+                climb: way * side,
                 ..GRIP
             };
             let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), stage.surface())];

@@ -9,9 +9,9 @@ use clamber::prelude::*;
 use clamber::render::{Camera, Drawn, Frame, Gif, Gpu, Look, MeshId, MeshSource, Renderer};
 use clamber::world::rapier3d::prelude::*;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
-use clamber_scenes::picture::{Stage, add_visual, light, orbit};
+use clamber_scenes::picture::{Stage, add_visual, light, orbit, sharp};
 use clamber_scenes::{giant, valley};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::overlays::Overlays;
 use crate::{CameraKind, FilmOptions};
@@ -204,15 +204,10 @@ fn add_rock(
         TypedShape::Capsule(capsule) => capsule.to_trimesh(24, 12),
         other => return Err(format!("a rock of a shape that is not drawn: {other:?}").into()),
     };
-    // Corners of their own, so that edges stay sharp; round shapes have so many that it does not show.
-    let sharp = matches!(shape.as_typed_shape(), TypedShape::Cuboid(_));
-    let (positions, triangles): (Vec<Vec3>, Vec<[u32; 3]>) = if sharp {
-        let corners = triangles.iter().flatten();
-        let positions = corners.map(|corner| positions[*corner as usize]).collect();
-        let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
-        (positions, triangles.collect())
-    } else {
-        (positions, triangles)
+    // Round shapes have so many triangles that their edges do not show.
+    let (positions, triangles) = match shape.as_typed_shape() {
+        TypedShape::Cuboid(_) => sharp(&positions, &triangles),
+        _ => (positions, triangles),
     };
     let colors = vec![color; positions.len()];
     let looks = vec![Look::Stone; positions.len()];

@@ -1,4 +1,4 @@
-//! The main job: a climber rides a walking, shaking creature for a minute, and rocks fall on it.
+//! The main job: a climber climbs a walking, stomping, shaking creature from the ground to its head, and rocks fall on it.
 //!
 //! `cargo run --release --example battle -- --help` lists the options. The scene itself, its script
 //! and its checks are `clamber_scenes::battle`; with `--features render` it can be filmed.
@@ -94,7 +94,7 @@ enum OverlayKind {
     Sweeps,
     /// The pieces of skin that the physics engine has for the rocks.
     Rocks,
-    /// Text: time, what the climber does, speeds, what was skinned.
+    /// Text: time, what the climber does, its strength and health, shake, speeds, what was skinned.
     State,
 }
 

@@ -294,17 +294,17 @@ fn add_ground(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
     })
 }
 
+/// Corners of their own for each triangle, so that edges stay sharp.
+pub fn sharp(corners: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let own = triangles.iter().flatten();
+    let own = own.map(|corner| corners[*corner as usize]).collect();
+    let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    (own, triangles.collect())
+}
+
 fn add_outcrop(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
     let (corners, triangles) = crate::battle::outcrop();
-    // Corners of their own, so that edges stay sharp.
-    let positions: Vec<Vec3> = triangles
-        .iter()
-        .flatten()
-        .map(|corner| corners[*corner as usize])
-        .collect();
-    let triangles: Vec<[u32; 3]> = (0..triangles.len() as u32)
-        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-        .collect();
+    let (positions, triangles) = sharp(&corners, &triangles);
     renderer.add_mesh(&MeshSource {
         positions: &positions,
         colors: &vec![[0.3, 0.28, 0.25]; positions.len()],

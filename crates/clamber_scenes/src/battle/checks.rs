@@ -1,6 +1,6 @@
 //! What the scene holds against the climber, by means that owe nothing to it.
 
-use clamber_climber::Climber;
+use clamber_climber::{Climber, ClimberMode};
 use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_vertex_reference;
 use clamber_surface::surface::SkinnedSurface;
@@ -21,19 +21,21 @@ pub(super) struct Watch {
     recorded: Option<MaterialPoint>,
     /// Ticks at which its centre was seen inside the creature or under the ground.
     pub(super) fell_through: u32,
+    /// Ticks at which who climbs was farther from its hold than its arms are long.
+    pub(super) out_of_reach: u32,
     /// Deepest that the sphere reached into the skin while it stood without input, metres.
     pub(super) deepest: f64,
 }
 
 impl Watch {
-    /// Looks at one tick; gives the drift if the climber rode through all of it without input, and has to stay `fast`, or
-    /// if it need not, how far its contact is from its own material point.
+    /// Looks at one tick. Of a rider gives the drift, if it rode through all of the tick without input; of one who climbs,
+    /// and may be shoved where creases close, how far its contact is from its own material point.
     pub(super) fn tick(
         &mut self,
         surface: &SkinnedSurface,
         palette: &Palette,
         climber: &Climber,
-        (idle, fast): (bool, bool),
+        (idle, climbs): (bool, bool),
         tick: u64,
     ) -> Option<f64> {
         let state = climber.state();
@@ -43,10 +45,12 @@ impl Watch {
         if under_ground || look_inside && is_inside(surface, center) {
             self.fell_through += 1;
         }
-        if !fast {
+        if climbs {
             let support = state.support.filter(|s| s.obstacle == CREATURE)?;
             let place = reference_position(surface, palette, &support.point);
-            return Some(place.map_or(f64::INFINITY, |place| support.contact.distance(place)));
+            let place = place.unwrap_or(DVec3::INFINITY);
+            self.out_of_reach += u32::from(center.distance(place) > reach(climber));
+            return Some(support.contact.distance(place));
         }
         let riding = state
             .support
@@ -69,6 +73,20 @@ impl Watch {
             support.contact.distance(expected).max(gap)
         };
         Some(reference_position(surface, palette, &recorded).map_or(f64::INFINITY, off))
+    }
+}
+
+/// How far a climber's centre may be from what it stands on or holds, metres.
+fn reach(climber: &Climber) -> f64 {
+    let config = climber.config();
+    let body = config.body.radius + config.grip.map_or(0.0, |grip| grip.reach);
+    let ledge = config
+        .ledge
+        .map_or(0.0, |ledge| ledge.reach_up + ledge.reach);
+    match climber.state().mode {
+        ClimberMode::Hanging => config.hang.arm_length.max(body) * 1.5,
+        ClimberMode::LedgeHanging => body + ledge,
+        _ => body,
     }
 }
 

@@ -18,7 +18,7 @@ const PATH: f64 = 50.0;
 const SPEED_PER_HEIGHT: f64 = 0.2;
 
 /// When the foot comes down in a clip of a stomp, as a share of its length.
-const STOMP: f64 = 0.51;
+const FOOT_DOWN: f64 = 0.51;
 
 /// A stretch of time with one clip.
 struct Act {
@@ -165,7 +165,7 @@ impl<'a> Choreography<'a> {
         let Some(clip) = act.clip.filter(|_| act.kind == Kind::Stomp) else {
             return false;
         };
-        let down = self.creature.clips[clip].duration() * STOMP;
+        let down = self.creature.clips[clip].duration() * FOOT_DOWN;
         let within = self.within(now);
         (within - dt..within).contains(&down)
     }
@@ -228,8 +228,8 @@ impl<'a> Choreography<'a> {
     }
 }
 
-/// Where clips are named so: idle, walk, shake, walk to ride; idle, stomp, idle, shake, walk to climb. Every clip but
-/// dying in turn where not.
+/// Where clips are named so: idle, walk, shake, walk to ride; idle, stomp, idle, shake, idle, walk, idle to climb. Every clip
+/// but dying in turn where not.
 fn acts(creature: &Creature, story: Story) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;

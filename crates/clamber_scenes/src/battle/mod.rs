@@ -62,6 +62,9 @@ pub enum BattleError {
         /// Its name.
         creature: String,
     },
+    /// The physics engine refuses the outcrop.
+    #[error("the outcrop cannot stand in the valley: {0}")]
+    Outcrop(String),
     /// The creature is flat.
     #[error("{creature} has no height in its first pose, so it cannot be scaled to {height} m")]
     NoHeight {

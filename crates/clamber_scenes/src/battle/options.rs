@@ -51,7 +51,7 @@ pub struct BattleOptions {
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub rocks: u32,
 
-    /// Where exactly the climber and the rocks come down: any number; the same one gives the same battle.
+    /// Where exactly the climber begins and the rocks come down: any number; the same one gives the same battle.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 

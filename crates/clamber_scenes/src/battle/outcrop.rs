@@ -4,6 +4,7 @@
 use clamber_world::rapier3d::prelude::*;
 use glam::{DVec3, Vec3};
 
+use super::BattleError;
 use crate::valley;
 
 /// Where its wall stands, and its middle across: it is climbed along X.
@@ -58,10 +59,11 @@ pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
 }
 
 /// Puts it into the valley.
-pub(super) fn insert(world: &mut PhysicsWorld) {
+pub(super) fn insert(world: &mut PhysicsWorld) -> Result<(), BattleError> {
     let (corners, triangles) = mesh();
-    if let Ok(collider) = ColliderBuilder::trimesh(corners, triangles) {
-        world.insert_collider(collider, None);
-        world.detect_collisions(&(), &());
-    }
+    let collider = ColliderBuilder::trimesh(corners, triangles);
+    let collider = collider.map_err(|error| BattleError::Outcrop(error.to_string()))?;
+    world.insert_collider(collider, None);
+    world.detect_collisions(&(), &());
+    Ok(())
 }

@@ -11,14 +11,14 @@ pub struct Sample {
     pub mode: ClimberMode,
     /// True if it stands on the creature, or holds on to it.
     pub riding: bool,
-    /// Distance from the climber's contact to the material point recorded when its input ended,
-    /// metres; `None` if there is input, or it does not ride.
+    /// Distance from a rider's contact to the material point recorded when its input ended, metres; `None` if there is
+    /// input, or it does not ride. In a climb from its contact to its own material point, on the creature.
     pub drift: Option<f64>,
     /// By how much contacts kept it from where it was carried and wanted to go, metres.
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
     pub skinned_share: f64,
-    /// What the tick cost: pose, climber.
+    /// What the tick cost: pose, script, climber.
     pub microseconds: f64,
 }
 

@@ -42,8 +42,8 @@ const GROUNDED_TICKS: u32 = 60;
 const RUN_UP: f64 = 4.0;
 const ASIDE: f64 = 1.5;
 
-/// How far a stomp knocks down who is on the ground, as a share of the creature's height, or how little above it, metres;
-/// how fast it throws them up and away, metres a second; and what it costs in hit points.
+/// How near a stomp knocks down who is on the ground, as a share of the creature's height, and how far above its feet at
+/// most, metres; how fast it throws them up and away, metres a second; and what it costs in hit points.
 const STOMP_REACH: f64 = 0.6;
 const STOMP_HEIGHT: f64 = 2.0;
 const STOMP_SPEED: [f64; 2] = [4.0, 2.0];
@@ -58,7 +58,7 @@ pub struct Battle<'a> {
     rocks: Rockfall,
     climber: Climber,
     grips: Grips,
-    /// Where it is dropped to ride.
+    /// Where it is dropped to ride; rocks fall from above it.
     perch: MaterialPoint,
     /// How it climbs, if it does.
     pilot: Option<Pilot>,
@@ -91,7 +91,7 @@ impl<'a> Battle<'a> {
         let mut world = valley::world();
         let (climber, pilot) = match story {
             Story::Climb => {
-                outcrop::insert(&mut world);
+                outcrop::insert(&mut world)?;
                 (
                     climber_before_the_outcrop(seed)?,
                     Some(Pilot::new(creature)?),
@@ -217,13 +217,12 @@ impl<'a> Battle<'a> {
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
         let idle = input == ClimberInput::default();
         let palette = self.choreography.palette();
-        // Who climbs may be shoved by a crease that closes where it rests; who rides may not.
-        let fast = self.pilot.is_none();
+        let climbs = self.pilot.is_some();
         let drift = self.watch.tick(
             &self.surface,
             palette,
             &self.climber,
-            (idle, fast),
+            (idle, climbs),
             self.tick,
         );
         let sample = Sample {
@@ -289,7 +288,7 @@ impl<'a> Battle<'a> {
     }
 
     /// Goes on from a snapshot of a battle made with the same options. Creature and climber do so with the
-    /// same bits; the rocks stay where they are.
+    /// same bits, given the same inputs; the rocks stay where they are, and the script of a climb remembers nothing.
     ///
     /// # Errors
     /// [`BattleError`] if the state is none of a climber's or a clip does not fit the creature.

@@ -58,7 +58,7 @@ pub struct Summary {
     pub seconds: f64,
     /// A number over every bit of the climber's states: equal for equal battles.
     pub hash: String,
-    /// Times that the climber was dropped on the creature: 1 if it never fell to the ground.
+    /// Times that a rider was dropped on the creature: 1 if it never fell to the ground; 0 of a climb.
     pub drops: u32,
     /// Times that it landed on anything.
     pub landings: u32,
@@ -68,13 +68,13 @@ pub struct Summary {
     pub arrived_s: Option<f64>,
     /// Share of the ticks spent on the creature.
     pub riding_share: f64,
-    /// Largest distance from a standing climber's contact to the material point recorded when its
-    /// input ended.
+    /// Largest distance from a standing rider's contact to the material point recorded when its input ended; in a climb
+    /// from its contact to its own material point.
     pub max_anchor_drift_m: f64,
-    /// Longest push-out while standing without input.
-    pub max_push_out_m: f64,
-    /// Deepest that the sphere reached into the skin while standing without input.
-    pub max_penetration_m: f64,
+    /// Longest push-out of a rider while standing without input.
+    pub max_push_out_m: Option<f64>,
+    /// Deepest that a rider's ball reached into the skin while standing without input.
+    pub max_penetration_m: Option<f64>,
     /// Vertices skinned per tick, as a share of all: the mean over the ticks.
     pub vertices_skinned_share: f64,
     /// Rocks.
@@ -87,7 +87,7 @@ pub struct Summary {
     pub rocks_put_back: u32,
     /// What half of the ticks cost at most for the rocks, the physics included.
     pub rocks_us_median: f64,
-    /// What half of the ticks cost at most, without the rocks: pose, climber.
+    /// What half of the ticks cost at most, without the rocks: pose, script, climber.
     pub tick_us_median: f64,
     /// What 99 of 100 ticks cost at most.
     pub tick_us_p99: f64,
@@ -119,12 +119,17 @@ impl Summary {
             check("rocks inside or below", f64::from(report.fell_through), 0.0),
         ];
         let off = 1.0 - recording.riding_share();
-        if options.story() == Story::Ride {
+        let rides = options.story() == Story::Ride;
+        if rides {
             let push_out = recording.max_push_out();
             let push_out = check("push-out while standing, m", push_out, MAX_PUSH_OUT);
             checks.insert(1, push_out);
             checks.push(check("share of ticks not riding", off, MAX_OFF));
-        } else if options.is_whole() {
+        } else {
+            let far = f64::from(watch.out_of_reach);
+            checks.push(check("ticks out of reach of its hold", far, 0.0));
+        }
+        if !rides && options.is_whole() {
             let arrived = battle.arrived().unwrap_or(f64::INFINITY);
             checks.push(check("seconds to the top", arrived, options.seconds()));
             // A creature from a file need not have a clip that shakes and one that stomps.
@@ -147,8 +152,8 @@ impl Summary {
             arrived_s: battle.arrived(),
             riding_share: recording.riding_share(),
             max_anchor_drift_m: recording.max_drift(),
-            max_push_out_m: recording.max_push_out(),
-            max_penetration_m: watch.deepest,
+            max_push_out_m: rides.then(|| recording.max_push_out()),
+            max_penetration_m: rides.then_some(watch.deepest),
             vertices_skinned_share: recording.skinned_share(),
             rocks: rocks.len(),
             rock_drops: report.drops,

@@ -37,7 +37,7 @@ const PANELS: [Panel; 4] = [
         },
     },
     Panel {
-        title: "drift from the material point, without input",
+        title: "drift from the material point",
         unit: "micrometres",
         color: RGBColor(200, 60, 40),
         value: |s| s.drift.map(|drift| drift * 1e6),
