@@ -26,13 +26,14 @@ struct Seen {
     deep: u32,
 }
 
-/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them. The last needs a state of
-/// another configuration: a unit test has it.
-const ELSEWHERE: [(ClimberMode, ClimberMode); 5] = [
+/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them. The last two need a blow in the
+/// few ticks of a slide, and a state of another configuration: unit tests have them.
+const ELSEWHERE: [(ClimberMode, ClimberMode); 6] = [
     (ClimberMode::Standing, ClimberMode::LedgeHanging),
     (ClimberMode::Sliding, ClimberMode::LedgeHanging),
     (ClimberMode::Holding, ClimberMode::LedgeHanging),
     (ClimberMode::LedgeHanging, ClimberMode::Holding),
+    (ClimberMode::Sliding, ClimberMode::Tumbling),
     (ClimberMode::Tumbling, ClimberMode::Falling),
 ];
 

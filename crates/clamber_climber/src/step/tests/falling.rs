@@ -5,7 +5,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DAffine3, DVec3};
 
 use super::*;
-use crate::ClimberState;
+use crate::{Blow, ClimberState};
 
 #[test]
 fn falls_by_semi_implicit_euler_and_lands_where_it_touches() {
@@ -153,6 +153,27 @@ fn too_steep_slopes_are_slid_down() {
     assert!(slid > 40, "slid for {slid} ticks");
     let at = climber.state().position;
     assert!(at.x > 1.0 && at.x < 7.0, "slid to {at}");
+}
+
+#[test]
+fn a_blow_knocks_down_who_slides() {
+    let steep = trough(60.0);
+    let config = ClimberConfig::colossus_climber();
+    let mut climber = Climber::new(config, DVec3::new(8.0, 14.8, 0.0)).unwrap();
+    while climber.state().mode != ClimberMode::Sliding {
+        step_on(&mut climber, &steep, &IDLE);
+    }
+    let struck = ClimberInput {
+        blow: Some(Blow {
+            velocity: DVec3::Y * 4.0,
+            damage: 0.25,
+        }),
+        ..IDLE
+    };
+    let report = step_on(&mut climber, &steep, &struck);
+    let tumbled = changed(ClimberMode::Sliding, ClimberMode::Tumbling);
+    assert!(report.events.contains(&tumbled), "{report:?}");
+    assert_eq!(climber.state().hit_points, 0.75);
 }
 
 #[test]
