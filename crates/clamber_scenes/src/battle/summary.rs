@@ -127,7 +127,7 @@ impl Summary {
             checks.push(check("share of ticks not riding", off, MAX_OFF));
         } else {
             let far = f64::from(watch.out_of_reach);
-            checks.push(check("ticks out of reach of its hold", far, 0.0));
+            checks.push(check("ticks out of its reach", far, 0.0));
         }
         if !rides && options.is_whole() {
             let arrived = battle.arrived().unwrap_or(f64::INFINITY);
