@@ -58,8 +58,8 @@ pub(crate) struct World<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
-/// A body whose axis is less than this share of its core's radius below a skin was pressed there, and comes out where it went in.
-/// No body that was not crushed is so deep. Deeper, the nearest way out counts: one may climb on both sides of thin skin.
+/// A body whose axis is less than this share of its core's radius below a skin was pressed there, and comes out where it
+/// went in. No body that was not crushed is so deep. Deeper, the nearest way out counts: one may climb on both sides of thin skin.
 const SUNK: f64 = 0.5;
 
 /// What is so much farther than the nearest contact, metres, is as near: triangles around a vertex.

@@ -4,7 +4,7 @@ use clamber_world::WorldCapsule;
 use glam::DVec3;
 
 use super::holding::OPEN_HANDED;
-use super::{Carried, SLOPE_HYSTERESIS, Step};
+use super::{Carried, Step};
 use crate::config::LedgeConfig;
 use crate::mover::{Moved, Touch};
 use crate::{ClimberEvent, ClimberMode};
@@ -100,7 +100,7 @@ impl Step<'_> {
             return self.fly();
         };
         let top = carried.support.normal_in_world();
-        if self.config.slope(top) > self.config.ground.max_slope + SLOPE_HYSTERESIS {
+        if self.config.slope(top) > self.stood_on() {
             self.event(ClimberEvent::Slipped);
             self.leave(ClimberMode::Falling);
             return self.fly();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::flying::GRAZING;
-use super::{Carried, SLOPE_HYSTERESIS, Step};
+use super::{Carried, Step};
 use crate::mover::Touch;
 use crate::{ClimberEvent, ClimberMode, Support};
 
@@ -34,7 +34,7 @@ impl Step<'_> {
             return;
         }
         self.state.position = self.began;
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
+        let limit = self.stood_on();
         if self.config.slope(normal) > limit && !self.is_wedged(carried) {
             self.event(ClimberEvent::Slipped);
             self.leave(ClimberMode::Sliding);
@@ -84,7 +84,7 @@ impl Step<'_> {
     /// Walks relative to what carried it, and finds new ground.
     fn walk(&mut self, carried: &Carried, walk: DVec3) {
         self.face(walk);
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
+        let limit = self.stood_on();
         let (up, normal) = (self.config.up(), carried.support.normal_in_world());
         // Pressed onto the ground, so that the ground is among what it touches; between slopes onto all of them alike.
         let onto = if self.config.slope(normal) > limit {
@@ -182,7 +182,7 @@ impl Step<'_> {
             self.stand_on(carried, &ground.touch);
             return;
         }
-        let limit = self.config.ground.max_slope + SLOPE_HYSTERESIS;
+        let limit = self.stood_on();
         if let Some(touch) = self.held_up_by(limit) {
             self.stand_on(carried, &touch);
             return;

@@ -172,8 +172,8 @@ impl BattleOptions {
         ((self.seconds() / TICK).round() as u64).max(1)
     }
 
-    /// The script. To climb: all the way. To ride: stands for four tenths of the battle, walks up and down the back for the next
-    /// third, jumps once in the middle of that, and stands again.
+    /// The script. To climb: all the way. To ride: stands for four tenths of the battle, walks up and down the back for the
+    /// next third, jumps once in the middle of that, and stands again.
     pub fn input_at(&self, tick: u64) -> Intent {
         if self.story() == Story::Climb {
             return Intent::Climb;
