@@ -55,7 +55,13 @@ fn the_file_has_what_the_giant_is_to_have() {
     assert_eq!(major.len(), 1);
     let joint = &rig.skeleton.joints()[major[0].joint.0 as usize];
     assert!(joint.name.to_lowercase().contains("head"), "{}", joint.name);
-    let has = |kind, ledge| rig.collider.tags().contains(&SurfaceTag { kind, ledge });
+    let has = |kind, ledge| {
+        let tag = SurfaceTag {
+            ledge,
+            ..SurfaceTag::new(kind)
+        };
+        rig.collider.tags().contains(&tag)
+    };
     assert!(has(SurfaceKind::Fur, false) && has(SurfaceKind::Stone, true));
     assert!(has(SurfaceKind::Stone, false) && has(SurfaceKind::Skin, false));
     assert!(rig.report.warnings.is_empty(), "{:?}", rig.report.warnings);

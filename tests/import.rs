@@ -186,10 +186,7 @@ fn materials_are_tagged_by_the_callers_function() {
     let Some(path) = test_data::file("tags by material", "models/Trex.glb") else {
         return;
     };
-    let fur = SurfaceTag {
-        kind: SurfaceKind::Fur,
-        ledge: false,
-    };
+    let fur = SurfaceTag::new(SurfaceKind::Fur);
     let names = std::cell::RefCell::new(Vec::new());
     let tag = |name: &str| {
         names.borrow_mut().push(name.to_owned());

@@ -95,7 +95,7 @@ fn obstacles<'a>(
 ) -> Vec<(ObstacleId, &'a (dyn Obstacle + Sync))> {
     let ground = (ObstacleId(0), terrain as &(dyn Obstacle + Sync));
     let giants = herd.giants.iter().enumerate().map(|(index, giant)| {
-        let id = ObstacleId(index as u32 + 1);
+        let id = ObstacleId(index as u64 + 1);
         (id, &giant.surface as &(dyn Obstacle + Sync))
     });
     std::iter::once(ground).chain(giants).collect()

@@ -252,10 +252,7 @@ fn components_that_change_make_another_surface() {
     app.world_mut().entity_mut(limb.mesh).insert(skin.unwrap());
     wait(&mut app, limb.mesh);
     assert!(app.world().get::<PosedSurface>(limb.mesh).is_some());
-    let tag = SurfaceTag {
-        kind: SurfaceKind::Fur,
-        ledge: true,
-    };
+    let tag = SurfaceTag::new(SurfaceKind::Fur).with_ledge();
     app.world_mut()
         .entity_mut(limb.mesh)
         .insert(ColliderTag(tag));

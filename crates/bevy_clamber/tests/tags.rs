@@ -13,14 +13,8 @@ use bevy_shape::Ray3d;
 use bevy_transform::components::Transform;
 use common::{Limb, add_bindposes, add_mesh, app, limb_mesh, spawn_limb, wait};
 
-const FUR: SurfaceTag = SurfaceTag {
-    kind: SurfaceKind::Fur,
-    ledge: false,
-};
-const LEDGE: SurfaceTag = SurfaceTag {
-    kind: SurfaceKind::Stone,
-    ledge: true,
-};
+const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
+const LEDGE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
 
 /// A limb with a name, without a collider.
 fn named(app: &mut App, name: &str, x: f32) -> Limb {

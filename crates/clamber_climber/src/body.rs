@@ -32,7 +32,7 @@ const TOLERANCE: f64 = 1e-4;
 /// for (index, climber) in climbers.iter_mut().enumerate() {
 ///     let others = bodies.iter().enumerate().filter(|(other, _)| *other != index);
 ///     let obstacles: Vec<(ObstacleId, &dyn Obstacle)> =
-///         others.map(|(other, body)| (ObstacleId(100 + other as u32), body as &dyn Obstacle)).collect();
+///         others.map(|(other, body)| (ObstacleId(100 + other as u64), body as &dyn Obstacle)).collect();
 ///     climber.step(&ClimberInput::default(), &obstacles, dt)?;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -201,6 +201,7 @@ impl Obstacle for ClimberBody {
             previous_position: position - self.way,
             // Or two that run into each other would swap their speeds, as balls do.
             velocity: DVec3::ZERO,
+            placed: self.way == DVec3::ZERO,
             frame: Some(DQuat::IDENTITY),
             turn: DQuat::IDENTITY,
             area_ratio: 1.0,

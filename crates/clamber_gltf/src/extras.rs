@@ -27,6 +27,8 @@ struct MaterialExtras {
     surface: Surface,
     #[serde(default)]
     ledge: Flag,
+    #[serde(default)]
+    user: u32,
 }
 
 impl MaterialExtras {
@@ -39,6 +41,7 @@ impl MaterialExtras {
         SurfaceTag {
             kind,
             ledge: self.ledge.0,
+            user: self.user,
         }
     }
 }
@@ -269,11 +272,11 @@ mod tests {
     #[test]
     fn a_tag_is_told_from_none() {
         let fur = tag_in_extras(r#"{"clamber": {"surface": "fur"}}"#).unwrap();
-        let expected = SurfaceTag {
-            kind: SurfaceKind::Fur,
-            ledge: false,
-        };
+        let expected = SurfaceTag::new(SurfaceKind::Fur);
         assert_eq!(fur, Some(expected));
+        let user = tag_in_extras(r#"{"clamber": {"user": 4294967295}}"#).unwrap();
+        assert_eq!(user, Some(SurfaceTag::default().with_user(u32::MAX)));
+        assert!(tag_in_extras(r#"{"clamber": {"user": -1}}"#).is_err());
         let said = tag_in_extras(r#"{"clamber": {}}"#).unwrap();
         assert_eq!(said, Some(SurfaceTag::default()));
         for foreign in ["", "{}", "7", r#"{"surface": "fur"}"#] {

@@ -57,8 +57,8 @@ pub(crate) struct Struck {
 /// What it stands on, grips, or hangs from.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Held {
-    #[prost(uint32, tag = "1")]
-    pub(crate) obstacle: u32,
+    #[prost(uint64, tag = "1")]
+    pub(crate) obstacle: u64,
     #[prost(uint64, tag = "2")]
     pub(crate) key: u64,
     #[prost(message, required, tag = "3")]

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod attachment;
 #[cfg(feature = "rapier")]
 mod debris;
 mod obstacle;
@@ -9,6 +10,7 @@ mod rapier;
 pub mod shapes;
 mod surface;
 
+pub use attachment::{Attachment, Continuity, Followed};
 /// What a contact's material is made of.
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 #[cfg(feature = "rapier")]

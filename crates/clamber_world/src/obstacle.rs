@@ -4,10 +4,11 @@ use glam::{DQuat, DVec3};
 /// Which obstacle of a scene; chosen by the caller, the same from tick to tick.
 ///
 /// Of equal distances the smaller id wins, so results do not depend on the order in which obstacles
-/// are handed over.
+/// are handed over. An id names one obstacle for as long as a climber may remember it: a game that reuses slots puts a
+/// generation into the upper 32 bits, as the bits of Bevy's `Entity` have it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ObstacleId(pub u32);
+pub struct ObstacleId(pub u64);
 
 /// A point of an obstacle's material. Only the obstacle that made it can read it.
 ///
@@ -130,6 +131,9 @@ pub struct PointMotion {
     pub previous_position: DVec3,
     /// Displacement over the tick, per second: never an instantaneous velocity.
     pub velocity: DVec3,
+    /// It may have been put here (a teleport) since the last tick rather than moved. What stands still and cannot tell
+    /// says true. A point that is elsewhere than it was, without having been placed, belongs to another obstacle.
+    pub placed: bool,
     /// Rotation of the material around the point, from the obstacle's rest to now. `None` where
     /// the material has collapsed and has no direction of its own: the last one known stands.
     pub frame: Option<DQuat>,
@@ -182,6 +186,13 @@ pub trait Obstacle {
     fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
         let _ = (point, direction);
         0.0
+    }
+
+    /// Which of the obstacle's bodies a material point belongs to, where it is made of several that move apart: a collider
+    /// of a rapier world. Contacts of one body are looked at together. The default says that it is one body.
+    fn body_of(&self, point: &MaterialPoint) -> u64 {
+        let _ = point;
+        0
     }
 
     /// The motion of a material point over the tick of `dt` seconds that ends now; `None` if the

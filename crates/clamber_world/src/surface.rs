@@ -179,6 +179,7 @@ impl Obstacle for SkinnedSurface {
             position: world_from_model.transform_point_f32(motion.position),
             previous_position: world_from_model.transform_point_f32(motion.previous_position),
             velocity: world_from_model.transform_vector(motion.velocity.as_dvec3()),
+            placed: self.is_placed(),
             frame: (!motion.collapsed)
                 .then(|| (world_from_model.rotation * motion.frame.as_dquat()).normalize()),
             turn: if angle > 0.0 {

@@ -24,10 +24,7 @@ mod tests {
     use bevy_mesh::skinning::SkinnedMesh;
     use clamber_surface::mesh::SurfaceKind;
 
-    const LEDGE: SurfaceTag = SurfaceTag {
-        kind: SurfaceKind::Stone,
-        ledge: true,
-    };
+    const LEDGE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
 
     /// The tag that a mesh with these components is given.
     fn tag(world: &mut World, components: impl Bundle) -> SurfaceTag {

@@ -30,7 +30,7 @@ pub struct ColliderTag(pub SurfaceTag);
 /// // Of what `bevy_gltf` spawns, `GltfMaterialName` has the material's name alone.
 /// app.insert_resource(SurfaceTagger::new(|mesh| {
 ///     let name = mesh.get::<Name>()?;
-///     let fur = SurfaceTag { kind: SurfaceKind::Fur, ledge: false };
+///     let fur = SurfaceTag::new(SurfaceKind::Fur);
 ///     name.contains("fur").then_some(fur)
 /// }));
 /// ```

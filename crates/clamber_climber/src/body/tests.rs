@@ -108,7 +108,7 @@ fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
         for &index in order {
             let others = (0..4).filter(|other| *other != index);
             let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = others
-                .map(|other| (ObstacleId(other as u32), &bodies[other] as &dyn Obstacle))
+                .map(|other| (ObstacleId(other as u64), &bodies[other] as &dyn Obstacle))
                 .collect();
             let report = climbers[index].step(&ClimberInput::default(), &obstacles, DT);
             assert!(report.unwrap().events.is_empty());

@@ -12,7 +12,7 @@ impl ClimberState {
         }
         hash.word(self.mode as u64 + 1);
         if let Some(support) = &self.support {
-            hash.word(u64::from(support.obstacle.0));
+            hash.word(support.obstacle.0);
             hash.word(support.point.key);
             hash.vector(DVec3::from_array(support.point.coordinates));
             hash.vector(support.contact);

@@ -16,15 +16,9 @@ use glam::{DQuat, DVec3, Vec3};
 
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
-pub(crate) const FUR: SurfaceTag = SurfaceTag {
-    kind: SurfaceKind::Fur,
-    ledge: false,
-};
+pub(crate) const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 
-pub(crate) const STONE: SurfaceTag = SurfaceTag {
-    kind: SurfaceKind::Stone,
-    ledge: true,
-};
+pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
 
 pub(crate) const HOLD: ClimberInput = ClimberInput {
     walk: DVec3::ZERO,

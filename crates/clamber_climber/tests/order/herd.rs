@@ -14,7 +14,7 @@ pub(crate) const CREATURES: usize = 3;
 pub(crate) const CLIMBERS: usize = 6;
 
 /// Ids of the climbers' bodies are from here on.
-const BODIES: u32 = 100;
+const BODIES: u64 = 100;
 
 /// In which order things are done.
 pub(crate) enum Order {
@@ -162,10 +162,10 @@ fn step(
         if place == 0 {
             obstacles.push((ObstacleId(50), floor));
         } else if let Some(creature) = creatures.get(place - 1) {
-            obstacles.push((ObstacleId(place as u32), creature));
+            obstacles.push((ObstacleId(place as u64), creature));
         } else if place - 1 - CREATURES != index {
             let body = place - 1 - CREATURES;
-            obstacles.push((ObstacleId(BODIES + body as u32), &bodies[body]));
+            obstacles.push((ObstacleId(BODIES + body as u64), &bodies[body]));
         }
     }
     let input = input(index as u32, tick, climber.state().position);

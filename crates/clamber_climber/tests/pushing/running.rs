@@ -162,7 +162,7 @@ fn the_order_of_pushes_is_that_of_no_list() {
         let reports = std::array::from_fn::<_, 4, _>(|k| {
             let obstacles = orders[k].map(|w| {
                 let world: &dyn Obstacle = &worlds[w];
-                (ObstacleId(w as u32), world)
+                (ObstacleId(w as u64), world)
             });
             climbers[k].step(&walk(DVec3::X), &obstacles, DT).unwrap()
         });

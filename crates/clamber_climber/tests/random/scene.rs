@@ -42,8 +42,7 @@ impl Scene {
                     } else {
                         SurfaceKind::Stone
                     };
-                    edit.set_tag(triangle, SurfaceTag { kind, ledge: false })
-                        .unwrap();
+                    edit.set_tag(triangle, SurfaceTag::new(kind)).unwrap();
                 }
             });
         }

@@ -106,7 +106,10 @@ fn tag(corners: [DVec3; 3]) -> SurfaceTag {
     } else {
         SurfaceKind::Skin
     };
-    SurfaceTag { kind, ledge: belt }
+    SurfaceTag {
+        ledge: belt,
+        ..SurfaceTag::new(kind)
+    }
 }
 
 #[cfg(test)]

@@ -53,6 +53,8 @@ pub struct SkinnedSurface {
     /// That of the previous tick, expressed in the current model frame.
     pub(super) previous: Pose,
     world_from_model: Similarity,
+    /// [`SkinnedSurface::is_placed`].
+    placed: bool,
     /// [`SkinnedSurface::bounding_ball`].
     ball: Option<(DVec3, f64)>,
     pub(super) simd_level: SimdLevel,
@@ -78,6 +80,7 @@ impl SkinnedSurface {
             current: Pose::at_rest(&mesh, simd_level),
             previous: Pose::at_rest(&mesh, simd_level),
             world_from_model: Similarity::IDENTITY,
+            placed: true,
             ball: None,
             simd_level,
             part_enabled: vec![true; mesh.parts().len()],
@@ -119,6 +122,7 @@ impl SkinnedSurface {
             self.previous.set(&self.mesh, before.iter().map(moved));
         }
         self.pose(palette, world_from_model, ahead);
+        self.placed = false;
         Ok(())
     }
 
@@ -137,7 +141,13 @@ impl SkinnedSurface {
             .set(&self.mesh, palette.matrices().iter().copied());
         let ahead = self.touched_nearly_everything();
         self.pose(palette, world_from_model.normalized(), ahead);
+        self.placed = true;
         Ok(())
+    }
+
+    /// Whether it was put where it is ([`SkinnedSurface::place`], or new) rather than advanced there.
+    pub const fn is_placed(&self) -> bool {
+        self.placed
     }
 
     /// Falls asleep: from now on the surface stands still as it is posed, without motion, until it is placed or
@@ -301,6 +311,7 @@ impl Clone for SkinnedSurface {
             current: self.current.renewed(&self.mesh),
             previous: self.previous.renewed(&self.mesh),
             world_from_model: self.world_from_model,
+            placed: self.placed,
             ball: self.ball,
             simd_level: self.simd_level,
             part_enabled: self.part_enabled.clone(),

@@ -2,7 +2,7 @@ use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{Collider, ColliderSet};
 
-use super::terrain::handle_of;
+use super::RapierTerrain;
 use crate::MaterialPoint;
 
 /// Pushes the body that a point of a [`RapierTerrain`](crate::RapierTerrain) lies on, with an impulse in N s at that
@@ -75,7 +75,7 @@ fn pushed<'a>(
     colliders: &'a ColliderSet,
     point: &MaterialPoint,
 ) -> Option<(RigidBodyHandle, &'a Collider)> {
-    let collider = colliders.get(handle_of(point))?;
+    let collider = colliders.get(RapierTerrain::collider_of(point))?;
     Some((collider.parent()?, collider))
 }
 

@@ -21,8 +21,15 @@ static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 /// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
 const LOOSE: f32 = 1e-4;
 
+/// A material point is gone if the collider's shape is farther than this from it, metres: its shape was exchanged.
+/// Above the rounding of f32 poses a kilometre out, below any change of shape that a player would see.
+const GONE: f64 = 1e-3;
+
 /// Whether a collider is seen. Terrain is asked from many threads at once, so this is too; `QueryFilter` need not be.
 type Filter<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync);
+
+/// What a collider is made of.
+type Tags<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> SurfaceTag + Sync);
 
 pub(super) fn pose_of(pose: &Pose) -> RigidPose {
     RigidPose::new(pose.rotation, pose.translation)
@@ -31,11 +38,6 @@ pub(super) fn pose_of(pose: &Pose) -> RigidPose {
 fn key_of(handle: ColliderHandle) -> u64 {
     let (index, generation) = handle.into_raw_parts();
     u64::from(generation) << 32 | u64::from(index)
-}
-
-/// The collider that a point lies on.
-pub(super) fn handle_of(point: &MaterialPoint) -> ColliderHandle {
-    ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32)
 }
 
 /// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
@@ -53,6 +55,7 @@ pub struct RapierTerrain<'a> {
     colliders: &'a ColliderSet,
     broad_phase: &'a BroadPhaseBvh,
     filter: Option<Filter<'a>>,
+    tags: Option<Tags<'a>>,
     before: &'a BodyPoses,
     origin: DVec3,
     /// Made when first asked for.
@@ -89,6 +92,7 @@ impl<'a> RapierTerrain<'a> {
             colliders,
             broad_phase,
             filter: None,
+            tags: None,
             before,
             origin: DVec3::ZERO,
             moved: OnceLock::new(),
@@ -119,13 +123,80 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    fn queries(&self) -> QueryPipeline<'_> {
-        let filter = QueryFilter {
-            predicate: self.filter.map(|filter| filter as &_),
-            ..QueryFilter::new().exclude_sensors()
-        };
+    /// Says what colliders are made of, so that a climber knows fur and ledges, and contacts carry the game's own
+    /// number; without it, everything has the default tag. Bits of a collider's `user_data` are a good place for it.
+    ///
+    /// ```
+    /// # use clamber_world::{BodyPoses, Obstacle, RapierTerrain, SurfaceKind, SurfaceTag};
+    /// # use clamber_world::rapier3d::prelude::*;
+    /// # use glam::DVec3;
+    /// let mut world = PhysicsWorld::default();
+    /// let ivy = ColliderBuilder::cuboid(1.0, 4.0, 0.1).user_data(1);
+    /// let ivy = world.insert_collider(ivy, None);
+    /// world.step();
+    /// let before = BodyPoses::new();
+    /// let tags = |_, collider: &Collider| match collider.user_data {
+    ///     1 => SurfaceTag::new(SurfaceKind::Fur),
+    ///     _ => SurfaceTag::default(),
+    /// };
+    /// let terrain = RapierTerrain::of_world(&world, &before).with_tags(&tags);
+    /// let contact = terrain.closest_point(DVec3::Z, 2.0).unwrap();
+    /// assert_eq!(contact.tag.kind, SurfaceKind::Fur);
+    /// assert_eq!(RapierTerrain::collider_of(&contact.material), ivy);
+    /// ```
+    #[must_use]
+    pub fn with_tags(
+        mut self,
+        tags: &'a (dyn Fn(ColliderHandle, &Collider) -> SurfaceTag + Sync),
+    ) -> Self {
+        self.tags = Some(tags);
+        self
+    }
+
+    /// The collider that a material point of any rapier world lies on. It may have been removed since.
+    pub fn collider_of(point: &MaterialPoint) -> ColliderHandle {
+        ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32)
+    }
+
+    /// Whether queries see a collider: it is enabled, no sensor, and the caller's filter lets it through.
+    ///
+    /// Asked in every query: rapier's tree keeps a collider that was disabled until the next step.
+    fn sees(&self, handle: ColliderHandle, collider: &Collider) -> bool {
+        collider.is_enabled()
+            && !collider.is_sensor()
+            && self.filter.is_none_or(|filter| filter(handle, collider))
+    }
+
+    fn tag(&self, handle: ColliderHandle, collider: &Collider) -> SurfaceTag {
+        self.tags
+            .map_or_else(SurfaceTag::default, |tags| tags(handle, collider))
+    }
+
+    /// The first contact of a sweep in the world, with its tag.
+    fn tagged(&self, first: &FirstContact) -> Option<SweepContact> {
+        let mut sweep = first.contact(self.origin)?;
+        let handle = Self::collider_of(&sweep.contact.material);
+        if let Some(collider) = self.colliders.get(handle) {
+            sweep.contact.tag = self.tag(handle, collider);
+        }
+        Some(sweep)
+    }
+
+    /// Rapier's own queries of what [`RapierTerrain::sees`] lets through.
+    fn with_queries<R>(&self, ask: impl FnOnce(&QueryPipeline<'_>) -> R) -> R {
+        let sees = |handle, collider: &Collider| self.sees(handle, collider);
+        let filter = QueryFilter::new().predicate(&sees);
+        ask(&self
+            .broad_phase
+            .as_query_pipeline(&DISPATCHER, self.bodies, self.colliders, filter))
+    }
+
+    /// Rapier's tree over all colliders, seen or not.
+    fn tree(&self) -> &Bvh {
+        let filter = QueryFilter::new();
         self.broad_phase
             .as_query_pipeline(&DISPATCHER, self.bodies, self.colliders, filter)
+            .bvh
     }
 
     fn local(&self, point: DVec3) -> Option<Vector> {
@@ -150,7 +221,7 @@ impl<'a> RapierTerrain<'a> {
                 key: key_of(handle),
                 coordinates: on_collider.as_dvec3().to_array(),
             },
-            tag: SurfaceTag::default(),
+            tag: self.tag(handle, collider),
         }
     }
 
@@ -181,7 +252,6 @@ impl<'a> RapierTerrain<'a> {
 
     /// Tries what moved, all along its way.
     fn meet_moved(&self, first: &mut FirstContact) {
-        let queries = self.queries();
         let all = self.moved();
         all.tree.traverse(|node| {
             if !first.may_meet(&node.aabb()) {
@@ -190,8 +260,7 @@ impl<'a> RapierTerrain<'a> {
             let leaf = node.leaf_data();
             if let Some((handle, moved)) = leaf.and_then(|leaf| all.moved.get(leaf as usize))
                 && let Some(collider) = self.colliders.get(*handle)
-                && collider.is_enabled()
-                && queries.filter.test(self.bodies, *handle, collider)
+                && self.sees(*handle, collider)
             {
                 first.meet(collider.shape(), &moved.tick, key_of(*handle));
             }
@@ -201,15 +270,14 @@ impl<'a> RapierTerrain<'a> {
 
     /// Tries what the broad phase finds in the way, as it stands now, if it is to be tried.
     fn meet_near(&self, first: &mut FirstContact, is_tried: impl Fn(&Collider) -> bool) {
-        let queries = self.queries();
-        queries.bvh.traverse(|node| {
+        self.tree().traverse(|node| {
             if !first.may_meet(&node.aabb()) {
                 return TraversalAction::Prune;
             }
             let leaf = node.leaf_data();
             let collider = leaf.and_then(|leaf| self.colliders.get_unknown_gen(leaf));
             if let Some((collider, handle)) = collider
-                && queries.filter.test(self.bodies, handle, collider)
+                && self.sees(handle, collider)
                 && is_tried(collider)
             {
                 let tick = Tick::still(pose_of(collider.position()));
@@ -221,7 +289,7 @@ impl<'a> RapierTerrain<'a> {
 
     /// A radius about `point` that reaches everything.
     fn reach_of_all(&self, point: Vector) -> f64 {
-        let all = self.queries().bvh.root_aabb();
+        let all = self.tree().root_aabb();
         let farthest = (all.maxs - point).abs().max((all.mins - point).abs());
         farthest.as_dvec3().length()
     }
@@ -236,7 +304,8 @@ impl Obstacle for RapierTerrain<'_> {
         }
         let ray = Ray::new(start, along.as_vec3());
         let limit = (max_distance as f32 * (1.0 + LOOSE) + LOOSE).min(f32::MAX);
-        let (handle, hit) = self.queries().cast_ray_and_get_normal(&ray, limit, true)?;
+        let (handle, hit) =
+            self.with_queries(|queries| queries.cast_ray_and_get_normal(&ray, limit, true))?;
         if f64::from(hit.time_of_impact) > max_distance {
             return None;
         }
@@ -261,20 +330,24 @@ impl Obstacle for RapierTerrain<'_> {
             return;
         };
         let start = contacts.len();
-        for (handle, collider) in self.queries().intersect_aabb_conservative(reach.bounds()) {
-            let pose = pose_of(collider.position());
-            let ends = local.ends.map(|end| pose.inverse_transform(end));
-            overlap_shape(collider.shape(), ends, radius, &mut |found| {
-                contacts.push(found.in_world(&pose, self.origin, key_of(handle)));
-            });
-        }
+        self.with_queries(|queries| {
+            for (handle, collider) in queries.intersect_aabb_conservative(reach.bounds()) {
+                let pose = pose_of(collider.position());
+                let ends = local.ends.map(|end| pose.inverse_transform(end));
+                let tag = self.tag(handle, collider);
+                overlap_shape(collider.shape(), ends, radius, &mut |found| {
+                    let contact = found.in_world(&pose, self.origin, key_of(handle));
+                    contacts.push(Contact { tag, ..contact });
+                });
+            }
+        });
         sort_contacts(&mut contacts[start..]);
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
         let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
         self.meet_near(&mut first, |_| true);
-        first.contact(self.origin)
+        self.tagged(&first)
     }
 
     fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
@@ -283,25 +356,35 @@ impl Obstacle for RapierTerrain<'_> {
             self.previous_pose(collider).is_none()
         });
         self.meet_moved(&mut first);
-        first.contact(self.origin)
+        self.tagged(&first)
     }
 
     fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
         push_response(self.bodies, self.colliders, point, direction)
     }
 
+    fn body_of(&self, point: &MaterialPoint) -> u64 {
+        point.key
+    }
+
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let handle = handle_of(point);
+        let handle = Self::collider_of(point);
         let collider = self.colliders.get(handle)?;
-        let seen = self.queries().filter.test(self.bodies, handle, collider);
-        if !collider.is_enabled() || !seen {
+        let local = DVec3::from_array(point.coordinates);
+        if !self.sees(handle, collider) || !is_on(collider, local) {
             return None;
         }
         let now = pose_of(collider.position());
         let before = self.previous_pose(collider);
-        let local = DVec3::from_array(point.coordinates);
         now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }
+}
+
+/// Whether a point in a collider's space is still part of its shape.
+fn is_on(collider: &Collider, local: DVec3) -> bool {
+    let mut is_on = false;
+    overlap_shape(collider.shape(), [local; 2], GONE, &mut |_| is_on = true);
+    is_on
 }
 
 #[cfg(test)]

@@ -73,6 +73,8 @@ impl RigidPose {
             position,
             previous_position,
             velocity: (position - previous_position) / dt,
+            // An engine does not tell a body that was put elsewhere from one that stands still.
+            placed: before == self,
             frame: Some(self.rotation),
             turn: (self.rotation * before.rotation.conjugate()).normalize(),
             area_ratio: 1.0,

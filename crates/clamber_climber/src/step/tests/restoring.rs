@@ -89,7 +89,7 @@ fn what_is_out_of_reach_is_not_asked_and_changes_no_bit() {
     let mut crowd: Vec<(ObstacleId, &dyn Obstacle)> = vec![(ObstacleId(20), &ground)];
     for (k, one) in far.iter().enumerate() {
         let id = if k < 20 { 39 - k } else { k + 1 };
-        crowd.push((ObstacleId(id as u32), one as &dyn Obstacle));
+        crowd.push((ObstacleId(id as u64), one as &dyn Obstacle));
     }
     // Of two with one id the first counts, wherever they are: here the ground, there what is far away.
     crowd.push((ObstacleId(20), &far[0]));

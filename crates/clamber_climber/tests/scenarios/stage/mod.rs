@@ -142,7 +142,7 @@ impl Stage {
             obstacles.push((ObstacleId(0), &terrain));
         }
         for (index, skin) in self.skins.iter().enumerate() {
-            obstacles.push((ObstacleId(index as u32 + 1), &skin.surface));
+            obstacles.push((ObstacleId(index as u64 + 1), &skin.surface));
         }
         ask(&obstacles)
     }

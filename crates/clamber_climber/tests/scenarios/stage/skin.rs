@@ -78,7 +78,7 @@ fn build(shape: &Shape, kind: SurfaceKind, weights: Weights<'_>) -> Arc<Collider
         triangles: &shape.triangles,
         influences: &influences,
         influence_ends: &influence_ends,
-        tags: &vec![SurfaceTag { kind, ledge: false }; shape.triangles.len()],
+        tags: &vec![SurfaceTag::new(kind); shape.triangles.len()],
         joint_count,
         ..MeshSource::default()
     };

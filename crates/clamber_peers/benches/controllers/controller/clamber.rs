@@ -171,7 +171,7 @@ impl Controller for OnSkin {
         }
         let obstacles = self.surfaces.iter().enumerate();
         let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = obstacles
-            .map(|(index, (surface, _))| (ObstacleId(index as u32), surface as &dyn Obstacle))
+            .map(|(index, (surface, _))| (ObstacleId(index as u64), surface as &dyn Obstacle))
             .collect();
         timed(&mut self.climber, &obstacles, input, self.dt)
     }

@@ -234,5 +234,6 @@ fn any_tag(rng: &mut fastrand::Rng) -> SurfaceTag {
     SurfaceTag {
         kind: [SurfaceKind::Skin, SurfaceKind::Fur, SurfaceKind::Stone][rng.usize(0..3)],
         ledge: rng.bool(),
+        user: rng.u32(..),
     }
 }

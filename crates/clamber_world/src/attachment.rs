@@ -1,0 +1,163 @@
+use glam::{DQuat, DVec3};
+
+use crate::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
+
+/// A gap between ticks counts as several moves in one tick up to this many times the last move: up to nine moves at a
+/// steady speed. A larger gap is another obstacle under the same id.
+const MOST_MOVES: f64 = 8.0;
+
+/// Something fixed to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
+///
+/// A small plain value that survives any deformation. [`Attachment::follow`] it once a tick; [`Attachment::place`] is
+/// where the attached thing is then.
+///
+/// ```
+/// use clamber_world::{Attachment, Obstacle, ObstacleId};
+/// # use clamber_surface::geometry::{Affine, Similarity};
+/// # use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+/// # use clamber_surface::rig::{JointId, Palette};
+/// # use clamber_surface::surface::SkinnedSurface;
+/// # use glam::{DVec3, Vec3};
+/// # let source = MeshSource {
+/// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+/// #     triangles: &[[0, 1, 2]],
+/// #     influences: &[Influence { joint: JointId(0), weight: 1.0 }; 3],
+/// #     joint_count: 1,
+/// #     ..MeshSource::default()
+/// # };
+/// # let mut creature = SkinnedSurface::new(ColliderMesh::build(&source, &BuildOptions::default())?.0.into());
+/// # let rest = Palette::from_matrices([Affine::IDENTITY]);
+/// let id = ObstacleId(7);
+/// let above = DVec3::new(0.2, 0.2, 1.0);
+/// let hit = creature.closest_point(above, 2.0).ok_or("no skin")?;
+/// let mut arrow = Attachment::new(id, &creature, &hit, above);
+///
+/// creature.advance(&rest, Similarity::from_translation(DVec3::X * 0.5))?;
+/// let followed = arrow.follow(&creature, 1.0 / 60.0, 0.01).ok_or("the skin is gone")?;
+/// assert_eq!(followed.motion.velocity, DVec3::X * 30.0);
+/// assert!(arrow.place().distance(above + DVec3::X * 0.5) < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Attachment {
+    /// The obstacle.
+    pub obstacle: ObstacleId,
+    /// The point of its material.
+    pub point: MaterialPoint,
+    /// Where that point was when it was last followed, in world space.
+    pub contact: DVec3,
+    /// The frame of the material then; where the skin collapses it stays.
+    pub frame: DQuat,
+    /// From the contact to the attached thing, metres, in the frame of the material.
+    pub offset: DVec3,
+}
+
+/// How the material came to where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Continuity {
+    /// It moved there from where it was last followed.
+    Moved,
+    /// It was put there (a teleport), which is no motion.
+    Placed,
+    /// It moved several times since it was last followed, as if a creature was advanced twice in one tick. The motion
+    /// covers all of it; sweeps against the obstacle cover only its last move.
+    MovedTwice,
+}
+
+/// Where an [`Attachment`] was carried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Of the material point, from where it was last followed to where it is now.
+    pub motion: PointMotion,
+    /// How it came there.
+    pub continuity: Continuity,
+}
+
+impl Attachment {
+    /// Fixes something at `place`, in world space, to a contact of an obstacle as it stands now.
+    pub fn new(
+        obstacle: ObstacleId,
+        material: &dyn Obstacle,
+        contact: &Contact,
+        place: DVec3,
+    ) -> Self {
+        // The frame and the place of a point do not depend on how long the tick was.
+        let motion = material.motion(&contact.material, 1.0);
+        Self::with_motion(obstacle, contact, motion.as_ref(), place)
+    }
+
+    /// [`Attachment::new`] where the motion of the contact's point is known already.
+    pub fn with_motion(
+        obstacle: ObstacleId,
+        contact: &Contact,
+        motion: Option<&PointMotion>,
+        place: DVec3,
+    ) -> Self {
+        let frame = motion.and_then(|motion| motion.frame);
+        let frame = frame.unwrap_or(DQuat::IDENTITY);
+        // The material point's own position, which it will be carried by: the contact's may differ by rounding.
+        let position = motion.map_or(contact.point, |motion| motion.position);
+        Self {
+            obstacle,
+            point: contact.material,
+            contact: position,
+            frame,
+            offset: frame.conjugate() * (place - position),
+        }
+    }
+
+    /// Where the attached thing is, in world space.
+    pub fn place(&self) -> DVec3 {
+        self.contact + self.offset_in_world()
+    }
+
+    /// [`Attachment::offset`] in world space.
+    pub fn offset_in_world(&self) -> DVec3 {
+        self.frame * self.offset
+    }
+
+    /// Fixes the attached thing somewhere else relative to the same material point; `place` is in world space.
+    #[must_use]
+    pub fn moved_to(&self, place: DVec3) -> Self {
+        Self {
+            offset: self.frame.conjugate() * (place - self.contact),
+            ..*self
+        }
+    }
+
+    /// Goes with the material over the tick of `dt` seconds that ends now; call it once a tick.
+    ///
+    /// `slack`, metres, is how far the point may be from where it is said to have been before something is wrong: 0.01
+    /// for a person, more than rounding and less than what one sees. `None`, with nothing changed, if the material is
+    /// gone, or is elsewhere although it was not put there: the id names another obstacle now.
+    pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<Followed> {
+        let mut motion = obstacle.motion(&self.point, dt)?;
+        let frame = motion.frame.unwrap_or(self.frame);
+        let gap = motion.previous_position.distance(self.contact);
+        let continuity = if gap <= slack {
+            Continuity::Moved
+        } else if motion.placed {
+            Continuity::Placed
+        } else {
+            let step = motion.position.distance(motion.previous_position);
+            if gap > MOST_MOVES * step {
+                return None;
+            }
+            motion.previous_position = self.contact;
+            motion.velocity = (motion.position - self.contact) / dt;
+            motion.turn = (frame * self.frame.conjugate()).normalize();
+            Continuity::MovedTwice
+        };
+        self.frame = frame;
+        self.contact = motion.position;
+        Some(Followed { motion, continuity })
+    }
+
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let point = DVec3::from_array(self.point.coordinates);
+        let vectors = [self.contact, self.offset, point];
+        vectors.iter().all(|v| v.is_finite()) && self.frame.is_finite()
+    }
+}
