@@ -38,7 +38,9 @@ fn other_climbs_are_as_sound() {
         for tick in 0..options.ticks() {
             battle.step(options.input_at(tick)).unwrap();
             let state = battle.climber().state();
-            let on_creature = state.support.is_some_and(|s| s.obstacle == CREATURE);
+            let on_creature = state
+                .support
+                .is_some_and(|s| s.attachment.obstacle == CREATURE);
             let stands = state.mode == ClimberMode::Standing;
             on_head |= battle.arrived().is_some() && on_creature && stands;
         }

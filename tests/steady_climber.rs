@@ -19,11 +19,8 @@ use glam::{DVec3, Vec3};
 const DT: f64 = 1.0 / RATE;
 
 const GRIP: ClimberInput = ClimberInput {
-    walk: DVec3::ZERO,
-    climb: DVec3::ZERO,
-    jump: false,
     grip: true,
-    blow: None,
+    ..ClimberInput::IDLE
 };
 
 /// Ticks of a mode in which nothing happened, and how many of those took memory.
@@ -50,7 +47,7 @@ impl Ticks {
         let found = measure(|| {
             report = Some(
                 climber
-                    .step_where(input, obstacles, &|_, _| true, DT)
+                    .step_with(input, obstacles, &StepRules::gripping(&|_, _| true), DT)
                     .unwrap(),
             );
         });

@@ -129,7 +129,7 @@ fn timed(
     stage.advance(f64::from(tick) * DT)?;
     let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(GIANT, stage.surface())];
     let start = Instant::now();
-    climber.step_where(input, &obstacles, &|_, _| true, DT)?;
+    climber.step_with(input, &obstacles, &StepRules::gripping(&|_, _| true), DT)?;
     Ok(start.elapsed().as_secs_f64() * 1e6)
 }
 

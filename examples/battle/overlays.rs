@@ -151,8 +151,8 @@ impl Overlays {
             show(motion, 3.0, SKY_BLUE, YELLOW);
         }
         let support = battle.climber().state().support;
-        let support = support.filter(|support| support.obstacle == CREATURE);
-        if let Some(motion) = support.and_then(|support| motion(&support.point)) {
+        let support = support.filter(|support| support.attachment.obstacle == CREATURE);
+        if let Some(motion) = support.and_then(|support| motion(&support.attachment.point)) {
             show(motion, 4.5, MAGENTA, MAGENTA);
         }
     }
@@ -161,7 +161,7 @@ impl Overlays {
         let radius = battle.climber().config().body.radius;
         self.sweep(over, &self.climber, radius, eye, WHITE);
         if let Some(support) = battle.climber().state().support {
-            dot(over, support.contact, eye, 1.0, VERMILION);
+            dot(over, support.attachment.contact, eye, 1.0, VERMILION);
         }
         let world = battle.world();
         for (trail, rock) in self.rocks.iter().zip(battle.rocks().bodies()) {
@@ -383,16 +383,16 @@ fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
 fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     over.path(way, 2.5, [1.0, 1.0, 1.0, 0.8]);
     let support = battle.climber().state().support;
-    let Some(support) = support.filter(|support| support.obstacle == CREATURE) else {
+    let Some(support) = support.filter(|support| support.attachment.obstacle == CREATURE) else {
         return;
     };
-    let triangle = TriangleId(support.point.key as u32);
+    let triangle = TriangleId(support.attachment.point.key as u32);
     if let Some(corners) = posed(battle.surface(), triangle) {
         over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
         let [a, b, c] = corners;
         over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
     }
-    over.sphere(support.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
+    over.sphere(support.attachment.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
 }
 
 /// Of the largest ball in a rock.
@@ -444,12 +444,14 @@ fn state(battle: &Battle<'_>) -> String {
     let surface = battle.surface();
     let mesh = surface.mesh();
     let state = battle.climber().state();
-    let on_skin = state.support.filter(|support| support.obstacle == CREATURE);
+    let on_skin = state
+        .support
+        .filter(|support| support.attachment.obstacle == CREATURE);
     let doing = match on_skin {
         None if state.support.is_none() => verb(state.mode).to_owned(),
         None => format!("{} the ground", verb(state.mode)),
         Some(support) => {
-            let triangle = TriangleId(support.point.key as u32);
+            let triangle = TriangleId(support.attachment.point.key as u32);
             let part = mesh.part_of(triangle);
             let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
             let joints = battle.creature().skeleton.joints();
@@ -467,7 +469,8 @@ fn state(battle: &Battle<'_>) -> String {
             )
         }
     };
-    let motion = on_skin.and_then(|support| Obstacle::motion(surface, &support.point, TICK));
+    let motion =
+        on_skin.and_then(|support| Obstacle::motion(surface, &support.attachment.point, TICK));
     let speeds = match motion {
         Some(motion) => format!(
             "speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s",
@@ -520,6 +523,7 @@ fn verb(mode: ClimberMode) -> &'static str {
         ClimberMode::Holding => "holds on to",
         ClimberMode::Hanging | ClimberMode::LedgeHanging => "hangs from",
         ClimberMode::Falling => "falls",
+        ClimberMode::Custom(_) => "falls",
         ClimberMode::Tumbling => "tumbles",
     }
 }

@@ -3,10 +3,14 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 12] = [
+const ALLOWED: [(&str, &[&str]); 13] = [
     ("clamber_surface", &[]),
     ("clamber_world", &["clamber_surface"]),
-    ("clamber_climber", &["clamber_surface", "clamber_world"]),
+    ("clamber_mover", &["clamber_surface", "clamber_world"]),
+    (
+        "clamber_climber",
+        &["clamber_surface", "clamber_world", "clamber_mover"],
+    ),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface"]),
     (
@@ -18,6 +22,7 @@ const ALLOWED: [(&str, &[&str]); 12] = [
         &[
             "clamber_surface",
             "clamber_world",
+            "clamber_mover",
             "clamber_climber",
             "clamber_gltf",
             "clamber_render",
@@ -84,6 +89,7 @@ const CORE: (&str, &[&str]) = (
         "libm",
         "parry3d",
         "rayon",
+        "serde",
         "thiserror",
     ],
 );

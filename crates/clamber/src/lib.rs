@@ -12,6 +12,8 @@ pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
 #[doc(inline)]
 pub use clamber_gltf as gltf;
+#[doc(inline)]
+pub use clamber_mover as mover;
 #[cfg(feature = "record")]
 #[doc(inline)]
 pub use clamber_record as record;
@@ -30,7 +32,7 @@ pub use clamber_world as world;
 pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
-        Support,
+        StepRules, Support,
     };
     pub use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
     pub use clamber_surface::mesh::{
@@ -38,7 +40,9 @@ pub mod prelude {
     };
     pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton, Transform};
     pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit, SweepHit};
+    pub use clamber_world::{
+        Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    };
     #[cfg(feature = "rapier")]
     pub use clamber_world::{BodyPoses, Debris, DebrisConfig, RapierTerrain};
-    pub use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 }

@@ -1,19 +1,57 @@
 use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceTag, WorldCapsule};
 use glam::DVec3;
 
-use crate::mover::Scratch;
-use crate::step::Step;
-use crate::{ClimberConfig, ClimberError, ClimberInput, ClimberState, StepReport};
+use crate::step::{Scratch, Tick};
+use crate::{
+    ClimberConfig, ClimberContact, ClimberError, ClimberInput, ClimberMode, ClimberState,
+    CustomMode, StepReport,
+};
 
 /// Whether a climber may grip something, and hold on to it.
 pub type CanGrip<'a> = dyn Fn(ObstacleId, &Contact) -> bool + 'a;
+
+/// What a game adds to a step: [`Climber::step_with`].
+#[derive(Clone, Copy)]
+pub struct StepRules<'a> {
+    /// What can be gripped. Fur, unless said otherwise.
+    pub can_grip: &'a CanGrip<'a>,
+    /// Handlers of the game's own modes, in the order in which they are asked whether they begin. None, unless given.
+    pub modes: &'a [&'a dyn CustomMode],
+}
+
+impl<'a> StepRules<'a> {
+    /// Grips what a function says can be gripped.
+    pub const fn gripping(can_grip: &'a CanGrip<'a>) -> Self {
+        Self {
+            can_grip,
+            modes: &[],
+        }
+    }
+
+    /// Grips fur, and has modes of its own.
+    pub fn with_modes(modes: &'a [&'a dyn CustomMode]) -> Self {
+        Self {
+            modes,
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for StepRules<'_> {
+    fn default() -> Self {
+        Self {
+            can_grip: &|_, contact| is_fur(&contact.tag),
+            modes: &[],
+        }
+    }
+}
 
 /// A kinematic character: configuration, state, and the memory that a step needs.
 #[derive(Clone, Debug)]
 pub struct Climber {
     config: ClimberConfig,
     state: ClimberState,
-    /// Kept for its memory.
+    /// Kept for its memory; holds the contacts of the last step.
     scratch: Scratch,
 }
 
@@ -39,14 +77,46 @@ impl Climber {
         &self.config
     }
 
+    /// Changes the configuration: another gravity, a faster walk, a mode switched on or off. The state stays; a body that
+    /// has grown is pushed out of what it overlaps in the next step.
+    ///
+    /// # Errors
+    /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one without the mode
+    /// that the climber is in. Nothing is changed then.
+    pub fn set_config(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
+        config.validate()?;
+        let mode = self.state.mode;
+        let is_missing = match mode {
+            ClimberMode::Holding | ClimberMode::Hanging => config.grip.is_none(),
+            ClimberMode::LedgeHanging => config.ledge.is_none(),
+            ClimberMode::Tumbling => config.tumble.is_none(),
+            _ => false,
+        };
+        if is_missing {
+            return Err(ClimberError::ModeInUse(mode));
+        }
+        let up = config.up();
+        let heading = self.state.heading;
+        let level = heading - up * heading.dot(up);
+        self.state.heading = level.normalize_or(up.any_orthonormal_vector());
+        self.config = config;
+        Ok(())
+    }
+
     /// Its state after the last step.
     pub fn state(&self) -> &ClimberState {
         &self.state
     }
 
+    /// What touched it in the last step: first what was met on the way, in the order in which it was met, then its
+    /// support. Empty before the first step and after [`Climber::restore`].
+    pub fn contacts(&self) -> &[ClimberContact] {
+        &self.scratch.contacts
+    }
+
     /// What it is to the world: where it stands after the last step.
     pub fn body(&self) -> WorldCapsule {
-        crate::step::body(&self.config, &self.state)
+        crate::step::body(&self.config, &self.state).at(self.state.position)
     }
 
     /// Puts it back into a state, of this or another run.
@@ -58,6 +128,7 @@ impl Climber {
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
         state.validate()?;
         self.state = state;
+        self.scratch.contacts.clear();
         Ok(())
     }
 
@@ -66,7 +137,7 @@ impl Climber {
     /// Obstacles may come in any order; of two with the same id the first counts.
     ///
     /// # Errors
-    /// [`ClimberError`] if `dt` is not positive or the input is not finite; the climber is
+    /// [`ClimberError`] if `dt` is not positive, the input is not finite, or a blow's damage is no share; the climber is
     /// unchanged then.
     pub fn step(
         &mut self,
@@ -74,38 +145,36 @@ impl Climber {
         obstacles: &[(ObstacleId, &dyn Obstacle)],
         dt: f64,
     ) -> Result<StepReport, ClimberError> {
-        self.step_where(input, obstacles, &|_, contact| is_fur(&contact.tag), dt)
+        self.step_with(input, obstacles, &StepRules::default(), dt)
     }
 
-    /// [`Climber::step`], gripping what a function says can be gripped.
+    /// [`Climber::step`] by a game's own rules: what can be gripped, and modes of its own.
     ///
     /// # Errors
-    /// As [`Climber::step`].
-    pub fn step_where(
+    /// As [`Climber::step`], and [`ClimberError::SameMode`] if two of the modes have one number.
+    pub fn step_with(
         &mut self,
         input: &ClimberInput,
         obstacles: &[(ObstacleId, &dyn Obstacle)],
-        can_grip: &CanGrip<'_>,
+        rules: &StepRules<'_>,
         dt: f64,
     ) -> Result<StepReport, ClimberError> {
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(ClimberError::OutOfRange {
-                name: "dt",
-                range: "positive",
-                found: dt,
-            });
+        for (index, mode) in rules.modes.iter().enumerate() {
+            if rules.modes[..index]
+                .iter()
+                .any(|other| other.id() == mode.id())
+            {
+                return Err(ClimberError::SameMode(mode.id()));
+            }
         }
-        if !input.is_finite() {
-            return Err(ClimberError::NotFinite("input"));
-        }
-        let (state, report) = Step::new(
+        let tick = Tick::new(
             &self.config,
             self.state,
-            input,
-            (obstacles, can_grip, dt),
+            (input, rules),
+            (obstacles, dt),
             &mut self.scratch,
-        )
-        .run();
+        )?;
+        let (state, report) = tick.run();
         self.state = state;
         Ok(report)
     }

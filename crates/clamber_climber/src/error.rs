@@ -9,9 +9,17 @@ pub enum ClimberError {
     /// A position, velocity or input is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
-    /// A state has a support that its mode has not, or lacks one.
+    /// `support` is inconsistent with `mode`.
     #[error("a state has a support if and only if it stands, holds or hangs; this one is {0:?}")]
     Support(ClimberMode),
+    /// A new configuration switches the mode off that the climber is in.
+    #[error(
+        "a climber that is {0:?} cannot take a configuration without that mode; let it end the mode first"
+    )]
+    ModeInUse(ClimberMode),
+    /// Two handlers of modes have the same number.
+    #[error("two modes have the number {0}")]
+    SameMode(u16),
     /// A number is outside its range.
     #[error("{name} must be {range}, found {found}")]
     OutOfRange {
@@ -22,4 +30,16 @@ pub enum ClimberError {
         /// What it is.
         found: f64,
     },
+}
+
+impl From<clamber_mover::MoverError> for ClimberError {
+    fn from(error: clamber_mover::MoverError) -> Self {
+        match error {
+            clamber_mover::MoverError::OutOfRange { name, range, found } => {
+                Self::OutOfRange { name, range, found }
+            }
+            clamber_mover::MoverError::NotFinite(name) => Self::NotFinite(name),
+            _ => Self::NotFinite("body"),
+        }
+    }
 }

@@ -1,4 +1,4 @@
-use clamber_world::{MaterialPoint, ObstacleId};
+use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::DVec3;
 
 use crate::ClimberMode;
@@ -17,12 +17,23 @@ pub enum ClimberEvent {
     Jumped,
     /// What it stood on, or hung from, became too steep.
     Slipped,
-    /// What it stood on or held ended, was removed, or left it no room.
-    LostFooting,
+    /// What it stood on or held ended, was removed, went out of its reach, or left it no room.
+    LostFooting {
+        /// What was lost.
+        from: Attachment,
+    },
+    /// What supports it moved several times since the last step, as if a creature was advanced twice: sweeps saw only
+    /// the last move.
+    MovedTwice {
+        /// The obstacle.
+        obstacle: ObstacleId,
+    },
     /// The ground was pulled away from under its feet.
     Thrown {
         /// How hard, metres a second squared beyond gravity.
         acceleration: f64,
+        /// The ground that was lost.
+        from: Attachment,
     },
     /// Gripped something.
     Grabbed {
@@ -51,9 +62,23 @@ pub enum ClimberEvent {
     ShakenOff {
         /// The shake at that time, metres a second squared; below what costs strength it was just tired.
         shake: f64,
+        /// The hold that was lost.
+        from: Attachment,
     },
     /// Knocked off its feet, or off its hold.
-    Tumbled,
+    Tumbled {
+        /// What it stood on or held; `None` in the air.
+        from: Option<Attachment>,
+        /// Which obstacle dealt the blow, if one did.
+        by: Option<ObstacleId>,
+    },
+    /// Pushed off its feet or its hold by a blow that does not make it tumble.
+    KnockedOff {
+        /// What it stood on or held.
+        from: Attachment,
+        /// Which obstacle dealt the blow, if one did.
+        by: Option<ObstacleId>,
+    },
     /// Caught between obstacles that leave no room.
     Crushed {
         /// How deep they overlap beyond the skin width, metres.
@@ -70,6 +95,15 @@ pub enum ClimberEvent {
         from: ClimberMode,
         /// Now.
         to: ClimberMode,
+    },
+    /// Something that a mode of the game's own reports.
+    Custom {
+        /// Which mode.
+        mode: u16,
+        /// What happened, as the mode defines.
+        what: u32,
+        /// How much of it, as the mode defines.
+        value: f64,
     },
     /// Obstacles answered with numbers that are not finite: nothing else happened in this tick.
     NotFinite,
@@ -107,6 +141,10 @@ pub struct StepReport {
     pub penetration: f64,
     /// Rounds that the movement took.
     pub rounds: u32,
+    /// Changes of mode in this tick.
+    pub mode_changes: u32,
+    /// More changes were wanted than a tick allows (4): the rest follows in the next.
+    pub changes_left: bool,
     /// The rounds sufficed: there is nothing on the way from where it was to where it is. Says nothing of a body that began
     /// inside something, or whose support was put elsewhere: these are pushed out of what is there.
     pub is_clear: bool,

@@ -2,30 +2,30 @@
 #![doc = include_str!("guide/modes_link.md")]
 #![doc = include_str!("../README.md")]
 
-mod body;
 mod climber;
 mod config;
+mod contact;
 mod discrete;
 mod error;
 mod event;
 pub mod guide;
 mod input;
-mod mover;
+mod obstacle;
 mod pendulum;
-mod planes;
 mod shake;
 mod state;
 mod step;
-mod surroundings;
 
-pub use body::ClimberBody;
-pub use climber::{CanGrip, Climber};
+pub use climber::{CanGrip, Climber, StepRules};
 pub use config::{
     BodyConfig, ClimberConfig, GripConfig, GroundConfig, HangConfig, HealthConfig, LedgeConfig,
     StaminaConfig, TumbleConfig,
 };
+pub use contact::{ClimberContact, ContactPhase};
 pub use discrete::{PushOut, average_push_out};
 pub use error::ClimberError;
 pub use event::{ClimberEvent, Push, StepReport};
 pub use input::{Blow, ClimberInput};
-pub use state::{ClimberMode, ClimberState, Support, TRANSITIONS};
+pub use obstacle::ClimberObstacle;
+pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
+pub use step::{CustomMode, ModeContext, NextMode};

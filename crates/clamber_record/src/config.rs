@@ -55,7 +55,7 @@ group!(
     "climber.body",
     radius,
     height,
-    skin_width,
+    margin,
     mass,
     push_force
 );
@@ -69,6 +69,10 @@ group!(
     step_height,
     coyote_time,
     jump_buffer,
+    acceleration,
+    friction,
+    air_acceleration,
+    jump_release_gravity,
     throw_acceleration
 );
 group!(

@@ -1,9 +1,9 @@
 //! clamber's own messages. Their schemas come from foxglove's `Encode`, and they are read by prost: field
 //! numbers follow the order of the fields in both.
 
-use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberState, StepReport, Support};
+use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberState, MEMORY, StepReport, Support};
 use clamber_surface::surface::Diagnostics;
-use clamber_world::{MaterialPoint, ObstacleId};
+use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceTag};
 use foxglove::Encode;
 use glam::{DQuat, DVec3};
 
@@ -43,6 +43,12 @@ pub(crate) struct Input {
     pub(crate) grip: bool,
     #[prost(message, optional, tag = "5")]
     pub(crate) blow: Option<Struck>,
+    #[prost(bool, tag = "6")]
+    pub(crate) jump_held: bool,
+    #[prost(uint32, tag = "7")]
+    pub(crate) actions: u32,
+    #[prost(message, required, tag = "8")]
+    pub(crate) aim: Vector,
 }
 
 /// What struck it.
@@ -52,6 +58,8 @@ pub(crate) struct Struck {
     pub(crate) velocity: Vector,
     #[prost(double, tag = "2")]
     pub(crate) damage: f64,
+    #[prost(uint64, optional, tag = "3")]
+    pub(crate) by: Option<u64>,
 }
 
 /// What it stands on, grips, or hangs from.
@@ -75,6 +83,35 @@ pub(crate) struct Held {
     pub(crate) face: Vector,
     #[prost(message, required, tag = "8")]
     pub(crate) frame: Rotation,
+    /// 0 skin, 1 fur, 2 stone.
+    #[prost(uint32, tag = "9")]
+    pub(crate) kind: u32,
+    #[prost(bool, tag = "10")]
+    pub(crate) ledge: bool,
+    /// The game's own number.
+    #[prost(uint32, tag = "11")]
+    pub(crate) user: u32,
+}
+
+/// Numbers that modes of the game's own remember.
+#[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
+pub(crate) struct Memory {
+    #[prost(double, tag = "1")]
+    pub(crate) a: f64,
+    #[prost(double, tag = "2")]
+    pub(crate) b: f64,
+    #[prost(double, tag = "3")]
+    pub(crate) c: f64,
+    #[prost(double, tag = "4")]
+    pub(crate) d: f64,
+    #[prost(double, tag = "5")]
+    pub(crate) e: f64,
+    #[prost(double, tag = "6")]
+    pub(crate) f: f64,
+    #[prost(double, tag = "7")]
+    pub(crate) g: f64,
+    #[prost(double, tag = "8")]
+    pub(crate) h: f64,
 }
 
 /// Everything that a climber remembers.
@@ -86,7 +123,7 @@ pub(crate) struct State {
     pub(crate) velocity: Vector,
     #[prost(message, required, tag = "3")]
     pub(crate) heading: Vector,
-    /// As [`mode_number`] says.
+    /// As `ClimberMode::number` says.
     #[prost(uint32, tag = "4")]
     pub(crate) mode: u32,
     #[prost(message, optional, tag = "5")]
@@ -113,6 +150,12 @@ pub(crate) struct State {
     pub(crate) open_handed: f64,
     #[prost(bool, tag = "16")]
     pub(crate) crouched: bool,
+    #[prost(message, required, tag = "17")]
+    pub(crate) base_velocity: Vector,
+    #[prost(bool, tag = "18")]
+    pub(crate) jumping: bool,
+    #[prost(message, required, tag = "19")]
+    pub(crate) memory: Memory,
 }
 
 /// How the tick went.
@@ -207,6 +250,7 @@ impl Input {
     fn has_negative_zero(&self) -> bool {
         self.walk.has_negative_zero()
             || self.climb.has_negative_zero()
+            || self.aim.has_negative_zero()
             || self.blow.is_some_and(|blow| {
                 blow.velocity.has_negative_zero() || negative_zero(&blow.damage)
             })
@@ -215,7 +259,14 @@ impl Input {
 
 impl State {
     fn has_negative_zero(&self) -> bool {
-        let vectors = [self.position, self.velocity, self.heading, self.shake];
+        let vectors = [
+            self.position,
+            self.velocity,
+            self.base_velocity,
+            self.heading,
+            self.shake,
+        ];
+        let memory: [f64; MEMORY] = self.memory.into();
         let numbers = [
             self.stamina,
             self.hit_points,
@@ -227,7 +278,7 @@ impl State {
             self.open_handed,
         ];
         vectors.iter().any(Vector::has_negative_zero)
-            || numbers.iter().any(negative_zero)
+            || numbers.iter().chain(&memory).any(negative_zero)
             || self.support.is_some_and(|held| held.has_negative_zero())
             || self
                 .support_velocity
@@ -292,6 +343,37 @@ impl From<Rotation> for DQuat {
     }
 }
 
+impl From<[f64; MEMORY]> for Memory {
+    fn from([a, b, c, d, e, f, g, h]: [f64; MEMORY]) -> Self {
+        Self {
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            g,
+            h,
+        }
+    }
+}
+
+impl From<Memory> for [f64; MEMORY] {
+    fn from(memory: Memory) -> Self {
+        let Memory {
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            g,
+            h,
+        } = memory;
+        [a, b, c, d, e, f, g, h]
+    }
+}
+
 impl From<&ClimberInput> for Input {
     fn from(input: &ClimberInput) -> Self {
         Self {
@@ -302,7 +384,11 @@ impl From<&ClimberInput> for Input {
             blow: input.blow.map(|blow| Struck {
                 velocity: blow.velocity.into(),
                 damage: blow.damage,
+                by: blow.by.map(|by| by.0),
             }),
+            jump_held: input.jump_held,
+            actions: input.actions,
+            aim: input.aim.into(),
         }
     }
 }
@@ -317,21 +403,12 @@ impl From<Input> for ClimberInput {
             blow: input.blow.map(|blow| Blow {
                 velocity: blow.velocity.into(),
                 damage: blow.damage,
+                by: blow.by.map(ObstacleId),
             }),
+            jump_held: input.jump_held,
+            actions: input.actions,
+            aim: input.aim.into(),
         }
-    }
-}
-
-/// 0 falling, 1 standing, 2 sliding, 3 holding, 4 hanging, 5 hanging from a ledge, 6 tumbling.
-const fn mode_number(mode: ClimberMode) -> u32 {
-    match mode {
-        ClimberMode::Falling => 0,
-        ClimberMode::Standing => 1,
-        ClimberMode::Sliding => 2,
-        ClimberMode::Holding => 3,
-        ClimberMode::Hanging => 4,
-        ClimberMode::LedgeHanging => 5,
-        ClimberMode::Tumbling => 6,
     }
 }
 
@@ -341,7 +418,7 @@ impl From<&ClimberState> for State {
             position: state.position.into(),
             velocity: state.velocity.into(),
             heading: state.heading.into(),
-            mode: mode_number(state.mode),
+            mode: state.mode.number(),
             support: state.support.as_ref().map(Held::from),
             support_velocity: state.support_velocity.map(Vector::from),
             shake: state.shake.into(),
@@ -354,21 +431,32 @@ impl From<&ClimberState> for State {
             jump_buffer: state.jump_buffer,
             open_handed: state.open_handed,
             crouched: state.crouched,
+            base_velocity: state.base_velocity.into(),
+            jumping: state.jumping,
+            memory: state.memory.into(),
         }
     }
 }
 
 impl From<&Support> for Held {
     fn from(support: &Support) -> Self {
+        let attachment = &support.attachment;
         Self {
-            obstacle: support.obstacle.0,
-            key: support.point.key,
-            coordinates: DVec3::from_array(support.point.coordinates).into(),
-            contact: support.contact.into(),
-            offset: support.offset.into(),
+            obstacle: attachment.obstacle.0,
+            key: attachment.point.key,
+            coordinates: DVec3::from_array(attachment.point.coordinates).into(),
+            contact: attachment.contact.into(),
+            offset: attachment.offset.into(),
             normal: support.normal.into(),
             face: support.face.into(),
-            frame: support.frame.into(),
+            frame: attachment.frame.into(),
+            kind: match support.tag.kind {
+                SurfaceKind::Skin => 0,
+                SurfaceKind::Fur => 1,
+                SurfaceKind::Stone => 2,
+            },
+            ledge: support.tag.ledge,
+            user: support.tag.user,
         }
     }
 }
@@ -376,16 +464,27 @@ impl From<&Support> for Held {
 impl From<Held> for Support {
     fn from(held: Held) -> Self {
         Self {
-            obstacle: ObstacleId(held.obstacle),
-            point: MaterialPoint {
-                key: held.key,
-                coordinates: DVec3::from(held.coordinates).to_array(),
+            attachment: Attachment {
+                obstacle: ObstacleId(held.obstacle),
+                point: MaterialPoint {
+                    key: held.key,
+                    coordinates: DVec3::from(held.coordinates).to_array(),
+                },
+                contact: held.contact.into(),
+                offset: held.offset.into(),
+                frame: held.frame.into(),
             },
-            contact: held.contact.into(),
-            offset: held.offset.into(),
             normal: held.normal.into(),
             face: held.face.into(),
-            frame: held.frame.into(),
+            tag: SurfaceTag {
+                kind: match held.kind {
+                    1 => SurfaceKind::Fur,
+                    2 => SurfaceKind::Stone,
+                    _ => SurfaceKind::Skin,
+                },
+                ledge: held.ledge,
+                user: held.user,
+            },
         }
     }
 }
@@ -393,8 +492,7 @@ impl From<Held> for Support {
 impl State {
     /// `Err` with the mode if it is none that this version knows.
     pub(crate) fn to_climber(self) -> Result<ClimberState, u32> {
-        let mut modes = ClimberMode::ALL.into_iter();
-        let mode = modes.find(|mode| mode_number(*mode) == self.mode);
+        let mode = ClimberMode::from_number(self.mode);
         Ok(ClimberState {
             position: self.position.into(),
             velocity: self.velocity.into(),
@@ -412,6 +510,9 @@ impl State {
             jump_buffer: self.jump_buffer,
             open_handed: self.open_handed,
             crouched: self.crouched,
+            base_velocity: self.base_velocity.into(),
+            jumping: self.jumping,
+            memory: self.memory.into(),
         })
     }
 }

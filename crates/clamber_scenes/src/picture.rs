@@ -118,7 +118,9 @@ impl Posture {
     fn of(climber: &Climber) -> Self {
         let (config, state) = (climber.config(), climber.state());
         let (up, position) = (config.up(), state.position);
-        let contact = state.support.map_or(position, |support| support.contact);
+        let contact = state
+            .support
+            .map_or(position, |support| support.attachment.contact);
         let across = state.heading.cross(up).normalize_or(DVec3::X);
         let standing = |along: DVec3, hands: DVec3| {
             let middle = position + along * (0.72 - config.body.radius);
@@ -135,7 +137,7 @@ impl Posture {
                 let along = (up - state.heading * 0.5).normalize_or(up);
                 standing(along, state.heading - along * 0.2)
             }
-            ClimberMode::Falling => standing(up, up),
+            ClimberMode::Falling | ClimberMode::Custom(_) => standing(up, up),
             ClimberMode::Tumbling => {
                 let middle = position - up * (config.body.radius - f64::from(BODY[1]));
                 Self {

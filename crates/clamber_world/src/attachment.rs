@@ -29,7 +29,7 @@ const MOST_MOVES: f64 = 8.0;
 /// # let rest = Palette::from_matrices([Affine::IDENTITY]);
 /// let id = ObstacleId(7);
 /// let above = DVec3::new(0.2, 0.2, 1.0);
-/// let hit = creature.closest_point(above, 2.0).ok_or("no skin")?;
+/// let hit = Obstacle::closest_point(&creature, above, 2.0).ok_or("no skin")?;
 /// let mut arrow = Attachment::new(id, &creature, &hit, above);
 ///
 /// creature.advance(&rest, Similarity::from_translation(DVec3::X * 0.5))?;

@@ -145,6 +145,16 @@ pub struct PointMotion {
     pub stretches: [f64; 2],
 }
 
+impl PointMotion {
+    /// Whether all numbers that a character is carried by are finite.
+    pub fn is_finite(&self) -> bool {
+        let vectors = [self.position, self.previous_position, self.velocity];
+        vectors.iter().all(|v| v.is_finite())
+            && self.turn.is_finite()
+            && self.frame.is_none_or(|frame| frame.is_finite())
+    }
+}
+
 /// Something that a character can stand on, hit, or be carried by.
 ///
 /// All queries are in world space and take `&self`. All but [`Obstacle::sweep_capsule`] see the pose of this tick. A

@@ -2,7 +2,7 @@
 
 use crate::ClimberError;
 
-fn check(
+pub(super) fn check(
     name: &'static str,
     range: &'static str,
     found: f64,

@@ -20,6 +20,18 @@ pub struct GroundConfig {
     pub coyote_time: f64,
     /// For how long before it lands a jump is remembered, seconds, not negative. 0.15.
     pub jump_buffer: f64,
+    /// How fast velocity along the ground comes to what is wanted, metres a second squared, not negative. 1,000: at once.
+    /// Lower feels like ice, or heavy. Speed beyond `walk_speed` is braked by `friction` in its place.
+    pub acceleration: f64,
+    /// How fast speed along the ground beyond `walk_speed` is braked, metres a second squared, not negative: after a
+    /// landing at speed, or a blow. 15.
+    pub friction: f64,
+    /// How fast input changes velocity in the air, metres a second squared, not negative. 0: it steers nothing. 10 is
+    /// what platformers have.
+    pub air_acceleration: f64,
+    /// Gravity is multiplied by this while a jump still rises and its button is up, at least 1. 1: jumps have one height.
+    /// 3 lets a tap jump a third as high.
+    pub jump_release_gravity: f64,
     /// How hard the ground has to be pulled away to be lost, metres a second squared beyond gravity, as a shake is
     /// measured; not negative. 20. Infinite: feet stick to any ground. Lower is thrown sooner.
     pub throw_acceleration: f64,
@@ -34,6 +46,10 @@ impl GroundConfig {
         step_height: 0.3,
         coyote_time: 0.1,
         jump_buffer: 0.15,
+        acceleration: 1_000.0,
+        friction: 15.0,
+        air_acceleration: 0.0,
+        jump_release_gravity: 1.0,
         throw_acceleration: 20.0,
     };
 
@@ -47,6 +63,17 @@ impl GroundConfig {
         check::not_negative("ground.step_height", self.step_height)?;
         check::not_negative("ground.coyote_time", self.coyote_time)?;
         check::not_negative("ground.jump_buffer", self.jump_buffer)?;
+        check::not_negative("ground.acceleration", self.acceleration)?;
+        check::not_negative("ground.friction", self.friction)?;
+        check::not_negative("ground.air_acceleration", self.air_acceleration)?;
+        let gravity = self.jump_release_gravity;
+        let name = "ground.jump_release_gravity";
+        check::check(
+            name,
+            "at least 1",
+            gravity,
+            gravity >= 1.0 && gravity.is_finite(),
+        )?;
         check::limit("ground.throw_acceleration", self.throw_acceleration)
     }
 }

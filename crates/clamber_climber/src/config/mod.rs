@@ -86,8 +86,8 @@ impl ClimberConfig {
     }
 
     /// Angle of a unit vector from up, radians.
-    pub(crate) fn slope(&self, away: DVec3) -> f64 {
-        libm::acos(away.dot(self.up()).clamp(-1.0, 1.0))
+    pub(crate) fn slope(&self, normal: DVec3) -> f64 {
+        clamber_mover::slope(normal, self.up())
     }
 
     pub(crate) fn validate(&self) -> Result<(), ClimberError> {

@@ -7,19 +7,20 @@ impl ClimberState {
     /// its fields. For comparing runs, not for hash tables.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Fnv::default();
-        for v in [self.position, self.velocity, self.heading, self.shake] {
+        for v in self.vectors() {
             hash.vector(v);
         }
-        hash.word(self.mode as u64 + 1);
+        hash.word(u64::from(self.mode.number()));
         if let Some(support) = &self.support {
-            hash.word(support.obstacle.0);
-            hash.word(support.point.key);
-            hash.vector(DVec3::from_array(support.point.coordinates));
-            hash.vector(support.contact);
-            hash.vector(support.offset);
+            let attachment = &support.attachment;
+            hash.word(attachment.obstacle.0);
+            hash.word(attachment.point.key);
+            hash.vector(DVec3::from_array(attachment.point.coordinates));
+            hash.vector(attachment.contact);
+            hash.vector(attachment.offset);
             hash.vector(support.normal);
             hash.vector(support.face);
-            for x in support.frame.to_array() {
+            for x in attachment.frame.to_array() {
                 hash.word(x.to_bits());
             }
         }
@@ -29,7 +30,10 @@ impl ClimberState {
         for (_, x) in self.numbers() {
             hash.word(x.to_bits());
         }
-        hash.word(u64::from(self.crouched));
+        for x in self.memory {
+            hash.word(x.to_bits());
+        }
+        hash.word(u64::from(self.crouched) | u64::from(self.jumping) << 1);
         hash.0
     }
 }

@@ -18,11 +18,14 @@ pub struct ClimberState {
     pub position: DVec3,
     /// In world space, metres a second: of the last tick.
     pub velocity: DVec3,
+    /// Of what supports it, or supported it last, in world space, metres a second: what its own motion is measured
+    /// against, so that a fall and a late jump are the same in every frame that moves steadily.
+    pub base_velocity: DVec3,
     /// Unit vector, perpendicular to up: where it faces.
     pub heading: DVec3,
     /// What it is doing.
     pub mode: ClimberMode,
-    /// The ground underfoot, what it grips, or the ledge it hangs from; `None` in the air.
+    /// The ground underfoot, the hold that it grips, or the ledge it hangs from; `None` in the air.
     pub support: Option<Support>,
     /// Velocity of what supports it over the last tick; `None` when that was just found, or was put elsewhere.
     pub support_velocity: Option<DVec3>,
@@ -46,7 +49,14 @@ pub struct ClimberState {
     pub open_handed: f64,
     /// Only its ball stands in the way: there is no room to stand up.
     pub crouched: bool,
+    /// It rises from a jump.
+    pub jumping: bool,
+    /// Numbers of modes of the game's own, in whatever mode it is: timers, directions. Any finite values.
+    pub memory: [f64; MEMORY],
 }
+
+/// How many numbers modes of a game's own may remember.
+pub const MEMORY: usize = 8;
 
 /// How far from 1 the length of a unit vector may be that was written down and read again.
 const UNIT: f64 = 1e-6;
@@ -56,6 +66,7 @@ impl ClimberState {
         Self {
             position,
             velocity: DVec3::ZERO,
+            base_velocity: DVec3::ZERO,
             heading: up.any_orthonormal_vector(),
             mode: ClimberMode::Falling,
             support: None,
@@ -70,6 +81,8 @@ impl ClimberState {
             jump_buffer: 0.0,
             open_handed: 0.0,
             crouched: false,
+            jumping: false,
+            memory: [0.0; MEMORY],
         }
     }
 
@@ -78,7 +91,8 @@ impl ClimberState {
         if !self.is_finite() {
             return Err(ClimberError::NotFinite("state"));
         }
-        if self.mode.is_supported() != self.support.is_some() {
+        let is_consistent = self.mode.is_supported() == self.support.is_some();
+        if !is_consistent && !self.mode.is_custom() {
             return Err(ClimberError::Support(self.mode));
         }
         for (name, found) in self.numbers() {
@@ -103,6 +117,16 @@ impl ClimberState {
         Ok(())
     }
 
+    fn vectors(&self) -> [DVec3; 5] {
+        [
+            self.position,
+            self.velocity,
+            self.base_velocity,
+            self.heading,
+            self.shake,
+        ]
+    }
+
     /// Each with its name.
     fn numbers(&self) -> [(&'static str, f64); 8] {
         [
@@ -118,8 +142,8 @@ impl ClimberState {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let vectors = [self.position, self.velocity, self.heading, self.shake];
-        vectors.iter().all(|v| v.is_finite())
+        self.vectors().iter().all(|v| v.is_finite())
+            && self.memory.iter().all(|x| x.is_finite())
             && self.numbers().iter().all(|(_, x)| x.is_finite())
             && self.support.is_none_or(|support| support.is_finite())
             && self.support_velocity.is_none_or(DVec3::is_finite)

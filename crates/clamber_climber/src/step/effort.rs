@@ -1,16 +1,71 @@
 //! What shakes, tires and hurts a climber.
 
-use clamber_world::PointMotion;
+use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
 
-use super::Step;
+use super::{NextMode, Tick};
 use crate::shake::{Shake, excess};
 use crate::{ClimberEvent, ClimberMode};
 
 /// For how long it grips nothing after its strength was used up, seconds.
 const EXHAUSTED: f64 = 1.0;
 
-impl Step<'_> {
+impl Tick<'_> {
+    /// What struck it since the last tick. A blow above the knocking speed knocks it over, if it can tumble. In the air any
+    /// other adds its velocity. On its feet it is moved along the ground, and off it where the blow points off it. On a
+    /// hold it hangs on and swings; a blow faster than a jump off the hold takes it off. From a ledge, too; a weaker one it
+    /// withstands.
+    pub(super) fn be_struck(&mut self) {
+        let Some(blow) = self.input.blow else {
+            return;
+        };
+        self.hurt(blow.damage);
+        let speed = blow.velocity.length();
+        let mode = self.state.mode;
+        let knocks = self.config.tumble.map(|tumble| speed > tumble.knock_speed);
+        let takes_off = mode.is_holding() && speed > self.holds_against();
+        if knocks == Some(true) {
+            self.state.velocity += blow.velocity;
+            if mode != ClimberMode::Tumbling {
+                let next = self.begin_tumbling(blow.by);
+                self.follow_at_once(next);
+            }
+        } else if takes_off {
+            self.state.velocity += blow.velocity;
+            let next = self.be_knocked_off();
+            self.follow_at_once(next);
+        } else if mode.is_supported() {
+            self.struck = blow.velocity;
+            if mode == ClimberMode::Standing || mode == ClimberMode::Hanging {
+                self.state.velocity += blow.velocity;
+            }
+        } else {
+            self.state.velocity += blow.velocity;
+        }
+        self.was = self.state.velocity;
+    }
+
+    /// The fastest blow that arms hold against, metres a second.
+    fn holds_against(&self) -> f64 {
+        let grip = self.config.grip;
+        grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed)
+    }
+
+    fn follow_at_once(&mut self, next: NextMode) {
+        if let NextMode::Change(mode) = next {
+            self.change_to(mode);
+        }
+    }
+
+    /// Off its feet or its hold by a blow, with the velocity that it has.
+    pub(super) fn be_knocked_off(&mut self) -> NextMode {
+        let by = self.input.blow.and_then(|blow| blow.by);
+        if let Some(from) = self.attachment() {
+            self.event(ClimberEvent::KnockedOff { from, by });
+        }
+        self.leave(ClimberMode::Falling)
+    }
+
     /// Feels how its support moves. What was put elsewhere, or is just found, has no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let change = match self.state.support_velocity {
@@ -30,7 +85,7 @@ impl Step<'_> {
     }
 
     /// Drains or refills stamina, and opens the grip when it is used up.
-    pub(super) fn tire(&mut self, shake_before: DVec3) {
+    pub(super) fn update_stamina(&mut self, shake_before: DVec3) {
         if !self.state.mode.is_supported() {
             self.shake_by(DVec3::ZERO);
         }
@@ -44,77 +99,50 @@ impl Step<'_> {
             let spent = stamina.hold_drain * dt + stamina.shake_drain * beyond;
             self.state.stamina = (self.state.stamina - spent).max(0.0);
             if self.state.stamina == 0.0 {
-                let shake = self.state.shake.length();
-                self.event(ClimberEvent::ShakenOff { shake });
-                self.state.open_handed = EXHAUSTED;
-                self.leave(ClimberMode::Falling);
+                self.be_shaken_off();
             }
         } else if self.state.mode == ClimberMode::Standing && beyond == 0.0 {
             self.state.stamina = (self.state.stamina + stamina.refill * dt).min(1.0);
         }
     }
 
-    /// The ground goes away from under its feet, faster than it falls and than they follow: `was` is its
-    /// velocity until then.
-    pub(super) fn is_thrown(&mut self, normal: DVec3, was: DVec3) -> bool {
-        let pulled = -self.state.shake.dot(normal) - -self.config.gravity.dot(normal);
-        let is_thrown = pulled > self.config.ground.throw_acceleration;
-        if is_thrown {
-            self.event(ClimberEvent::Thrown {
-                acceleration: pulled,
-            });
-            self.state.velocity = was;
-            self.leave(ClimberMode::Falling);
+    fn be_shaken_off(&mut self) {
+        let shake = self.state.shake.length();
+        if let Some(from) = self.attachment() {
+            self.event(ClimberEvent::ShakenOff { shake, from });
         }
-        is_thrown
+        self.state.open_handed = EXHAUSTED;
+        let next = self.leave(ClimberMode::Falling);
+        self.follow_at_once(next);
+    }
+
+    /// The ground goes away from under its feet, faster than it falls and than they follow.
+    pub(super) fn be_thrown(&mut self, normal: DVec3) -> Option<NextMode> {
+        let acceleration = -self.state.shake.dot(normal) - -self.config.gravity.dot(normal);
+        if acceleration <= self.config.ground.throw_acceleration {
+            return None;
+        }
+        if let Some(from) = self.attachment() {
+            self.event(ClimberEvent::Thrown { acceleration, from });
+        }
+        self.state.velocity = self.was;
+        Some(self.leave(ClimberMode::Falling))
     }
 
     /// A shake knocks it off its feet.
-    pub(super) fn is_knocked_down(&mut self, was: DVec3) -> bool {
-        let Some(tumble) = &self.config.tumble else {
-            return false;
-        };
-        let is_knocked = self.state.shake.length() > tumble.knock_acceleration;
-        if is_knocked {
-            self.state.velocity = was;
-            self.tumble();
+    pub(super) fn be_knocked_down(&mut self) -> Option<NextMode> {
+        let tumble = self.config.tumble?;
+        if self.state.shake.length() <= tumble.knock_acceleration {
+            return None;
         }
-        is_knocked
+        self.state.velocity = self.was;
+        Some(self.begin_tumbling(None))
     }
 
-    fn tumble(&mut self) {
-        self.event(ClimberEvent::Tumbled);
-        self.leave(ClimberMode::Tumbling);
-    }
-
-    /// What struck it since the last tick.
-    pub(super) fn be_struck(&mut self) {
-        let Some(blow) = self.input.blow else {
-            return;
-        };
-        self.hurt(blow.damage);
-        let knocks = self
-            .config
-            .tumble
-            .is_some_and(|tumble| blow.velocity.length() > tumble.knock_speed);
-        if knocks || !self.state.mode.is_supported() {
-            self.state.velocity += blow.velocity;
-        }
-        if knocks && self.state.mode != ClimberMode::Tumbling {
-            self.tumble();
-        }
-    }
-
-    /// After a landing at a speed.
-    pub(super) fn hit_the_ground(&mut self, speed: f64) {
-        self.hurt_by_fall(speed);
-        let falls_over = self
-            .config
-            .tumble
-            .is_some_and(|tumble| speed > tumble.landing_speed);
-        if falls_over {
-            self.tumble();
-        }
+    pub(super) fn begin_tumbling(&mut self, by: Option<ObstacleId>) -> NextMode {
+        let from = self.attachment();
+        self.event(ClimberEvent::Tumbled { from, by });
+        self.leave(ClimberMode::Tumbling)
     }
 
     pub(super) fn hurt_by_fall(&mut self, speed: f64) {

@@ -1,125 +1,167 @@
-//! In the air, or down what is too steep: gravity, and what is in the way.
+//! In the air, down what is too steep, or knocked over: gravity, and what is in the way.
 
+use clamber_mover::Ground;
 use glam::DVec3;
 
-use super::Step;
-use crate::mover::Touch;
+use super::ground::GRAZING;
+use super::moving::Intent;
+use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
 
-impl Step<'_> {
-    pub(super) fn fly(&mut self) {
-        let is_tumbling = self.state.mode == ClimberMode::Tumbling;
-        if !is_tumbling && self.grip_or_catch() {
+/// A body that comes down more slowly does not bounce, as a share of the speed of a jump.
+const BOUNCE: f64 = 0.1;
+
+/// Slower than this, relative to the ground, is lying still, as a share of the speed of a jump.
+const STILL: f64 = 0.1;
+
+impl Tick<'_> {
+    /// In the air, or down what is too steep.
+    pub(super) fn fly(&mut self) -> NextMode {
+        if let Some(next) = self.grip_or_catch() {
+            return next;
+        }
+        if self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
+            return self.jump_late();
+        }
+        self.steer();
+        let falling = self.fall();
+        self.land(falling)
+    }
+
+    /// A jump shortly after the ground has ended.
+    fn jump_late(&mut self) -> NextMode {
+        let up = self.config.up();
+        let rising = (self.state.velocity - self.state.base_velocity).dot(up);
+        let jump = self.config.ground.jump_speed;
+        self.state.velocity += up * (jump + rising.max(0.0) - rising);
+        self.begin_jump();
+        if self.state.mode == ClimberMode::Falling {
+            // The mode does not change; the jump does not come again, since its buffer is empty.
+            return self.fly();
+        }
+        NextMode::Change(ClimberMode::Falling)
+    }
+
+    /// What the input changes of the velocity in the air.
+    fn steer(&mut self) {
+        let ground = &self.config.ground;
+        let up = self.config.up();
+        let walk = self.input.walk;
+        let level = (walk - up * walk.dot(up)).clamp_length_max(1.0);
+        if ground.air_acceleration == 0.0 || level == DVec3::ZERO {
             return;
         }
-        let (start, dt) = (self.state.position, self.dt());
-        if !is_tumbling && self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
-            self.state.jump_buffer = 0.0;
-            self.state.coyote = 0.0;
-            let up = self.config.up();
-            let rising = self.state.velocity.dot(up).max(0.0);
-            let jump = self.config.ground.jump_speed;
-            self.state.velocity += up * (jump + rising - self.state.velocity.dot(up));
-            self.event(ClimberEvent::Jumped);
-            self.change_to(ClimberMode::Falling);
-        }
+        let own = self.state.velocity - self.state.base_velocity;
+        let along = own - up * own.dot(up);
+        let wanted = level * ground.walk_speed;
+        let steered = along.move_towards(wanted, ground.air_acceleration * self.dt());
+        self.state.velocity += steered - along;
+    }
+
+    /// One tick of a fall; gives the velocity that it would have had without contacts.
+    ///
+    /// The parabola is exact at every tick's end: constant acceleration over the tick.
+    fn fall(&mut self) -> DVec3 {
         self.has_flown = true;
-        self.state.velocity += self.config.gravity * dt;
-        let falling = self.state.velocity;
-        let moved = self.slide(start, start + falling * dt, true);
-        self.state.position = moved.position;
-        self.state.velocity = self.world.stopped(falling, None);
-        if is_tumbling {
-            self.lie(falling);
+        let (up, dt) = (self.config.up(), self.dt());
+        let rising = (self.state.velocity - self.state.base_velocity).dot(up) > 0.0;
+        self.state.jumping &= rising;
+        let weight = if self.state.jumping && !self.input.jump_held {
+            self.config.ground.jump_release_gravity
         } else {
-            self.land(falling);
-        }
+            1.0
+        };
+        let change = self.config.gravity * (weight * dt);
+        let target = self.state.position + (self.state.velocity + change * 0.5) * dt;
+        let falling = self.state.velocity + change;
+        let moved = self.slide_at(&self.path(target), Intent::Go, falling);
+        self.state.position = moved.position;
+        self.state.velocity = self.clipped(falling);
+        falling
     }
 
     /// Stands on what it came down on, or slides down it.
-    fn land(&mut self, falling: DVec3) {
-        let up = self.config.up();
+    fn land(&mut self, falling: DVec3) -> NextMode {
         let slope = self.config.ground.max_slope;
-        if let Some(touch) = self.held_up_by(slope) {
-            let ground = self.world.velocity_of(&touch);
-            let speed = -(falling - ground).dot(touch.away);
-            self.attach(&touch);
-            self.state.velocity = ground;
-            self.event(ClimberEvent::Landed {
-                obstacle: touch.obstacle,
-                speed: speed.max(0.0),
-            });
-            self.change_to(ClimberMode::Standing);
-            self.hit_the_ground(speed.max(0.0));
-            return;
-        }
-        let is_steep = self
-            .world
-            .touched()
-            .iter()
-            .any(|touch| touch.away.dot(up) > GRAZING);
-        let mode = if is_steep || self.is_beside_slope() {
-            ClimberMode::Sliding
-        } else {
-            ClimberMode::Falling
-        };
-        self.change_to(mode);
-    }
-
-    /// Who slides goes on sliding as long as the slope is within the skin width.
-    fn is_beside_slope(&mut self) -> bool {
-        if self.state.mode != ClimberMode::Sliding {
-            return false;
+        if let Some(ground) = self.held_up(self.state.position, slope) {
+            return self.land_on(&ground, falling);
         }
         let up = self.config.up();
-        let mut body = super::body(self.config, &self.state);
-        body.radius += self.config.body.skin_width;
-        let is_slope = |touch: &Touch| touch.away.dot(up) > GRAZING;
-        self.world.touching(&body).iter().any(is_slope)
+        let touched = self.mover.touched();
+        let is_steep = touched.iter().any(|touch| touch.normal.dot(up) > GRAZING);
+        let was_sliding = self.state.mode == ClimberMode::Sliding;
+        let is_sliding = is_steep || was_sliding && self.is_beside_slope(self.state.position);
+        match (is_sliding, was_sliding) {
+            (true, false) => NextMode::Change(ClimberMode::Sliding),
+            (false, true) => NextMode::Change(ClimberMode::Falling),
+            _ => NextMode::Stay,
+        }
     }
 
-    /// Bounces, slides to a halt, and gets up once it has lain still.
-    fn lie(&mut self, falling: DVec3) {
-        let Some(tumble) = &self.config.tumble else {
-            self.change_to(ClimberMode::Falling);
-            return;
+    /// Comes down on ground; keeps its speed along it.
+    fn land_on(&mut self, ground: &Ground, falling: DVec3) -> NextMode {
+        let touch = &ground.touch;
+        let own = falling - self.mover.velocity_of(touch);
+        let speed = (-own.dot(touch.normal)).max(0.0);
+        let along = own - touch.normal * own.dot(touch.normal);
+        self.state.position = ground.position;
+        self.state.jumping = false;
+        self.attach(touch, ground.position);
+        self.state.velocity = self.clipped(self.state.base_velocity + along);
+        self.event(ClimberEvent::Landed {
+            obstacle: touch.obstacle,
+            speed,
+        });
+        self.change_to(ClimberMode::Standing);
+        self.hurt_by_fall(speed);
+        let falls_over = self
+            .config
+            .tumble
+            .is_some_and(|tumble| speed.max(along.length()) > tumble.landing_speed);
+        if falls_over {
+            return self.begin_tumbling(None);
+        }
+        NextMode::Stay
+    }
+
+    /// Knocked over: bounces, slides to a halt, and gets up once it has lain still.
+    pub(super) fn tumble(&mut self) -> NextMode {
+        let Some(tumble) = self.config.tumble else {
+            return NextMode::Change(ClimberMode::Falling);
         };
+        let falling = self.fall();
         let slope = self.config.ground.max_slope;
-        let Some(touch) = self.held_up_by(slope) else {
+        let Some(ground) = self.held_up(self.state.position, slope) else {
             self.state.calm = 0.0;
-            return;
+            return NextMode::Stay;
         };
-        let ground = self.world.velocity_of(&touch);
-        let speed = -(falling - ground).dot(touch.away);
-        if speed > BOUNCE {
-            self.state.velocity += touch.away * (speed * tumble.restitution);
+        let touch = &ground.touch;
+        let jump = self.config.ground.jump_speed;
+        self.state.position = ground.position;
+        let base = self.mover.velocity_of(touch);
+        let speed = -(falling - base).dot(touch.normal);
+        if speed > BOUNCE * jump {
+            self.state.velocity += touch.normal * (speed * tumble.restitution);
             self.hurt_by_fall(speed);
         }
-        let along = self.state.velocity - ground;
-        let sliding = along - touch.away * along.dot(touch.away);
+        let along = self.state.velocity - base;
+        let sliding = along - touch.normal * along.dot(touch.normal);
         let braked = tumble.friction * self.config.gravity.length() * self.dt();
         let left = (sliding.length() - braked).max(0.0);
         self.state.velocity += sliding.normalize_or_zero() * left - sliding;
-        let rest = (self.state.velocity - ground).length();
-        self.state.calm = if rest < STILL {
+        let rest = (self.state.velocity - base).length();
+        self.state.calm = if rest < STILL * jump {
             self.state.calm + self.dt()
         } else {
             0.0
         };
-        if self.state.calm >= tumble.recover_time {
-            self.attach(&touch);
-            self.state.velocity = ground;
-            self.change_to(ClimberMode::Standing);
-            self.state.calm = 0.0;
+        self.state.base_velocity = base;
+        if self.state.calm < tumble.recover_time {
+            return NextMode::Stay;
         }
+        self.attach(touch, ground.position);
+        self.state.velocity = self.state.base_velocity;
+        self.state.calm = 0.0;
+        NextMode::Change(ClimberMode::Standing)
     }
 }
-
-/// Cosine of the angle from up at which a wall is a slope.
-pub(super) const GRAZING: f64 = 0.05;
-
-/// What comes down more slowly does not bounce, metres a second.
-const BOUNCE: f64 = 0.5;
-
-/// Slower than this, relative to the ground, is lying still, metres a second.
-const STILL: f64 = 0.5;

@@ -1,147 +1,77 @@
 //! What is underfoot.
 
-use clamber_world::{SweepContact, WorldCapsule};
+use clamber_mover::{Ground, GroundProbe, Touch};
 use glam::DVec3;
 
-use super::{SLOPE_HYSTERESIS, Step};
-use crate::mover::Touch;
-use crate::planes::{Plane, nearest_above};
+use super::{SLOPE_HYSTERESIS, Tick};
 
-/// Ground that a climber can stand on, and where it would stand.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ground {
-    pub(super) touch: Touch,
-    pub(super) position: DVec3,
-}
-
-/// Ground this little below is underfoot, however little it snaps, metres: far above the rounding of f32, by which one who
-/// stands may be above it, and far below what one sees.
-const UNDERFOOT: f64 = 1e-3;
-
-/// What is left of a step down where slopes on all sides support: sine of some degrees.
-const SUPPORTED: f64 = 0.1;
-
-impl Step<'_> {
-    /// The ground below a position, as far as `reach` below its feet, or beside it, no steeper than one who stands may
-    /// stand on.
-    pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
-        let reach = reach.max(UNDERFOOT);
-        self.ground_straight_below(position, reach)
-            .or_else(|| self.ground_beside(position, reach))
-    }
-
-    /// What a ball comes down on first, if that is ground.
-    pub(super) fn ground_straight_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
-        let down = -self.config.up() * (reach + self.config.body.skin_width);
-        let (touch, hit) = self.ground_towards(position, down)?;
-        // Up again, so that the whole ball touches what its core has met.
-        let up = self.config.up();
-        let rise = (self.config.body.radius - touch.contact.distance) / touch.away.dot(up);
-        let position = position + down * hit.time + up * rise;
-        Some(Ground { touch, position })
-    }
-
-    /// The nearest of what is no steeper than `limit`, where what is below is steeper.
-    fn ground_beside(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
-        let (up, limit) = (self.config.up(), self.stood_on());
-        let slope_of = |away: DVec3| libm::acos(away.dot(up).clamp(-1.0, 1.0));
-        let body = &self.config.body;
-        let (radius, core) = (body.radius, body.hard_radius());
-        let ball = WorldCapsule::ball(position, radius + reach);
-        let mut best: Option<Touch> = None;
-        for touch in self.world.touching(&ball) {
-            let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
-            if nearer && slope_of(touch.away) <= limit {
-                best = Some(*touch);
-            }
-        }
-        let best = best?;
-        // A triangle's nearest point may be on an edge within a wall, and look like a ledge: only what the ball comes to
-        // first is there.
-        let way = (best.contact.distance - core).max(0.0) + UNDERFOOT;
-        let toward = -best.away * way;
-        let (touch, hit) = self.ground_towards(position, toward)?;
-        let position =
-            position + toward * hit.time + touch.away * (radius - touch.contact.distance);
-        Some(Ground { touch, position })
-    }
-
-    /// What the core of the body meets first on a way, if that is ground.
-    fn ground_towards(&mut self, position: DVec3, way: DVec3) -> Option<(Touch, SweepContact)> {
-        let body = super::body(self.config, &self.state).moved(position - self.state.position);
-        let core = body.with_radius(self.config.body.hard_radius());
-        let (touch, hit) = self.world.cast(&core, way)?;
-        let is_ground = !hit.started_inside && self.config.slope(touch.away) <= self.stood_on();
-        is_ground.then_some((touch, hit))
-    }
-
-    /// The steepest slope that one who stands stays on.
-    pub(super) fn stood_on(&self) -> f64 {
+impl Tick<'_> {
+    /// The steepest slope that a standing climber stays on, radians.
+    pub(super) fn standing_slope(&self) -> f64 {
         self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 
-    /// Of what the last movement touched, what holds the climber up. It stands on it then: what turns while it lands
-    /// keeps it off by some millimetres.
-    pub(super) fn held_up_by(&mut self, slope_limit: f64) -> Option<Touch> {
-        let met = self.holding_up(slope_limit)?;
-        let mut touch = self.underfoot(&met);
-        let gap = touch.contact.distance - self.config.body.radius;
-        if gap > 0.0 && gap <= self.config.body.skin_width {
-            self.state.position -= touch.away * gap;
+    /// Ground for the body as it stands, up to `reach` below its feet.
+    pub(super) fn ground_probe(&self, reach: f64) -> GroundProbe {
+        GroundProbe {
+            body: self.body(),
+            up: self.config.up(),
+            max_slope: self.standing_slope(),
+            reach,
+        }
+    }
+
+    pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
+        let probe = self.ground_probe(reach);
+        self.mover.find_ground(&probe, position)
+    }
+
+    /// The contact of the last movement that holds the climber up at a position, and the position at which it stands on
+    /// it: a turning obstacle keeps a landing climber off by some millimetres.
+    ///
+    /// `None` if what was met on the way is not there any more: the climber was pushed off it since.
+    pub(super) fn held_up(&mut self, position: DVec3, max_slope: f64) -> Option<Ground> {
+        let up = self.config.up();
+        let met = self.mover.holding_up(up, max_slope)?;
+        let body = self.body();
+        let mut touch = self.mover.still_underfoot(&body, position, up, &met)?;
+        let gap = touch.contact.distance - body.radius;
+        let mut position = position;
+        if gap > 0.0 {
+            position -= touch.normal * gap;
             touch.contact.distance -= gap;
         }
-        Some(touch)
+        Some(Ground { touch, position })
     }
 
-    /// Level ground, else the least steep of slopes that leave it no way down.
-    pub(super) fn holding_up(&self, slope_limit: f64) -> Option<Touch> {
+    /// A slope that tips is slipped on; over the edge of level ground, the ground ends, whichever of the two faces that meet
+    /// there is said to touch.
+    pub(super) fn is_on_slope(&mut self, position: DVec3, max_slope: f64) -> bool {
         let up = self.config.up();
-        let flattest = |touches: &[Touch]| {
-            touches.iter().copied().reduce(|best, touch| {
-                if touch.away.dot(up) > best.away.dot(up) {
-                    touch
-                } else {
-                    best
-                }
-            })
+        let body = self.body();
+        let margin = body.margin;
+        self.mover.overlap(&body, position, margin);
+        let is_steep = |touch: &Touch| self.config.slope(touch.contact.normal) > max_slope;
+        let ends = |slope: &Touch| {
+            let mut level = self
+                .mover
+                .overlaps()
+                .iter()
+                .filter(|touch| !is_steep(touch));
+            level.any(|touch| touch.contact.point.distance(slope.contact.point) <= margin)
         };
-        let best = flattest(self.world.touched())?;
-        if self.config.slope(best.away) <= slope_limit {
-            return Some(best);
-        }
-        let mut slopes = [Plane {
-            normal: up,
-            offset: 0.0,
-        }; WEDGE];
-        let mut count = 0;
-        for touch in self.world.touched() {
-            if count < WEDGE && touch.away.dot(up) > 0.0 {
-                slopes[count].normal = touch.away;
-                count += 1;
-            }
-        }
-        let down = nearest_above(-up, &slopes[..count]).point;
-        (down.length() < SUPPORTED).then_some(best)
+        let mut touched = self.mover.touched().iter();
+        touched.any(|touch| touch.normal.dot(up) > GRAZING && is_steep(touch) && !ends(touch))
     }
 
-    /// What was met on the way, where the ball now stands on it: since they met it has slid on along it.
-    fn underfoot(&mut self, met: &Touch) -> Touch {
-        let body = &self.config.body;
-        let ball = WorldCapsule::ball(self.state.position, body.radius + body.skin_width);
-        let mut best: Option<Touch> = None;
-        for touch in self.world.touching(&ball) {
-            let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
-            let is_met = touch.obstacle == met.obstacle && touch.away.dot(met.away) > SAME_SIDE;
-            if nearer && is_met {
-                best = Some(*touch);
-            }
-        }
-        best.unwrap_or(*met)
+    /// A slope is within the margin.
+    pub(super) fn is_beside_slope(&mut self, position: DVec3) -> bool {
+        let up = self.config.up();
+        let body = self.body();
+        let touches = self.mover.overlap(&body, position, body.margin);
+        touches.iter().any(|touch| touch.normal.dot(up) > GRAZING)
     }
 }
 
-/// Cosine of how far the ground may have turned under what slides over it in a tick: 45 degrees.
-const SAME_SIDE: f64 = 0.7;
-
-/// Most slopes that are looked at together.
-const WEDGE: usize = 16;
+/// Cosine of the angle from up at which a wall is a slope.
+pub(super) const GRAZING: f64 = 0.05;

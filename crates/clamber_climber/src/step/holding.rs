@@ -1,21 +1,19 @@
 //! Crouched on what it grips.
 
-use clamber_world::WorldCapsule;
+use clamber_mover::Touch;
 use glam::{DQuat, DVec3};
 
-use super::{Carried, Step};
+use super::carrying::Carried;
+use super::moving::Intent;
+use super::{NextMode, Tick};
 use crate::config::GripConfig;
-use crate::mover::Touch;
-use crate::{ClimberEvent, ClimberMode, Support};
+use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 
-/// How fast arms draw the body to what they grip, metres a second.
-const DRAW_SPEED: f64 = 4.0;
+/// How fast arms draw the body to what they grip, as a share of the climbing speed.
+const DRAW: f64 = 8.0 / 3.0;
 
 /// After a jump off a hold, or after letting go, it grips nothing for so many seconds.
 pub(super) const OPEN_HANDED: f64 = 0.3;
-
-/// What is this much farther than the nearest, metres, is as near: of those it grips what it climbs towards.
-const AS_NEAR: f64 = 0.02;
 
 /// Faces that differ by more than this meet in a corner, radians: 40 degrees.
 const CORNER: f64 = 0.7;
@@ -23,219 +21,215 @@ const CORNER: f64 = 0.7;
 /// Cosine of the angle up to which it lies flat on a face: 10 degrees.
 const FLAT: f64 = 0.985;
 
-/// Who makes less than this share of a step upwards is as high as the hold goes, and looks for a ledge.
+/// A climber that makes less than this share of a step upwards is as high as the hold goes, and looks for a ledge.
 const STUCK: f64 = 0.25;
 
 /// What opposes its way by more than this cosine is climbed onto rather than along.
 const AHEAD: f64 = 0.3;
 
-impl Step<'_> {
-    /// Grips what is in reach, if it is asked to and has the strength: true if it does now.
-    pub(super) fn grip_or_catch(&mut self) -> bool {
+impl Tick<'_> {
+    /// Grips what is in reach, or catches a ledge, if it is asked to and has the strength.
+    pub(super) fn grip_or_catch(&mut self) -> Option<NextMode> {
         if !self.input.grip || self.state.stamina == 0.0 || self.state.open_handed > 0.0 {
-            return false;
+            return None;
         }
+        let place = self.place();
         if let Some(grip) = self.config.grip
-            && let Some(touch) = self.grip_near(self.state.position, &grip, None)
+            && let Some(touch) = self.find_grip(place, &grip, None)
         {
-            self.take_hold(&touch);
-            self.hold();
-            return true;
+            return Some(self.take_hold(&touch, place));
         }
-        self.catch_ledge()
+        self.catch_ledge(place)
     }
 
-    /// Grips something.
-    pub(super) fn take_hold(&mut self, touch: &Touch) {
-        self.attach(touch);
-        self.face(-touch.away);
+    /// Grips something from a position.
+    pub(super) fn take_hold(&mut self, touch: &Touch, place: DVec3) -> NextMode {
+        self.attach(touch, place);
+        self.face(-touch.normal);
+        self.state.jumping = false;
         self.event(ClimberEvent::Grabbed {
             obstacle: touch.obstacle,
             point: touch.contact.point,
         });
-        self.change_to(ClimberMode::Holding);
+        NextMode::Change(ClimberMode::Holding)
     }
 
-    pub(super) fn hold(&mut self) {
-        let Some(grip) = self.config.grip else {
-            self.leave(ClimberMode::Falling);
-            return self.fly();
+    pub(super) fn hold(&mut self) -> NextMode {
+        let (Some(grip), Some(carried)) = (self.config.grip, self.carried) else {
+            return self.leave(ClimberMode::Falling);
         };
-        let was = self.state.velocity;
-        let Some(carried) = self.carry() else {
-            self.event(ClimberEvent::LostFooting);
-            self.leave(ClimberMode::Falling);
-            return self.fly();
-        };
-        let normal = carried.support.normal_in_world();
+        let normal = carried.normal();
         if !self.input.grip {
-            return self.let_go(&carried, was);
+            return self.let_go(&carried);
         }
         if self.state.jump_buffer > 0.0 {
             return self.jump_off(normal, grip.jump_speed);
         }
         let leans_over = self.config.slope(normal) > grip.max_overhang;
-        if leans_over || self.state.shake.length() > grip.hang_acceleration {
-            self.change_to(ClimberMode::Hanging);
+        let shakes = self.state.shake.length() > grip.hang_acceleration;
+        if leans_over || shakes || self.struck != DVec3::ZERO {
             self.state.calm = 0.0;
-            return self.swing(&carried, carried.motion.velocity, DVec3::ZERO);
+            self.state.arm = self.config.hang.arm_length;
+            return NextMode::Change(ClimberMode::Hanging);
         }
-        let wish = self.climb_direction(normal);
-        self.climb(&carried, &grip, wish);
+        let wish = climb_direction(self.config, self.input, normal);
+        self.climb(&carried, &grip, wish)
     }
 
     /// Opens its hands.
-    fn let_go(&mut self, carried: &Carried, was: DVec3) {
+    fn let_go(&mut self, carried: &Carried) -> NextMode {
         self.event(ClimberEvent::Released);
-        let normal = carried.support.normal_in_world();
-        if self.config.slope(normal) <= self.config.ground.max_slope {
-            self.change_to(ClimberMode::Standing);
-            self.stand_carried(carried, was);
-        } else {
-            self.state.open_handed = OPEN_HANDED;
-            self.leave(ClimberMode::Falling);
-            self.fly();
+        if self.config.slope(carried.normal()) <= self.config.ground.max_slope {
+            return NextMode::Change(ClimberMode::Standing);
         }
+        self.state.open_handed = OPEN_HANDED;
+        self.leave(ClimberMode::Falling)
     }
 
     /// Away from its hold, and up.
-    pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) {
+    pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
-        let direction = (normal + up).normalize_or(normal);
-        self.state.velocity += direction * speed;
-        self.event(ClimberEvent::Jumped);
-        self.state.jump_buffer = 0.0;
-        self.state.coyote = 0.0;
+        self.state.velocity += (normal + up).normalize_or(normal) * speed;
+        self.begin_jump();
         self.state.open_handed = OPEN_HANDED;
-        self.leave(ClimberMode::Falling);
-        self.fly();
+        self.leave(ClimberMode::Falling)
     }
 
-    /// Where the input wants to go along a hold; its length is the share of full speed.
-    pub(super) fn climb_direction(&self, normal: DVec3) -> DVec3 {
-        let up = self.config.up();
-        let input = self.input;
-        let (wanted, share) = if input.climb == DVec3::ZERO {
-            let level = input.walk - up * input.walk.dot(up);
-            (turn_to(up, normal) * level, level.length().min(1.0))
-        } else {
-            (input.climb, input.climb.length().min(1.0))
-        };
-        let along = wanted - normal * wanted.dot(normal);
-        along.normalize_or_zero() * share
-    }
-
-    fn climb(&mut self, carried: &Carried, grip: &GripConfig, wish: DVec3) {
+    fn climb(&mut self, carried: &Carried, grip: &GripConfig, wish: DVec3) -> NextMode {
         let dt = self.dt();
-        let normal = carried.support.normal_in_world();
-        let offset = carried.position - carried.support.contact;
+        let normal = carried.normal();
+        let offset = carried.position - carried.motion.position;
         let too_far = (offset.dot(normal) - self.config.body.radius).max(0.0);
-        let drawn = normal * too_far.min(DRAW_SPEED * dt);
-        let target = carried.position + wish * (grip.climb_speed * dt) - drawn;
-        let moved = self.slide(carried.start, target, carried.swept);
-        if wish == DVec3::ZERO && moved.position.distance(target) <= self.config.body.skin_width {
-            self.settle(carried, moved.position);
-            return;
+        let drawn = normal * too_far.min(DRAW * grip.climb_speed * dt);
+        let velocity = wish * grip.climb_speed;
+        let step = velocity * dt;
+        let target = carried.position + step - drawn;
+        let intent = if wish == DVec3::ZERO {
+            Intent::Stay
+        } else {
+            Intent::Go
+        };
+        let moved = self.slide(&self.path(target), intent);
+        let position = moved.position;
+        if position.distance(carried.motion.position) > self.reach(grip) {
+            return self.be_torn_off(carried);
         }
-        self.state.position = moved.position;
-        let step = wish * (grip.climb_speed * dt);
-        let made = (moved.position - carried.position).dot(wish.normalize_or_zero());
+        if wish == DVec3::ZERO && position.distance(target) <= self.config.body.margin {
+            self.settle(carried, position, carried.velocity());
+            return NextMode::Stay;
+        }
+        self.state.position = position;
+        let wanted = carried.velocity() + velocity;
+        let made = (position - carried.position).dot(wish.normalize_or_zero());
         let is_stuck = made < STUCK * step.length();
-        if is_stuck && wish.dot(self.config.up()) > 0.0 && self.catch_ledge() {
-            return;
+        if is_stuck
+            && wish.dot(self.config.up()) > 0.0
+            && let Some(next) = self.catch_ledge(position)
+        {
+            return next;
         }
-        if let Some(touch) = self.grip_near(moved.position, grip, Some(normal)) {
-            self.climb_on_to(carried, &touch);
-            self.state.velocity =
-                carried.motion.velocity + (moved.position - carried.position) / dt;
-            self.face(-touch.away);
-            return;
+        let clipped = self.clipped(wanted);
+        if let Some(touch) = self.find_grip(position, grip, Some(normal)) {
+            self.climb_on_to(carried, &touch, position);
+            self.state.velocity = clipped;
+            self.face(-touch.normal);
+            return NextMode::Stay;
         }
-        if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
-            self.attach(&touch);
-            self.change_to(ClimberMode::Standing);
-            return;
+        if let Some(next) = self.stand_where_it_hangs() {
+            return next;
         }
-        if self.catch_ledge() {
-            return;
+        if let Some(next) = self.catch_ledge(position) {
+            return next;
         }
         // Nothing to grip there: it stays.
-        let moved = self.slide(carried.start, carried.position, carried.swept);
-        self.settle(carried, moved.position);
+        let moved = self.slide(&self.path(carried.position), Intent::Stay);
+        self.settle(carried, moved.position, carried.velocity());
+        NextMode::Stay
     }
 
-    /// Keeps what it holds, at a position.
-    pub(super) fn settle(&mut self, carried: &Carried, position: DVec3) {
-        let support = &carried.support;
-        self.state.position = position;
-        self.state.support = Some(Support {
-            offset: support.frame.conjugate() * (position - support.contact),
-            ..*support
-        });
-        self.state.velocity = carried.motion.velocity + (position - carried.position) / self.dt();
+    /// Farthest that its centre may be from what it holds, metres: arms at full stretch, and what they give.
+    fn reach(&self, grip: &GripConfig) -> f64 {
+        self.config.body.radius * 1.25 + grip.reach
     }
 
-    /// What it grips at a position: the nearest that can be gripped, and of those as near the one that it climbs onto:
-    /// against which it pushes, and which does not lead it back against what it `holds` now, in a crease.
-    pub(super) fn grip_near(
+    /// Something has pushed it off, farther than its arms reach.
+    pub(super) fn be_torn_off(&mut self, carried: &Carried) -> NextMode {
+        self.state.open_handed = OPEN_HANDED;
+        // Not with the speed of being pressed out.
+        self.state.velocity = carried.velocity();
+        self.lose_footing()
+    }
+
+    /// What it touches at its place can be stood on: it does.
+    pub(super) fn stand_where_it_hangs(&mut self) -> Option<NextMode> {
+        let ground = self.held_up(self.state.position, self.config.ground.max_slope)?;
+        self.state.position = ground.position;
+        self.attach(&ground.touch, ground.position);
+        self.state.velocity = self.state.base_velocity;
+        Some(NextMode::Change(ClimberMode::Standing))
+    }
+
+    /// What it grips at a position: the nearest that can be gripped and reached, and of those as near the one that it
+    /// climbs onto: against which it pushes, and which does not lead it back against what it `holds` now, in a crease.
+    pub(super) fn find_grip(
         &mut self,
         position: DVec3,
         grip: &GripConfig,
         holds: Option<DVec3>,
     ) -> Option<Touch> {
-        let reach = self.config.body.radius + grip.reach;
-        self.world.touching(&WorldCapsule::ball(position, reach));
-        let mut nearest = f64::INFINITY;
-        for index in 0..self.world.found().len() {
-            let touch = self.world.found()[index];
-            if touch.contact.distance < nearest && self.world.can_grip(&touch) {
-                nearest = touch.contact.distance;
-            }
-        }
-        let mut best: Option<(f64, Touch)> = None;
-        for index in 0..self.world.found().len() {
-            let touch = self.world.found()[index];
-            if touch.contact.distance > nearest + AS_NEAR || !self.world.can_grip(&touch) {
-                continue;
-            }
-            let ahead = holds.map_or(0.0, |normal| self.leads_on(normal, touch.away));
-            let cost = touch.contact.distance - nearest - ahead * AS_NEAR * 2.0;
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, touch));
-            }
-        }
-        best.map(|(_, touch)| touch)
-    }
-
-    /// How much more than a little it pushes against one face while it holds another, if the other does not push it
-    /// back.
-    fn leads_on(&self, held: DVec3, face: DVec3) -> f64 {
-        let wish = self.climb_direction(held);
-        let beyond = self.climb_direction(face);
-        let leads_back = beyond.dot(held) < -AHEAD;
-        if leads_back {
-            0.0
-        } else {
-            (-face.dot(wish) - AHEAD).max(0.0)
-        }
+        let (config, input, rules) = (self.config, self.input, self.rules);
+        let body = self.body();
+        self.mover.find_grip(
+            &body,
+            position,
+            grip.reach,
+            |touch| (rules.can_grip)(touch.obstacle, &touch.contact),
+            |touch| holds.map_or(0.0, |held| leads_on(config, input, held, touch.normal)),
+        )
     }
 
     /// Attaches it to what it climbs on to. A corner is turned when it lies flat on a face that differs from the last.
-    fn climb_on_to(&mut self, carried: &Carried, touch: &Touch) {
-        let face = carried.support.frame * carried.support.face;
-        self.attach(touch);
-        let lies_flat = touch.away.dot(touch.contact.normal) > FLAT;
+    fn climb_on_to(&mut self, carried: &Carried, touch: &Touch, position: DVec3) {
+        let face = carried.support.attachment.frame * carried.support.face;
+        self.attach(touch, position);
+        let lies_flat = touch.normal.dot(touch.contact.normal) > FLAT;
         let Some(support) = &mut self.state.support else {
             return;
         };
         if !lies_flat {
-            support.face = support.frame.conjugate() * face;
+            support.face = support.attachment.frame.conjugate() * face;
             return;
         }
         let angle = libm::acos(face.dot(touch.contact.normal).clamp(-1.0, 1.0));
         if angle > CORNER {
             self.event(ClimberEvent::TurnedCorner { angle });
         }
+    }
+}
+
+/// Where the input wants to go along a hold; its length is the share of full speed.
+fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) -> DVec3 {
+    let up = config.up();
+    let (wanted, share) = if input.climb == DVec3::ZERO {
+        let level = input.walk - up * input.walk.dot(up);
+        (turn_to(up, normal) * level, level.length().min(1.0))
+    } else {
+        (input.climb, input.climb.length().min(1.0))
+    };
+    let along = wanted - normal * wanted.dot(normal);
+    along.normalize_or_zero() * share
+}
+
+/// How much more than a little it pushes against one face while it holds another, if the other does not push it
+/// back.
+fn leads_on(config: &ClimberConfig, input: &ClimberInput, held: DVec3, face: DVec3) -> f64 {
+    let wish = climb_direction(config, input, held);
+    let beyond = climb_direction(config, input, face);
+    let leads_back = beyond.dot(held) < -AHEAD;
+    if leads_back {
+        0.0
+    } else {
+        (-face.dot(wish) - AHEAD).max(0.0)
     }
 }
 

@@ -1,22 +1,17 @@
 //! By its hands from a ledge: found by queries, on terrain and on skin alike.
 
-use clamber_world::WorldCapsule;
+use clamber_mover::{Ledge, LedgeProbe, Moved};
 use glam::DVec3;
 
+use super::carrying::Carried;
 use super::holding::OPEN_HANDED;
-use super::{Carried, Step};
+use super::moving::Intent;
+use super::{NextMode, Tick};
 use crate::config::LedgeConfig;
-use crate::mover::{Moved, Touch};
 use crate::{ClimberEvent, ClimberMode};
 
-/// Radius of a hand, metres: what is narrower is no ledge.
-const HAND: f64 = 0.06;
-
-/// How fast arms draw the body under the ledge, metres a second.
-const DRAW_SPEED: f64 = 3.0;
-
-/// How far beyond the edge hands and feet are put, metres.
-const BEYOND: f64 = 0.1;
+/// How fast arms draw the body under the ledge, as a share of the speed along it.
+const DRAW: f64 = 3.0;
 
 /// Share of the pull-up after which it goes in over the ledge; before it goes up.
 const OVER: f64 = 0.6;
@@ -25,32 +20,29 @@ const OVER: f64 = 0.6;
 /// under an overhang it goes out as it goes up, and lags.
 const KEPT: f64 = 0.5;
 
-impl Step<'_> {
-    /// Hangs from a ledge in front of it, if there is one.
-    pub(super) fn catch_ledge(&mut self) -> bool {
-        let Some(config) = self.config.ledge else {
-            return false;
-        };
-        let facing = self.facing();
-        let Some(top) = self.find_ledge(self.state.position, facing, &config) else {
-            return false;
-        };
-        let lift = (top.contact.point - self.state.position).dot(self.config.up()) - config.drop;
+/// Farther from its place than this share of its radius, it is drawn there before it pulls itself up.
+const OUT_OF_PLACE: f64 = 0.1;
+
+impl Tick<'_> {
+    /// Hangs from a ledge in front of a position, if there is one.
+    pub(super) fn catch_ledge(&mut self, place: DVec3) -> Option<NextMode> {
+        let config = self.config.ledge?;
+        let Ledge { touch, facing } = self.find_ledge(place, self.facing(), &config)?;
+        let lift = (touch.contact.point - place).dot(self.config.up()) - config.drop;
         if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
             // It would hang with its feet on the ground.
-            return false;
+            return None;
         }
+        self.attach(&touch, place);
         self.face(facing);
-        self.attach(&top);
         self.state.pull_up = 0.0;
         self.state.arm = 0.0;
+        self.state.jumping = false;
         self.event(ClimberEvent::LedgeCaught {
-            obstacle: top.obstacle,
-            point: top.contact.point,
+            obstacle: touch.obstacle,
+            point: touch.contact.point,
         });
-        self.change_to(ClimberMode::LedgeHanging);
-        self.hang_from_ledge();
-        true
+        Some(NextMode::Change(ClimberMode::LedgeHanging))
     }
 
     /// Where it looks for a ledge: where it wants to go, else where it faces.
@@ -61,84 +53,59 @@ impl Step<'_> {
         level.normalize_or(self.state.heading)
     }
 
-    /// The top of a ledge that can be hung from, a hand beyond its edge.
-    fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Touch> {
-        let up = self.config.up();
-        let radius = self.config.body.radius;
-        let reach = radius + config.reach;
-        let height = up * config.reach_up;
-        // The wall, wherever it is highest up front.
-        let hand = WorldCapsule {
-            ends: [from, from + height],
-            radius: HAND,
-        };
-        let (_, wall) = self.world.cast(&hand, facing * reach)?;
-        if wall.started_inside {
-            return None;
+    fn ledge_probe(&self, facing: DVec3, config: &LedgeConfig) -> LedgeProbe {
+        LedgeProbe {
+            body: self.body(),
+            up: self.config.up(),
+            facing,
+            reach_up: config.reach_up,
+            reach: config.reach,
+            max_slope: self.config.ground.max_slope,
         }
-        let to_wall = reach * wall.time + HAND;
-        // Its top, a hand beyond its edge, with room on the way there.
-        let above = WorldCapsule::ball(from + height + up * HAND, HAND);
-        let inward = facing * (to_wall + HAND + BEYOND);
-        if self.world.cast(&above, inward).is_some() {
-            return None;
-        }
-        let (top, hit) = self.world.cast(&above.moved(inward), -height)?;
-        let limit = self.config.ground.max_slope;
-        let is_top = !hit.started_inside && self.config.slope(top.away) <= limit;
-        is_top.then_some(top)
     }
 
-    pub(super) fn hang_from_ledge(&mut self) {
-        let Some(config) = self.config.ledge else {
-            self.leave(ClimberMode::Falling);
-            return self.fly();
+    fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Ledge> {
+        let probe = self.ledge_probe(facing, config);
+        self.mover.find_ledge(&probe, from)
+    }
+
+    pub(super) fn hang_from_ledge(&mut self) -> NextMode {
+        let (Some(config), Some(carried)) = (self.config.ledge, self.carried) else {
+            return self.leave(ClimberMode::Falling);
         };
-        let Some(carried) = self.carry() else {
-            self.event(ClimberEvent::LostFooting);
-            self.leave(ClimberMode::Falling);
-            return self.fly();
-        };
-        let top = carried.support.normal_in_world();
-        if self.config.slope(top) > self.stood_on() {
+        if self.config.slope(carried.normal()) > self.standing_slope() {
             self.event(ClimberEvent::Slipped);
-            self.leave(ClimberMode::Falling);
-            return self.fly();
+            return self.leave(ClimberMode::Falling);
         }
         if !self.input.grip {
             self.event(ClimberEvent::Released);
             self.state.open_handed = OPEN_HANDED;
-            self.leave(ClimberMode::Falling);
-            return self.fly();
+            return self.leave(ClimberMode::Falling);
         }
         if self.state.jump_buffer > 0.0 {
-            let speed = self
-                .config
-                .grip
-                .map_or(self.config.ground.jump_speed, |grip| grip.jump_speed);
+            let grip = self.config.grip;
+            let speed = grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed);
             return self.jump_off(-self.state.heading, speed);
         }
         let wish = self.ledge_wish();
+        if wish.up < -0.5
+            && self.state.pull_up == 0.0
+            && let Some(next) = self.grip_below(&carried)
+        {
+            return next;
+        }
         if self.state.pull_up > 0.0 || wish.up > 0.5 {
-            self.pull_up(&carried, &config);
-        } else if wish.up < -0.5 && self.grip_below(&carried) {
-            self.hold();
+            self.pull_up(&carried, &config)
         } else {
-            self.shimmy(&carried, &config, wish.aside);
+            self.shimmy(&carried, &config, wish.aside)
         }
     }
 
     /// Grips the wall that it hangs before, if it can, from where it has been carried.
-    fn grip_below(&mut self, carried: &Carried) -> bool {
-        let Some(grip) = self.config.grip else {
-            return false;
-        };
-        let Some(touch) = self.grip_near(carried.position, &grip, None) else {
-            return false;
-        };
-        self.state.position = carried.position;
-        self.take_hold(&touch);
-        true
+    fn grip_below(&mut self, carried: &Carried) -> Option<NextMode> {
+        let grip = self.config.grip?;
+        let touch = self.find_grip(carried.position, &grip, None)?;
+        Some(self.take_hold(&touch, carried.position))
     }
 
     fn ledge_wish(&self) -> LedgeWish {
@@ -159,63 +126,64 @@ impl Step<'_> {
 
     /// Where it hangs: its ball at the wall, below the edge.
     fn hanging_place(&self, carried: &Carried, config: &LedgeConfig) -> DVec3 {
-        let body = &self.config.body;
-        let out = body.radius + HAND + BEYOND;
-        carried.support.contact - self.state.heading * out - self.config.up() * config.drop
+        let out = self.ledge_probe(self.state.heading, config).hands_ahead();
+        carried.motion.position - self.state.heading * out - self.config.up() * config.drop
+    }
+
+    /// The part of a way that arms make in a tick.
+    fn drawn(&self, way: DVec3, config: &LedgeConfig) -> DVec3 {
+        way.clamp_length_max(DRAW * config.shimmy_speed * self.dt())
     }
 
     /// Hangs still, or goes along the ledge.
-    fn shimmy(&mut self, carried: &Carried, config: &LedgeConfig, aside: DVec3) {
-        let dt = self.dt();
+    fn shimmy(&mut self, carried: &Carried, config: &LedgeConfig, aside: DVec3) -> NextMode {
         let place = self.hanging_place(carried, config);
-        let drawn = (place - carried.position).clamp_length_max(DRAW_SPEED * dt);
-        let step = aside * (config.shimmy_speed * dt);
-        let target = carried.position + drawn + step;
-        let moved = self.slide(carried.start, target, carried.swept);
-        self.settle(carried, moved.position);
-        if self.is_pressed_off(carried, &moved) {
-            return;
+        let drawn = self.drawn(place - carried.position, config);
+        let velocity = aside * config.shimmy_speed;
+        let step = velocity * self.dt();
+        let intent = if step == DVec3::ZERO {
+            Intent::Stay
+        } else {
+            Intent::Go
+        };
+        let moved = self.slide(&self.path(carried.position + drawn + step), intent);
+        self.settle(carried, moved.position, carried.velocity() + velocity);
+        if self.is_pressed_off(place, &moved, config) {
+            return self.be_torn_off(carried);
         }
-        if let Some(touch) = self.held_up_by(self.config.ground.max_slope) {
-            self.attach(&touch);
-            self.change_to(ClimberMode::Standing);
-            return;
+        if let Some(next) = self.stand_where_it_hangs() {
+            return next;
         }
         if step == DVec3::ZERO {
-            return;
+            return NextMode::Stay;
         }
         let facing = self.state.heading;
-        if let Some(top) = self.find_ledge(moved.position, facing, config) {
+        if let Some(ledge) = self.find_ledge(moved.position, facing, config) {
             let velocity = self.state.velocity;
-            self.attach(&top);
+            self.attach(&ledge.touch, moved.position);
+            self.face(ledge.facing);
             self.state.velocity = velocity;
         } else {
-            let moved = self.slide(carried.start, carried.position + drawn, carried.swept);
-            self.settle(carried, moved.position);
+            let moved = self.slide(&self.path(carried.position + drawn), Intent::Stay);
+            self.settle(carried, moved.position, carried.velocity());
         }
+        NextMode::Stay
     }
 
-    /// Lets go where its ledge crushes it: it has no room there, and would be dragged on through what is.
-    fn is_pressed_off(&mut self, carried: &Carried, moved: &Moved) -> bool {
-        let is_crushed = moved.missed > self.config.body.skin_width;
-        if is_crushed {
-            self.event(ClimberEvent::LostFooting);
-            self.state.open_handed = OPEN_HANDED;
-            // Not with the speed of being pressed out.
-            self.state.velocity = carried.motion.velocity;
-            self.leave(ClimberMode::Falling);
-        }
-        is_crushed
+    /// Its ledge leaves it no room, or something holds it out of its reach: it would be dragged on through what is there.
+    fn is_pressed_off(&self, place: DVec3, moved: &Moved, config: &LedgeConfig) -> bool {
+        let is_crushed = moved.missing_room > self.config.body.margin;
+        let reach = self.config.body.radius + config.reach + config.reach_up;
+        is_crushed || moved.position.distance(place) > reach
     }
 
     /// Up, and in over the ledge.
-    fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) {
+    fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
         let before = self.state.pull_up;
-        let after = (before + self.dt() / config.pull_up_time).min(1.0);
         let place = self.hanging_place(carried, config);
         let up = self.config.up();
-        let radius = self.config.body.radius;
-        let over = carried.support.contact + up * (radius + self.config.body.skin_width);
+        let body = self.body();
+        let over = carried.motion.position + up * (body.radius + body.margin);
         let level = place + up * (over - place).dot(up);
         let at = |share: f64| {
             if share < OVER {
@@ -224,32 +192,49 @@ impl Step<'_> {
                 level.lerp(over, (share - OVER) / (1.0 - OVER))
             }
         };
-        let moved = self.slide(carried.start, at(after), carried.swept);
-        self.settle(carried, moved.position);
-        if self.is_pressed_off(carried, &moved) {
-            return;
+        // It was caught farther off: first to where the pull-up begins.
+        let is_out_of_place =
+            before == 0.0 && place.distance(carried.position) > OUT_OF_PLACE * body.radius;
+        let share = self.dt() / config.pull_up_time;
+        let after = if is_out_of_place {
+            0.0
+        } else {
+            (before + share).min(1.0)
+        };
+        let way = at(after) - carried.position;
+        let speed = (at(after) - at(before)).length() / self.dt();
+        let fastest = speed.max(DRAW * config.shimmy_speed) * self.dt();
+        let target = carried.position + way.clamp_length_max(fastest);
+        let moved = self.slide(&self.path(target), Intent::Go);
+        let velocity = (at(after) - at(before)) / self.dt();
+        self.settle(carried, moved.position, carried.velocity() + velocity);
+        if self.is_pressed_off(place, &moved, config) {
+            return self.be_torn_off(carried);
+        }
+        if is_out_of_place {
+            return NextMode::Stay;
         }
         // Walls and grounds that bulge push it ahead or aside; only what keeps it back is in its way.
         let onwards = (at(after) - at(before)).normalize_or_zero();
-        if (at(after) - moved.position).dot(onwards) > KEPT * radius {
+        if (at(after) - moved.position).dot(onwards) > KEPT * body.radius {
             // No room: back down, unless it is carried on in the next tick.
-            self.state.pull_up = (before - self.dt() / config.pull_up_time).max(0.0);
-            return;
+            self.state.pull_up = (before - share).max(0.0);
+            return NextMode::Stay;
         }
         self.state.pull_up = after;
         if after < 1.0 {
-            return;
+            return NextMode::Stay;
         }
-        if let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance) {
-            self.state.position = ground.position;
-            self.attach(&ground.touch);
-            self.state.pull_up = 0.0;
-            self.event(ClimberEvent::Mantled);
-            self.change_to(ClimberMode::Standing);
-        } else {
-            self.event(ClimberEvent::LostFooting);
-            self.leave(ClimberMode::Falling);
-        }
+        let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
+        else {
+            return self.lose_footing();
+        };
+        self.state.position = ground.position;
+        self.attach(&ground.touch, ground.position);
+        self.state.velocity = self.state.base_velocity;
+        self.state.pull_up = 0.0;
+        self.event(ClimberEvent::Mantled);
+        NextMode::Change(ClimberMode::Standing)
     }
 }
 

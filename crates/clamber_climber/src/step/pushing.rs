@@ -1,22 +1,23 @@
-//! What holds it up feels its weight, and what is in its way is pushed, if it can be.
+//! The support feels the climber's weight, and obstacles in its way are pushed, if they can be.
 //!
-//! Who is in the air strikes: what it meets takes the momentum that brings both to one speed, this tick's gravity with
-//! it. Who is on its feet or holds on does not strike what it is on, however firmly walking presses it there: that
-//! feels its weight, and what else is in the way a push of limited force. Nothing of this changes where it goes.
+//! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
+//! gravity included. A climber that stands or holds on does not strike its support, however firmly walking presses it
+//! there: the support feels its weight, and other obstacles in the way feel a push of limited force. None of this changes
+//! where the climber goes.
 
+use clamber_mover::Touch;
 use clamber_world::{MaterialPoint, ObstacleId};
+use glam::DVec3;
 
-use super::Step;
+use super::Tick;
+use crate::ClimberMode;
 use crate::event::Push;
-use crate::mover::{Path, Touch};
-use crate::{ClimberMode, Support};
 
-impl Step<'_> {
+impl Tick<'_> {
     /// Pushes what kept the body from where it wanted to be, but for what it is on.
-    pub(super) fn push_aside(&mut self, path: &Path) {
+    pub(super) fn push_aside(&mut self, wanted: DVec3) {
         let body = &self.config.body;
         let dt = self.dt();
-        let wanted = (path.target - path.start) / dt;
         let strikes = !self.state.mode.is_supported();
         let most = if strikes {
             f64::INFINITY
@@ -24,14 +25,14 @@ impl Step<'_> {
             body.push_force * dt
         };
         let first = self.report.pushes.len();
-        for index in 0..self.world.touched().len() {
-            let touch = self.world.touched()[index];
+        for index in 0..self.mover.touched().len() {
+            let touch = self.mover.touched()[index];
             let (obstacle, material) = (touch.obstacle, touch.contact.material);
-            let response = self.world.push_response(obstacle, &material, -touch.away);
+            let response = self.mover.push_response(obstacle, &material, -touch.normal);
             if response == 0.0 || self.is_on(&touch) || self.is_pushed(obstacle, &material) {
                 continue;
             }
-            let closing = -(wanted - self.world.velocity_of(&touch)).dot(touch.away);
+            let closing = -(wanted - self.mover.velocity_of(&touch)).dot(touch.normal);
             if closing <= 0.0 {
                 continue;
             }
@@ -40,7 +41,7 @@ impl Step<'_> {
                 obstacle,
                 material,
                 point: touch.contact.point,
-                impulse: -touch.away * together.min(most),
+                impulse: -touch.normal * together.min(most),
             });
         }
         // Colliders may belong to one body, which all of them together must not make faster than the climber.
@@ -54,22 +55,23 @@ impl Step<'_> {
         let Some(support) = self.state.support else {
             return;
         };
+        let attachment = support.attachment;
         if self.has_flown {
-            if self.is_pushed(support.obstacle, &support.point) {
+            if self.is_pushed(attachment.obstacle, &attachment.point) {
                 // It will go otherwise than it went, which is no shake.
                 self.state.support_velocity = None;
             }
             return;
         }
-        let (obstacle, gravity) = (support.obstacle, self.config.gravity);
+        let (obstacle, gravity) = (attachment.obstacle, self.config.gravity);
         let down = gravity.normalize_or_zero();
-        if self.world.push_response(obstacle, &support.point, down) == 0.0 {
+        if self.mover.push_response(obstacle, &attachment.point, down) == 0.0 {
             return;
         }
         self.report.pushes.push(Push {
             obstacle,
-            material: support.point,
-            point: support.contact,
+            material: attachment.point,
+            point: attachment.contact,
             impulse: gravity * (self.config.body.mass * self.dt()),
         });
     }
@@ -77,12 +79,12 @@ impl Step<'_> {
     /// It stands on this or holds it: its support, and what else is level enough to be underfoot.
     fn is_on(&self, touch: &Touch) -> bool {
         let is_underfoot = self.state.mode == ClimberMode::Standing
-            && self.config.slope(touch.away) <= self.stood_on();
-        let is_support = |support: &Support| {
-            let material = (support.obstacle, support.point.key);
+            && self.config.slope(touch.normal) <= self.standing_slope();
+        let is_support = self.attachment().is_some_and(|attachment| {
+            let material = (attachment.obstacle, attachment.point.key);
             material == (touch.obstacle, touch.contact.material.key)
-        };
-        is_underfoot || self.state.support.as_ref().is_some_and(is_support)
+        });
+        is_underfoot || is_support
     }
 
     fn is_pushed(&self, obstacle: ObstacleId, point: &MaterialPoint) -> bool {

@@ -138,7 +138,7 @@ fn climbs_from_one_part_onto_another_and_from_one_creature_onto_another() {
     run(&mut climber, &surfaces, &HOLD, 5);
     run(&mut climber, &surfaces, &climb(DVec3::Y), 160);
     let support = climber.state().support.unwrap();
-    assert_eq!(support.obstacle.0, 1, "{:?}", climber.state());
+    assert_eq!(support.attachment.obstacle.0, 1, "{:?}", climber.state());
     assert_mode(&climber, ClimberMode::Holding);
 }
 

@@ -21,11 +21,8 @@ pub(crate) const FUR: SurfaceTag = SurfaceTag::new(SurfaceKind::Fur);
 pub(crate) const STONE: SurfaceTag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
 
 pub(crate) const HOLD: ClimberInput = ClimberInput {
-    walk: DVec3::ZERO,
-    climb: DVec3::ZERO,
-    jump: false,
     grip: true,
-    blow: None,
+    ..ClimberInput::IDLE
 };
 
 /// A closed box about the origin, its faces in squares of about a metre.

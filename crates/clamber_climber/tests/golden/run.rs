@@ -1,6 +1,6 @@
 //! The run: the tube crawls through the world, 100 km from its origin, with climbers on it and queries all over it.
 
-use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberState};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberState, StepRules};
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{
     Affine, Capsule, Ray, Similarity, Sphere, rotation_from_axis_angle,
@@ -69,13 +69,14 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
                 [(ObstacleId(0), &floor), (TUBE, &surface)];
             let input = input(index, tick);
             climber
-                .step_where(&input, &obstacles, &|_, _| true, TICK)
+                .step_with(&input, &obstacles, &StepRules::gripping(&|_, _| true), TICK)
                 .unwrap();
             *climber.state()
         });
         let states: Vec<_> = states.collect();
         states.iter().for_each(|state| riders.climber(state));
-        let on_tube = |state: &&ClimberState| state.support.is_some_and(|s| s.obstacle == TUBE);
+        let on_tube =
+            |state: &&ClimberState| state.support.is_some_and(|s| s.attachment.obstacle == TUBE);
         carried += states.iter().filter(on_tube).count();
     }
     // Or the hashes are of little.

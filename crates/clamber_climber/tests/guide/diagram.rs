@@ -54,6 +54,8 @@ pub(crate) fn place(mode: ClimberMode) -> Place {
         ClimberMode::Hanging => column(4),
         ClimberMode::Falling => bar(28),
         ClimberMode::Tumbling => bar(412),
+        // None of this crate's, and not in the diagram.
+        ClimberMode::Custom(_) => bar(476),
     }
 }
 
@@ -66,6 +68,7 @@ const fn says(mode: ClimberMode) -> &'static str {
         ClimberMode::Hanging => "can only hold on",
         ClimberMode::Falling => "in the air",
         ClimberMode::Tumbling => "knocked off its feet",
+        ClimberMode::Custom(_) => "the game's own",
     }
 }
 

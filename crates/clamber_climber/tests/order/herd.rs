@@ -1,4 +1,6 @@
-use clamber_climber::{Climber, ClimberBody, ClimberConfig, ClimberInput, StepReport};
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberInput, ClimberObstacle, StepReport, StepRules,
+};
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
@@ -123,10 +125,10 @@ impl Herd {
         told.into_iter().map(|(_, told)| told).collect()
     }
 
-    fn bodies(&self) -> Vec<ClimberBody> {
+    fn bodies(&self) -> Vec<ClimberObstacle> {
         let climbers = self.climbers.iter();
         climbers
-            .map(|climber| ClimberBody::new(climber, TICK))
+            .map(|climber| ClimberObstacle::new(climber, TICK))
             .collect()
     }
 
@@ -146,7 +148,7 @@ impl Herd {
 type World<'a> = (
     &'a SkinnedSurface,
     &'a [SkinnedSurface; CREATURES],
-    &'a [ClimberBody],
+    &'a [ClimberObstacle],
 );
 
 /// `listed` is the order of the floor, the creatures and the bodies.
@@ -170,7 +172,12 @@ fn step(
     }
     let input = input(index as u32, tick, climber.state().position);
     let report = climber
-        .step_where(&input, &obstacles, &|id, _| id.0 < BODIES, TICK)
+        .step_with(
+            &input,
+            &obstacles,
+            &StepRules::gripping(&|id, _| id.0 < BODIES),
+            TICK,
+        )
         .unwrap();
     (climber.state().fingerprint(), report)
 }

@@ -72,7 +72,9 @@ fn the_herd_is_in_contact_with_all_of_itself() {
         for climber in &herd.climbers {
             let state = climber.state();
             modes.push(state.mode);
-            let support = state.support.map_or(0, |support| support.obstacle.0);
+            let support = state
+                .support
+                .map_or(0, |support| support.attachment.obstacle.0);
             if let Some(count) = stood_on.get_mut((support as usize).wrapping_sub(1)) {
                 *count += 1;
             }

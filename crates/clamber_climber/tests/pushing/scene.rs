@@ -11,13 +11,7 @@ use glam::DVec3;
 
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
-pub(crate) const IDLE: ClimberInput = ClimberInput {
-    walk: DVec3::ZERO,
-    climb: DVec3::ZERO,
-    jump: false,
-    grip: false,
-    blow: None,
-};
+pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
 pub(crate) fn walk(direction: DVec3) -> ClimberInput {
     ClimberInput {

@@ -162,6 +162,7 @@ impl Scene {
         }
         self.input.jump = rng.u32(0..90) == 0;
         self.input.blow = (rng.u32(0..400) == 0).then(|| Blow {
+            by: None,
             velocity: walk * 6.0,
             damage: rng.f64() * 0.1,
         });
@@ -189,7 +190,7 @@ impl Scene {
     /// How deep anything is in the climber's core.
     pub(crate) fn depth(&self, climber: &Climber) -> f64 {
         let body = &climber.config().body;
-        let core = climber.body().with_radius(body.radius - body.skin_width);
+        let core = climber.body().with_radius(body.radius - body.margin);
         let mut contacts = Vec::new();
         for (_, obstacle) in self.obstacles() {
             obstacle.overlap_capsule(&core, &mut contacts);

@@ -37,7 +37,7 @@ fn plain() -> Shape {
 fn material(run: &Run) -> DVec3 {
     let support = run.state().support.unwrap();
     let motion = run.stage.surface(0);
-    Obstacle::motion(motion, &support.point, run.stage.dt)
+    Obstacle::motion(motion, &support.attachment.point, run.stage.dt)
         .unwrap()
         .position
 }
@@ -56,12 +56,12 @@ pub(crate) fn breathing_ground_carries_for_a_minute() {
             config,
             DVec3::new(1.0, 0.0, 0.6),
         );
-        let point = run.state().support.unwrap().point;
+        let point = run.state().support.unwrap().attachment.point;
         for tick in 0..3600 {
             run.step(&IDLE);
             let support = run.state().support.unwrap();
             assert_eq!(
-                support.point, point,
+                support.attachment.point, point,
                 "{name}, tick {tick}: steps off its point"
             );
             let away = run.position().distance(material(&run));
@@ -80,12 +80,12 @@ pub(crate) fn a_foot_keeps_its_share_of_a_triangle_that_stretches() {
     };
     let rest = DVec3::new(1.1, 0.0, 0.7);
     let mut run = on(skin(&plain(), |_| 1.0, stretches), jolt(), rest);
-    let point = run.state().support.unwrap().point;
+    let point = run.state().support.unwrap().attachment.point;
     for tick in 0..600 {
         run.step(&IDLE);
         let support = run.state().support.unwrap();
         assert_eq!(
-            support.point, point,
+            support.attachment.point, point,
             "tick {tick}: barycentric coordinates changed"
         );
         let expected = stretches(run.stage.time()).transform_point3(rest);

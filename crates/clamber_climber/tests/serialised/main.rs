@@ -14,6 +14,7 @@ mod creature;
 mod scene;
 
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_world::ObstacleId;
 use glam::DVec3;
 use scene::Scene;
 use serde::Serialize;
@@ -90,20 +91,25 @@ fn inputs_keep_every_bit() {
         let blow = Blow {
             velocity: point(20.0),
             damage: point(1.0).x,
+            by: (round % 2 == 0).then_some(ObstacleId(u64::MAX - round)),
         };
         let input = ClimberInput {
             walk: point(2.0),
             climb: -point(0.0),
             jump: round % 2 == 0,
+            jump_held: round % 7 == 0,
             grip: round % 3 == 0,
             blow: (round % 5 == 0).then_some(blow),
+            actions: (round as u32).wrapping_mul(0x9e37_79b9),
+            aim: point(1e3),
         };
         let read = copy(&input);
         let bits = |input: &ClimberInput| {
             let blow = input.blow.unwrap_or_default();
-            let vectors = [input.walk, input.climb, blow.velocity];
+            let vectors = [input.walk, input.climb, blow.velocity, input.aim];
             let bits = vectors.map(|v| v.to_array().map(f64::to_bits));
-            (bits, blow.damage.to_bits(), input.jump, input.grip)
+            let buttons = (input.jump, input.jump_held, input.grip, input.actions);
+            (bits, blow.damage.to_bits(), blow.by, buttons)
         };
         assert_eq!(bits(&read), bits(&input), "{input:?}");
         assert_eq!(read.blow.is_some(), input.blow.is_some());

@@ -14,22 +14,29 @@ fn everything() -> (ClimberState, ClimberInput) {
     let [contact, offset, normal, face] = [vector(), vector(), vector(), vector()];
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
+    let [base_velocity, aim] = [vector(), vector()];
     let state = ClimberState {
         position,
         velocity,
+        base_velocity,
         heading,
         mode: ClimberMode::LedgeHanging,
         support: Some(Support {
-            obstacle: ObstacleId(7),
-            point: MaterialPoint {
-                key: 1 << 60,
-                coordinates: coordinates.to_array(),
+            attachment: Attachment {
+                obstacle: ObstacleId(u64::MAX - 7),
+                point: MaterialPoint {
+                    key: 1 << 60,
+                    coordinates: coordinates.to_array(),
+                },
+                contact,
+                offset,
+                frame: DQuat::from_xyzw(next(), next(), next(), next()),
             },
-            contact,
-            offset,
             normal,
             face,
-            frame: DQuat::from_xyzw(next(), next(), next(), next()),
+            tag: SurfaceTag::new(SurfaceKind::Stone)
+                .with_ledge()
+                .with_user(u32::MAX),
         }),
         support_velocity: Some(support_velocity),
         shake,
@@ -42,16 +49,22 @@ fn everything() -> (ClimberState, ClimberInput) {
         jump_buffer: next(),
         open_handed: next(),
         crouched: true,
+        jumping: true,
+        memory: core::array::from_fn(|_| next()),
     };
     let input = ClimberInput {
         walk,
         climb,
         jump: true,
+        jump_held: true,
         grip: true,
         blow: Some(Blow {
             velocity: struck,
             damage: next(),
+            by: Some(ObstacleId(0)),
         }),
+        actions: u32::MAX,
+        aim,
     };
     (state, input)
 }
@@ -77,7 +90,8 @@ fn words(state: &ClimberState, input: &ClimberInput) -> String {
 #[test]
 fn every_field_comes_back_in_every_mode() {
     let (state, input) = everything();
-    for mode in ClimberMode::ALL {
+    let custom = [0, 1, u16::MAX].map(ClimberMode::Custom);
+    for mode in ClimberMode::ALL.into_iter().chain(custom) {
         let state = ClimberState { mode, ..state };
         assert_eq!(read_back(&state, &input), (state, input), "{mode:?}");
     }
@@ -100,24 +114,26 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
     for v in [
         &mut state.position,
         &mut state.velocity,
+        &mut state.base_velocity,
         &mut state.heading,
         &mut state.shake,
         &mut input.walk,
         &mut input.climb,
+        &mut input.aim,
     ] {
         list.extend(all(v));
     }
     if let Some(support) = &mut state.support {
-        list.extend(&mut support.point.coordinates);
+        list.extend(&mut support.attachment.point.coordinates);
         for v in [
-            &mut support.contact,
-            &mut support.offset,
+            &mut support.attachment.contact,
+            &mut support.attachment.offset,
             &mut support.normal,
             &mut support.face,
         ] {
             list.extend(all(v));
         }
-        let DQuat { x, y, z, w } = &mut support.frame;
+        let DQuat { x, y, z, w } = &mut support.attachment.frame;
         list.extend([x, y, z, w]);
     }
     list.extend(state.support_velocity.iter_mut().flat_map(all));
@@ -135,6 +151,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.jump_buffer,
         &mut state.open_handed,
     ]);
+    list.extend(&mut state.memory);
     list
 }
 
@@ -142,8 +159,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_bit_of_every_number_survives_a_negative_zero_and_the_smallest_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Twelve vectors and the coordinates, a rotation, the damage, eight numbers.
-    assert_eq!(count, 3 * 13 + 4 + 1 + 8);
+    // Fourteen vectors and the coordinates, a rotation, the damage, eight numbers, eight of the game's modes.
+    assert_eq!(count, 3 * 15 + 4 + 1 + 8 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();

@@ -13,8 +13,18 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ),
         ClimberEvent::Jumped => (Level::Info, "jumped".to_owned()),
         ClimberEvent::Slipped => (Level::Warning, "slipped: too steep".to_owned()),
-        ClimberEvent::LostFooting => (Level::Warning, "lost its footing".to_owned()),
-        ClimberEvent::Thrown { acceleration } => (
+        ClimberEvent::LostFooting { from } => (
+            Level::Warning,
+            format!("lost its footing on obstacle {}", from.obstacle.0),
+        ),
+        ClimberEvent::MovedTwice { obstacle } => (
+            Level::Warning,
+            format!(
+                "obstacle {} moved several times since the last step",
+                obstacle.0
+            ),
+        ),
+        ClimberEvent::Thrown { acceleration, .. } => (
             Level::Warning,
             format!("thrown: the ground was pulled away at {acceleration:.1} m/s^2"),
         ),
@@ -35,11 +45,15 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ),
         ClimberEvent::Mantled => (Level::Info, "climbed over a ledge".to_owned()),
         ClimberEvent::Released => (Level::Info, "let go".to_owned()),
-        ClimberEvent::ShakenOff { shake } => (
+        ClimberEvent::ShakenOff { shake, .. } => (
             Level::Warning,
             format!("out of strength, the grip opened at a shake of {shake:.1} m/s^2"),
         ),
-        ClimberEvent::Tumbled => (Level::Warning, "knocked down".to_owned()),
+        ClimberEvent::Tumbled { .. } => (Level::Warning, "knocked down".to_owned()),
+        ClimberEvent::KnockedOff { from, .. } => (
+            Level::Warning,
+            format!("knocked off obstacle {}", from.obstacle.0),
+        ),
         ClimberEvent::Crushed { depth } => (
             Level::Warning,
             format!("crushed: {:.1} mm of room are missing", depth * 1e3),
@@ -49,6 +63,9 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
             format!("hurt: lost {:.0} % of its hit points", damage * 100.0),
         ),
         ClimberEvent::Changed { from, to } => (Level::Debug, format!("{from:?} to {to:?}")),
+        ClimberEvent::Custom { mode, what, value } => {
+            (Level::Info, format!("mode {mode}: {what}, {value:.3}"))
+        }
         ClimberEvent::NotFinite => (
             Level::Error,
             "an obstacle answered with numbers that are not finite: nothing happened".to_owned(),

@@ -55,7 +55,7 @@ impl Scene {
         let mut support = entity("support", CREATURE);
         // A support on another obstacle has a key of its own meaning, which may name a triangle by chance:
         // only one that the contact lies on counts.
-        let key = state.support.map(|support| support.point.key);
+        let key = state.support.map(|support| support.attachment.point.key);
         let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
         let tint = color(0.9, 0.1, 0.1, 1.0);
@@ -141,7 +141,7 @@ impl Scene {
     }
 }
 
-/// Green on its feet, amber to red by its hands, blue in the air, grey knocked down.
+/// Green on its feet, amber to red by its hands, blue in the air, grey knocked down, violet in a mode of the game's own.
 fn color_of(mode: ClimberMode) -> Color {
     match mode {
         ClimberMode::Standing => color(0.2, 0.7, 0.3, 0.9),
@@ -151,6 +151,7 @@ fn color_of(mode: ClimberMode) -> Color {
         ClimberMode::Hanging => color(0.85, 0.2, 0.1, 0.9),
         ClimberMode::Falling => color(0.2, 0.4, 0.9, 0.9),
         ClimberMode::Tumbling => color(0.5, 0.5, 0.5, 0.9),
+        ClimberMode::Custom(_) => color(0.6, 0.3, 0.8, 0.9),
     }
 }
 
@@ -168,14 +169,17 @@ fn from_z_to(to: DVec3) -> DQuat {
 fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
         let support = taken.state.support?;
-        let triangle = usize::try_from(support.point.key).ok()?;
+        let triangle = usize::try_from(support.attachment.point.key).ok()?;
         let corners = mesh.triangles().get(triangle)?;
         let mut position = DVec3::ZERO;
-        for (corner, weight) in corners.iter().zip(support.point.coordinates) {
+        for (corner, weight) in corners.iter().zip(support.attachment.point.coordinates) {
             position += positions.get(corner.index())?.as_dvec3() * weight;
         }
         let in_world = taken.world_from_model.transform_point(position);
-        Some(in_world.distance(support.contact) < 0.01 * taken.world_from_model.scale.max(1.0))
+        Some(
+            in_world.distance(support.attachment.contact)
+                < 0.01 * taken.world_from_model.scale.max(1.0),
+        )
     };
     named().unwrap_or(false)
 }

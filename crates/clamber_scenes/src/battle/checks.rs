@@ -46,21 +46,23 @@ impl Watch {
             self.fell_through += 1;
         }
         if climbs {
-            let support = state.support.filter(|s| s.obstacle == CREATURE)?;
-            let place = reference_position(surface, palette, &support.point);
+            let support = state
+                .support
+                .filter(|s| s.attachment.obstacle == CREATURE)?;
+            let place = reference_position(surface, palette, &support.attachment.point);
             let place = place.unwrap_or(DVec3::INFINITY);
             self.out_of_reach += u32::from(center.distance(place) > reach(climber));
-            return Some(support.contact.distance(place));
+            return Some(support.attachment.contact.distance(place));
         }
         let riding = state
             .support
-            .filter(|support| support.obstacle == CREATURE && idle);
+            .filter(|support| support.attachment.obstacle == CREATURE && idle);
         let Some(support) = riding else {
             self.recorded = None;
             return None;
         };
         let Some(recorded) = self.recorded else {
-            self.recorded = Some(support.point);
+            self.recorded = Some(support.attachment.point);
             return None;
         };
         let radius = climber.config().body.radius;
@@ -70,7 +72,7 @@ impl Watch {
         // Off its point, or out of touch with it.
         let off = |expected: DVec3| {
             let gap = (center.distance(expected) - radius).abs();
-            support.contact.distance(expected).max(gap)
+            support.attachment.contact.distance(expected).max(gap)
         };
         Some(reference_position(surface, palette, &recorded).map_or(f64::INFINITY, off))
     }

@@ -111,8 +111,8 @@ impl Pilot {
         let state = climber.state();
         let on_creature = state
             .support
-            .filter(|support| support.obstacle == CREATURE)
-            .map(|support| TriangleId(support.point.key as u32));
+            .filter(|support| support.attachment.obstacle == CREATURE)
+            .map(|support| TriangleId(support.attachment.point.key as u32));
         match (state.mode, on_creature) {
             (ClimberMode::Tumbling, _) => {
                 self.free = seconds;

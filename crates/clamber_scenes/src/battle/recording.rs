@@ -33,6 +33,7 @@ impl Sample {
             (ClimberMode::Standing, false) => "grounded",
             (ClimberMode::Holding, _) => "holding ",
             (ClimberMode::Hanging | ClimberMode::LedgeHanging, _) => "hanging ",
+            (ClimberMode::Custom(_), _) => "custom  ",
         }
     }
 }

@@ -2,7 +2,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState,
+    StepReport, StepRules,
 };
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
@@ -153,13 +154,14 @@ impl<'a> Battle<'a> {
         let level = away - up * height;
         let is_struck = state
             .support
-            .is_none_or(|support| support.obstacle == TERRAIN)
+            .is_none_or(|support| support.attachment.obstacle == TERRAIN)
             && height < STOMP_HEIGHT
             && level.length() < STOMP_REACH * self.height
             && self.choreography.has_stomped(TICK);
         is_struck.then(|| Blow {
             velocity: up * STOMP_SPEED[0] + level.normalize_or_zero() * STOMP_SPEED[1],
             damage: STOMP_DAMAGE,
+            by: Some(CREATURE),
         })
     }
 
@@ -195,7 +197,8 @@ impl<'a> Battle<'a> {
         let can_grip =
             |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
         let climber = &mut self.climber;
-        let report = climber.step_where(&input, &obstacles, &can_grip, TICK)?;
+        let report =
+            climber.step_with(&input, &obstacles, &StepRules::gripping(&can_grip), TICK)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let touched = self.surface.diagnostics();
 
@@ -231,7 +234,7 @@ impl<'a> Battle<'a> {
             mode: state.mode,
             riding: state
                 .support
-                .is_some_and(|support| support.obstacle == CREATURE),
+                .is_some_and(|support| support.attachment.obstacle == CREATURE),
             drift,
             push_out: report.pushed_out.length(),
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
@@ -250,7 +253,7 @@ impl<'a> Battle<'a> {
         let state = *self.climber.state();
         let on_ground = state
             .support
-            .is_some_and(|support| support.obstacle == TERRAIN);
+            .is_some_and(|support| support.attachment.obstacle == TERRAIN);
         self.grounded = if on_ground { self.grounded + 1 } else { 0 };
         if self.grounded < GROUNDED_TICKS {
             return Ok(());

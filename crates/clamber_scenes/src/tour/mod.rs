@@ -8,7 +8,7 @@ pub use ascent::Ascent;
 pub use route::{Route, Ways};
 pub use stage::{Motion, Stage};
 
-use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepRules};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
@@ -102,11 +102,16 @@ pub fn climb(
         };
         let surface = stage.surface();
         let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), surface)];
-        let report = climber.step_where(&input, &obstacles, &|_, _| true, 1.0 / RATE)?;
+        let report = climber.step_with(
+            &input,
+            &obstacles,
+            &StepRules::gripping(&|_, _| true),
+            1.0 / RATE,
+        )?;
         outcome.count(&report.events);
         outcome.trouble += u32::from(!report.is_clear);
         let body = &climber.config().body;
-        let core = climber.body().with_radius(body.radius - body.skin_width);
+        let core = climber.body().with_radius(body.radius - body.margin);
         let mut contacts = Vec::new();
         Obstacle::overlap_capsule(surface, &core, &mut contacts);
         let is_crushed = report

@@ -1,5 +1,6 @@
 /// What a surface is made of, as far as a climber cares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SurfaceKind {
     /// Bare: can be stood on or slid on.
     #[default]
@@ -12,6 +13,7 @@ pub enum SurfaceKind {
 
 /// What a triangle is tagged with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SurfaceTag {
     /// Material.
     pub kind: SurfaceKind,

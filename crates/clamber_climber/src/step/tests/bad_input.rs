@@ -75,7 +75,14 @@ fn bad_input_is_refused_and_changes_nothing() {
         assert!(climber.step(&IDLE, &obstacles, dt).is_err(), "{dt}");
     }
     let nan = DVec3::new(f64::NAN, 0.0, 0.0);
-    let blow = |velocity, damage| Some(Blow { velocity, damage });
+    let blow = |velocity, damage| {
+        let by = None;
+        Some(Blow {
+            velocity,
+            damage,
+            by,
+        })
+    };
     for input in [
         walking(nan),
         ClimberInput { climb: nan, ..IDLE },
@@ -126,11 +133,11 @@ fn states_that_no_climber_can_be_in_are_refused() {
             coyote: nan,
             ..before
         },
-        with_support(|support| support.offset.x = f64::NAN),
+        with_support(|support| support.attachment.offset.x = f64::NAN),
         with_support(|support| support.normal.y = f64::INFINITY),
         with_support(|support| support.face.y = f64::INFINITY),
-        with_support(|support| support.frame.w = f64::NAN),
-        with_support(|support| support.point.coordinates[1] = f64::NAN),
+        with_support(|support| support.attachment.frame.w = f64::NAN),
+        with_support(|support| support.attachment.point.coordinates[1] = f64::NAN),
     ] {
         let refused = climber.restore(state);
         assert_eq!(refused, Err(ClimberError::NotFinite("state")), "{state:?}");
@@ -185,8 +192,8 @@ fn configurations_outside_their_ranges_are_refused_by_name() {
         refused(&|config| config.ground.max_slope = 1.6),
         "ground.max_slope"
     );
-    let thick = refused(&|config| config.body.skin_width = config.body.radius);
-    assert_eq!(thick, "body.skin_width");
+    let thick = refused(&|config| config.body.margin = config.body.radius);
+    assert_eq!(thick, "body.margin");
     let grip = refused(&|config| config.grip.iter_mut().for_each(|grip| grip.reach = -1.0));
     assert_eq!(grip, "grip.reach");
     let bounce = refused(&|config| {

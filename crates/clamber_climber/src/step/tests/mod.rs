@@ -19,13 +19,7 @@ use crate::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, Ste
 
 const DT: f64 = 1.0 / 60.0;
 
-const IDLE: ClimberInput = ClimberInput {
-    walk: DVec3::ZERO,
-    climb: DVec3::ZERO,
-    jump: false,
-    grip: false,
-    blow: None,
-};
+const IDLE: ClimberInput = ClimberInput::IDLE;
 
 const fn walking(walk: DVec3) -> ClimberInput {
     ClimberInput { walk, ..IDLE }

@@ -75,7 +75,7 @@ fn order_of_obstacles_and_a_restored_state_change_no_bit() {
         assert_eq!(a, b, "tick {tick}");
         let (a, b) = (forward.state(), backward.state());
         assert_eq!(a.fingerprint(), b.fingerprint(), "tick {tick}: {a:?} {b:?}");
-        stood_on.extend(a.support.map(|support| support.obstacle));
+        stood_on.extend(a.support.map(|support| support.attachment.obstacle));
     }
     assert_eq!(stood_on.len(), 2, "only ever stood on {stood_on:?}");
 }

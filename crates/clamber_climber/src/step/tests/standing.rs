@@ -25,7 +25,10 @@ fn standing_is_carried_to_the_material_point_without_lag() {
         // Positions of some 10 m in f32, scaled by the arm of 3 m.
         assert!(off < 1e-5, "tick {tick}: {off}");
         let now = climber.state().support.unwrap();
-        assert_eq!(now.point, support.point, "anchored anew at tick {tick}");
+        assert_eq!(
+            now.attachment.point, support.attachment.point,
+            "anchored anew at tick {tick}"
+        );
     }
     let turned = climber.state().heading;
     let start = climber_at(0.0, 0.0, 0.0).state().heading;
@@ -45,7 +48,10 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
         let report = step_on(&mut climber, &folded, &IDLE);
         pushed += report.pushed_out.length();
         let state = climber.state();
-        assert_eq!(state.support.unwrap().point, support.point);
+        assert_eq!(
+            state.support.unwrap().attachment.point,
+            support.attachment.point
+        );
         // It slides along its side, never off it and never into the other.
         contacts.clear();
         Obstacle::overlap_sphere(&folded, state.position, 0.5, &mut contacts);
@@ -53,7 +59,9 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
         let nearest = distances.fold(f64::INFINITY, f64::min);
         println!(
             "{tick} {nearest} {}",
-            state.position.distance(state.support.unwrap().contact)
+            state
+                .position
+                .distance(state.support.unwrap().attachment.contact)
         );
         assert!((nearest - 0.4).abs() < 2e-5, "tick {tick}: {nearest}");
     }
@@ -84,7 +92,7 @@ fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
             "tick {tick}: {state:?}"
         );
         if let Some(support) = state.support {
-            let off = (state.position - support.contact) * DVec3::new(1.0, 0.0, 1.0);
+            let off = (state.position - support.attachment.contact) * DVec3::new(1.0, 0.0, 1.0);
             // Round the edge it leans by up to the steepest slope, and what it is pushed before it looks anew.
             let most = if state.position.x < 20.0 { 0.06 } else { 0.36 };
             assert!(off.length() < most, "tick {tick}: {state:?}");
@@ -93,7 +101,7 @@ fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
     assert!(climber.state().position.y < -1.0, "{:?}", climber.state());
     let change = changed(ClimberMode::Standing, ClimberMode::Falling);
     assert!(
-        events.ends_with(&[ClimberEvent::LostFooting, change]),
+        matches!(events[..], [.., ClimberEvent::LostFooting { .. }, last] if last == change),
         "{events:?}"
     );
 }
@@ -134,8 +142,11 @@ fn skin_that_collapses_keeps_its_last_direction() {
         pose(&mut ground, &flat);
         step_on(&mut climber, &ground, &IDLE);
         let now = climber.state().support.unwrap();
-        assert_eq!(now.frame, support.frame, "tick {tick}");
-        let expected = support.frame * support.offset;
+        assert_eq!(
+            now.attachment.frame, support.attachment.frame,
+            "tick {tick}"
+        );
+        let expected = support.attachment.frame * support.attachment.offset;
         assert!(
             (climber.state().position - expected).length() < 1e-9,
             "tick {tick}"
@@ -150,7 +161,8 @@ fn ground_that_queries_no_longer_see_is_left() {
     for triangle in 0..2 {
         ground.disable_triangle(TriangleId(triangle)).unwrap();
     }
+    let from = climber.state().support.unwrap().attachment;
     let events = step_on(&mut climber, &ground, &IDLE).events;
     let change = changed(ClimberMode::Standing, ClimberMode::Falling);
-    assert_eq!(events, [ClimberEvent::LostFooting, change]);
+    assert_eq!(events, [ClimberEvent::LostFooting { from }, change]);
 }

@@ -66,11 +66,11 @@ fn ground_that_ends_or_is_removed_is_left() {
     for _ in 0..60 {
         events.extend(step_on(&mut climber, &ground, &walk).events);
     }
-    let left = [
-        ClimberEvent::LostFooting,
-        changed(ClimberMode::Standing, ClimberMode::Falling),
-    ];
-    assert_eq!(events, left);
+    let left = changed(ClimberMode::Standing, ClimberMode::Falling);
+    assert!(
+        matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
+        "{events:?}"
+    );
     // It went round the edge, down to the steepest slope that it stands on, before it left.
     let speed = climber.state().velocity.x;
     let least = 3.0 * libm::cos(ClimberConfig::walker().ground.max_slope + SLOPE_HYSTERESIS);
@@ -81,7 +81,10 @@ fn ground_that_ends_or_is_removed_is_left() {
         ground.edit(|edit| edit.remove_triangle(triangle)).unwrap();
     }
     let events = step_on(&mut climber, &ground, &IDLE).events;
-    assert_eq!(events, left);
+    assert!(
+        matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
+        "{events:?}"
+    );
     // And without any obstacle at all.
     assert!(climber.step(&IDLE, &[], DT).unwrap().events.is_empty());
 }
@@ -124,7 +127,7 @@ fn no_step_leads_into_a_ceiling() {
         let (height, fall) = (0.8 + 0.001 * millimetres as f32, 0.1);
         let cave = step_below_ceiling(0.03, height, fall);
         let mut climber = landed(0.0, 0.45, 0.0, &cave);
-        let core = climber.config().body.hard_radius();
+        let core = climber.config().body.radius - climber.config().body.margin;
         let slope = f64::from(fall);
         for tick in 0..40 {
             step_on(&mut climber, &cave, &walking(DVec3::X));

@@ -7,7 +7,7 @@ pub(crate) fn jolt() -> ClimberConfig {
     let mut config = ClimberConfig::walker();
     config.body.radius = 0.32;
     config.body.height = 1.35;
-    config.body.skin_width = 0.02;
+    config.body.margin = 0.02;
     config.ground = GroundConfig {
         max_slope: radians(50.0),
         snap_distance: 0.5,

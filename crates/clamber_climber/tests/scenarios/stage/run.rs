@@ -28,13 +28,7 @@ pub(crate) struct Run {
 }
 
 /// No input.
-pub(crate) const IDLE: ClimberInput = ClimberInput {
-    walk: DVec3::ZERO,
-    climb: DVec3::ZERO,
-    jump: false,
-    grip: false,
-    blow: None,
-};
+pub(crate) const IDLE: ClimberInput = ClimberInput::IDLE;
 
 pub(crate) fn walk(direction: DVec3) -> ClimberInput {
     ClimberInput {

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode, StepRules};
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
@@ -72,7 +72,7 @@ impl Walker {
         let both = [limb, (ObstacleId(1), ground.unwrap_or(limb.1))];
         let there = &both[..1 + usize::from(ground.is_some())];
         self.climber
-            .step_where(&self.input, there, &|_, _| true, dt)?;
+            .step_with(&self.input, there, &StepRules::gripping(&|_, _| true), dt)?;
         Ok(())
     }
 

@@ -99,7 +99,7 @@ impl Body {
     pub(crate) fn core(&self) -> f64 {
         self.walker.as_ref().map_or(self.radius, |walker| {
             let body = &walker.climber.config().body;
-            body.radius - body.skin_width
+            body.radius - body.margin
         })
     }
 

@@ -36,7 +36,7 @@ fn climber(set: &Set) -> Result<Climber, Box<dyn Error>> {
     config.gravity = DVec3::Y * -set.gravity;
     config.body.radius = RADIUS;
     config.body.height = HEIGHT;
-    config.body.skin_width = PADDING;
+    config.body.margin = PADDING;
     config.ground = GroundConfig {
         max_slope: set.max_slope,
         walk_speed: set.speed,

@@ -43,20 +43,21 @@ const HALVINGS: usize = 50;
 
 /// All points y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Plane {
+pub struct HalfSpace {
     /// Unit length. Planes whose normal is shorter than a half, longer than 2, or not finite are
     /// ignored.
-    pub(crate) normal: DVec3,
+    pub normal: DVec3,
     /// Metres for points, metres a second for velocities.
-    pub(crate) offset: f64,
+    pub offset: f64,
 }
 
 /// A point above planes, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Above {
-    pub(crate) point: DVec3,
+pub struct Projection {
+    /// The nearest point.
+    pub point: DVec3,
     /// By how much the worst plane is missed; 0, or rounding, where all hold.
-    pub(crate) missed: f64,
+    pub missed: f64,
 }
 
 /// The point nearest to `target` on or above all planes.
@@ -65,9 +66,9 @@ pub(crate) struct Above {
 /// Exact to 1e-9 of the largest gap between target and plane, of the distance, and to the rounding
 /// of coordinates; the same bits in whatever order the planes come. Planes that are not finite, or
 /// farther away than numbers reach, are ignored.
-pub(crate) fn nearest_above(target: DVec3, planes: &[Plane]) -> Above {
+pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
     let Some(search) = Search::new(target, planes) else {
-        return Above {
+        return Projection {
             point: target,
             missed: 0.0,
         };
@@ -90,7 +91,7 @@ pub(crate) fn nearest_above(target: DVec3, planes: &[Plane]) -> Above {
 /// The problem with the target at the origin and the largest gap 1.
 struct Search<'a> {
     target: DVec3,
-    planes: &'a [Plane],
+    planes: &'a [HalfSpace],
     /// The largest gap: by how much the target misses the worst plane.
     size: f64,
 }
@@ -117,7 +118,7 @@ struct Corner {
 
 impl<'a> Search<'a> {
     /// None if the target is above all planes.
-    fn new(target: DVec3, planes: &'a [Plane]) -> Option<Self> {
+    fn new(target: DVec3, planes: &'a [HalfSpace]) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
         // Below, reciprocals overflow.
@@ -128,7 +129,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn above(&self, point: DVec3) -> Above {
+    fn above(&self, point: DVec3) -> Projection {
         let moved = self.target + point * self.size;
         let point = if moved.is_finite() {
             moved
@@ -136,7 +137,7 @@ impl<'a> Search<'a> {
             self.target
         };
         let gaps = self.planes.iter().filter_map(|plane| gap(plane, point));
-        Above {
+        Projection {
             point,
             missed: gaps.fold(0.0, f64::max),
         }
@@ -202,7 +203,7 @@ impl<'a> Search<'a> {
 }
 
 /// By how much a point misses a plane; none if the plane is to be ignored.
-fn gap(plane: &Plane, point: DVec3) -> Option<f64> {
+fn gap(plane: &HalfSpace, point: DVec3) -> Option<f64> {
     let gap = plane.offset - plane.normal.dot(point);
     ((0.25..=4.0).contains(&plane.normal.length_squared()) && gap.is_finite()).then_some(gap)
 }

@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-4;
 /// of its points is told as zero, though they go on.
 ///
 /// ```
-/// use clamber_climber::{Climber, ClimberBody, ClimberConfig, ClimberInput};
+/// use clamber_climber::{Climber, ClimberObstacle, ClimberConfig, ClimberInput};
 /// use clamber_world::{Obstacle, ObstacleId};
 /// use glam::DVec3;
 ///
@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 1e-4;
 /// let at = |x| Climber::new(ClimberConfig::walker(), DVec3::new(x, 0.0, 0.0));
 /// let mut climbers = [at(0.0)?, at(3.0)?];
 ///
-/// let bodies: Vec<ClimberBody> = climbers.iter().map(|climber| ClimberBody::new(climber, dt)).collect();
+/// let bodies: Vec<ClimberObstacle> = climbers.iter().map(|climber| ClimberObstacle::new(climber, dt)).collect();
 /// for (index, climber) in climbers.iter_mut().enumerate() {
 ///     let others = bodies.iter().enumerate().filter(|(other, _)| *other != index);
 ///     let obstacles: Vec<(ObstacleId, &dyn Obstacle)> =
@@ -38,7 +38,7 @@ const TOLERANCE: f64 = 1e-4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClimberBody {
+pub struct ClimberObstacle {
     /// At the end of the tick, if it goes on.
     now: WorldCapsule,
     /// Its way there.
@@ -55,7 +55,7 @@ struct Apart {
     on_axis: DVec3,
 }
 
-impl ClimberBody {
+impl ClimberObstacle {
     /// Of a climber before a tick of `dt` seconds.
     pub fn new(climber: &Climber, dt: f64) -> Self {
         let way = climber.state().velocity * dt;
@@ -148,7 +148,7 @@ fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
     }
 }
 
-impl Obstacle for ClimberBody {
+impl Obstacle for ClimberObstacle {
     fn bounds(&self) -> Option<(DVec3, f64)> {
         let (middle, radius) = self.now.bounding_ball();
         Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))

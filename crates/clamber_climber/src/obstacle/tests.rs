@@ -55,7 +55,7 @@ fn sweeps_stop_where_small_steps_first_touch() {
         let (now, other) = (capsule(&mut rng), capsule(&mut rng));
         let mut way = || DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 8.0 - 4.0;
         let (way, displacement) = (way(), way());
-        let body = ClimberBody { now, way };
+        let body = ClimberObstacle { now, way };
         let gap = |time: f64| {
             let here = now.moved(way * (time - 1.0));
             between(&here, &other.moved(displacement * time)).distance - now.radius - other.radius
@@ -104,7 +104,10 @@ fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
         })
         .collect();
     for _ in 0..ticks {
-        let bodies: Vec<_> = climbers.iter().map(|c| ClimberBody::new(c, DT)).collect();
+        let bodies: Vec<_> = climbers
+            .iter()
+            .map(|c| ClimberObstacle::new(c, DT))
+            .collect();
         for &index in order {
             let others = (0..4).filter(|other| *other != index);
             let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = others
@@ -136,7 +139,7 @@ fn a_crowd_stops_before_itself_in_any_order() {
 
 #[test]
 fn what_is_no_query_finds_nothing() {
-    let body = ClimberBody {
+    let body = ClimberObstacle {
         now: WorldCapsule::ball(DVec3::ZERO, 0.5),
         way: DVec3::ZERO,
     };
@@ -173,7 +176,7 @@ fn what_is_no_query_finds_nothing() {
 
 #[test]
 fn grazes_are_never_late() {
-    let body = ClimberBody {
+    let body = ClimberObstacle {
         now: WorldCapsule {
             ends: [DVec3::ZERO, DVec3::Y],
             radius: 0.4,

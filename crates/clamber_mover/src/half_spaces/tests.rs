@@ -3,12 +3,12 @@ use fastrand::Rng;
 
 /// The slow twin: of all sets of at most three planes, the nearest of the points that they hold and
 /// that are above all others; lowered, where there is none, until there is one.
-pub(crate) fn nearest_above_reference(target: DVec3, planes: &[Plane]) -> Above {
+fn project_onto_half_spaces_reference(target: DVec3, planes: &[HalfSpace]) -> Projection {
     let size = planes.iter().fold(0.0, |most: f64, plane| {
         most.max(plane.offset - plane.normal.dot(target))
     });
     if size == 0.0 {
-        return Above {
+        return Projection {
             point: target,
             missed: 0.0,
         };
@@ -41,7 +41,7 @@ pub(crate) fn nearest_above_reference(target: DVec3, planes: &[Plane]) -> Above 
     let missed = walls
         .iter()
         .fold(0.0, |most: f64, wall| most.max(wall.missed(point)));
-    Above {
+    Projection {
         point: target + point * size,
         missed: missed * size,
     }
@@ -141,11 +141,11 @@ fn normals(rng: &mut Rng, count: usize) -> Vec<DVec3> {
 }
 
 /// Planes with a point above them all, on some of them, 0.5 or so from the target.
-fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<Plane> {
+fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
     let inside = direction(rng) * rng.f64();
     let plane = |&normal: &DVec3| {
         let margin = [0.0, 1e-12, 0.1, 0.5][rng.usize(..4)] * rng.f64();
-        Plane {
+        HalfSpace {
             normal,
             offset: normal.dot(inside) - margin,
         }
@@ -153,15 +153,15 @@ fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<Plane> {
     normals.iter().map(plane).collect()
 }
 
-fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<Plane> {
-    let plane = |&normal: &DVec3| Plane {
+fn anyhow(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
+    let plane = |&normal: &DVec3| HalfSpace {
         normal,
         offset: rng.f64() * 2.0 - 1.0,
     };
     normals.iter().map(plane).collect()
 }
 
-fn size(target: DVec3, planes: &[Plane], found: &Above) -> f64 {
+fn size(target: DVec3, planes: &[HalfSpace], found: &Projection) -> f64 {
     planes
         .iter()
         .fold(target.length().max(found.point.length()), |most, plane| {
@@ -171,9 +171,9 @@ fn size(target: DVec3, planes: &[Plane], found: &Above) -> f64 {
 
 /// Agreement with the slow twin. What both weigh, miss against distance, is compared in every case;
 /// miss and distance each where there is room.
-fn check(target: DVec3, planes: &[Plane]) {
-    let found = nearest_above(target, planes);
-    let sought = nearest_above_reference(target, planes);
+fn check(target: DVec3, planes: &[HalfSpace]) {
+    let found = project_onto_half_spaces(target, planes);
+    let sought = project_onto_half_spaces_reference(target, planes);
     let slack = 1e-9 * size(target, planes, &found);
     let [far, least] = [found, sought].map(|above| above.point.distance(target));
     let context = || format!("{found:?} against {sought:?}\ntarget {target:?}\nplanes {planes:?}");
@@ -246,7 +246,7 @@ fn of_many_planes_none_is_intruded() {
             plane.offset -= 1e-3;
         }
         let target = direction(&mut rng) * rng.f64() * 3.0;
-        let found = nearest_above(target, &planes);
+        let found = project_onto_half_spaces(target, &planes);
         assert!(
             found.missed <= 1e-11,
             "{found:?} target {target:?} planes {planes:?}"
@@ -266,9 +266,9 @@ fn the_order_of_planes_changes_no_bit() {
             with_room(&mut rng, &normals)
         };
         let target = direction(&mut rng);
-        let first = nearest_above(target, &planes);
+        let first = project_onto_half_spaces(target, &planes);
         rng.shuffle(&mut planes);
-        let second = nearest_above(target, &planes);
+        let second = project_onto_half_spaces(target, &planes);
         assert_eq!(first, second, "target {target:?} planes {planes:?}");
     }
 }
@@ -286,13 +286,13 @@ fn smaller_and_larger_worlds_are_alike() {
             with_room(&mut rng, &normals)
         };
         let target = direction(&mut rng);
-        let found = nearest_above(target, &planes);
+        let found = project_onto_half_spaces(target, &planes);
         let scaled = |scale: f64| {
-            let scaled = planes.iter().map(|plane| Plane {
+            let scaled = planes.iter().map(|plane| HalfSpace {
                 offset: plane.offset * scale,
                 ..*plane
             });
-            nearest_above(target * scale, &scaled.collect::<Vec<_>>())
+            project_onto_half_spaces(target * scale, &scaled.collect::<Vec<_>>())
         };
         for scale in [f64::from(1 << 20), 1.0 / f64::from(1 << 20)] {
             let other = scaled(scale);
@@ -316,16 +316,16 @@ fn smaller_and_larger_worlds_are_alike() {
     }
 }
 
-fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [Plane; N] {
-    planes.map(|(normal, offset)| Plane {
+fn planes<const N: usize>(planes: [([f64; 3], f64); N]) -> [HalfSpace; N] {
+    planes.map(|(normal, offset)| HalfSpace {
         normal: DVec3::from_array(normal).normalize(),
         offset,
     })
 }
 
 #[track_caller]
-fn expect(target: [f64; 3], planes: &[Plane], point: [f64; 3], missed: f64) {
-    let found = nearest_above(DVec3::from_array(target), planes);
+fn expect(target: [f64; 3], planes: &[HalfSpace], point: [f64; 3], missed: f64) {
+    let found = project_onto_half_spaces(DVec3::from_array(target), planes);
     let apart = found.point.distance(DVec3::from_array(point));
     assert!(apart <= 1e-9, "{found:?}, {apart:e} off, planes {planes:?}");
     assert!((found.missed - missed).abs() <= 1e-10, "{found:?}");
@@ -336,7 +336,7 @@ fn above_all_nothing_moves() {
     let target = DVec3::new(0.1, 0.2, 0.3);
     let floor = planes([([0.0, 1.0, 0.0], 0.2)]);
     for planes in [&floor[..], &[]] {
-        let found = nearest_above(target, planes);
+        let found = project_onto_half_spaces(target, planes);
         assert_eq!((found.point, found.missed), (target, 0.0));
     }
 }
@@ -371,7 +371,7 @@ fn a_slab_too_thin_is_missed_on_both_sides() {
 fn walls_that_are_opposite_but_for_rounding_throw_nothing_far() {
     for tilt in [0.0, 1e-12, 1e-9, 1e-7, 1e-5] {
         let closing = planes([([tilt, 1.0, 0.0], 0.001), ([tilt, -1.0, 0.0], 0.001)]);
-        let found = nearest_above(DVec3::ZERO, &closing);
+        let found = project_onto_half_spaces(DVec3::ZERO, &closing);
         assert!(
             found.point.length() < 1e-4 && (found.missed - 0.001).abs() < 1e-8,
             "tilt {tilt}: {found:?}"
@@ -401,17 +401,17 @@ fn a_closed_box_is_missed_evenly() {
 #[test]
 fn cones_of_many_planes_have_one_apex() {
     for tilt in [1.0, 1e-3, 1e-6, 1e-9] {
-        let cone: Vec<Plane> = (0..32)
+        let cone: Vec<HalfSpace> = (0..32)
             .map(|k| {
                 let angle = f64::from(k) * 0.2;
                 let normal = DVec3::new(tilt * libm::cos(angle), 1.0, tilt * libm::sin(angle));
-                Plane {
+                HalfSpace {
                     normal: normal.normalize(),
                     offset: 0.0,
                 }
             })
             .collect();
-        let found = nearest_above(DVec3::new(0.0, -1.0, 0.0), &cone);
+        let found = project_onto_half_spaces(DVec3::new(0.0, -1.0, 0.0), &cone);
         assert!(found.missed < 1e-12, "tilt {tilt}: {found:?}");
         // Of flat cones the apex is no nearer than the planes themselves, to second order.
         let far = found.point.distance(DVec3::new(0.0, -1.0, 0.0));
@@ -421,7 +421,7 @@ fn cones_of_many_planes_have_one_apex() {
 
 #[test]
 fn normals_of_no_use_are_ignored() {
-    let mut all = vec![Plane {
+    let mut all = vec![HalfSpace {
         normal: DVec3::Y,
         offset: 1.0,
     }];
@@ -432,13 +432,13 @@ fn normals_of_no_use_are_ignored() {
         DVec3::X * 1e-200,
         DVec3::X * 1e200,
     ] {
-        all.push(Plane {
+        all.push(HalfSpace {
             normal,
             offset: 1.0,
         });
     }
     for offset in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        all.push(Plane {
+        all.push(HalfSpace {
             normal: DVec3::X,
             offset,
         });
@@ -454,15 +454,15 @@ fn extremes_stay_finite() {
     let mut rng = Rng::with_seed(6);
     for _ in 0..4000 {
         let count = rng.usize(1..=6);
-        let planes: Vec<Plane> = normals(&mut rng, count)
+        let planes: Vec<HalfSpace> = normals(&mut rng, count)
             .into_iter()
-            .map(|normal| Plane {
+            .map(|normal| HalfSpace {
                 normal,
                 offset: sizes[rng.usize(..sizes.len())],
             })
             .collect();
         let target = direction(&mut rng) * sizes[rng.usize(..sizes.len())];
-        let found = nearest_above(target, &planes);
+        let found = project_onto_half_spaces(target, &planes);
         assert!(
             found.point.is_finite() && !found.missed.is_nan(),
             "{found:?} target {target:?} planes {planes:?}"

@@ -1,0 +1,166 @@
+//! Being carried by a material point, attaching to one, and leaving it.
+
+use clamber_mover::Touch;
+use clamber_world::{Attachment, Continuity, PointMotion};
+use glam::{DQuat, DVec3};
+
+use super::{NextMode, Tick};
+use crate::{ClimberEvent, ClimberMode, Support};
+
+/// A material point that was this far from where it is said to have been a tick ago, as a share of the radius, did not
+/// move there in one step. Far above rounding, far below what one sees.
+const CONTINUOUS: f64 = 0.025;
+
+/// What has carried a climber since the last tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Carried {
+    pub(super) support: Support,
+    pub(super) motion: PointMotion,
+    /// Velocity of the support over the tick before; `None` if it was just found, or was put elsewhere.
+    pub(super) velocity_before: Option<DVec3>,
+    /// Where the climber was a tick ago; where it would have been, had its support been put elsewhere.
+    pub(super) start: DVec3,
+    /// Where its support has carried it.
+    pub(super) position: DVec3,
+    /// False if the support was put elsewhere: the way there was not made.
+    pub(super) swept: bool,
+}
+
+impl Carried {
+    pub(super) fn normal(&self) -> DVec3 {
+        self.support.normal_in_world()
+    }
+
+    pub(super) fn velocity(&self) -> DVec3 {
+        self.motion.velocity
+    }
+}
+
+impl Tick<'_> {
+    /// Follows the support to where it is now, and feels how it moves. A support that is gone is lost.
+    pub(super) fn be_carried(&mut self) {
+        let Some(mut support) = self.state.support else {
+            return;
+        };
+        let slack = CONTINUOUS * self.config.body.radius;
+        let dt = self.dt();
+        let attachment = &mut support.attachment;
+        let obstacle = self.mover.obstacle(attachment.obstacle);
+        let followed = obstacle.and_then(|obstacle| attachment.follow(obstacle, dt, slack));
+        let followed = followed.filter(|followed| followed.motion.is_finite());
+        let Some(followed) = followed else {
+            self.lose_footing();
+            if !self.state.mode.is_custom() {
+                self.change_to(ClimberMode::Falling);
+            }
+            return;
+        };
+        let motion = followed.motion;
+        let was_placed = followed.continuity == Continuity::Placed;
+        if followed.continuity == Continuity::MovedTwice {
+            let obstacle = support.attachment.obstacle;
+            self.event(ClimberEvent::MovedTwice { obstacle });
+        }
+        let velocity_before = self.state.support_velocity.filter(|_| !was_placed);
+        self.feel(&motion, was_placed);
+        self.state.support = Some(support);
+        self.state.velocity = motion.velocity;
+        self.state.base_velocity = motion.velocity;
+        self.face(motion.turn * self.state.heading);
+        let offset = support.attachment.offset_in_world();
+        self.carried = Some(Carried {
+            support,
+            motion,
+            velocity_before,
+            start: if was_placed {
+                motion.previous_position + offset
+            } else {
+                self.began
+            },
+            position: motion.position + offset,
+            swept: !was_placed,
+        });
+    }
+
+    /// Where it is before its own movement of this tick.
+    pub(super) fn place(&self) -> DVec3 {
+        self.carried
+            .map_or(self.state.position, |carried| carried.position)
+    }
+
+    /// Its own velocity at the tick's beginning, relative to what carries it, and turned with that.
+    pub(super) fn own_velocity(&self) -> DVec3 {
+        let own = self.was - self.base_was;
+        self.carried
+            .map_or(own, |carried| carried.motion.turn * own)
+    }
+
+    /// Attaches the climber, at a position, to something it touches; `how` it carries it is known from then on.
+    pub(super) fn attach(&mut self, touch: &Touch, position: DVec3) {
+        let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
+        let attachment =
+            Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), position);
+        let into_frame = attachment.frame.conjugate();
+        let support = Support {
+            attachment,
+            normal: into_frame * touch.normal,
+            face: into_frame * touch.contact.normal,
+            tag: touch.contact.tag,
+        };
+        self.state.support = Some(support);
+        self.state.support_velocity = motion.map(|motion| motion.velocity);
+        self.state.base_velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
+        // It felt what carried it until now; the new support is already where it is at the tick's end.
+        self.carried = motion.map(|motion| Carried {
+            support,
+            motion: PointMotion {
+                previous_position: motion.position,
+                turn: DQuat::IDENTITY,
+                ..motion
+            },
+            velocity_before: Some(motion.velocity),
+            start: self.began,
+            position: attachment.place(),
+            swept: true,
+        });
+    }
+
+    /// Keeps its support, at another position relative to it.
+    pub(super) fn keep_support(&mut self, carried: &Carried, position: DVec3) {
+        self.state.position = position;
+        self.state.support = Some(Support {
+            attachment: carried.support.attachment.moved_to(position),
+            ..carried.support
+        });
+    }
+
+    /// Is attached to nothing any more.
+    pub(super) fn detach(&mut self) {
+        self.state.support = None;
+        self.state.support_velocity = None;
+        self.state.arm = 0.0;
+        self.state.pull_up = 0.0;
+        self.state.calm = 0.0;
+        self.carried = None;
+    }
+
+    /// Into the air, with the velocity that it has.
+    pub(super) fn leave(&mut self, mode: ClimberMode) -> NextMode {
+        self.detach();
+        NextMode::Change(mode)
+    }
+
+    /// [`Tick::leave`], with the event of having lost its support.
+    pub(super) fn lose_footing(&mut self) -> NextMode {
+        if let Some(support) = self.state.support {
+            let from = support.attachment;
+            self.event(ClimberEvent::LostFooting { from });
+        }
+        self.leave(ClimberMode::Falling)
+    }
+
+    /// The attachment that it has.
+    pub(super) fn attachment(&self) -> Option<Attachment> {
+        self.state.support.map(|support| support.attachment)
+    }
+}

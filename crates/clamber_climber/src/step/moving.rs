@@ -1,0 +1,145 @@
+//! Moving the body, and noting what it touched.
+
+use clamber_mover::{Begin, Moved, Path, Touch};
+use glam::DVec3;
+
+use super::Tick;
+use super::carrying::Carried;
+use crate::{ClimberContact, ClimberEvent, ClimberMode, ContactPhase};
+
+/// What a movement is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Intent {
+    /// The climber goes where its support carries it.
+    Stay,
+    /// It goes on its own.
+    Go,
+}
+
+impl Tick<'_> {
+    /// The path of the body as it stands from where it was to a target. Its frame is the support.
+    pub(super) fn path(&self, target: DVec3) -> Path {
+        let body = self.body();
+        match &self.carried {
+            Some(carried) => Path {
+                begin: if carried.swept {
+                    Begin::Start
+                } else {
+                    Begin::Target
+                },
+                frame: carried.position - carried.start,
+                ..Path::new(body, carried.start, target)
+            },
+            None => Path {
+                frame: self.state.base_velocity * self.dt(),
+                ..Path::new(body, self.state.position, target)
+            },
+        }
+    }
+
+    /// Moves the body; the state's position is the caller's to set.
+    pub(super) fn slide(&mut self, path: &Path, intent: Intent) -> Moved {
+        let wanted = (path.target - path.start) / self.dt();
+        self.slide_at(path, intent, wanted)
+    }
+
+    /// [`Tick::slide`] with a velocity that contacts feel, where that is not the mean over the tick.
+    pub(super) fn slide_at(&mut self, path: &Path, intent: Intent, wanted: DVec3) -> Moved {
+        let moved = self.mover.slide(path);
+        self.has_moved = true;
+        self.is_lost |= !path.target.is_finite();
+        self.report.pushed_out += moved.position - path.target;
+        self.report.penetration = moved.penetration;
+        self.report.rounds += moved.rounds;
+        self.report.is_clear &= moved.is_clear;
+        if moved.missing_room > path.body.margin {
+            // Down to its ball, which needs least room.
+            self.state.crouched = true;
+            self.event(ClimberEvent::Crushed {
+                depth: moved.missing_room - path.body.margin,
+            });
+        }
+        self.list_contacts(wanted, intent);
+        self.push_aside(wanted);
+        moved
+    }
+
+    /// A velocity as far as what the last movement touched lets it, in the frame of the support.
+    pub(super) fn clipped(&self, velocity: DVec3) -> DVec3 {
+        self.mover
+            .clip_velocity(velocity, self.state.base_velocity, None)
+    }
+
+    /// Goes on as it went, where more changes of mode were wanted than a tick allows.
+    pub(super) fn coast(&mut self) {
+        if let Some(carried) = self.carried {
+            let moved = self.slide(&self.path(carried.position), Intent::Stay);
+            self.keep_support(&carried, moved.position);
+        } else {
+            let target = self.state.position + self.state.velocity * self.dt();
+            let moved = self.slide(&self.path(target), Intent::Stay);
+            self.state.position = moved.position;
+            self.state.velocity = self.clipped(self.state.velocity);
+        }
+    }
+
+    fn list_contacts(&mut self, wanted: DVec3, intent: Intent) {
+        for index in 0..self.mover.touched().len() {
+            let touch = self.mover.touched()[index];
+            let phase = match (intent, touch.swept) {
+                (Intent::Stay, _) => ContactPhase::Carried,
+                (Intent::Go, true) => ContactPhase::Swept,
+                (Intent::Go, false) => ContactPhase::Overlapped,
+            };
+            let closing = -(wanted - self.mover.velocity_of(&touch)).dot(touch.normal);
+            self.list(&touch, closing, phase);
+        }
+    }
+
+    fn list(&mut self, touch: &Touch, closing_speed: f64, phase: ContactPhase) {
+        let (obstacle, contact) = (touch.obstacle, &touch.contact);
+        let is_known = self.contacts.iter().any(|known| {
+            let same = (known.obstacle, known.material.key) == (obstacle, contact.material.key);
+            same && known.phase == phase
+        });
+        if !is_known {
+            self.contacts.push(ClimberContact {
+                obstacle,
+                material: contact.material,
+                tag: contact.tag,
+                position: contact.point,
+                normal: touch.normal,
+                closing_speed,
+                phase,
+            });
+        }
+    }
+
+    /// Lists the support among the contacts.
+    pub(super) fn list_support(&mut self) {
+        let Some(support) = self.state.support else {
+            return;
+        };
+        let phase = match self.state.mode {
+            ClimberMode::Holding | ClimberMode::Hanging => ContactPhase::Grip,
+            ClimberMode::LedgeHanging => ContactPhase::Ledge,
+            _ => ContactPhase::Ground,
+        };
+        let attachment = &support.attachment;
+        self.contacts.push(ClimberContact {
+            obstacle: attachment.obstacle,
+            material: attachment.point,
+            tag: support.tag,
+            position: attachment.contact,
+            normal: support.normal_in_world(),
+            closing_speed: 0.0,
+            phase,
+        });
+    }
+
+    /// Where it stands or holds after a movement that its support carries it through.
+    pub(super) fn settle(&mut self, carried: &Carried, position: DVec3, wanted: DVec3) {
+        self.keep_support(carried, position);
+        self.state.velocity = self.clipped(wanted);
+    }
+}

@@ -1,0 +1,65 @@
+use glam::DVec3;
+
+use crate::{Mover, MoverBody, Touch};
+
+/// Contacts farther than the nearest by less than this share of the body's radius are as near.
+const AS_NEAR: f64 = 0.05;
+
+/// Most contacts that a hand is tried to reach: what is behind a wall has many triangles.
+const TRIES: usize = 16;
+
+/// The last of the way to a contact that a hand need not have free, as a share of the body's radius: the triangles around
+/// the contact.
+const AT_HAND: f64 = 0.025;
+
+impl Mover<'_> {
+    /// What hands can grip at a position: the nearest contact within `reach` of the body's ball that `can_grip` lets
+    /// through and a hand can reach, and of those about as near the one that `merit` likes best; a merit of 1 outweighs a
+    /// difference in distance of a tenth of the radius.
+    pub fn find_grip(
+        &mut self,
+        body: &MoverBody,
+        position: DVec3,
+        reach: f64,
+        can_grip: impl Fn(&Touch) -> bool,
+        merit: impl Fn(&Touch) -> f64,
+    ) -> Option<Touch> {
+        self.overlap(&body.crouched(), position, reach);
+        let as_near = AS_NEAR * body.radius;
+        let mut blocked = [usize::MAX; TRIES];
+        for tries in 0..TRIES {
+            let blocked_so_far = &blocked[..tries];
+            let candidates = || {
+                let all = self.overlaps().iter().enumerate();
+                all.filter(|(index, touch)| !blocked_so_far.contains(index) && can_grip(touch))
+            };
+            let distances = candidates().map(|(_, touch)| touch.contact.distance);
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            let mut best: Option<(f64, usize)> = None;
+            for (index, touch) in candidates() {
+                let farther = touch.contact.distance - nearest;
+                if farther > as_near {
+                    continue;
+                }
+                let cost = farther - merit(touch) * as_near * 2.0;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, index));
+                }
+            }
+            let (_, index) = best?;
+            let touch = self.overlaps()[index];
+            if self.can_reach(position, &touch, AT_HAND * body.radius) {
+                return Some(touch);
+            }
+            blocked[tries] = index;
+        }
+        None
+    }
+
+    /// Whether nothing is between a position and a contact, as everything stands now, but for the last `slack` metres.
+    pub fn can_reach(&mut self, position: DVec3, touch: &Touch, slack: f64) -> bool {
+        let way = touch.contact.point - position;
+        let length = way.length() - slack;
+        length <= 0.0 || self.cast_ray(position, way, length).is_none()
+    }
+}

@@ -1,0 +1,253 @@
+//! What holds a body up: the ground below it, and which contacts of a movement it stands on.
+
+use clamber_world::WorldCapsule;
+use glam::DVec3;
+
+use crate::half_spaces::{HalfSpace, project_onto_half_spaces};
+use crate::{Hit, Mover, MoverBody, Touch};
+
+/// Where ground is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundProbe {
+    /// What is to stand there.
+    pub body: MoverBody,
+    /// Unit vector.
+    pub up: DVec3,
+    /// Steepest slope that counts as ground, radians from level.
+    pub max_slope: f64,
+    /// How far below the feet, metres, not negative.
+    pub reach: f64,
+}
+
+/// Ground that a body can stand on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// The contact that it would stand on.
+    pub touch: Touch,
+    /// Where the body would stand, in world space.
+    pub position: DVec3,
+}
+
+/// Ground this little below is underfoot, however small the reach, as a share of the margin: far above the rounding of
+/// f32, by which a standing body may be above it.
+const UNDERFOOT: f64 = 0.1;
+
+/// What is left of a step down where slopes on all sides support: sine of some degrees.
+const SUPPORTED: f64 = 0.1;
+
+/// Contacts underfoot that are farther than the nearest by less than this share of the margin are as near.
+const AS_NEAR: f64 = 0.01;
+
+/// Faces whose cosines from up differ by less are one face: rounding of f32 normals.
+const ONE_FACE: f64 = 1e-6;
+
+/// Cosine of how far the ground may have turned under a body that slides over it in a tick: 45 degrees.
+const SAME_SIDE: f64 = 0.7;
+
+/// Most slopes that are looked at together.
+const WEDGE: usize = 16;
+
+impl GroundProbe {
+    fn is_ground(&self, normal: DVec3) -> bool {
+        slope(normal, self.up) <= self.max_slope
+    }
+
+    /// The least distance that is looked.
+    fn least(&self) -> f64 {
+        UNDERFOOT * self.body.margin
+    }
+}
+
+/// Angle of a unit vector from up, radians.
+pub fn slope(normal: DVec3, up: DVec3) -> f64 {
+    libm::acos(normal.dot(up).clamp(-1.0, 1.0))
+}
+
+impl Mover<'_> {
+    /// The ground straight below a position, else the nearest beside it, up to the probe's reach.
+    pub fn find_ground(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
+        let probe = &GroundProbe {
+            reach: probe.reach.max(probe.least()),
+            ..*probe
+        };
+        self.find_ground_below(probe, position)
+            .or_else(|| self.find_ground_beside(probe, position))
+    }
+
+    /// What the body comes down on first, if that is ground.
+    pub fn find_ground_below(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
+        let body = &probe.body;
+        let down = -probe.up * (probe.reach + body.margin);
+        let Hit { touch, time, .. } = self.meet_ground(probe, position, down)?;
+        // Up again, so that the whole body touches what its core has met.
+        let rise = (body.radius - touch.contact.distance) / touch.normal.dot(probe.up);
+        let position = position + down * time + probe.up * rise;
+        Some(Ground { touch, position })
+    }
+
+    /// The nearest ground where what is straight below is too steep.
+    fn find_ground_beside(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
+        let body = &probe.body;
+        let mut best: Option<Touch> = None;
+        for touch in self.overlap(&body.crouched(), position, probe.reach) {
+            let nearer = best.is_none_or(|best| touch.contact.distance < best.contact.distance);
+            if nearer && probe.is_ground(touch.normal) {
+                best = Some(*touch);
+            }
+        }
+        let best = best?;
+        // A triangle's nearest point may be on an edge within a wall, and look like a ledge: only what the body comes to
+        // first is there.
+        let way = (best.contact.distance - body.core_radius()).max(0.0) + probe.least();
+        let toward = -best.normal * way;
+        let Hit { touch, time, .. } = self.meet_ground(probe, position, toward)?;
+        let position =
+            position + toward * time + touch.normal * (body.radius - touch.contact.distance);
+        Some(Ground { touch, position })
+    }
+
+    /// What the core of the body meets first on a way, if that is ground.
+    fn meet_ground(&mut self, probe: &GroundProbe, position: DVec3, way: DVec3) -> Option<Hit> {
+        let hit = self.cast(&probe.body.core_at(position), way)?;
+        let is_ground = !hit.started_inside && probe.is_ground(hit.touch.normal);
+        is_ground.then_some(hit)
+    }
+
+    /// Which contact of the last movement holds a body up: level ground, else the least steep of slopes that leave it no
+    /// way down.
+    pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
+        let best = self.touched().iter().copied().reduce(|best, touch| {
+            if touch.normal.dot(up) > best.normal.dot(up) {
+                touch
+            } else {
+                best
+            }
+        })?;
+        if slope(best.normal, up) <= max_slope {
+            return Some(best);
+        }
+        let mut slopes = [HalfSpace {
+            normal: up,
+            offset: 0.0,
+        }; WEDGE];
+        let mut count = 0;
+        for touch in self.touched() {
+            if count < WEDGE && touch.normal.dot(up) > 0.0 {
+                slopes[count].normal = touch.normal;
+                count += 1;
+            }
+        }
+        let down = project_onto_half_spaces(-up, &slopes[..count]).point;
+        (down.length() < SUPPORTED).then_some(best)
+    }
+
+    /// The nearest contact within the margin of a body's ball that is on the same side of the same obstacle as one that
+    /// was met on the way: since then the body has slid along it. Of contacts that are as near the one on the most level
+    /// face, since rounding must not decide on which of two faces it stands.
+    pub fn still_underfoot(
+        &mut self,
+        body: &MoverBody,
+        position: DVec3,
+        up: DVec3,
+        met: &Touch,
+    ) -> Option<Touch> {
+        let as_near = AS_NEAR * body.margin;
+        let overlaps = self.overlap(&body.crouched(), position, body.margin);
+        let underfoot = || {
+            let is_met = |touch: &&Touch| {
+                touch.obstacle == met.obstacle && touch.normal.dot(met.normal) > SAME_SIDE
+            };
+            overlaps.iter().filter(is_met)
+        };
+        let distances = underfoot().map(|touch| touch.contact.distance);
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        let as_near = underfoot().filter(|touch| touch.contact.distance <= nearest + as_near);
+        as_near.copied().reduce(|best, touch| {
+            let level = |touch: &Touch| touch.contact.normal.dot(up);
+            let rise = level(&touch) - level(&best);
+            let nearer = touch.contact.distance < best.contact.distance;
+            if rise > ONE_FACE || rise >= -ONE_FACE && nearer {
+                touch
+            } else {
+                best
+            }
+        })
+    }
+}
+
+/// A step in the way of a walking body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepUp {
+    /// The body, the slope that a tread may have, and how high a step may be (the probe's reach).
+    pub probe: GroundProbe,
+    /// Where the walk began, and where it was to lead, in world space.
+    pub from: DVec3,
+    /// Where it was to lead.
+    pub target: DVec3,
+    /// Where it was blocked.
+    pub position: DVec3,
+}
+
+/// Share of a way that may be missing before it counts as blocked.
+const BLOCKED: f64 = 0.05;
+
+impl Mover<'_> {
+    /// Where a body stands after it has climbed the step that blocks it, if there is one: up, on, and down, as casts of
+    /// its core. (The three casts: Quake's step move, Jolt's WalkStairs.)
+    pub fn step_up(&mut self, step: &StepUp) -> Option<DVec3> {
+        let StepUp {
+            probe,
+            from,
+            target,
+            position,
+        } = *step;
+        let up = probe.up;
+        let level = |v: DVec3| v - up * v.dot(up);
+        let wanted = level(target - from);
+        let direction = wanted.normalize_or_zero();
+        let missing = wanted.length() - level(position - from).dot(direction);
+        let height = probe.reach;
+        if height == 0.0 || missing <= wanted.length() * BLOCKED {
+            return None;
+        }
+        let core = probe.body.core_at(position);
+        // Not up to what is above, or that would be on every way from there.
+        let room = self.cast(&core, up * height);
+        let rise = room.map_or(height, |hit| {
+            (height * hit.time - probe.body.margin).max(0.0)
+        });
+        let rise = up * rise;
+        let raised = core.moved(rise);
+        let ways = [missing, onto_a_tread(&probe).max(missing)];
+        ways.into_iter().find_map(|way| {
+            let forward = direction * way;
+            let is_free = self.is_free(&raised, forward);
+            let over = position + rise + forward;
+            is_free.then(|| self.tread_below(&probe, position, over))?
+        })
+    }
+
+    /// Where the body stands on a tread below `over`, if that is level enough, higher than `position`, and below what is
+    /// above it there.
+    fn tread_below(&mut self, probe: &GroundProbe, position: DVec3, over: DVec3) -> Option<DVec3> {
+        let down = GroundProbe {
+            reach: (over - position).dot(probe.up),
+            ..*probe
+        };
+        let ground = self.find_ground_below(&down, over)?;
+        let rise = (ground.position - position).dot(probe.up);
+        if rise <= probe.body.margin {
+            return None;
+        }
+        // The body stands off what its core has come down on: perhaps higher than from where that came.
+        let lift = (ground.position - over).dot(probe.up);
+        let core: WorldCapsule = probe.body.core_at(over);
+        let is_free = lift <= 0.0 || self.is_free(&core, probe.up * lift);
+        is_free.then_some(ground.position)
+    }
+}
+
+/// How far a ball has to go from where an edge first stops it to where it stands on that edge.
+fn onto_a_tread(probe: &GroundProbe) -> f64 {
+    probe.body.radius * (1.0 - libm::sin(probe.max_slope)) + probe.body.margin
+}

@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+
+mod body;
+mod error;
+mod grip;
+mod ground;
+mod half_spaces;
+mod ledge;
+mod mover;
+mod slide;
+mod surroundings;
+mod touch;
+mod velocity;
+
+pub use body::MoverBody;
+pub use error::MoverError;
+pub use ground::{Ground, GroundProbe, StepUp, slope};
+pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
+pub use ledge::{Ledge, LedgeProbe};
+pub use mover::{Mover, MoverMemory};
+pub use slide::{Arm, Begin, Moved, Path, Walking};
+pub use touch::{Hit, Touch};

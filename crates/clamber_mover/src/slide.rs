@@ -1,0 +1,383 @@
+//! How a body gets from where it was a tick ago to where it wants to be, among obstacles that move.
+//!
+//! The body's core is swept over the tick against everything on its own way. What it meets becomes a half-space: the body
+//! may not end beyond it, where the material point that was met will be at the tick's end. Of the displacements inside all
+//! half-spaces the one nearest to the wanted displacement is taken, and swept again, until nothing is in the way. Then
+//! everything that overlaps the whole body, margin included, at the tick's end adds its half-space, the deepest first.
+//! Each contact is looked at anew after every push, so that edges within flat ground, which are deeper only until the
+//! ground has pushed, add none. Contacts that are near but clear are among them, since a push may lead into them.
+//!
+//! A half-space says where the body may end, not how fast it may go, so that being pushed aside, being carried and
+//! sliding all happen within the same tick: an obstacle's velocity is in where its point ends. (Contact planes solved
+//! together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those ask for planes near the start,
+//! with a margin, of obstacles that stand still.)
+
+use glam::DVec3;
+
+use crate::half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
+use crate::{Hit, Mover, MoverBody, Touch};
+
+/// Most rounds of one movement, each a sweep, a look at what overlaps, or both. Corners take two or three; after eight
+/// the body stops where the sweep met something.
+const ROUNDS: u32 = 8;
+
+/// Most half-spaces that the overlaps of one round add.
+const PUSHES: usize = 16;
+
+/// Overlap that counts as none, metres: above the rounding of f32 coordinates of a creature, far below what
+/// is seen.
+const TOUCH: f64 = 1e-5;
+
+/// How far around the body contacts are looked for that a push may lead into, as a share of the margin; a body that is
+/// pushed farther is swept again. More than the half by which a walking body is pressed onto the ground, or rounding
+/// would decide whether ground contact is found; less than the whole, by which the core is clear of what touches the
+/// margin.
+const NEAR: f64 = 0.75;
+
+/// A movement over the tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path {
+    /// What moves.
+    pub body: MoverBody,
+    /// Position a tick ago, in world space.
+    pub start: DVec3,
+    /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
+    pub target: DVec3,
+    /// How far the body's support, or the frame that it is in, has moved over the tick, metres. What counts as far is
+    /// measured against this, so that results are the same in every frame that moves steadily.
+    pub frame: DVec3,
+    /// Treats slopes that are too steep as vertical walls, so that walking does not climb them.
+    pub walking: Option<Walking>,
+    /// What the body hangs from.
+    pub arm: Option<Arm>,
+    /// What is between start and target.
+    pub begin: Begin,
+}
+
+/// Where a movement begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begin {
+    /// At the start: the body is swept from there.
+    Start,
+    /// At the target: the body was put there, and only gets out of what it overlaps.
+    Target,
+}
+
+/// The slopes that a walking body may climb.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walking {
+    /// Unit vector.
+    pub up: DVec3,
+    /// The steepest slope, radians from level ground.
+    pub max_slope: f64,
+}
+
+/// An arm that the body hangs by: the position is no farther than this from the pivot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arm {
+    /// In world space, at the tick's end.
+    pub pivot: DVec3,
+    /// Metres.
+    pub length: f64,
+}
+
+/// Where a body went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moved {
+    /// In world space.
+    pub position: DVec3,
+    /// By how much obstacles leave too little room between them, metres; more than the margin crushes.
+    pub missing_room: f64,
+    /// How deep the core is in something, metres.
+    pub penetration: f64,
+    /// Rounds that it took.
+    pub rounds: u32,
+    /// Nothing is on the way from start to position. Says nothing of a body that began inside something.
+    pub is_clear: bool,
+}
+
+impl Path {
+    /// A sweep from `start` to `target`, both in world space.
+    pub const fn new(body: MoverBody, start: DVec3, target: DVec3) -> Self {
+        Self {
+            body,
+            start,
+            target,
+            frame: DVec3::ZERO,
+            walking: None,
+            arm: None,
+            begin: Begin::Start,
+        }
+    }
+
+    /// Gets a body that was put at a position out of what it overlaps there.
+    pub const fn placed(body: MoverBody, position: DVec3) -> Self {
+        Self {
+            begin: Begin::Target,
+            ..Self::new(body, position, position)
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        let vectors = [self.start, self.target, self.frame];
+        vectors.iter().all(|v| v.is_finite()) && self.body.validate().is_ok()
+    }
+}
+
+impl Mover<'_> {
+    /// Moves a body. [`Mover::touched`] tells what it touches in the end or was kept from entering.
+    ///
+    /// A path that is not finite, or of a body that is none, leads nowhere: the body stays at its start, and the way
+    /// is not clear.
+    pub fn slide(&mut self, path: &Path) -> Moved {
+        self.memory.half_spaces.clear();
+        self.memory.walls.clear();
+        self.memory.touched.clear();
+        let mut moved = Moved {
+            position: path.target,
+            missing_room: 0.0,
+            penetration: 0.0,
+            rounds: 0,
+            is_clear: true,
+        };
+        if !path.is_finite() {
+            moved.position = path.start;
+            moved.is_clear = false;
+            return moved;
+        }
+        self.keep_arm(path, &mut moved);
+        let near = path.body.margin * NEAR;
+        let mut swept = path.begin == Begin::Start;
+        // The way to here is known to be clear.
+        let mut clear_to: Option<DVec3> = None;
+        loop {
+            moved.rounds += 1;
+            if clear_to.is_none_or(|clear_to| moved.position.distance(clear_to) > near) {
+                clear_to = None;
+                if swept && let Some(inside) = self.meet(path, &mut moved) {
+                    if inside {
+                        // The contact that it is inside of already shows the way out, and would hide all others. Whatever
+                        // else it is in is to be seen from here, not from beyond where that alone would push it.
+                        swept = false;
+                    } else if moved.rounds < ROUNDS {
+                        continue;
+                    } else {
+                        moved.is_clear = false;
+                        self.stop(path, &mut moved);
+                    }
+                }
+            }
+            let before = moved.position;
+            let from = *clear_to.get_or_insert(before);
+            let pushes = self.push_out(path, &mut moved);
+            // One push leads straight off its contact. Of two, each moves the other's contact: it is looked for anew,
+            // unless there is no room to find.
+            let is_settled = pushes < 2 || moved.position.distance(before) <= TOUCH;
+            let is_there = is_settled || moved.missing_room > TOUCH;
+            let is_near = moved.position.distance(from) <= near;
+            if is_there && is_near || moved.rounds >= ROUNDS {
+                return moved;
+            }
+        }
+    }
+
+    /// The contacts that the last movement touched or was kept from entering, in that order; some perhaps twice.
+    pub fn touched(&self) -> &[Touch] {
+        &self.memory.touched
+    }
+
+    /// Sweeps to the wanted position, and keeps clear of the first contact: whether the body was inside it from the
+    /// start. `None` if nothing is in the way.
+    fn meet(&mut self, path: &Path, moved: &mut Moved) -> Option<bool> {
+        let way = moved.position - path.start;
+        let hit = self.sweep(&path.body.core_at(path.start), way)?;
+        let touch = hit.touch;
+        let at = path.start + way * hit.time;
+        let end = self
+            .motion(touch.obstacle, &touch.contact.material)
+            .map_or(touch.contact.point, |motion| motion.position);
+        let on_axis = path.body.core_at(at).nearest_on_axis(touch.contact.point) - at;
+        let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
+        if !(hit.started_inside && Self::is_pressed_into(&path.body, &touch)) {
+            self.add_half_space(path, touch, offset, moved.position);
+        }
+        if !hit.started_inside {
+            self.solve(path, moved);
+        }
+        Some(hit.started_inside)
+    }
+
+    /// Stops where the sweep meets something, and goes with it for the rest of the tick.
+    fn stop(&mut self, path: &Path, moved: &mut Moved) {
+        let way = moved.position - path.start;
+        if let Some(Hit { touch, time, .. }) = self.sweep(&path.body.core_at(path.start), way) {
+            let end = self.motion(touch.obstacle, &touch.contact.material);
+            let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
+            moved.position = path.start + way * time + carried;
+        }
+    }
+
+    /// Gets the body out of everything that overlaps it where it is; gives the number of pushes.
+    fn push_out(&mut self, path: &Path, moved: &mut Moved) -> usize {
+        let found = moved.position;
+        let body = &path.body;
+        self.overlap(body, found, body.margin * NEAR);
+        let mut overlaps = std::mem::take(&mut self.memory.overlaps);
+        let mut pushes = 0;
+        while pushes < PUSHES {
+            let capsule = body.at(moved.position);
+            let mut worst: Option<(f64, Touch)> = None;
+            for touch in &overlaps {
+                let now = touch.after_push(&capsule, moved.position - found);
+                let depth = body.radius - now.contact.distance;
+                if depth > worst.map_or(TOUCH, |(deepest, _)| deepest) {
+                    worst = Some((depth, now));
+                }
+            }
+            let Some((depth, touch)) = worst else {
+                break;
+            };
+            let offset = touch.normal.dot(moved.position - path.start) + depth;
+            self.add_half_space(path, touch, offset, moved.position);
+            pushes += 1;
+            let before = moved.position;
+            self.solve(path, moved);
+            if moved.position == before {
+                break;
+            }
+        }
+        let capsule = body.at(moved.position);
+        let depths = overlaps.iter().map(|touch| {
+            let now = touch.after_push(&capsule, moved.position - found);
+            body.radius - now.contact.distance
+        });
+        moved.penetration = (depths.fold(0.0, f64::max) - body.margin).max(0.0);
+        std::mem::swap(&mut self.memory.overlaps, &mut overlaps);
+        pushes
+    }
+
+    /// `position` is where the body would be without the half-space.
+    fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
+        let memory = &mut *self.memory;
+        memory.touched.push(touch);
+        memory.half_spaces.push(HalfSpace {
+            normal: touch.normal,
+            offset,
+        });
+        if let Some(Walking { up, max_slope }) = path.walking {
+            let rise = touch.normal.dot(up);
+            let level = (touch.normal - up * rise).normalize_or_zero();
+            let lean = touch.normal.dot(level);
+            // Too steep to stand on, and no ceiling: as steep as can be.
+            if rise > LEVEL && rise < libm::cos(max_slope) && lean > 0.0 {
+                let displacement = position - path.start;
+                let into = offset - touch.normal.dot(displacement);
+                memory.walls.push(HalfSpace {
+                    normal: level,
+                    offset: level.dot(displacement) + into / lean,
+                });
+            }
+        }
+    }
+
+    fn solve(&mut self, path: &Path, moved: &mut Moved) {
+        let wanted = path.target - path.start;
+        let memory = &mut *self.memory;
+        let count = memory.half_spaces.len();
+        memory.half_spaces.extend_from_slice(&memory.walls);
+        let mut nearest = self.nearest_displacement(wanted, path.frame);
+        self.memory.half_spaces.truncate(count);
+        if nearest.missed > TOUCH && !self.memory.walls.is_empty() {
+            // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
+            nearest = self.nearest_displacement(wanted, path.frame);
+        }
+        moved.position = path.start + nearest.point;
+        moved.missing_room = nearest.missed;
+        self.keep_arm(path, moved);
+    }
+
+    /// The displacement inside all half-spaces that is nearest to the wanted one, if it is not far off; otherwise the
+    /// nearest inside all half-spaces after they are relaxed by as little as it takes.
+    ///
+    /// Walls that are all but opposite meet somewhere, many times as far away as they overlap: no body slips out there
+    /// within a tick. They crush it.
+    fn nearest_displacement(&mut self, wanted: DVec3, frame: DVec3) -> Projection {
+        let half_spaces = &mut self.memory.half_spaces;
+        let nearest = project_onto_half_spaces(wanted, half_spaces);
+        let gaps = half_spaces
+            .iter()
+            .map(|half_space| half_space.offset - half_space.normal.dot(wanted));
+        let gap = gaps.fold(0.0, f64::max);
+        let farthest = wanted.distance(frame) + FARTHEST * gap;
+        let is_near = |nearest: &Projection| nearest.point.distance(frame) <= farthest;
+        if is_near(&nearest) {
+            return nearest;
+        }
+        let (mut too_little, mut enough) = (0.0, gap);
+        for _ in 0..HALVINGS {
+            let relief = (too_little + enough) * 0.5;
+            if is_near(&project_onto_relaxed(wanted, half_spaces, relief)) {
+                enough = relief;
+            } else {
+                too_little = relief;
+            }
+        }
+        let nearest = project_onto_relaxed(wanted, half_spaces, enough);
+        Projection {
+            missed: nearest.missed + enough,
+            ..nearest
+        }
+    }
+
+    /// A body at the end of a taut arm stays there: half-spaces that touch the ball of its reach where the body is.
+    /// Walls are harder than arms: where both leave no room, the arm gives way.
+    fn keep_arm(&mut self, path: &Path, moved: &mut Moved) {
+        let Some(arm) = path.arm else {
+            return;
+        };
+        let count = self.memory.half_spaces.len();
+        let without = *moved;
+        for _ in 0..4 {
+            let reach = moved.position - arm.pivot;
+            if reach.length() <= arm.length * (1.0 + 1e-9) {
+                break;
+            }
+            let inward = -reach.normalize_or(DVec3::Y);
+            self.memory.half_spaces.push(HalfSpace {
+                normal: inward,
+                offset: inward.dot(arm.pivot - path.start) - arm.length,
+            });
+            let nearest = self.nearest_displacement(path.target - path.start, path.frame);
+            if nearest.missed > without.missing_room + TOUCH {
+                *moved = without;
+                break;
+            }
+            moved.position = path.start + nearest.point;
+            moved.missing_room = nearest.missed;
+        }
+        self.memory.half_spaces.truncate(count);
+    }
+}
+
+/// The projection onto half-spaces that are all relaxed by a length.
+fn project_onto_relaxed(wanted: DVec3, half_spaces: &mut [HalfSpace], by: f64) -> Projection {
+    half_spaces
+        .iter_mut()
+        .for_each(|half_space| half_space.offset -= by);
+    let nearest = project_onto_half_spaces(wanted, half_spaces);
+    half_spaces
+        .iter_mut()
+        .for_each(|half_space| half_space.offset += by);
+    nearest
+}
+
+/// A push that leads farther than the wanted displacement and this many times the deepest overlap is refused: walls that
+/// differ by less than 29 degrees from opposite are no wedge to slip out of. A larger value throws a body that is
+/// crushed by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
+const FARTHEST: f64 = 4.0;
+
+/// To a thousandth of the overlap.
+const HALVINGS: u32 = 10;
+
+/// Slopes steeper than this are walls already: sine of the angle from the vertical.
+const LEVEL: f64 = 1e-3;
