@@ -6,8 +6,8 @@ use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, radians, shifted, walk, walker_at,
-    within,
+    IDLE, JUMP, Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, radians, shifted, walk,
+    walker_at, within,
 };
 
 pub(crate) fn falls_lands_and_jumps() {
@@ -119,7 +119,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
         let mut run = Run::new(stage, walker_at(10.0), -DVec3::X).settle();
         run.steps(90, &walk(DVec3::X));
         assert!(run.trace.always(Standing), "{played:?}");
-        let radius = run.climber.config().body.radius;
+        let radius = run.config().body.radius;
         for (tick, position) in run.trace.positions.iter().enumerate() {
             if position.x > 1.0 {
                 let above = (position.x + position.y) / libm::sqrt(2.0) - radius;
@@ -204,7 +204,7 @@ pub(crate) fn a_slope_is_climbed_just_below_the_limit_and_not_just_above() {
 }
 
 pub(crate) fn ten_thousand_steps_stay_on_the_ground() {
-    for played in [Played::Root, Played::Joint, Played::Body] {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&Shape::floor(1001.0));
         let config = walker_at(0.1 * libm::sqrt(2.0) / TICK);
         let start = DVec3::new(-500.0, 0.0, -500.0);
@@ -311,7 +311,7 @@ pub(crate) fn a_hitch_keeps_the_velocity_until_something_is_in_the_way() {
 /// A motion of a floor that no rider may notice.
 pub(crate) fn landing_is_told_once() {
     let still = |_| shifted(DVec3::ZERO);
-    let stage = Stage::new(Played::Root).with(&Shape::floor(10.0), still);
+    let stage = Stage::new(one_kind()).with(&Shape::floor(10.0), still);
     let mut run = Run::new(stage, jolt(), DVec3::Y);
     run.steps(90, &IDLE);
     let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
