@@ -1,5 +1,7 @@
 //! Falling, walking, slopes.
 
+use std::cell::RefCell;
+
 use clamber_climber::ClimberMode::{Falling, Sliding, Standing};
 use clamber_climber::{ClimberConfig, ClimberEvent};
 use clamber_surface::geometry::rotation_from_axis_angle;
@@ -316,4 +318,39 @@ pub(crate) fn landing_is_told_once() {
     run.steps(90, &IDLE);
     let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
     assert_eq!(run.trace.events.iter().filter(landed).count(), 1);
+}
+
+/// Between ticks it is a parabola: through the highest three places.
+fn apex(heights: &[f64]) -> f64 {
+    let highest = (1..heights.len() - 1).max_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+    let top = highest.unwrap_or(1);
+    let (before, at, after) = (heights[top - 1], heights[top], heights[top + 1]);
+    let bend = before - 2.0 * at + after;
+    at - (after - before) * (after - before) / (8.0 * bend)
+}
+
+pub(crate) fn a_jump_is_as_high_at_any_rate() {
+    // Of each rate and kind, the share that it is too high.
+    let found = RefCell::new(Vec::new());
+    for rate in [30, 60, 120, 240] {
+        every(0.0, |played| {
+            let dt = 1.0 / f64::from(rate);
+            let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&Shape::floor(10.0));
+            let mut run = Run::new(stage, jolt(), DVec3::ZERO).settle();
+            let start = run.position().y;
+            run.step(&JUMP);
+            run.steps(rate, &IDLE);
+            let heights = run.trace.positions.iter().map(|p| p.y - start);
+            let heights: Vec<f64> = [0.0].into_iter().chain(heights).collect();
+            let speed = run.config().ground.jump_speed;
+            let expected = speed * speed / (2.0 * 9.81);
+            found
+                .borrow_mut()
+                .push((rate, apex(&heights) / expected - 1.0));
+            run.sound()
+        });
+    }
+    let found = found.take();
+    let worst = found.iter().map(|(_, off)| off.abs()).fold(0.0, f64::max);
+    within!(worst, 1e-3, "{found:?}");
 }

@@ -302,6 +302,24 @@ scenarios! {
         "A tour on hills whose vertices and triangles are in another order, or four for each."
         "Skin 1e-6; a body 1e-4, for its casts may stop that early."
         [frames::numbers_of_triangles_and_vertices_do_not_matter];
+    51 "ours: rates" Climber
+        "Jumps at 5 m/s at 30, 60, 120 and 240 Hz; the apex is that of a parabola through the highest three places."
+        "1e-3 of v^2 / 2g."
+        [ground::a_jump_is_as_high_at_any_rate];
+    52 "ours: wedge" Climber
+        "Two walls 1 to 26 degrees from opposite close on a ball by .4 and 2 m/s each, to .5 m of room."
+        "To 3 degrees a side told as crushed; no tick moves it farther than four times what it lacks in room."
+        [wedges::a_wedge_that_closes_crushes_and_throws_nobody_out];
+    53 "ours: hands" Climber
+        "Catches a ledge, goes along it and climbs over it; climbs fur and around its corner; hangs from fur that shakes; is \
+         knocked down and gets up."
+        "Places 1e-3."
+        [
+            hands::a_ledge_is_caught_hung_from_and_climbed_over,
+            hands::fur_is_climbed_and_its_corner_turned,
+            hands::a_hold_that_shakes_is_hung_from_until_it_is_calm,
+            hands::a_fall_that_knocks_down_bounces_slides_and_ends,
+        ];
 }
 
 #[test]
@@ -315,7 +333,7 @@ fn what_is_open_is_a_test() {
 #[test]
 fn the_table_has_every_scenario_once_with_its_tests() {
     let numbers: Vec<u32> = ROWS.iter().map(|row| row.number).collect();
-    assert_eq!(numbers, (1..=50).collect::<Vec<_>>());
+    assert_eq!(numbers, (1..=53).collect::<Vec<_>>());
     for row in ROWS {
         let texts = [row.source, row.scene, row.demand];
         assert!(texts.iter().all(|text| !text.is_empty()), "{}", row.number);
