@@ -308,8 +308,11 @@ scenarios! {
         [ground::a_jump_is_as_high_at_any_rate];
     52 "ours: wedge" Climber
         "Two walls 1 to 26 degrees from opposite close on a ball by .4 and 2 m/s each, to .5 m of room."
-        "To 3 degrees a side told as crushed; no tick moves it farther than four times what it lacks in room."
-        [wedges::a_wedge_that_closes_crushes_and_throws_nobody_out];
+        "Up to 2 degrees a side told as crushed; no tick moves it farther than four times what it lacks in room."
+        [
+            wedges::a_wedge_that_closes_crushes_alike_in_every_frame,
+            wedges::a_wedge_that_closes_throws_nobody_out,
+        ];
     53 "ours: hands" Climber
         "Catches a ledge, goes along it and climbs over it; climbs fur and around its corner; hangs from fur that shakes; is \
          knocked down and gets up."

@@ -88,6 +88,9 @@ fn compare(rest: &Trace, other: &Trace, allowed: &Allowed) -> Result<(), String>
     let mut strange = None;
     for tick in 0..count {
         let apart = rest.positions[tick].distance(other.positions[tick]);
+        if !apart.is_finite() {
+            return Err(format!("{} at tick {tick}", other.positions[tick]));
+        }
         if apart > farthest.0 {
             farthest = (apart, tick);
         }

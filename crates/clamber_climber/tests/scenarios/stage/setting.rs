@@ -24,7 +24,7 @@ pub(crate) struct Setting {
 }
 
 impl Setting {
-    /// At rest, in metres, and what the others are compared with: a scenario's demands are those of this setting.
+    /// At rest, in metres, on all that most games have: the setting that scenarios are written in.
     pub(crate) const PLAIN: Self = Self::on(&[Played::Root, Played::Joint, Played::Body]);
 
     /// At rest, in metres.
