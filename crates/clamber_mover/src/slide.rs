@@ -24,9 +24,9 @@ const ROUNDS: u32 = 8;
 /// Most half-spaces that the overlaps of one round add.
 const PUSHES: usize = 16;
 
-/// Overlap that counts as none, metres: above the rounding of f32 coordinates of a creature, far below what
-/// is seen.
-const TOUCH: f64 = 1e-5;
+/// Overlap that counts as none, as a share of the radius: above the rounding of f32 coordinates of a creature, far below
+/// what is seen.
+const TOUCH: f64 = 2.5e-5;
 
 /// How far around the body contacts are looked for that a push may lead into, as a share of the margin; a body that is
 /// pushed farther is swept again. More than the half by which a walking body is pressed onto the ground, or rounding
@@ -147,6 +147,7 @@ impl Mover<'_> {
         }
         self.keep_arm(path, &mut moved);
         let near = path.body.margin * NEAR;
+        let touch = TOUCH * path.body.radius;
         let mut swept = path.begin == Begin::Start;
         // The way to here is known to be clear.
         let mut clear_to: Option<DVec3> = None;
@@ -172,8 +173,8 @@ impl Mover<'_> {
             let pushes = self.push_out(path, &mut moved);
             // One push leads straight off its contact. Of two, each moves the other's contact: it is looked for anew,
             // unless there is no room to find.
-            let is_settled = pushes < 2 || moved.position.distance(before) <= TOUCH;
-            let is_there = is_settled || moved.missing_room > TOUCH;
+            let is_settled = pushes < 2 || moved.position.distance(before) <= touch;
+            let is_there = is_settled || moved.missing_room > touch;
             let is_near = moved.position.distance(from) <= near;
             if is_there && is_near || moved.rounds >= ROUNDS {
                 return moved;
@@ -230,7 +231,7 @@ impl Mover<'_> {
             for touch in &overlaps {
                 let now = touch.after_push(&capsule, moved.position - found);
                 let depth = body.radius - now.contact.distance;
-                if depth > worst.map_or(TOUCH, |(deepest, _)| deepest) {
+                if depth > worst.map_or(TOUCH * body.radius, |(deepest, _)| deepest) {
                     worst = Some((depth, now));
                 }
             }
@@ -287,7 +288,7 @@ impl Mover<'_> {
         memory.half_spaces.extend_from_slice(&memory.walls);
         let mut nearest = self.nearest_displacement(wanted, path.frame);
         self.memory.half_spaces.truncate(count);
-        if nearest.missed > TOUCH && !self.memory.walls.is_empty() {
+        if nearest.missed > TOUCH * path.body.radius && !self.memory.walls.is_empty() {
             // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
             nearest = self.nearest_displacement(wanted, path.frame);
         }
@@ -348,7 +349,7 @@ impl Mover<'_> {
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
             let nearest = self.nearest_displacement(path.target - path.start, path.frame);
-            if nearest.missed > without.missing_room + TOUCH {
+            if nearest.missed > without.missing_room + TOUCH * path.body.radius {
                 *moved = without;
                 break;
             }
@@ -376,8 +377,9 @@ fn project_onto_relaxed(wanted: DVec3, half_spaces: &mut [HalfSpace], by: f64) -
 /// crushed by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
 const FARTHEST: f64 = 4.0;
 
-/// To a thousandth of the overlap.
-const HALVINGS: u32 = 10;
+/// Halvings in search of the least relief, which begins at the overlap: to the rounding of f64, since walls that are all
+/// but opposite magnify what is left a hundredfold.
+const HALVINGS: u32 = 50;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

@@ -184,7 +184,8 @@ pub trait Obstacle {
     }
 
     /// The first contact of a capsule that moves by `displacement`, with the obstacle standing still as it stands now.
-    /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm.
+    /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm; on skin, and a 4,000th of
+    /// the radius.
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
 
     /// The first contact of a capsule that moves by `displacement` over the tick that ends now, while the obstacle moves

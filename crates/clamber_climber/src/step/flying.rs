@@ -17,15 +17,16 @@ const STILL: f64 = 0.1;
 impl Tick<'_> {
     /// In the air, or down what is too steep.
     pub(super) fn fly(&mut self) -> NextMode {
-        if let Some(next) = self.grip_or_catch() {
-            return next;
-        }
         if self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
             return self.jump_late();
         }
         self.steer();
         let falling = self.fall();
-        self.land(falling)
+        // At the tick's end, where obstacles are as well.
+        match self.grip_or_catch() {
+            Some(next) => next,
+            None => self.land(falling),
+        }
     }
 
     /// A jump shortly after the ground has ended.

@@ -24,6 +24,9 @@ const FLAT: f64 = 0.985;
 /// A climber that makes less than this share of a step upwards is as high as the hold goes, and looks for a ledge.
 const STUCK: f64 = 0.25;
 
+/// With this share of its input along the hold it climbs at full speed; with less slower.
+const FULL: f64 = 0.5;
+
 /// What opposes its way by more than this cosine is climbed onto rather than along.
 const AHEAD: f64 = 0.3;
 
@@ -46,6 +49,7 @@ impl Tick<'_> {
     pub(super) fn take_hold(&mut self, touch: &Touch, place: DVec3) -> NextMode {
         self.attach(touch, place);
         self.face(-touch.normal);
+        self.state.velocity = self.state.base_velocity;
         self.state.jumping = false;
         self.event(ClimberEvent::Grabbed {
             obstacle: touch.obstacle,
@@ -217,7 +221,9 @@ fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) 
         (input.climb, input.climb.length().min(1.0))
     };
     let along = wanted - normal * wanted.dot(normal);
-    along.normalize_or_zero() * share
+    // Pushed straight into the hold it goes nowhere: rounding must not decide where.
+    let fade = (along.length() / (FULL * wanted.length())).min(1.0);
+    along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
 /// How much more than a little it pushes against one face while it holds another, if the other does not push it

@@ -35,6 +35,7 @@ impl Tick<'_> {
         }
         self.attach(&touch, place);
         self.face(facing);
+        self.state.velocity = self.state.base_velocity;
         self.state.pull_up = 0.0;
         self.state.arm = 0.0;
         self.state.jumping = false;

@@ -1,12 +1,10 @@
 //! A conveyor: a shape that stands while its material moves, as an obstacle around another.
 
-use clamber_climber::{Climber, ClimberInput};
-use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
-};
+use clamber_climber::ClimberInput;
+use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 use glam::{DQuat, DVec3};
 
-use crate::stage::Stage;
+use crate::stage::Run;
 
 /// How far its material has come.
 pub(crate) struct Belt {
@@ -26,35 +24,17 @@ impl Belt {
         Self { velocity, ticks: 0 }
     }
 
-    pub(crate) fn rides(
-        &mut self,
-        climber: &mut Climber,
-        stage: &mut Stage,
-        input: &ClimberInput,
-        ticks: u32,
-    ) {
+    pub(crate) fn rides(&mut self, run: &mut Run, input: &ClimberInput, ticks: u32) {
         for _ in 0..ticks {
             self.ticks += 1;
-            stage.advance();
-            let dt = stage.dt;
-            stage.obstacles(|obstacles| {
-                let running = obstacles.iter().map(|(id, shape)| {
-                    let shift = self.velocity * (f64::from(self.ticks) * dt);
-                    (
-                        *id,
-                        Running {
-                            shape: *shape,
-                            shift,
-                            velocity: self.velocity,
-                        },
-                    )
-                });
-                let running: Vec<_> = running.collect();
-                let belts: Vec<(ObstacleId, &dyn Obstacle)> = running
-                    .iter()
-                    .map(|(id, belt)| (*id, belt as &dyn Obstacle))
-                    .collect();
-                climber.step(input, &belts, dt).unwrap();
+            let shift = self.velocity * (f64::from(self.ticks) * run.stage.dt);
+            let velocity = self.velocity;
+            run.step_around(input, |shape| {
+                Box::new(Running {
+                    shape,
+                    shift,
+                    velocity,
+                })
             });
         }
     }

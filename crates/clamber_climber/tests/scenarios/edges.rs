@@ -4,7 +4,7 @@ use clamber_climber::ClimberMode::{Sliding, Standing};
 use glam::DVec3;
 
 use crate::stage::{
-    IDLE, Played, Run, Shape, Stage, every, jolt, radians, walk, walker_at, within,
+    IDLE, Run, Shape, Stage, every, jolt, one_kind, radians, walk, walker_at, within,
 };
 
 pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
@@ -18,10 +18,8 @@ pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
         let mut run = Run::new(stage, config, start).settle();
         let touched = run.stage.obstacles(|obstacles| {
             let mut contacts = Vec::new();
-            obstacles[0]
-                .1
-                .overlap_capsule(&run.climber.body(), &mut contacts);
-            let mut wider = run.climber.body();
+            obstacles[0].1.overlap_capsule(&run.body(), &mut contacts);
+            let mut wider = run.body();
             wider.radius += 0.02;
             obstacles[0].1.overlap_capsule(&wider, &mut contacts);
             contacts.len()
@@ -174,8 +172,8 @@ pub(crate) fn the_seam_of_two_fields_is_not_felt() {
 pub(crate) fn the_seam_between_terrain_and_a_foot_is_not_felt() {
     let field = |low: f64| Shape::field(DVec3::new(low, 0.0, -8.0), 1.0, [16, 16], |_, _| 0.0);
     let foot = field(0.0);
-    let stage = Stage::new(Played::Root).with_still(&foot);
-    let stage = stage.with_bodies(|bodies| bodies.add_still(&field(-16.0)));
+    let stage = Stage::new(one_kind()).with_still(&foot);
+    let stage = stage.with_ground(&field(-16.0));
     let mut run = Run::new(stage, walker_at(2.0), -DVec3::X * 3.0).settle();
     run.steps(480, &walk(DVec3::X));
     let off = run.feet().distance(DVec3::X * 13.0);

@@ -14,12 +14,11 @@ use glam::DVec3;
 
 use crate::platforms::{chord, on};
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, shifted, turned, walk, walker_at,
+    IDLE, JUMP, Run, Shape, Stage, TICK, every, jolt, kinds, shifted, turned, walk, walker_at,
     within,
 };
 
-#[test]
-fn rapier_488_falling_through_a_rising_lift() {
+pub(crate) fn rapier_488_falling_through_a_rising_lift() {
     for (speed, thickness) in [(2.0, 0.2), (20.0, 0.2), (60.0, 0.05), (300.0, 0.01)] {
         every(0.0, |played| {
             let low = DVec3::new(-2.0, -thickness, -2.0);
@@ -42,8 +41,7 @@ fn rapier_488_falling_through_a_rising_lift() {
     }
 }
 
-#[test]
-fn shock2quest_666_dragged_along_a_brushed_wall() {
+pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
     // A wall that moves along itself, at the rider's elbow and pressed against.
     for (gap, direction) in [(0.0, DVec3::ZERO), (-0.005, DVec3::ZERO), (0.0, -DVec3::Z)] {
         every(0.0, |played| {
@@ -76,8 +74,7 @@ fn shock2quest_666_dragged_along_a_brushed_wall() {
     });
 }
 
-#[test]
-fn godot_46604_drift_on_a_rotating_platform() {
+pub(crate) fn godot_46604_drift_on_a_rotating_platform() {
     // A minute at a turn a second, 9 m out.
     let motion = |time: f64| turned(DVec3::Y, TAU * time);
     every(chord(9.0, TAU), |played| {
@@ -98,8 +95,7 @@ fn godot_46604_drift_on_a_rotating_platform() {
     });
 }
 
-#[test]
-fn godot_101253_one_frame_behind_the_platform() {
+pub(crate) fn godot_101253_one_frame_behind_the_platform() {
     let motion = |time: f64| shifted(DVec3::new(20.0, 5.0, -10.0) * libm::sin(3.0 * time));
     every(0.0, |played| {
         let mut run = on(played, 5.0, DVec3::X, motion);
@@ -114,8 +110,7 @@ fn godot_101253_one_frame_behind_the_platform() {
     });
 }
 
-#[test]
-fn jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift() {
+pub(crate) fn jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift() {
     for lift in [3.0, 8.0] {
         every(0.0, |played| {
             let mut config = jolt();
@@ -136,8 +131,7 @@ fn jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift() {
     }
 }
 
-#[test]
-fn jolt_1514_jitter_on_a_diagonally_descending_platform() {
+pub(crate) fn jolt_1514_jitter_on_a_diagonally_descending_platform() {
     let motion = |time: f64| {
         // To and fro, so that it also reverses.
         let phase = time.rem_euclid(4.0);
@@ -159,8 +153,7 @@ fn jolt_1514_jitter_on_a_diagonally_descending_platform() {
     });
 }
 
-#[test]
-fn tnua_13_pushed_when_the_platform_reverses() {
+pub(crate) fn tnua_13_pushed_when_the_platform_reverses() {
     let motion = |time: f64| {
         let phase = (6.0 * time).rem_euclid(12.0);
         shifted(DVec3::X * phase.min(12.0 - phase))
@@ -178,10 +171,9 @@ fn tnua_13_pushed_when_the_platform_reverses() {
     });
 }
 
-#[test]
-fn unity_875257_no_velocities_of_a_mesh_that_is_posed() {
+pub(crate) fn unity_875257_no_velocities_of_a_mesh_that_is_posed() {
     let velocity = DVec3::new(3.0, -2.0, 1.0);
-    for played in [Played::Root, Played::Joint, Played::Body] {
+    for &played in kinds() {
         let motion = move |time: f64| Similarity::from_translation(velocity * time);
         let mut stage = Stage::new(played).with(&Shape::floor(5.0), motion);
         stage.advance();

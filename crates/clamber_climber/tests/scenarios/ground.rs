@@ -1,13 +1,15 @@
 //! Falling, walking, slopes.
 
+use std::cell::RefCell;
+
 use clamber_climber::ClimberMode::{Falling, Sliding, Standing};
 use clamber_climber::{ClimberConfig, ClimberEvent};
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, every, jolt, radians, shifted, walk, walker_at,
-    within,
+    IDLE, JUMP, Run, Shape, Stage, TICK, every, jolt, kinds, one_kind, radians, shifted, walk,
+    walker_at, within,
 };
 
 pub(crate) fn falls_lands_and_jumps() {
@@ -121,7 +123,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
         let mut run = Run::new(stage, walker_at(10.0), -DVec3::X).settle();
         run.steps(90, &walk(DVec3::X));
         assert!(run.trace.always(Standing), "{played:?}");
-        let radius = run.climber.config().body.radius;
+        let radius = run.config().body.radius;
         for (tick, position) in run.trace.positions.iter().enumerate() {
             if position.x > 1.0 {
                 let above = (position.x + position.y) / libm::sqrt(2.0) - radius;
@@ -206,7 +208,7 @@ pub(crate) fn a_slope_is_climbed_just_below_the_limit_and_not_just_above() {
 }
 
 pub(crate) fn ten_thousand_steps_stay_on_the_ground() {
-    for played in [Played::Root, Played::Joint, Played::Body] {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&Shape::floor(1001.0));
         let config = walker_at(0.1 * libm::sqrt(2.0) / TICK);
         let start = DVec3::new(-500.0, 0.0, -500.0);
@@ -313,9 +315,44 @@ pub(crate) fn a_hitch_keeps_the_velocity_until_something_is_in_the_way() {
 /// A motion of a floor that no rider may notice.
 pub(crate) fn landing_is_told_once() {
     let still = |_| shifted(DVec3::ZERO);
-    let stage = Stage::new(Played::Root).with(&Shape::floor(10.0), still);
+    let stage = Stage::new(one_kind()).with(&Shape::floor(10.0), still);
     let mut run = Run::new(stage, jolt(), DVec3::Y);
     run.steps(90, &IDLE);
     let landed = |event: &&ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
     assert_eq!(run.trace.events.iter().filter(landed).count(), 1);
+}
+
+/// Between ticks it is a parabola: through the highest three places.
+fn apex(heights: &[f64]) -> f64 {
+    let highest = (1..heights.len() - 1).max_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+    let top = highest.unwrap_or(1);
+    let (before, at, after) = (heights[top - 1], heights[top], heights[top + 1]);
+    let bend = before - 2.0 * at + after;
+    at - (after - before) * (after - before) / (8.0 * bend)
+}
+
+pub(crate) fn a_jump_is_as_high_at_any_rate() {
+    // Of each rate and kind, the share that it is too high.
+    let found = RefCell::new(Vec::new());
+    for rate in [30, 60, 120, 240] {
+        every(0.0, |played| {
+            let dt = 1.0 / f64::from(rate);
+            let stage = Stage::at(played, dt, DVec3::ZERO).with_still(&Shape::floor(10.0));
+            let mut run = Run::new(stage, jolt(), DVec3::ZERO).settle();
+            let start = run.position().y;
+            run.step(&JUMP);
+            run.steps(rate, &IDLE);
+            let heights = run.trace.positions.iter().map(|p| p.y - start);
+            let heights: Vec<f64> = [0.0].into_iter().chain(heights).collect();
+            let speed = run.config().ground.jump_speed;
+            let expected = speed * speed / (2.0 * 9.81);
+            found
+                .borrow_mut()
+                .push((rate, apex(&heights) / expected - 1.0));
+            run.sound()
+        });
+    }
+    let found = found.take();
+    let worst = found.iter().map(|(_, off)| off.abs()).fold(0.0, f64::max);
+    within!(worst, 1e-3, "{found:?}");
 }

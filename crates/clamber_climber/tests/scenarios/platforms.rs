@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::belt::Belt;
 use crate::stage::{
-    IDLE, JUMP, Played, Run, Shape, Stage, TICK, Trace, every, jolt, shifted, turned, walk,
+    IDLE, JUMP, Played, Run, Shape, Stage, TICK, Trace, every, jolt, kinds, shifted, turned, walk,
     walker_at, within,
 };
 
@@ -103,7 +103,7 @@ pub(crate) fn a_platform_that_could_move_is_as_good_as_ground() {
         });
         let stage = Stage::new(played);
         let stage = if fixed && played == Played::Body {
-            stage.with_bodies(|bodies| bodies.add_still(&floor))
+            stage.with_ground(&floor)
         } else {
             stage.with_still(&floor)
         };
@@ -120,7 +120,7 @@ pub(crate) fn a_platform_that_could_move_is_as_good_as_ground() {
         }
         run.sound()
     };
-    for played in [Played::Root, Played::Joint, Played::Body] {
+    for &played in kinds() {
         let (apart, tick) = path(played, true).apart(&path(played, false));
         within!(apart, 1e-5, "{played:?}: {apart} at tick {tick}");
     }
@@ -214,21 +214,21 @@ pub(crate) fn a_wall_that_comes_and_goes_shoves_and_leaves() {
 }
 
 pub(crate) fn a_belt_carries_at_its_speed() {
-    for played in [Played::Root, Played::Joint, Played::Body] {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&Shape::floor(20.0));
         let mut run = Run::new(stage, walker_at(1.0), DVec3::ZERO);
         let mut belt = Belt::new(DVec3::Z * 2.0);
-        belt.rides(&mut run.climber, &mut run.stage, &IDLE, 10);
+        belt.rides(&mut run, &IDLE, 10);
         assert_eq!(run.mode(), Standing);
         let before = run.feet();
-        belt.rides(&mut run.climber, &mut run.stage, &IDLE, 60);
+        belt.rides(&mut run, &IDLE, 60);
         let off = (run.feet() - before).distance(DVec3::Z * 2.0);
         within!(off, 1e-4, "{played:?}: off by {off}");
         let off = run.state().velocity.distance(DVec3::Z * 2.0);
         within!(off, 1e-4, "{played:?}: velocity off by {off}");
         // And walking on it.
         let before = run.feet();
-        belt.rides(&mut run.climber, &mut run.stage, &walk(DVec3::X), 60);
+        belt.rides(&mut run, &walk(DVec3::X), 60);
         let off = (run.feet() - before).distance(DVec3::new(1.0, 0.0, 2.0));
         within!(off, 1e-4, "{played:?}: off by {off}");
     }

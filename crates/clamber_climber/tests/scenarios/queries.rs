@@ -4,9 +4,7 @@ use clamber_world::rapier3d::prelude::ColliderBuilder;
 use clamber_world::{Contact, Obstacle, WorldCapsule};
 use glam::DVec3;
 
-use crate::stage::{Played, Shape, Stage, shifted, within};
-
-const ALL: [Played; 3] = [Played::Root, Played::Joint, Played::Body];
+use crate::stage::{Played, Shape, Stage, kinds, shifted, within};
 
 /// Asks the only obstacle of a stage.
 fn ask<T>(stage: &Stage, question: impl FnOnce(&dyn Obstacle) -> T) -> T {
@@ -93,7 +91,7 @@ pub(crate) fn a_sliver_is_met_where_it_is_and_nowhere_else() {
         if (truth - 0.2).abs() < 1e-3 {
             continue;
         }
-        for played in [Played::Root, Played::Body] {
+        for &played in kinds() {
             let stage = Stage::new(played).with_still(&triangle(corners));
             let ball = WorldCapsule::ball(from, 0.2);
             let hit = ask(&stage, |obstacle| obstacle.cast_capsule(&ball, way));
@@ -130,7 +128,7 @@ fn least_on_way(from: DVec3, way: DVec3, corners: [DVec3; 3]) -> f64 {
 
 pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
     let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
-    for played in ALL {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&triangle(corners));
         for (a, b) in [
             // Above the inside, above an edge, along an edge, beside, and through.
@@ -155,7 +153,7 @@ pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
 
 pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
-    for played in ALL {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
         // From outside of the face, from within it, and away from it.
         for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
@@ -179,7 +177,7 @@ pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
 pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
     let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
     let [a, b, _] = corners;
-    for played in ALL {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&triangle(corners));
         for center in [DVec3::ZERO, (a + b) * 0.5, a] {
             for capsule in [
@@ -237,7 +235,7 @@ pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
         if (truth - radius).abs() < 1e-5 {
             continue;
         }
-        for played in [Played::Root, Played::Body] {
+        for &played in kinds() {
             let stage = Stage::new(played).with_still(&two);
             let found = overlaps(&stage, &WorldCapsule { ends, radius });
             let nearest = found
@@ -259,7 +257,7 @@ pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
 
 pub(crate) fn motions_too_small_to_be_any_end() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
-    for played in ALL {
+    for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
         for size in [6.9e-39, 5e-324, 1e-45, 1e-20] {
             for direction in [DVec3::X, -DVec3::Y, DVec3::new(1.0, -1.0, 1.0)] {
@@ -278,7 +276,7 @@ pub(crate) fn motions_too_small_to_be_any_end() {
 
 pub(crate) fn what_stands_or_goes_away_meets_nothing() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
-    for played in ALL {
+    for &played in kinds() {
         // The box goes the same way as the ball: no relative motion.
         let mut stage = Stage::new(played).with(&shape, |time| shifted(DVec3::Y * (60.0 * time)));
         stage.advance();

@@ -5,10 +5,10 @@ use core::f64::consts::TAU;
 use clamber_climber::ClimberMode::{Holding, Sliding, Standing};
 use clamber_climber::{ClimberConfig, ClimberEvent, ClimberInput};
 use clamber_surface::geometry::Similarity;
-use clamber_world::{Obstacle, SurfaceKind};
+use clamber_world::SurfaceKind;
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::stage::{IDLE, Played, Run, Shape, Skin, Stage, jolt, radians, walker_at, within};
+use crate::stage::{IDLE, Run, Shape, Skin, Stage, jolt, one_kind, radians, walker_at, within};
 
 /// A skin of two joints, the second of which moves: by how much a rest position follows it is `share`.
 fn skin(
@@ -25,7 +25,7 @@ fn skin(
 }
 
 fn on(skin: Skin, config: ClimberConfig, feet: DVec3) -> Run {
-    Run::new(Stage::new(Played::Root).with_skin(skin), config, feet).settle()
+    Run::new(Stage::new(one_kind()).with_skin(skin), config, feet).settle()
 }
 
 /// Level quadrilaterals of half a metre.
@@ -36,10 +36,12 @@ fn plain() -> Shape {
 /// Where the material under the feet at rest is now.
 fn material(run: &Run) -> DVec3 {
     let support = run.state().support.unwrap();
-    let motion = run.stage.surface(0);
-    Obstacle::motion(motion, &support.attachment.point, run.stage.dt)
-        .unwrap()
-        .position
+    let motion = run.stage.obstacles(|obstacles| {
+        obstacles[0]
+            .1
+            .motion(&support.attachment.point, run.stage.dt)
+    });
+    motion.unwrap().position
 }
 
 pub(crate) fn breathing_ground_carries_for_a_minute() {
@@ -163,7 +165,7 @@ pub(crate) fn two_sheets_that_close_crush_and_let_nothing_through() {
             let p = run.position();
             assert!(p.y > 0.0, "{height}, tick {tick}: through the floor at {p}");
             // Who is crushed crouches, and has no upper ball then.
-            let head = run.climber.body().ends[1].y;
+            let head = run.body().ends[1].y;
             assert!(
                 head < lid,
                 "{height}, tick {tick}: through the lid {lid} at {p}"
@@ -213,7 +215,7 @@ pub(crate) fn a_triangle_without_area_for_a_tick_holds() {
                 grip.hang_acceleration = f64::INFINITY;
             }
             let skin = furry(Box::new(pose) as crate::stage::Pose);
-            let stage = Stage::new(Played::Root).with_skin(skin);
+            let stage = Stage::new(one_kind()).with_skin(skin);
             let mut run = Run::new(stage, config, DVec3::new(0.2, 0.0, 0.1)).settle();
             let input = ClimberInput {
                 grip: grips,
@@ -266,14 +268,12 @@ pub(crate) fn no_velocity_enters_any_of_seventeen_planes() {
             };
             shape.and(square.placed(&pose))
         });
-        let stage = Stage::new(Played::Root).with_still(&walls);
+        let stage = Stage::new(one_kind()).with_still(&walls);
         let mut run = Run::new(stage, config, -DVec3::Y * 0.32);
         let rest = *run.state();
         for _ in 0..60 {
             let velocity = direction() * 6.0;
-            run.climber
-                .restore(clamber_climber::ClimberState { velocity, ..rest })
-                .unwrap();
+            run.put(clamber_climber::ClimberState { velocity, ..rest });
             run.step(&IDLE);
             let p = run.position();
             let entered = normals

@@ -3,7 +3,7 @@
 use clamber_climber::ClimberMode::{Falling, Standing};
 use glam::DVec3;
 
-use crate::stage::{IDLE, Played, Run, Shape, Stage, every, jolt, walk, walker_at, within};
+use crate::stage::{IDLE, Run, Shape, Stage, every, jolt, kinds, walk, walker_at, within};
 
 const RATES: [u32; 4] = [60, 120, 240, 360];
 
@@ -264,7 +264,7 @@ pub(crate) fn a_hollow_box_is_solid_from_within() {
         run.sound()
     });
     // Thrown at its lid from within.
-    for played in [Played::Root, Played::Body] {
+    for &played in kinds() {
         let hollow = Shape::boxed(DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 3.0, 2.0));
         let stage = Stage::new(played).with_still(&hollow);
         let mut run = Run::new(stage, jolt(), DVec3::Y * 0.1).thrown(DVec3::Y * 300.0);

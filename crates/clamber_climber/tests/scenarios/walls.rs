@@ -5,7 +5,7 @@ use clamber_world::rapier3d::prelude::ColliderBuilder;
 use glam::DVec3;
 
 use crate::stage::{
-    IDLE, Played, Run, Shape, Stage, every, jolt, radians, shifted, walk, walker_at, within,
+    IDLE, Played, Run, Shape, Stage, every, jolt, kinds, radians, shifted, walk, walker_at, within,
 };
 
 pub(crate) fn an_overlap_is_left_in_one_tick() {
@@ -157,7 +157,7 @@ pub(crate) fn a_ball_within_a_solid_box_comes_out_of_its_nearest_face() {
 pub(crate) fn a_slow_wall_pushes_off_an_edge() {
     for speed in [0.1, 0.5, 1.5] {
         // Each by itself: whether what rolls off an edge slides or falls past it is a matter of the last digit.
-        for played in [Played::Root, Played::Joint, Played::Body] {
+        for &played in kinds() {
             let wall = Shape::boxed(DVec3::new(-3.0, -0.5, -5.0), DVec3::new(-0.4, 4.0, 5.0));
             let stage = Stage::new(played)
                 .with_still(&Shape::floor(1.0))

@@ -2,23 +2,29 @@
 
 use clamber_surface::geometry::Similarity;
 use clamber_world::rapier3d::prelude::{
-    ColliderBuilder, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Vector,
+    ColliderBuilder, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, SharedShape, Vector,
 };
 use clamber_world::{BodyPoses, RapierTerrain};
 use glam::{DVec3, Quat};
 
-use super::{Motion, Shape};
+use super::{Motion, Setting, Shape};
 
 /// A rapier world of bodies that play motions.
+///
+/// In a setting's frame its places grow and with them what f32 rounds off: rapier's world has one origin in f64, which
+/// stays. Its scale is the setting's: nothing of it is simulated, so rapier's default lengths do not count.
 pub(crate) struct Bodies {
     pub(crate) world: PhysicsWorld,
     before: BodyPoses,
     moving: Vec<(RigidBodyHandle, Motion)>,
     origin: DVec3,
+    /// Of the frame in a tick.
+    step: DVec3,
+    scale: f64,
 }
 
 impl Bodies {
-    pub(crate) fn new(dt: f64, origin: DVec3) -> Self {
+    pub(crate) fn new(dt: f64, origin: DVec3, setting: &Setting) -> Self {
         let mut world = PhysicsWorld::default();
         world.integration_parameters.dt = dt as f32;
         Self {
@@ -26,6 +32,8 @@ impl Bodies {
             before: BodyPoses::new(),
             moving: Vec::new(),
             origin,
+            step: setting.frame * dt,
+            scale: setting.scale,
         }
     }
 
@@ -34,32 +42,66 @@ impl Bodies {
     }
 
     pub(crate) fn add(&mut self, shape: &Shape, motion: Motion) {
-        let body = RigidBodyBuilder::kinematic_position_based().pose(pose(&motion(0.0)));
-        let (handle, _) = self.world.insert(body, mesh(shape));
+        let mesh = self.mesh(shape);
+        self.insert(mesh, motion);
+    }
+
+    /// A collider in the scenario's units.
+    pub(crate) fn add_fixed(&mut self, mut collider: ColliderBuilder) {
+        if self.scale != 1.0 {
+            let scale = Vector::splat(self.scale as f32);
+            let scaled = collider.shape.scale_dyn(scale, 1);
+            collider.shape = SharedShape(scaled.unwrap().into());
+            collider.position.translation *= self.scale as f32;
+        }
+        self.insert_still(collider);
+    }
+
+    pub(crate) fn add_still(&mut self, shape: &Shape) {
+        let mesh = self.mesh(shape);
+        self.insert_still(mesh);
+    }
+
+    /// In a frame that moves what stands still moves, too.
+    fn insert_still(&mut self, collider: ColliderBuilder) {
+        if self.step == DVec3::ZERO {
+            self.world.insert_collider(collider, None);
+            self.found();
+        } else {
+            self.insert(collider, std::rc::Rc::new(|_| Similarity::IDENTITY));
+        }
+    }
+
+    fn insert(&mut self, collider: ColliderBuilder, motion: Motion) {
+        let pose = self.pose(&motion(0.0), 0.0);
+        let body = RigidBodyBuilder::kinematic_position_based().pose(pose);
+        let (handle, _) = self.world.insert(body, collider);
         self.moving.push((handle, motion));
         self.found();
     }
 
-    pub(crate) fn add_fixed(&mut self, collider: ColliderBuilder) {
-        self.world.insert_collider(collider, None);
-        self.found();
-    }
-
-    pub(crate) fn add_still(&mut self, shape: &Shape) {
-        self.add_fixed(mesh(shape));
-    }
-
     /// So that the first tick has poses to come from.
     fn found(&mut self) {
-        self.world.detect_collisions(&(), &());
-        self.before.record(&self.world.bodies);
+        if self.step == DVec3::ZERO {
+            self.world.detect_collisions(&(), &());
+            self.before.record(&self.world.bodies);
+            return;
+        }
+        for (handle, motion) in &self.moving {
+            let pose = self.pose(&motion(0.0), -1.0);
+            if let Some(body) = self.world.bodies.get_mut(*handle) {
+                body.set_position(pose, true);
+            }
+        }
+        self.advance(0.0, 0);
     }
 
-    pub(crate) fn advance(&mut self, time: f64) {
+    pub(crate) fn advance(&mut self, time: f64, clock: u32) {
         self.before.record(&self.world.bodies);
         for (handle, motion) in &self.moving {
+            let pose = self.pose(&motion(time), f64::from(clock));
             if let Some(body) = self.world.bodies.get_mut(*handle) {
-                body.set_next_kinematic_position(pose(&motion(time)));
+                body.set_next_kinematic_position(pose);
             }
         }
         self.world.step();
@@ -68,15 +110,28 @@ impl Bodies {
     pub(crate) fn terrain(&self) -> RapierTerrain<'_> {
         RapierTerrain::of_world(&self.world, &self.before).with_origin(self.origin)
     }
-}
 
-fn pose(motion: &Similarity) -> Pose {
-    let q = motion.rotation;
-    let rotation = Quat::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32);
-    Pose::from_parts(motion.translation.as_vec3(), rotation)
-}
+    /// Farthest from the origin that anything is.
+    pub(crate) fn reach(&self) -> f64 {
+        let colliders = self.world.colliders.iter();
+        let farthest = colliders.map(|(_, collider)| {
+            let bounds = collider.compute_aabb();
+            let corner = bounds.mins.abs().max(bounds.maxs.abs());
+            f64::from(corner.max_element())
+        });
+        farthest.fold(0.0, f64::max)
+    }
 
-fn mesh(shape: &Shape) -> ColliderBuilder {
-    let corners: Vec<Vector> = shape.positions.iter().map(|p| p.as_vec3()).collect();
-    ColliderBuilder::trimesh(corners, shape.triangles.clone()).unwrap()
+    fn pose(&self, motion: &Similarity, clock: f64) -> Pose {
+        let q = motion.rotation;
+        let rotation = Quat::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32);
+        let place = motion.translation * self.scale + self.step * clock;
+        Pose::from_parts(place.as_vec3(), rotation)
+    }
+
+    fn mesh(&self, shape: &Shape) -> ColliderBuilder {
+        let corners = shape.positions.iter().map(|p| (*p * self.scale).as_vec3());
+        let corners: Vec<Vector> = corners.collect();
+        ColliderBuilder::trimesh(corners, shape.triangles.clone()).unwrap()
+    }
 }

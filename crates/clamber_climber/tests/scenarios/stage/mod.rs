@@ -1,16 +1,22 @@
 //! Where scenarios are played: meshes that move as functions of time, on supports of three kinds.
 
+mod alike;
 mod bodies;
 mod config;
+mod own;
+mod place;
 mod reached;
 mod run;
+mod setting;
 mod shape;
 mod skin;
 
+pub(crate) use alike::{Allowed, assert_alike};
 pub(crate) use bodies::Bodies;
 pub(crate) use config::{jolt, radians, walker_at};
 pub(crate) use reached::{demand, within};
 pub(crate) use run::{IDLE, JUMP, Run, Trace, every, walk};
+pub(crate) use setting::{Setting, kinds, one_kind, play};
 pub(crate) use shape::Shape;
 pub(crate) use skin::{Pose, Skin};
 
@@ -20,29 +26,56 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DAffine3, DVec3};
 
+use own::Own;
+use place::{Elsewhere, Place};
+use setting::setting;
+
 /// A rigid pose as a function of time.
 pub(crate) type Motion = Rc<dyn Fn(f64) -> Similarity>;
 
 /// How a mesh is made to move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Played {
-    /// A surface whose root moves.
+    /// A surface whose root moves, and has the setting's scale.
+    #[default]
     Root,
-    /// A surface whose joint moves, with its root at rest.
+    /// A surface whose joint moves, in a mesh of the setting's scale, with its root at rest in the setting's frame.
     Joint,
     /// A kinematic body of a rapier world.
     Body,
+    /// Triangles in f64, without any f32.
+    Own,
 }
 
 /// Everything that a climber can touch, at a time.
 pub(crate) struct Stage {
     played: Played,
+    setting: Setting,
     pub(crate) dt: f64,
     /// Of the stage in the world.
-    pub(crate) origin: DVec3,
+    origin: DVec3,
+    /// Of the scenario, whose time may stand still.
     ticks: u32,
+    /// Of the frame, which never stands still.
+    clock: u32,
     skins: Vec<Skin>,
+    owns: Vec<Own>,
     bodies: Bodies,
+    /// Lengths that f32 had to hold so far.
+    reach: Reach,
+}
+
+/// Lengths in f32, metres of the world.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reach {
+    /// Of a skin from its root.
+    pub(crate) extent: f64,
+    /// Of a root over a tick.
+    pub(crate) step: f64,
+    /// Of a body from rapier's origin.
+    pub(crate) place: f64,
+    /// Of anything from the world's origin, in f64.
+    pub(crate) far: f64,
 }
 
 /// Ticks at 60 Hz.
@@ -54,13 +87,18 @@ impl Stage {
     }
 
     pub(crate) fn at(played: Played, dt: f64, origin: DVec3) -> Self {
+        let setting = setting();
         Self {
             played,
+            setting,
             dt,
             origin,
             ticks: 0,
+            clock: 0,
             skins: Vec::new(),
-            bodies: Bodies::new(dt, origin),
+            owns: Vec::new(),
+            bodies: Bodies::new(dt, origin, &setting),
+            reach: Reach::default(),
         }
     }
 
@@ -75,32 +113,66 @@ impl Stage {
         shape: &Shape,
         motion: impl Fn(f64) -> Similarity + 'static,
     ) -> Self {
-        let origin = self.origin;
         match self.played {
             Played::Root => {
-                let root = move |time: f64| {
-                    let mut root = motion(time);
-                    root.translation += origin;
-                    (vec![DAffine3::IDENTITY], root)
-                };
-                self.skins
-                    .push(Skin::new(shape, &|_| vec![1.0], Box::new(root)));
+                let root = move |time: f64| (vec![DAffine3::IDENTITY], motion(time));
+                self.with_skin(Skin::new(shape, &|_| vec![1.0], Box::new(root)))
             }
             Played::Joint => {
-                let root = Similarity::from_translation(origin);
-                let joint = move |time: f64| (vec![motion(time).to_affine()], root);
-                self.skins
-                    .push(Skin::new(shape, &|_| vec![1.0], Box::new(joint)));
+                let scale = self.setting.scale;
+                let joint = move |time: f64| {
+                    let mut joint = motion(time);
+                    joint.translation *= scale;
+                    (vec![joint.to_affine()], Similarity::IDENTITY)
+                };
+                let size = Similarity {
+                    scale,
+                    ..Similarity::IDENTITY
+                };
+                let shape = shape.clone().placed(&size);
+                self.put(Skin::new(&shape, &|_| vec![1.0], Box::new(joint)), 1.0)
             }
-            Played::Body => self.bodies.add(shape, Rc::new(motion)),
+            Played::Body => {
+                self.bodies.add(shape, Rc::new(motion));
+                self
+            }
+            Played::Own => {
+                let rest = shape.positions.clone();
+                let corners = move |time: f64| {
+                    let pose = motion(time);
+                    rest.iter().map(|p| pose.transform_point(*p)).collect()
+                };
+                let kind = clamber_world::SurfaceKind::Skin;
+                let triangles = shape.triangles.clone();
+                let scale = self.setting.scale;
+                self.put_own(Own::new(Box::new(corners), triangles, kind, scale))
+            }
         }
-        self
     }
 
+    /// A skin that deforms; of own triangles where those are played.
     #[must_use]
     pub(crate) fn with_skin(mut self, skin: Skin) -> Self {
-        self.skins.push(skin);
-        self
+        let scale = self.setting.scale;
+        if self.played == Played::Body {
+            // No body deforms.
+            self.played = Played::Root;
+        }
+        if self.played == Played::Own {
+            self.put_own(skin.into_own(scale))
+        } else {
+            self.put(skin, scale)
+        }
+    }
+
+    /// Ground that stands, of a rapier world unless own triangles are played.
+    #[must_use]
+    pub(crate) fn with_ground(self, shape: &Shape) -> Self {
+        if self.played == Played::Own {
+            self.with_still(shape)
+        } else {
+            self.with_bodies(|bodies| bodies.add_still(shape))
+        }
     }
 
     #[must_use]
@@ -109,8 +181,40 @@ impl Stage {
         self
     }
 
+    /// `scale` is what its root scales by. A frame has moved it already, as it goes on moving.
+    fn put(mut self, mut skin: Skin, scale: f64) -> Self {
+        let place = self.place();
+        skin.place(0.0, scale, place.before);
+        if self.setting.frame != DVec3::ZERO {
+            skin.advance(0.0, scale, place.now);
+        }
+        skin.scale = scale;
+        self.skins.push(skin);
+        self
+    }
+
+    fn put_own(mut self, mut own: Own) -> Self {
+        let place = self.place();
+        own.advance(0.0, |p| place.before + p * place.scale);
+        own.advance(0.0, |p| place.point(p));
+        self.owns.push(own);
+        self
+    }
+
     pub(crate) fn time(&self) -> f64 {
         f64::from(self.ticks) * self.dt
+    }
+
+    /// Where the scenario is in the world, over the tick that ends now.
+    pub(crate) fn place(&self) -> Place {
+        let at = |tick: f64| self.origin + self.setting.frame * (tick * self.dt);
+        let clock = f64::from(self.clock);
+        Place {
+            scale: self.setting.scale,
+            now: at(clock),
+            before: at(clock - 1.0),
+            velocity: self.setting.frame,
+        }
     }
 
     /// Poses everything for the next tick.
@@ -119,33 +223,74 @@ impl Stage {
         self.hold();
     }
 
-    /// A tick that takes no time.
+    /// A tick that takes no time of the scenario.
     pub(crate) fn hold(&mut self) {
-        let time = self.time();
+        self.clock += 1;
+        let (time, place) = (self.time(), self.place());
+        self.reach.far = self.reach.far.max(place.now.length());
         for skin in &mut self.skins {
-            skin.advance(time);
+            let (extent, step) = skin.advance(time, skin.scale, place.now);
+            self.reach.extent = self.reach.extent.max(extent);
+            self.reach.step = self.reach.step.max(step);
+        }
+        for own in &mut self.owns {
+            own.advance(time, |p| place.point(p));
         }
         if !self.bodies.is_empty() {
-            self.bodies.advance(time);
+            self.bodies.advance(time, self.clock);
+            self.reach.place = self.reach.place.max(self.bodies.reach());
         }
     }
 
-    pub(crate) fn surface(&self, index: usize) -> &clamber_surface::surface::SkinnedSurface {
-        &self.skins[index].surface
+    pub(crate) fn played(&self) -> Played {
+        self.played
     }
 
-    /// What there is to touch: surfaces from 1 on, the rapier world as 0.
+    pub(crate) fn reach(&self) -> Reach {
+        self.reach
+    }
+
+    /// What there is to touch, asked in the scenario's units and frame.
     pub(crate) fn obstacles<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
+        let there = self.place();
+        self.in_world(|obstacles| {
+            let seen: Vec<_> = obstacles
+                .iter()
+                .map(|(id, inner)| {
+                    (
+                        *id,
+                        Elsewhere {
+                            inner: *inner,
+                            there,
+                        },
+                    )
+                })
+                .collect();
+            ask(&listed(&seen))
+        })
+    }
+
+    /// What there is to touch, in the world: surfaces from 1 on, the rapier world as 0.
+    pub(crate) fn in_world<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let terrain = self.bodies.terrain();
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
         if !self.bodies.is_empty() {
             obstacles.push((ObstacleId(0), &terrain));
         }
-        for (index, skin) in self.skins.iter().enumerate() {
-            obstacles.push((ObstacleId(index as u64 + 1), &skin.surface));
+        let skins = self.skins.iter().map(|skin| &skin.surface as &dyn Obstacle);
+        let owns = self.owns.iter().map(|own| own as &dyn Obstacle);
+        for (index, obstacle) in skins.chain(owns).enumerate() {
+            obstacles.push((ObstacleId(index as u64 + 1), obstacle));
         }
         ask(&obstacles)
     }
+}
+
+/// A list of obstacles as a climber takes it.
+pub(crate) fn listed<T: Obstacle>(owned: &[(ObstacleId, T)]) -> Vec<(ObstacleId, &dyn Obstacle)> {
+    let each = owned.iter();
+    each.map(|(id, obstacle)| (*id, obstacle as &dyn Obstacle))
+        .collect()
 }
 
 /// Moves without turning.

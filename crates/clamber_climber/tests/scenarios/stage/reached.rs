@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt::Arguments;
 use std::panic::Location;
 
+use super::alike::slack;
+
 /// The most that each place of a test has seen, by its line and the bits of what it allows.
 struct Reached(BTreeMap<(&'static str, u32, u64), f64>);
 
@@ -30,6 +32,7 @@ impl Drop for Reached {
 /// Fails if a number is more than allowed, or none; remembers the largest.
 #[track_caller]
 pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
+    let allowed = allowed + slack();
     assert!(found <= allowed, "{found:e} of at most {allowed:e}: {case}");
     let place = Location::caller();
     REACHED.with_borrow_mut(|reached| {

@@ -3,28 +3,42 @@
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
 };
+use clamber_world::{Obstacle, ObstacleId, WorldCapsule};
 use glam::DVec3;
 
-use super::{Played, Stage, within};
+use super::place::Elsewhere;
+use super::setting::{kinds, remember};
+use super::{Played, Reach, Stage, listed, within};
 
-/// What a climber did, tick by tick.
+/// What a climber did, tick by tick, in the scenario's units and frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) positions: Vec<DVec3>,
+    pub(crate) velocities: Vec<DVec3>,
     pub(crate) modes: Vec<ClimberMode>,
     pub(crate) events: Vec<ClimberEvent>,
+    /// In which tick each event was.
+    pub(crate) event_ticks: Vec<usize>,
     /// Deepest below the skin width that anything was.
     pub(crate) penetration: f64,
     /// Ticks in which something was left on the way.
     pub(crate) unclear: u32,
     pub(crate) most_rounds: u32,
+    /// On what it was, and what f32 had to hold there.
+    pub(crate) played: Played,
+    pub(crate) dt: f64,
+    pub(crate) reach: Reach,
 }
 
 /// A climber on a stage.
 pub(crate) struct Run {
     pub(crate) stage: Stage,
+    /// In the world, not in the scenario's units and frame.
     pub(crate) climber: Climber,
     pub(crate) trace: Trace,
+    config: ClimberConfig,
+    /// The climber's state in the scenario's units and frame.
+    state: ClimberState,
 }
 
 /// No input.
@@ -42,12 +56,22 @@ pub(crate) const JUMP: ClimberInput = ClimberInput { jump: true, ..IDLE };
 impl Run {
     /// A climber whose feet are at a place of the stage.
     pub(crate) fn new(stage: Stage, config: ClimberConfig, feet: DVec3) -> Self {
-        let position = stage.origin + feet + config.up() * config.body.radius;
-        Self {
-            climber: Climber::new(config, position).unwrap(),
+        let place = stage.place();
+        let position = feet + config.up() * config.body.radius;
+        let climber = Climber::new(place.config(&config), place.point(position)).unwrap();
+        let mut run = Self {
+            state: *climber.state(),
+            climber,
             stage,
             trace: Trace::default(),
-        }
+            config,
+        };
+        run.put(ClimberState {
+            position,
+            velocity: DVec3::ZERO,
+            ..run.state
+        });
+        run
     }
 
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
@@ -61,20 +85,65 @@ impl Run {
         self.step_only(input)
     }
 
+    /// A tick among obstacles around those of the stage. Both are asked in the scenario's units and frame.
+    pub(crate) fn step_around(
+        &mut self,
+        input: &ClimberInput,
+        around: impl for<'a> Fn(&'a dyn Obstacle) -> Box<dyn Obstacle + 'a>,
+    ) -> StepReport {
+        self.stage.advance();
+        let (climber, dt) = (&mut self.climber, self.stage.dt);
+        let there = self.stage.place().inverse();
+        let input = in_world(input, self.stage.place().scale);
+        let report = self.stage.obstacles(|obstacles| {
+            let around: Vec<(ObstacleId, Box<dyn Obstacle + '_>)> = obstacles
+                .iter()
+                .map(|(id, obstacle)| (*id, around(*obstacle)))
+                .collect();
+            let seen: Vec<_> = around
+                .iter()
+                .map(|(id, inner)| {
+                    let inner = inner.as_ref();
+                    (*id, Elsewhere { inner, there })
+                })
+                .collect();
+            climber.step(&input, &listed(&seen), dt).unwrap()
+        });
+        self.note(report)
+    }
+
     fn step_only(&mut self, input: &ClimberInput) -> StepReport {
         let (climber, dt) = (&mut self.climber, self.stage.dt);
+        let input = in_world(input, self.stage.place().scale);
         let report = self
             .stage
-            .obstacles(|obstacles| climber.step(input, obstacles, dt).unwrap());
-        let state = self.climber.state();
+            .in_world(|obstacles| climber.step(&input, obstacles, dt).unwrap());
+        self.note(report)
+    }
+
+    /// Writes down what a step did.
+    fn note(&mut self, report: StepReport) -> StepReport {
+        let back = self.stage.place().inverse();
+        let report = back.report(report);
+        self.state = back.state(self.climber.state());
         let trace = &mut self.trace;
-        trace.positions.push(state.position - self.stage.origin);
-        trace.modes.push(state.mode);
+        let tick = trace.positions.len();
+        trace.positions.push(self.state.position);
+        trace.velocities.push(self.state.velocity);
+        trace.modes.push(self.state.mode);
         trace.events.extend(&report.events);
+        trace.event_ticks.resize(trace.events.len(), tick);
         trace.penetration = trace.penetration.max(report.penetration);
         trace.unclear += u32::from(!report.is_clear);
         trace.most_rounds = trace.most_rounds.max(report.rounds);
         report
+    }
+
+    /// Puts the climber into a state.
+    pub(crate) fn put(&mut self, state: ClimberState) {
+        let place = self.stage.place();
+        self.climber.restore(place.state(&state)).unwrap();
+        self.state = state;
     }
 
     pub(crate) fn steps(&mut self, count: u32, input: &ClimberInput) {
@@ -104,16 +173,24 @@ impl Run {
 
     /// In the air at a velocity.
     pub(crate) fn thrown(mut self, velocity: DVec3) -> Self {
-        let state = ClimberState {
+        self.put(ClimberState {
             velocity,
-            ..*self.climber.state()
-        };
-        self.climber.restore(state).unwrap();
+            ..self.state
+        });
         self
     }
 
     pub(crate) fn state(&self) -> &ClimberState {
-        self.climber.state()
+        &self.state
+    }
+
+    pub(crate) fn config(&self) -> &ClimberConfig {
+        &self.config
+    }
+
+    /// What the climber is to the world.
+    pub(crate) fn body(&self) -> WorldCapsule {
+        self.stage.place().inverse().capsule(&self.climber.body())
     }
 
     pub(crate) fn mode(&self) -> ClimberMode {
@@ -122,20 +199,39 @@ impl Run {
 
     /// Of its centre, relative to the stage's origin.
     pub(crate) fn position(&self) -> DVec3 {
-        self.state().position - self.stage.origin
+        self.state.position
     }
 
     /// Of its feet.
     pub(crate) fn feet(&self) -> DVec3 {
-        let config = self.climber.config();
-        self.position() - config.up() * config.body.radius
+        self.position() - self.config.up() * self.config.body.radius
     }
 
     /// What was written down, after seeing that no tick went wrong.
     pub(crate) fn sound(self) -> Trace {
         self.trace.assert_sound();
-        self.trace
+        self.trace.clone()
     }
+}
+
+impl Drop for Run {
+    /// For what compares settings.
+    fn drop(&mut self) {
+        let mut trace = std::mem::take(&mut self.trace);
+        trace.played = self.stage.played();
+        trace.dt = self.stage.dt;
+        trace.reach = self.stage.reach();
+        remember(trace);
+    }
+}
+
+/// An input of a scenario as a scaled climber takes it.
+fn in_world(input: &ClimberInput, scale: f64) -> ClimberInput {
+    let blow = input.blow.map(|blow| clamber_climber::Blow {
+        velocity: blow.velocity * scale,
+        ..blow
+    });
+    ClimberInput { blow, ..*input }
 }
 
 impl Trace {
@@ -189,20 +285,27 @@ impl Trace {
 /// How far two ways to play the same motion may lead apart, metres.
 pub(crate) const SAME: f64 = 1e-4;
 
-/// Plays a scenario as the motion of a root, of a joint and of a body: each must pass, and all must give
-/// the same. `chord` is by how much a body's turning way leaves the skin's straight one.
+/// Plays a scenario on each kind of obstacle of the setting: as the motion of a root, of a joint and of a body, or on one
+/// kind alone. Each must pass, and all must give the same. `chord` is by how much a body's turning way leaves the skin's
+/// straight one.
 pub(crate) fn every(chord: f64, play: impl Fn(Played) -> Trace) {
-    let root = play(Played::Root);
-    for (played, tolerance) in [(Played::Joint, SAME), (Played::Body, SAME + chord)] {
+    let first = kinds()[0];
+    let trace = play(first);
+    for &played in &kinds()[1..] {
+        let tolerance = if played == Played::Body {
+            SAME + chord
+        } else {
+            SAME
+        };
         let other = play(played);
-        let (apart, tick) = root.apart(&other);
+        let (apart, tick) = trace.apart(&other);
         let name = format!("{played:?}");
         within!(
             apart,
             tolerance,
-            "{name}: {apart} m from the root's at tick {tick}"
+            "{name}: {apart} m from {first:?} at tick {tick}"
         );
-        root.assert_same_modes(&other, &name);
-        other.assert_same_modes(&root, &name);
+        trace.assert_same_modes(&other, &name);
+        other.assert_same_modes(&trace, &name);
     }
 }

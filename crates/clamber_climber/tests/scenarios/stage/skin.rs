@@ -11,6 +11,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DAffine3, DVec3};
 
 use super::Shape;
+use super::own::Own;
 
 /// Where its joints and its root are at a time.
 pub(crate) type Pose = Box<dyn Fn(f64) -> (Vec<DAffine3>, Similarity)>;
@@ -18,7 +19,13 @@ pub(crate) type Pose = Box<dyn Fn(f64) -> (Vec<DAffine3>, Similarity)>;
 /// A posed surface and what poses it.
 pub(crate) struct Skin {
     pub(crate) surface: SkinnedSurface,
+    /// By which its root scales it on a stage.
+    pub(super) scale: f64,
     pose: Pose,
+    shape: Shape,
+    /// Of each joint, of each corner.
+    weights: Vec<Vec<f64>>,
+    kind: SurfaceKind,
 }
 
 /// Weights of each joint at a rest position.
@@ -31,44 +38,76 @@ impl Skin {
     }
 
     pub(crate) fn of(shape: &Shape, kind: SurfaceKind, weights: Weights<'_>, pose: Pose) -> Self {
-        let mesh = build(shape, kind, weights);
-        let mut skin = Self {
-            surface: SkinnedSurface::new(mesh),
+        let weights: Vec<_> = shape.positions.iter().map(|p| weights(*p)).collect();
+        Self {
+            surface: SkinnedSurface::new(build(shape, kind, &weights)),
+            scale: 1.0,
             pose,
-        };
-        skin.place(0.0);
-        skin
+            shape: shape.clone(),
+            weights,
+            kind,
+        }
     }
 
-    fn at(&self, time: f64) -> (Palette, Similarity) {
-        let (joints, root) = (self.pose)(time);
+    fn at(&self, time: f64, scale: f64, origin: DVec3) -> (Palette, Similarity) {
+        let (joints, mut root) = (self.pose)(time);
         let matrices = joints.iter().map(Affine::from_f64);
+        root.scale *= scale;
+        root.translation = origin + root.translation * scale;
         (Palette::from_matrices(matrices), root)
     }
 
-    pub(crate) fn place(&mut self, time: f64) {
-        let (palette, root) = self.at(time);
+    pub(super) fn place(&mut self, time: f64, scale: f64, origin: DVec3) {
+        let (palette, root) = self.at(time, scale, origin);
         self.surface.place(&palette, root).unwrap();
     }
 
-    pub(crate) fn advance(&mut self, time: f64) {
-        let (palette, root) = self.at(time);
+    /// How far it reaches from its root now, and how far its root went.
+    pub(super) fn advance(&mut self, time: f64, scale: f64, origin: DVec3) -> (f64, f64) {
+        let (palette, root) = self.at(time, scale, origin);
+        let before = self.surface.world_from_model().translation;
         self.surface.advance(&palette, root).unwrap();
+        let bounds = self.surface.bounding_ball();
+        let extent = bounds.map_or(0.0, |(center, radius)| {
+            center.distance(root.translation) + radius
+        });
+        (extent, root.translation.distance(before))
+    }
+
+    /// The same triangles in the same poses, in f64.
+    pub(super) fn into_own(self, scale: f64) -> Own {
+        let Self {
+            pose,
+            shape,
+            weights,
+            kind,
+            ..
+        } = self;
+        let corners = move |time: f64| {
+            let (joints, root) = pose(time);
+            let skinned = shape.positions.iter().zip(&weights).map(|(p, weights)| {
+                let moved = joints.iter().zip(weights);
+                moved
+                    .map(|(joint, w)| joint.transform_point3(*p) * *w)
+                    .sum()
+            });
+            skinned.map(|p| root.transform_point(p)).collect()
+        };
+        Own::new(Box::new(corners), shape.triangles.clone(), kind, scale)
     }
 }
 
-fn build(shape: &Shape, kind: SurfaceKind, weights: Weights<'_>) -> Arc<ColliderMesh> {
+fn build(shape: &Shape, kind: SurfaceKind, weights: &[Vec<f64>]) -> Arc<ColliderMesh> {
     let positions: Vec<_> = shape.positions.iter().map(|p| p.as_vec3()).collect();
     let mut influences = Vec::new();
     let mut influence_ends = Vec::new();
     let mut joint_count = 1;
-    for position in &shape.positions {
-        let weights = weights(*position);
+    for weights in weights {
         joint_count = weights.len();
-        for (joint, weight) in weights.into_iter().enumerate() {
+        for (joint, weight) in weights.iter().enumerate() {
             influences.push(Influence {
                 joint: JointId(joint as u32),
-                weight: weight as f32,
+                weight: *weight as f32,
             });
         }
         influence_ends.push(influences.len() as u32);

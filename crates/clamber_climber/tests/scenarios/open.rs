@@ -1,0 +1,16 @@
+//! What does not hold yet, and by how much.
+
+/// Lines of scenario, setting as [`Setting`](crate::stage::Setting) prints it (or `in every setting`), and what was found.
+///
+/// A line that holds fails the suite, so that a mend takes its lines along.
+/// `CLAMBER_OPEN=1 cargo test -p clamber_climber --test scenarios -- --nocapture | grep '^OPEN ' | cut -c6- | sort` prints
+/// the lines that the file should have.
+const OPEN: &str = include_str!("open.txt");
+
+/// Scenario and setting of each line.
+pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    OPEN.lines().filter_map(|line| {
+        let mut parts = line.split(" | ");
+        Some((parts.next()?, parts.next()?))
+    })
+}

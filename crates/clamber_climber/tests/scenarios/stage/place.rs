@@ -1,0 +1,270 @@
+//! Between a scenario's units and frame and the world.
+
+use clamber_climber::{ClimberConfig, ClimberEvent, ClimberState, StepReport, Support};
+use clamber_world::{
+    Attachment, Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
+};
+use glam::DVec3;
+
+/// An even motion and a scale, from one space to another, over a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) scale: f64,
+    /// Where the origin is at the end of the tick.
+    pub(crate) now: DVec3,
+    /// Where it was at the start.
+    pub(crate) before: DVec3,
+    /// Of the origin, metres a second.
+    pub(crate) velocity: DVec3,
+}
+
+impl Place {
+    /// Back.
+    pub(crate) fn inverse(&self) -> Self {
+        let scale = 1.0 / self.scale;
+        Self {
+            scale,
+            now: -self.now * scale,
+            before: -self.before * scale,
+            velocity: -self.velocity * scale,
+        }
+    }
+
+    pub(crate) fn point(&self, point: DVec3) -> DVec3 {
+        self.now + point * self.scale
+    }
+
+    fn point_before(&self, point: DVec3) -> DVec3 {
+        self.before + point * self.scale
+    }
+
+    /// Velocity of a thing.
+    pub(crate) fn velocity(&self, velocity: DVec3) -> DVec3 {
+        self.velocity + velocity * self.scale
+    }
+
+    pub(crate) fn capsule(&self, capsule: &WorldCapsule) -> WorldCapsule {
+        WorldCapsule {
+            ends: capsule.ends.map(|end| self.point(end)),
+            radius: capsule.radius * self.scale,
+        }
+    }
+
+    pub(crate) fn state(&self, state: &ClimberState) -> ClimberState {
+        let support = state.support.map(|support| Support {
+            attachment: self.attachment(support.attachment),
+            ..support
+        });
+        ClimberState {
+            position: self.point(state.position),
+            velocity: self.velocity(state.velocity),
+            base_velocity: self.velocity(state.base_velocity),
+            support,
+            support_velocity: state.support_velocity.map(|v| self.velocity(v)),
+            shake: state.shake * self.scale,
+            arm: state.arm * self.scale,
+            ..*state
+        }
+    }
+
+    fn attachment(&self, attachment: Attachment) -> Attachment {
+        Attachment {
+            contact: self.point(attachment.contact),
+            offset: attachment.offset * self.scale,
+            ..attachment
+        }
+    }
+
+    pub(crate) fn report(&self, report: StepReport) -> StepReport {
+        let events = report.events.into_iter();
+        StepReport {
+            events: events.map(|event| self.event(event)).collect(),
+            pushed_out: report.pushed_out * self.scale,
+            penetration: report.penetration * self.scale,
+            ..report
+        }
+    }
+
+    fn event(&self, event: ClimberEvent) -> ClimberEvent {
+        let scale = self.scale;
+        match event {
+            ClimberEvent::Landed { obstacle, speed } => ClimberEvent::Landed {
+                obstacle,
+                speed: speed * scale,
+            },
+            ClimberEvent::Thrown { acceleration, from } => ClimberEvent::Thrown {
+                acceleration: acceleration * scale,
+                from: self.attachment(from),
+            },
+            ClimberEvent::LostFooting { from } => ClimberEvent::LostFooting {
+                from: self.attachment(from),
+            },
+            ClimberEvent::KnockedOff { from, by } => ClimberEvent::KnockedOff {
+                from: self.attachment(from),
+                by,
+            },
+            ClimberEvent::Tumbled { from, by } => ClimberEvent::Tumbled {
+                from: from.map(|from| self.attachment(from)),
+                by,
+            },
+            ClimberEvent::Grabbed { obstacle, point } => ClimberEvent::Grabbed {
+                obstacle,
+                point: self.point(point),
+            },
+            ClimberEvent::LedgeCaught { obstacle, point } => ClimberEvent::LedgeCaught {
+                obstacle,
+                point: self.point(point),
+            },
+            ClimberEvent::ShakenOff { shake, from } => ClimberEvent::ShakenOff {
+                shake: shake * scale,
+                from: self.attachment(from),
+            },
+            ClimberEvent::Crushed { depth } => ClimberEvent::Crushed {
+                depth: depth * scale,
+            },
+            other => other,
+        }
+    }
+
+    /// Of a climber: lengths, speeds and accelerations of a scaled body; times, angles and shares as they are.
+    pub(crate) fn config(&self, config: &ClimberConfig) -> ClimberConfig {
+        let (s, mut c) = (self.scale, *config);
+        c.gravity *= s;
+        c.body.radius *= s;
+        c.body.height *= s;
+        c.body.margin *= s;
+        // Of the same mass at accelerations that are scaled.
+        c.body.push_force *= s;
+        c.ground.walk_speed *= s;
+        c.ground.jump_speed *= s;
+        c.ground.snap_distance *= s;
+        c.ground.step_height *= s;
+        c.ground.acceleration *= s;
+        c.ground.friction *= s;
+        c.ground.air_acceleration *= s;
+        c.ground.throw_acceleration *= s;
+        if let Some(grip) = &mut c.grip {
+            grip.reach *= s;
+            grip.climb_speed *= s;
+            grip.hang_acceleration *= s;
+            grip.jump_speed *= s;
+        }
+        c.hang.arm_length *= s;
+        c.hang.leg_length *= s;
+        if let Some(ledge) = &mut c.ledge {
+            ledge.reach_up *= s;
+            ledge.reach *= s;
+            ledge.drop *= s;
+            ledge.shimmy_speed *= s;
+        }
+        if let Some(stamina) = &mut c.stamina {
+            stamina.shake_threshold *= s;
+            stamina.shake_drain /= s;
+        }
+        if let Some(tumble) = &mut c.tumble {
+            tumble.knock_acceleration *= s;
+            tumble.knock_speed *= s;
+            tumble.landing_speed *= s;
+        }
+        if let Some(health) = &mut c.health {
+            health.safe_speed *= s;
+            health.fall_damage /= s;
+        }
+        c
+    }
+}
+
+/// An obstacle as it is asked from another space: questions go there, answers come back.
+pub(crate) struct Elsewhere<'a> {
+    pub(crate) inner: &'a dyn Obstacle,
+    /// From where it is asked to where it is.
+    pub(crate) there: Place,
+}
+
+impl Elsewhere<'_> {
+    fn contact(&self, contact: Contact, back: &Place) -> Contact {
+        Contact {
+            point: back.point(contact.point),
+            distance: contact.distance * back.scale,
+            ..contact
+        }
+    }
+
+    fn hit(&self, hit: SweepContact, back: &Place) -> SweepContact {
+        SweepContact {
+            contact: self.contact(hit.contact, back),
+            ..hit
+        }
+    }
+}
+
+impl Obstacle for Elsewhere<'_> {
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        let (center, radius) = self.inner.bounds()?;
+        let back = self.there.inverse();
+        Some((back.point(center), radius * back.scale))
+    }
+
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        let there = &self.there;
+        let length = max_distance * there.scale;
+        let hit = self
+            .inner
+            .cast_ray(there.point(origin), direction, length)?;
+        Some(self.contact(hit, &there.inverse()))
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        let there = &self.there;
+        let length = max_distance * there.scale;
+        let contact = self.inner.closest_point(there.point(point), length)?;
+        Some(self.contact(contact, &there.inverse()))
+    }
+
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        let (first, back) = (contacts.len(), self.there.inverse());
+        let capsule = self.there.capsule(capsule);
+        self.inner.overlap_capsule(&capsule, contacts);
+        for contact in &mut contacts[first..] {
+            *contact = self.contact(*contact, &back);
+        }
+    }
+
+    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let there = &self.there;
+        let way = displacement * there.scale;
+        let hit = self.inner.cast_capsule(&there.capsule(capsule), way)?;
+        Some(self.hit(hit, &there.inverse()))
+    }
+
+    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+        let there = &self.there;
+        let start = WorldCapsule {
+            ends: capsule.ends.map(|end| there.point_before(end)),
+            radius: capsule.radius * there.scale,
+        };
+        let way = displacement * there.scale + (there.now - there.before);
+        let hit = self.inner.sweep_capsule(&start, way)?;
+        // Back from where the other space is when they touch.
+        let then = Place {
+            now: there.before + (there.now - there.before) * hit.time,
+            ..*there
+        };
+        Some(self.hit(hit, &then.inverse()))
+    }
+
+    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        self.inner.push_response(point, direction) / self.there.scale
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        let motion = self.inner.motion(point, dt)?;
+        let back = self.there.inverse();
+        Some(PointMotion {
+            position: back.point(motion.position),
+            previous_position: back.point_before(motion.previous_position),
+            velocity: back.velocity(motion.velocity),
+            ..motion
+        })
+    }
+}

@@ -1,0 +1,91 @@
+//! Walls that close on the climber, all but opposite: a wedge from which it cannot slip.
+
+use clamber_climber::{ClimberConfig, ClimberEvent};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use glam::DVec3;
+
+use crate::stage::{IDLE, Run, Shape, Stage, kinds, radians, within};
+
+/// Half the way between the walls, at a time: in the end .15 m less than the ball needs.
+fn half_gap(closing: f64, time: f64) -> f64 {
+    (0.45 - closing * time).max(0.25)
+}
+
+/// Two walls of 1 m above a floor, each turned by an angle so that they open along +X; they close by a speed each.
+fn wedge(stage: Stage, angle: f64, closing: f64) -> Stage {
+    let wall = Shape::boxed(DVec3::new(-3.0, 0.05, -0.5), DVec3::new(3.0, 6.05, 0.5));
+    let stage = stage.with_still(&Shape::floor(6.0));
+    [-1.0, 1.0].into_iter().fold(stage, |stage, side| {
+        stage.with(&wall, move |time| {
+            let rotation = rotation_from_axis_angle(DVec3::Y, -side * angle);
+            let inward = rotation * DVec3::Z * -side;
+            let face = DVec3::Z * (side * half_gap(closing, time));
+            Similarity {
+                rotation,
+                scale: 1.0,
+                translation: face - inward * 0.5,
+            }
+        })
+    })
+}
+
+/// What a climber between the walls went through, at each angle and speed, on each kind of obstacle by itself: what rounds a
+/// wall moves the place where both touch the ball by a hundred times more.
+fn in_wedges(check: impl Fn(&Pressed)) {
+    for closing in [0.4, 2.0] {
+        for degrees in [0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 13.0] {
+            for &played in kinds() {
+                let mut config = ClimberConfig::walker();
+                config.ground.throw_acceleration = f64::INFINITY;
+                let stage = wedge(Stage::new(played), radians(degrees), closing);
+                let mut run = Run::new(stage, config, DVec3::ZERO).settle();
+                let mut pressed = Pressed {
+                    case: format!("{played:?}, {degrees} degrees at {closing} m/s"),
+                    degrees,
+                    lacking: config.body.radius - half_gap(closing, 1.0),
+                    crushed: false,
+                    longest: 0.0,
+                };
+                for _ in 0..60 {
+                    let before = run.position();
+                    let report = run.step(&IDLE);
+                    let is_crushed =
+                        |event: &ClimberEvent| matches!(event, ClimberEvent::Crushed { .. });
+                    pressed.crushed |= report.events.iter().any(is_crushed);
+                    pressed.longest = pressed.longest.max(run.position().distance(before));
+                }
+                check(&pressed);
+            }
+        }
+    }
+}
+
+/// What happened between two walls.
+struct Pressed {
+    case: String,
+    degrees: f64,
+    /// How much room each wall takes from the ball in the end, metres.
+    lacking: f64,
+    crushed: bool,
+    /// Its longest way in a tick, metres.
+    longest: f64,
+}
+
+pub(crate) fn a_wedge_that_closes_crushes_alike_in_every_frame() {
+    in_wedges(|pressed| {
+        let Pressed { case, crushed, .. } = pressed;
+        assert!(*crushed || pressed.degrees > 2.0, "{case}: not told");
+    });
+}
+
+pub(crate) fn a_wedge_that_closes_throws_nobody_out() {
+    in_wedges(|pressed| {
+        let Pressed { case, longest, .. } = pressed;
+        // Farther than four times what it lacks in room is thrown, not pushed.
+        within!(
+            *longest,
+            4.0 * pressed.lacking,
+            "{case}: {longest} m in a tick"
+        );
+    });
+}
