@@ -2,7 +2,7 @@
 
 mod bits;
 
-pub(super) use bits::{assert_same_bits, bits};
+pub(super) use bits::assert_same_bits;
 
 use super::{BruteForce, MovingTriangle, SkinnedSurface, SurfaceHit, SweepHit};
 use crate::geometry::{Capsule, Ray, Sphere};

@@ -13,7 +13,7 @@ pub(in crate::surface) trait Bits {
 }
 
 /// The bits of one answer.
-pub(in crate::surface) fn bits(answer: &impl Bits) -> Vec<u64> {
+fn bits(answer: &impl Bits) -> Vec<u64> {
     let mut bits = Vec::new();
     answer.append_to(&mut bits);
     bits

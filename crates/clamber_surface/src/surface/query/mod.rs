@@ -9,6 +9,7 @@ mod broad;
 mod closest;
 mod cluster_view;
 mod hit;
+mod inside;
 mod narrow;
 mod overlap;
 mod planes;

@@ -87,7 +87,7 @@ impl SkinnedSurface {
 
     /// Calls `visit` with every triangle met, nearest bounds first; it gives the distance that still
     /// matters, or none to stop.
-    fn visit_ray<'a>(
+    pub(super) fn visit_ray<'a>(
         &'a self,
         ray: &Ray,
         limit: f64,
