@@ -88,12 +88,12 @@ fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
 
 #[test]
 fn any_number_of_threads_skins_the_same_ticks_ahead() {
-    let wanted = ticks(1, 300);
+    let wanted = ticks(1, 100);
     let is_ahead = |[ahead, _]: &&[Diagnostics; 2]| ahead.clusters_skinned == ahead.clusters;
     let ahead = wanted.iter().filter(is_ahead).count();
-    assert!(ahead > 50 && ahead < 150, "{ahead} of {}", wanted.len());
+    assert!(ahead > 15 && ahead < 50, "{ahead} of {}", wanted.len());
     for threads in 2..=8 {
-        for (tick, (found, wanted)) in ticks(threads, 300).iter().zip(&wanted).enumerate() {
+        for (tick, (found, wanted)) in ticks(threads, 100).iter().zip(&wanted).enumerate() {
             assert_eq!(found, wanted, "{threads} threads, tick {tick}");
         }
     }
