@@ -67,7 +67,10 @@ impl Buffers {
                         }
                         let held = &mut buffers.held[place];
                         if held.len() < buffer.length() {
-                            *held = read_beside(&path, buffer.length() as u64)?;
+                            let folder = base.unwrap_or(Path::new(""));
+                            let target = target_in(folder, &path, &object)?;
+                            *held = read_plain(&target, buffer.length() as u64)
+                                .map_err(|source| GltfErrorKind::Read { path, source })?;
                         }
                         place
                     }
@@ -121,21 +124,55 @@ fn path_beside(base: Option<&Path>, uri: &str) -> Result<PathBuf, String> {
     Ok(parts.fold(base.to_owned(), |path, part| path.join(part)))
 }
 
-/// No more of a file beside the document than is claimed; it has to be a plain one.
-fn read_beside(path: &Path, length: u64) -> Result<Vec<u8>, GltfErrorKind> {
-    // Before opening: to open a pipe would wait for its other end.
-    let plain = std::fs::metadata(path).and_then(|found| {
-        let error = || io::Error::new(io::ErrorKind::InvalidInput, "not a plain file");
-        found.is_file().then_some(()).ok_or_else(error)
-    });
-    plain
-        .and_then(|()| {
-            let mut bytes = Vec::new();
-            File::open(path)?.take(length).read_to_end(&mut bytes)?;
-            Ok(bytes)
-        })
-        .map_err(|source| GltfErrorKind::Read {
+/// Which file a path in a folder really is, with all symbolic links resolved: one that leads out of the folder is
+/// refused, as a path out of it is.
+fn target_in(folder: &Path, path: &Path, object: &str) -> Result<PathBuf, GltfErrorKind> {
+    let resolve = |path: &Path| {
+        path.canonicalize().map_err(|source| GltfErrorKind::Read {
             path: path.to_owned(),
             source,
         })
+    };
+    // The folder of a path without folders is empty, which no system resolves.
+    let is_empty = folder.as_os_str().is_empty();
+    let folder = resolve(if is_empty { Path::new(".") } else { folder })?;
+    let target = resolve(path)?;
+    if target.starts_with(&folder) {
+        return Ok(target);
+    }
+    Err(GltfErrorKind::OutsideFolder {
+        object: object.to_owned(),
+        file: path.to_owned(),
+        target,
+    })
+}
+
+/// No more of a file than is claimed; it has to be a plain one.
+fn read_plain(path: &Path, length: u64) -> io::Result<Vec<u8>> {
+    // Before opening: to open a pipe would wait for its other end.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "not a plain file",
+        ));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_document_in_the_current_folder_has_its_files_there() {
+        // As `load("creature.gltf")` asks; tests run in the package's folder.
+        let found = target_in(Path::new(""), Path::new("Cargo.toml"), "buffer 0");
+        let wanted = std::env::current_dir().and_then(|folder| folder.canonicalize());
+        assert_eq!(
+            found.ok(),
+            wanted.ok().map(|folder| folder.join("Cargo.toml"))
+        );
+    }
 }

@@ -42,6 +42,16 @@ pub enum GltfErrorKind {
         /// Why.
         source: io::Error,
     },
+    /// A symbolic link leads out of the document's folder.
+    #[error("{object}: its file {file} is a link out of the document's folder, to {target}")]
+    OutsideFolder {
+        /// Which object names the file, by kind and index.
+        object: String,
+        /// The file in the document's folder.
+        file: PathBuf,
+        /// Where it really is.
+        target: PathBuf,
+    },
     /// Not glTF 2.0: no JSON, a broken container, or an index that points nowhere.
     #[error("not a valid glTF 2.0 file: {0}")]
     Format(#[from] gltf::Error),

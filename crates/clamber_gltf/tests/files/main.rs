@@ -9,5 +9,7 @@ mod broken;
 mod buffers;
 mod builder;
 mod creatures;
+#[cfg(unix)]
+mod links;
 mod meshes;
 mod weights;

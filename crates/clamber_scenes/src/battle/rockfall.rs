@@ -7,6 +7,7 @@ use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
 use glam::DVec3;
 
+use super::scene::CREATURE;
 use super::{BattleError, TICK};
 use crate::rocks::scatter;
 use crate::{solid_angle, valley};
@@ -92,14 +93,15 @@ impl Rockfall {
         tick: u64,
     ) -> Result<(), BattleError> {
         let start = Instant::now();
+        let surfaces = [(CREATURE, surface)];
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
         self.debris
-            .before_step(&[surface], bodies, colliders, TICK)?;
+            .before_step(&surfaces, bodies, colliders, TICK)?;
         world.step_with_events(&self.debris, &());
         let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
         let bodies = &mut world.bodies;
         let report = self.debris.after_step(
-            &[surface],
+            &surfaces,
             bodies,
             &world.colliders,
             broad_phase,

@@ -4,7 +4,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Clip, Palette, Playback, Pose, RigError};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
-use clamber_world::{Debris, DebrisConfig, DebrisReport};
+use clamber_world::{Debris, DebrisConfig, DebrisReport, ObstacleId};
 use glam::DVec3;
 
 use super::RocksError;
@@ -12,6 +12,9 @@ use crate::{Creature, CreatureError, valley};
 
 /// Seconds of a tick.
 pub const TICK: f64 = 1.0 / 60.0;
+
+/// The giant among the surfaces of the debris.
+const CREATURE: ObstacleId = ObstacleId(0);
 
 /// Seconds over which one clip fades into the next.
 const FADE: f64 = 0.6;
@@ -116,7 +119,7 @@ impl<'a> Rocks<'a> {
     /// As that one.
     pub fn bring_skin(&mut self) -> Result<(), RocksError> {
         let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
-        let surfaces = [&self.surface];
+        let surfaces = [(CREATURE, &self.surface)];
         Ok(self
             .debris
             .before_step(&surfaces, bodies, colliders, TICK)?)
@@ -129,7 +132,7 @@ impl<'a> Rocks<'a> {
     pub fn keep_out(&mut self) -> Result<DebrisReport, RocksError> {
         let world = &mut self.world;
         let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
-        let surfaces = [&self.surface];
+        let surfaces = [(CREATURE, &self.surface)];
         Ok(self.debris.after_step(
             &surfaces,
             &mut world.bodies,

@@ -52,7 +52,7 @@ impl SurfacePatch {
         let change = self.patch.update(surface, near.mins, near.maxs, margin)?;
         let place = |vertex: usize| self.patch.positions()[vertex];
         match &mut self.mesh {
-            Some(mesh) if change == PatchChange::Moved => move_trimesh(mesh, place),
+            Some(mesh) if change != PatchChange::Rebuilt => move_trimesh(mesh, place),
             mesh => *mesh = trimesh(&self.patch, TriMeshFlags::DEFORMABLE, place),
         }
         Ok(change)

@@ -2,6 +2,7 @@ use super::*;
 use crate::SimdLevel;
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::JointId;
+use crate::surface::SkinnedSurface;
 use crate::testing::{bend, tube};
 use glam::{DVec3, Vec3};
 
@@ -65,4 +66,19 @@ fn vertices_without_triangles_are_skinned_as_well() {
     assert!(skin_clusters(&mesh, &[], SimdLevel::best(), &mut Vec::new()).is_err());
     assert!(skin_into(&mesh, &[], SimdLevel::best(), &mut Vec::new()).is_err());
     assert!(skin_scalar(&mesh, &[]).is_err());
+}
+
+#[test]
+fn a_mesh_that_was_skinned_equals_one_that_was_not() {
+    // Large enough to be shared among threads where that is compiled in.
+    let mesh = tube(60, 96);
+    let untouched = ColliderMesh::clone(&mesh);
+    let palette = bend(60, DVec3::Z, 0.1);
+    skin(&mesh, palette.matrices()).unwrap();
+    assert!(*mesh == untouched, "after `skin`");
+    let surface = SkinnedSurface::new(mesh.clone());
+    surface.skin_all(&mut Vec::new());
+    assert!(**surface.mesh() == untouched, "after `skin_all`");
+    // Only the cache is left out of the comparison.
+    assert!(*tube(60, 95) != untouched);
 }

@@ -1,5 +1,9 @@
 //! For tests: every query of a surface against brute force, bit for bit.
 
+mod bits;
+
+pub(super) use bits::assert_same_bits;
+
 use super::{BruteForce, MovingTriangle, SkinnedSurface, SurfaceHit, SweepHit};
 use crate::geometry::{Capsule, Ray, Sphere};
 use crate::testing::{direction, point};
@@ -34,26 +38,34 @@ pub(super) fn assert_queries_agree(
         if let Some(ray) = Ray::new(origin, aim) {
             let hit = surface.cast_ray(&ray, reach).unwrap();
             let wanted = brute_force.cast_ray(&ray, reach).unwrap();
-            assert_eq!(hit, wanted, "{ray:?} {reach}");
+            let case = format_args!("{ray:?} {reach}");
+            assert_same_bits(hit.as_slice(), wanted.as_slice(), case);
             let met = surface.intersects_ray(&ray, reach).unwrap();
             assert_eq!(met, wanted.is_some(), "{ray:?} {reach}");
             surface.cast_ray_all(&ray, reach, &mut hits).unwrap();
             brute_force
                 .cast_ray_all(&ray, reach, &mut expected)
                 .unwrap();
-            assert_eq!(hits, expected, "{ray:?} {reach}");
+            assert_same_bits(&hits, &expected, format_args!("{ray:?} {reach}"));
+            let first = hits.first().copied();
+            assert_same_bits(
+                hit.as_slice(),
+                first.as_slice(),
+                format_args!("{ray:?} {reach}"),
+            );
             found += hits.len();
         }
         let closest = surface.closest_point(origin, reach).unwrap();
         let wanted = brute_force.closest_point(origin, reach).unwrap();
-        assert_eq!(closest, wanted, "{origin} {reach}");
+        let case = format_args!("{origin} {reach}");
+        assert_same_bits(closest.as_slice(), wanted.as_slice(), case);
         let sphere = Sphere {
             center: origin,
             radius: reach,
         };
         surface.overlap_sphere(&sphere, &mut hits).unwrap();
         brute_force.overlap_sphere(&sphere, &mut expected).unwrap();
-        assert_eq!(hits, expected, "{sphere:?}");
+        assert_same_bits(&hits, &expected, format_args!("{sphere:?}"));
         found += usize::from(closest.is_some()) + hits.len();
         let capsule = Capsule {
             a: origin,
@@ -64,11 +76,12 @@ pub(super) fn assert_queries_agree(
         brute_force
             .overlap_capsule(&capsule, &mut expected)
             .unwrap();
-        assert_eq!(hits, expected, "{capsule:?}");
+        assert_same_bits(&hits, &expected, format_args!("{capsule:?}"));
         found += hits.len();
         let closest = surface.closest_to_capsule(&capsule, reach).unwrap();
         let wanted = brute_force.closest_to_capsule(&capsule, reach).unwrap();
-        assert_eq!(closest, wanted, "{capsule:?} {reach}");
+        let case = format_args!("{capsule:?} {reach}");
+        assert_same_bits(closest.as_slice(), wanted.as_slice(), case);
         found += assert_sweeps_agree(&brute_force, surface, rng, &capsule);
         found += assert_boxes_agree(&brute_force, surface, origin, point(rng, size * 0.2));
     }
@@ -93,7 +106,7 @@ fn assert_boxes_agree(
         .visit_box(low, high, |t| expected.push(*t))
         .unwrap();
     found.sort_unstable_by_key(|moving| moving.triangle);
-    assert_eq!(found, expected, "box {low} {high}");
+    assert_same_bits(&found, &expected, format_args!("box {low} {high}"));
     found.len()
 }
 
@@ -128,12 +141,20 @@ fn assert_sweeps_agree(
 
     let hit = surface.cast_sphere(&sphere, aim, tolerance).unwrap();
     let wanted = brute_force.cast_sphere(&sphere, aim, tolerance).unwrap();
-    assert_eq!(hit, wanted, "cast sphere, {case}");
+    assert_same_bits(
+        hit.as_slice(),
+        wanted.as_slice(),
+        format_args!("cast sphere, {case}"),
+    );
     let hit = surface.cast_capsule(&capsule, motions, tolerance).unwrap();
     let wanted = brute_force
         .cast_capsule(&capsule, motions, tolerance)
         .unwrap();
-    assert_eq!(hit, wanted, "cast capsule, {case}");
+    assert_same_bits(
+        hit.as_slice(),
+        wanted.as_slice(),
+        format_args!("cast capsule, {case}"),
+    );
 
     let (mut hits, mut expected): (Vec<SweepHit>, Vec<SweepHit>) = Default::default();
     let mut found = 0;
@@ -144,8 +165,12 @@ fn assert_sweeps_agree(
     brute_force
         .sweep_sphere_all(&sphere, aim, tolerance, &mut expected)
         .unwrap();
-    assert_eq!(hits, expected, "sweep sphere, {case}");
-    assert_eq!(hit, hits.first().copied(), "sweep sphere, {case}");
+    assert_same_bits(&hits, &expected, format_args!("sweep sphere, {case}"));
+    assert_same_bits(
+        hit.as_slice(),
+        hits.first().copied().as_slice(),
+        format_args!("first of sweep sphere, {case}"),
+    );
     found += hits.len();
     let hit = surface.sweep_capsule(&capsule, motions, tolerance).unwrap();
     surface
@@ -154,8 +179,12 @@ fn assert_sweeps_agree(
     brute_force
         .sweep_capsule_all(&capsule, motions, tolerance, &mut expected)
         .unwrap();
-    assert_eq!(hits, expected, "sweep capsule, {case}");
-    assert_eq!(hit, hits.first().copied(), "sweep capsule, {case}");
+    assert_same_bits(&hits, &expected, format_args!("sweep capsule, {case}"));
+    assert_same_bits(
+        hit.as_slice(),
+        hits.first().copied().as_slice(),
+        format_args!("first of sweep capsule, {case}"),
+    );
     found + hits.len()
 }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::pose::Pose;
 use super::query::{
     Best, Earliest, First, Nearest, Region, Sweep, capsule_hit, check_length, check_point, reach,
-    sort_along, sort_by_time,
+    sort_by_time,
 };
 use super::{CapsuleHit, MovingTriangle, SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
 use crate::geometry::triangle::ShearedRay;
@@ -104,14 +104,17 @@ impl<'a> BruteForce<'a> {
     ) -> Result<(), SurfaceError> {
         let limit = check_length("the ray's maximum distance", max_distance)?;
         let sheared = ShearedRay::new(ray);
-        hits.clear();
+        let mut met: Vec<(Nearest, SurfaceHit)> = Vec::new();
         for (triangle, part, corners) in self.triangles() {
             if let Some(found) = sheared.intersect(corners, limit) {
                 let nearest = Nearest { triangle, found };
-                hits.push(self.surface.hit(nearest, part, corners, ray.origin()));
+                let hit = self.surface.hit(nearest, part, corners, ray.origin());
+                met.push((nearest, hit));
             }
         }
-        sort_along(hits);
+        met.sort_by(|(a, _), (b, _)| a.compare(b));
+        hits.clear();
+        hits.extend(met.into_iter().map(|(_, hit)| hit));
         Ok(())
     }
 

@@ -24,6 +24,7 @@ mod pose;
 mod query;
 mod refit;
 mod skinned;
+mod winding;
 
 pub use anchor::Anchor;
 pub use bounds::{JointMaps, NodeBounds, PartBounds, WeightInterval};
@@ -37,6 +38,7 @@ pub use patch::{Patch, PatchChange};
 pub use query::{CapsuleHit, MovingTriangle, SurfaceHit, SweepHit};
 pub use refit::refit_part_spheres;
 pub use skinned::SkinnedSurface;
+pub use winding::winding_number;
 
 /// How near a sweep comes before it counts as a contact, in metres, at human scale: a tenth of a
 /// millimetre. Larger takes fewer steps where something is grazed; smaller gains nothing that a

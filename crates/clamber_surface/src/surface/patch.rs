@@ -56,6 +56,8 @@ pub struct Patch {
 /// What an update did to a [`Patch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PatchChange {
+    /// The same triangles, and no position differs by a bit from the update before, now or a tick ago.
+    Same,
     /// The same triangles: only positions are new.
     Moved,
     /// Other triangles.
@@ -126,8 +128,7 @@ impl Patch {
         // With a margin of 0, no more than it must; where nothing is met, nothing near it either.
         let no_more = met > 0 && margin > 0.0 || met == self.triangles.len();
         if all_held && no_more && self.is_of(surface) {
-            self.take_positions(surface);
-            return Ok(PatchChange::Moved);
+            return Ok(self.take_positions(surface));
         }
         if met == 0 {
             self.found.clear();
@@ -193,13 +194,21 @@ impl Patch {
         })
     }
 
-    fn take_positions(&mut self, surface: &SkinnedSurface) {
+    fn take_positions(&mut self, surface: &SkinnedSurface) -> PatchChange {
+        let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+        let mut change = PatchChange::Same;
         let own = self.vertices.iter();
         let places = self.positions.iter_mut().zip(&mut self.previous_positions);
         for (vertex, (now, before)) in own.zip(places) {
-            *now = surface.current.position(&surface.mesh, vertex.index());
-            *before = surface.previous.position(&surface.mesh, vertex.index());
+            for (known, pose) in [(now, &surface.current), (before, &surface.previous)] {
+                let found = pose.position(&surface.mesh, vertex.index());
+                if bits(found) != bits(*known) {
+                    change = PatchChange::Moved;
+                }
+                *known = found;
+            }
         }
+        change
     }
 
     fn rebuild(&mut self, surface: &SkinnedSurface) {

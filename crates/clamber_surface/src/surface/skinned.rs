@@ -95,7 +95,8 @@ impl SkinnedSurface {
     }
 
     /// The next tick: what is current becomes previous, and the given pose becomes current. Costs
-    /// O(joints): nothing is skinned, unless the last ticks touched nearly everything.
+    /// O(joints), and reads one number per cluster: nothing is skinned, unless the last tick touched nearly
+    /// everything. That follows from which clusters queries reached, not from how many threads they ran on.
     ///
     /// # Errors
     /// [`SurfaceError::JointCount`], [`SurfaceError::Palette`] or [`SurfaceError::WorldFromModel`];
@@ -244,7 +245,9 @@ impl SkinnedSurface {
 
     /// True if this tick touched so much that skinning the next one ahead costs less than finding out.
     fn touched_nearly_everything(&self) -> bool {
-        let asked = self.current.clusters_asked();
+        // Counted from the stamps. A counter that queries raise would count a cluster twice where two threads
+        // reach it at once.
+        let asked = self.current.asked_clusters().count();
         let all = self.mesh.clusters().living();
         asked * 4 >= all * 3
     }

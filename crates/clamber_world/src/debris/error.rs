@@ -2,7 +2,9 @@ use clamber_surface::surface::SurfaceError;
 use rapier3d::dynamics::RigidBodyHandle;
 use thiserror::Error;
 
-/// Why a body cannot be debris, or a tick cannot be taken. Nothing was changed.
+use crate::ObstacleId;
+
+/// Why a body cannot be debris, or a tick cannot be taken.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum DebrisError {
@@ -15,13 +17,16 @@ pub enum DebrisError {
     /// A tick must have a length.
     #[error("a tick must be longer than 0 s and finite, found {0} s")]
     Tick(f64),
+    /// Two surfaces have the same id.
+    #[error("obstacle {} is twice in the list of surfaces", .0.0)]
+    TwiceListed(ObstacleId),
     /// A surface refused a query; its body is too far away, or not finite.
-    #[error("body {body:?} cannot be held against surface {surface}: {source}")]
+    #[error("body {body:?} cannot be held against obstacle {}: {source}", .obstacle.0)]
     Surface {
         /// Which body.
         body: RigidBodyHandle,
-        /// Its number among the surfaces.
-        surface: usize,
+        /// Which surface.
+        obstacle: ObstacleId,
         /// Why.
         source: SurfaceError,
     },

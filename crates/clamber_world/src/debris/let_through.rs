@@ -1,9 +1,9 @@
 //! What becomes of a body between skin and something that does not move: under a foot, between a flank and a
 //! cliff. Nothing ever pushes a creature, so one of them must give way, and it is the skin.
 
-use clamber_surface::geometry::{self, Ray};
+use clamber_surface::geometry;
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{
     BroadPhaseBvh, Capsule, Collider, ColliderHandle, ColliderSet, NarrowPhase,
@@ -88,8 +88,8 @@ pub(super) fn owner_in(
     Some(skin[index.ok()?].1)
 }
 
-/// True if the body's core touches no skin, and is not inside the creature: a ray from its middle
-/// meets nothing, or skin from outside. `origin` is rapier's in the world.
+/// True if the body's core touches no skin, and its middle is not inside the creature. `origin` is rapier's in the
+/// world.
 pub(super) fn is_outside(
     surface: &SkinnedSurface,
     core: &Core,
@@ -106,9 +106,5 @@ pub(super) fn is_outside(
     {
         return Ok(false);
     }
-    let Some(ray) = Ray::new((a + b) * 0.5, Vec3::Y) else {
-        return Err(SurfaceError::Point);
-    };
-    let hit = surface.cast_ray(&ray, f32::INFINITY)?;
-    Ok(hit.is_none_or(|hit| hit.normal.dot(Vec3::Y) < 0.0))
+    Ok(!surface.is_inside((a + b) * 0.5)?)
 }

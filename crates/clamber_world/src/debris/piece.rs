@@ -3,12 +3,14 @@
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use rapier3d::geometry::ColliderSet;
 use rapier3d::math::Pose;
 
 use super::core::Core;
 use super::hull::{Hull, Reach};
 use super::keep_out::{Kept, MET, SWEPT, keep_out, stays_clear};
 use super::skin_patch::{Place, SkinPatch};
+use crate::ObstacleId;
 
 /// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
 /// within a tick, and rapier's own prediction of 2 cm. More gives rapier more triangles.
@@ -22,8 +24,8 @@ pub(super) struct Piece {
     hull: Hull,
     /// Where it was before the step, and where it would be after it if nothing stopped it.
     course: [Pose; 2],
-    /// One for each surface.
-    pub(super) patches: Vec<SkinPatch>,
+    /// One for each surface of the last tick, by ascending id.
+    pub(super) patches: Vec<(ObstacleId, SkinPatch)>,
 }
 
 impl Piece {
@@ -59,10 +61,52 @@ impl Piece {
         &self.course[0]
     }
 
+    /// Its patch of a surface; `None` if that was not among the surfaces before the step.
+    pub(super) fn patch(&self, obstacle: ObstacleId) -> Option<&SkinPatch> {
+        let index = self.index_of(obstacle).ok()?;
+        Some(&self.patches[index].1)
+    }
+
+    /// Where its patch of a surface is, or would be.
+    pub(super) fn index_of(&self, obstacle: ObstacleId) -> Result<usize, usize> {
+        self.patches
+            .binary_search_by_key(&obstacle, |(known, _)| *known)
+    }
+
+    /// Has a patch for each of these surfaces, by ascending id, and for no other: those of surfaces that are gone
+    /// are retired to `spare`, and new ones come from there. True if any came or went.
+    pub(super) fn follow(
+        &mut self,
+        surfaces: &[(ObstacleId, usize)],
+        spare: &mut Vec<SkinPatch>,
+        colliders: &mut ColliderSet,
+    ) -> bool {
+        let (mut index, mut changed) = (0, false);
+        while index < self.patches.len() {
+            let known = self.patches[index].0;
+            if surfaces.binary_search_by_key(&known, |(id, _)| *id).is_ok() {
+                index += 1;
+            } else {
+                let (_, mut gone) = self.patches.remove(index);
+                gone.retire(colliders);
+                spare.push(gone);
+                changed = true;
+            }
+        }
+        for (obstacle, _) in surfaces {
+            if let Err(index) = self.index_of(*obstacle) {
+                let patch = spare.pop().unwrap_or_default();
+                self.patches.insert(index, (*obstacle, patch));
+                changed = true;
+            }
+        }
+        changed
+    }
+
     /// What keeps it out of one surface, now that the step took it to a pose.
     pub(super) fn keep_out(
         &self,
-        index: usize,
+        obstacle: ObstacleId,
         surface: &SkinnedSurface,
         end: &Pose,
         origin: DVec3,
@@ -70,7 +114,7 @@ impl Piece {
     ) -> Result<Kept, SurfaceError> {
         let ends = [&self.course[0], end].map(|pose| self.core.ends_at(pose));
         let in_world = ends.map(|ends| ends.map(|end| end + origin));
-        if let Some(patch) = self.patches.get(index)
+        if let Some(patch) = self.patch(obstacle)
             && self.kept_course(&ends[1])
             && (patch.is_empty() || self.stays_clear(patch, surface, ends, in_world[1])?)
         {

@@ -11,6 +11,7 @@ use super::let_through::{Immovable, is_outside, owner_in};
 use super::piece::Piece;
 use super::skin_patch::SkinPatch;
 use super::{DebrisConfig, DebrisError, DebrisReport};
+use crate::ObstacleId;
 
 /// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
 /// the stones of a wall.
@@ -24,8 +25,11 @@ use super::{DebrisConfig, DebrisError, DebrisReport};
 /// A creature that cannot be pushed would drive what it steps on through the ground. Such a body is left
 /// where it is, and the skin passes through it until it is outside again.
 ///
+/// What a body and a creature have to do with each other is kept by the creature's [`ObstacleId`], which must stay the
+/// same from tick to tick. The order of the list changes no result; a creature that leaves the list is forgotten.
+///
 /// Each tick, in this order; the patches belong to the debris, so its hooks must be among those of the
-/// step, and the same surfaces must come in the same order:
+/// step:
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -35,7 +39,7 @@ use super::{DebrisConfig, DebrisError, DebrisReport};
 /// # use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 /// # use glam::Vec3;
 /// use clamber_world::rapier3d::prelude::*;
-/// use clamber_world::{Debris, DebrisConfig};
+/// use clamber_world::{Debris, DebrisConfig, ObstacleId};
 /// # let source = MeshSource {
 /// #     positions: &[Vec3::ZERO, Vec3::X, Vec3::Z].map(|p| p * 9.0 - Vec3::new(3.0, 0.0, 3.0)),
 /// #     triangles: &[[0, 2, 1]],
@@ -58,10 +62,11 @@ use super::{DebrisConfig, DebrisError, DebrisReport};
 /// let dt = f64::from(world.integration_parameters.dt);
 /// for _ in 0..60 {
 ///     surface.advance(&palette, Similarity::IDENTITY)?;
-///     debris.before_step(&[&surface], &mut world.bodies, &mut world.colliders, dt)?;
+///     let surfaces = [(ObstacleId(0), &surface)];
+///     debris.before_step(&surfaces, &mut world.bodies, &mut world.colliders, dt)?;
 ///     world.step_with_events(&debris, &());
 ///     debris.after_step(
-///         &[&surface],
+///         &surfaces,
 ///         &mut world.bodies,
 ///         &world.colliders,
 ///         &world.broad_phase,
@@ -80,8 +85,10 @@ pub struct Debris {
     pieces: Vec<Piece>,
     /// Which body a patch is for, by ascending handle of the patch's collider.
     owners: Vec<(ColliderHandle, RigidBodyHandle)>,
-    /// Of bodies that are gone.
+    /// Of bodies and surfaces that are gone.
     spare: Vec<SkinPatch>,
+    /// Ids of a call's surfaces, ascending, with their places in its list: memory that is used again.
+    order: Vec<(ObstacleId, usize)>,
 }
 
 impl Debris {
@@ -93,6 +100,7 @@ impl Debris {
             pieces: Vec::new(),
             owners: Vec::new(),
             spare: Vec::new(),
+            order: Vec::new(),
         }
     }
 
@@ -150,7 +158,7 @@ impl Debris {
     /// move.
     pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
-        piece.is_ok_and(|piece| piece.patches.iter().any(|patch| patch.let_through))
+        piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| patch.let_through))
     }
 
     /// Which surface and which of its triangles a contact is with: `collider` and `subshape` are those
@@ -159,62 +167,73 @@ impl Debris {
         &self,
         collider: ColliderHandle,
         subshape: u32,
-    ) -> Option<(usize, TriangleId)> {
+    ) -> Option<(ObstacleId, TriangleId)> {
         let owner = self.owner_of(collider)?;
         let piece = &self.pieces[self.place_of(owner).ok()?];
         let is_it = |patch: &SkinPatch| patch.handles().is_some_and(|(_, own)| own == collider);
-        let surface = piece.patches.iter().position(is_it)?;
-        let triangles = piece.patches[surface].patch().triangles();
-        Some((surface, *triangles.get(subshape as usize)?))
+        let mut patches = piece.patches.iter();
+        let (obstacle, patch) = patches.find(|(_, patch)| is_it(patch))?;
+        let triangle = patch.patch().triangles().get(subshape as usize)?;
+        Some((*obstacle, *triangle))
     }
 
     /// Puts the skin near each body into rapier's world: after the surfaces were advanced, before the
     /// step of `dt` seconds.
     ///
     /// # Errors
-    /// [`DebrisError::Tick`], and then nothing is changed. [`DebrisError::Surface`] for a body that is
+    /// [`DebrisError::Tick`] or [`DebrisError::TwiceListed`], and then nothing is changed.
+    /// [`DebrisError::Surface`] for a body that is
     /// not finite, or too far away for a surface; the bodies before it have their skin then.
     pub fn before_step(
         &mut self,
-        surfaces: &[&SkinnedSurface],
+        surfaces: &[(ObstacleId, &SkinnedSurface)],
         bodies: &mut RigidBodySet,
         colliders: &mut ColliderSet,
         dt: f64,
     ) -> Result<(), DebrisError> {
         check_tick(dt)?;
+        self.set_order(surfaces)?;
         self.drop_lost(bodies, colliders);
-        let mut made = false;
+        let mut changed = false;
+        let shown = self.show_skin(surfaces, bodies, colliders, dt, &mut changed);
+        // After an error as well: some bodies may have their skin.
+        if changed {
+            self.list_owners();
+        }
+        shown
+    }
+
+    fn show_skin(
+        &mut self,
+        surfaces: &[(ObstacleId, &SkinnedSurface)],
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        dt: f64,
+        changed: &mut bool,
+    ) -> Result<(), DebrisError> {
         for piece in &mut self.pieces {
             let Some(body) = bodies.get(piece.body) else {
                 continue;
             };
             let place = piece.set_course(body, self.origin, dt);
             let enabled = body.is_enabled();
-            while piece.patches.len() < surfaces.len() {
-                piece.patches.push(self.spare.pop().unwrap_or_default());
-            }
-            for (index, patch) in piece.patches.iter_mut().enumerate() {
-                let Some(surface) = surfaces.get(index).filter(|_| enabled) else {
-                    patch.rest(colliders);
-                    continue;
-                };
-                if patch.let_through {
+            // Skin that another body had belongs to this one now.
+            *changed |= piece.follow(&self.order, &mut self.spare, colliders);
+            for ((_, patch), (obstacle, index)) in piece.patches.iter_mut().zip(&self.order) {
+                if !enabled || patch.let_through {
                     patch.rest(colliders);
                     continue;
                 }
                 let had = patch.handles();
                 patch
-                    .update(surface, &place, &self.config, bodies, colliders)
+                    .update(surfaces[*index].1, &place, &self.config, bodies, colliders)
                     .map_err(|source| DebrisError::Surface {
                         body: piece.body,
-                        surface: index,
+                        obstacle: *obstacle,
                         source,
                     })?;
-                made |= had != patch.handles();
+                *changed |= had != patch.handles();
             }
-        }
-        if made {
-            self.list_owners();
         }
         Ok(())
     }
@@ -226,7 +245,7 @@ impl Debris {
     /// As [`Debris::before_step`].
     pub fn after_step(
         &mut self,
-        surfaces: &[&SkinnedSurface],
+        surfaces: &[(ObstacleId, &SkinnedSurface)],
         bodies: &mut RigidBodySet,
         colliders: &ColliderSet,
         broad_phase: &BroadPhaseBvh,
@@ -234,6 +253,7 @@ impl Debris {
         dt: f64,
     ) -> Result<DebrisReport, DebrisError> {
         check_tick(dt)?;
+        self.set_order(surfaces)?;
         let mut report = DebrisReport::default();
         let immovable = Immovable {
             colliders,
@@ -242,20 +262,22 @@ impl Debris {
             skin: &self.owners,
         };
         for piece in &mut self.pieces {
-            let near = piece.patches.iter().any(|patch| !patch.is_empty());
+            let near = piece.patches.iter().any(|(_, patch)| !patch.is_empty());
             report.near += u32::from(near);
-            for (index, surface) in surfaces.iter().enumerate() {
+            for (obstacle, index) in &self.order {
+                let (obstacle, surface) = (*obstacle, surfaces[*index].1);
                 let Some(body) = bodies.get(piece.body).filter(|body| body.is_enabled()) else {
                     break;
                 };
                 let (start, end) = (*piece.start(), *body.position());
                 let moved = (end.translation - start.translation).as_dvec3();
+                let (known, handle) = (piece.index_of(obstacle).ok(), piece.body);
                 let failed = |source| DebrisError::Surface {
-                    body: piece.body,
-                    surface: index,
+                    body: handle,
+                    obstacle,
                     source,
                 };
-                if let Some(patch) = piece.patches.get_mut(index)
+                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
                     && patch.let_through
                 {
                     let outside = is_outside(surface, &piece.core, &end, self.origin);
@@ -264,7 +286,7 @@ impl Debris {
                     continue;
                 }
                 // Rapier lets a kinematic body press another one into what is fixed.
-                if let Some(patch) = piece.patches.get_mut(index)
+                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
                     && !patch.is_empty()
                     && immovable.touches(bodies, body)
                     && let Some(share) = immovable.blocks(bodies, &piece.core, &start, moved)
@@ -277,12 +299,12 @@ impl Debris {
                     }
                     continue;
                 }
-                let kept = piece.keep_out(index, surface, &end, self.origin, dt);
+                let kept = piece.keep_out(obstacle, surface, &end, self.origin, dt);
                 let kept = kept.map_err(failed)?;
                 let Some((normal, skin)) = kept.pushed else {
                     continue;
                 };
-                if let Some(patch) = piece.patches.get_mut(index)
+                if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
                     && immovable
                         .blocks(bodies, &piece.core, &end, kept.shift)
                         .is_some()
@@ -316,6 +338,19 @@ impl Debris {
         owner_in(&self.owners, collider)
     }
 
+    /// Lists the ids of surfaces, ascending, so that the order in which they are given changes nothing.
+    fn set_order(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) -> Result<(), DebrisError> {
+        self.order.clear();
+        let ids = surfaces.iter().map(|(id, _)| *id);
+        self.order.extend(ids.zip(0..));
+        self.order.sort_unstable();
+        let mut pairs = self.order.windows(2);
+        match pairs.find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => Err(DebrisError::TwiceListed(pair[0].0)),
+            None => Ok(()),
+        }
+    }
+
     fn drop_lost(&mut self, bodies: &RigidBodySet, colliders: &mut ColliderSet) {
         let mut index = 0;
         while index < self.pieces.len() {
@@ -330,9 +365,8 @@ impl Debris {
     }
 
     fn retire(&mut self, piece: Piece, colliders: &mut ColliderSet) {
-        for mut patch in piece.patches {
-            patch.rest(colliders);
-            patch.let_through = false;
+        for (_, mut patch) in piece.patches {
+            patch.retire(colliders);
             self.spare.push(patch);
         }
         self.list_owners();
@@ -341,9 +375,10 @@ impl Debris {
     fn list_owners(&mut self) {
         self.owners.clear();
         for piece in &self.pieces {
-            let patches = piece.patches.iter().filter_map(SkinPatch::handles);
+            let patches = piece.patches.iter();
+            let handles = patches.filter_map(|(_, patch)| patch.handles());
             self.owners
-                .extend(patches.map(|(_, collider)| (collider, piece.body)));
+                .extend(handles.map(|(_, collider)| (collider, piece.body)));
         }
         self.owners
             .sort_unstable_by_key(|(collider, _)| collider.into_raw_parts());

@@ -79,7 +79,7 @@ impl SkinPatch {
         }
         self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
-        if still && change == PatchChange::Moved && self.still_at == Some(*world_from_model) {
+        if still && change == PatchChange::Same && self.still_at == Some(*world_from_model) {
             // Nothing is new. Left alone, rapier lets rocks fall asleep on it.
             return Ok(());
         }
@@ -90,9 +90,16 @@ impl SkinPatch {
         Ok(())
     }
 
+    /// Forgets its surface and takes part in nothing, for another surface or body to use.
+    pub(super) fn retire(&mut self, colliders: &mut ColliderSet) {
+        self.rest(colliders);
+        self.let_through = false;
+    }
+
     /// Takes part in nothing until the next update that finds skin.
     pub(super) fn rest(&mut self, colliders: &mut ColliderSet) {
         self.patch.clear();
+        self.gap = None;
         self.still_at = None;
         if let Some((_, collider)) = self.handles
             && colliders.get(collider).is_some_and(|c| c.is_enabled())
@@ -198,7 +205,7 @@ impl SkinPatch {
             }
         };
         if let Some(shown) = colliders.get_mut(collider).filter(|_| known.is_some()) {
-            let moved = change == PatchChange::Moved && shown.is_enabled();
+            let moved = change != PatchChange::Rebuilt && shown.is_enabled();
             let mesh = moved.then(|| shown.shape_mut().as_trimesh_mut()).flatten();
             if let Some(mesh) = mesh {
                 move_trimesh(mesh, vertex);

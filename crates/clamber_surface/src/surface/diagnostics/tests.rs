@@ -1,6 +1,9 @@
+use std::sync::Barrier;
+
 use glam::Vec3;
 
-use crate::geometry::{Ray, Similarity};
+use super::Diagnostics;
+use crate::geometry::{Ray, Similarity, Sphere};
 use crate::mesh::TriangleId;
 use crate::surface::SkinnedSurface;
 use crate::testing::{bend, tube};
@@ -48,4 +51,50 @@ fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
     surface.cast_ray(&ray, 200.0).unwrap();
     assert_eq!(counts(&surface), told(&surface), "skinned ahead");
     assert_eq!(told(&surface)[1], surface.diagnostics().clusters);
+}
+
+/// What a tick with eight equal queries touches, and what the tick after it skins ahead, on so many threads.
+fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
+    const QUERIES: usize = 8;
+    let mesh = tube(24, 48);
+    let mut surface = SkinnedSurface::new(mesh);
+    let tick = |tick: u32| {
+        let bent = bend(24, glam::DVec3::Z, 1e-4 * f64::from(tick));
+        // From some of the skin to all of it: just below and just above what has the next tick skinned ahead.
+        let radius = 6.0 + 18.0 * (tick % 50) as f32 / 50.0;
+        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        let ahead = surface.diagnostics();
+        let sphere = Sphere {
+            center: Vec3::ZERO,
+            radius,
+        };
+        let barrier = Barrier::new(threads);
+        std::thread::scope(|scope| {
+            for thread in 0..threads {
+                let (surface, barrier) = (&surface, &barrier);
+                scope.spawn(move || {
+                    let mut hits = Vec::new();
+                    barrier.wait();
+                    for _ in (thread..QUERIES).step_by(threads) {
+                        surface.overlap_sphere(&sphere, &mut hits).unwrap();
+                    }
+                });
+            }
+        });
+        [ahead, surface.diagnostics()]
+    };
+    (0..count).map(tick).collect()
+}
+
+#[test]
+fn any_number_of_threads_skins_the_same_ticks_ahead() {
+    let wanted = ticks(1, 100);
+    let is_ahead = |[ahead, _]: &&[Diagnostics; 2]| ahead.clusters_skinned == ahead.clusters;
+    let ahead = wanted.iter().filter(is_ahead).count();
+    assert!(ahead > 15 && ahead < 50, "{ahead} of {}", wanted.len());
+    for threads in 2..=8 {
+        for (tick, (found, wanted)) in ticks(threads, 100).iter().zip(&wanted).enumerate() {
+            assert_eq!(found, wanted, "{threads} threads, tick {tick}");
+        }
+    }
 }

@@ -152,7 +152,33 @@ fn hidden_and_removed_triangles_leave_it() {
         (PatchChange::Rebuilt, all - 2)
     );
     let change = patch.update(&surface, low, high, 1.0).unwrap();
-    assert_eq!(change, PatchChange::Moved);
+    assert_eq!(change, PatchChange::Same);
+}
+
+#[test]
+fn it_is_the_same_only_where_no_position_changed_in_either_pose() {
+    let mut surface = SkinnedSurface::new(tube(4, 8));
+    let mut patch = Patch::default();
+    let (low, high) = (Vec3::splat(-9.0), Vec3::splat(9.0));
+    let poses = [0.0, 0.3].map(|angle| bend(4, DVec3::Z, angle));
+    let root = Similarity::IDENTITY;
+    let mut update = |surface: &SkinnedSurface| patch.update(surface, low, high, 1.0).unwrap();
+    assert_eq!(update(&surface), PatchChange::Rebuilt);
+    assert_eq!(update(&surface), PatchChange::Same);
+    surface.place(&poses[0], root).unwrap();
+    update(&surface);
+    surface.advance(&poses[0], root).unwrap();
+    assert_eq!(update(&surface), PatchChange::Same);
+    surface.advance(&poses[1], root).unwrap();
+    assert_eq!(update(&surface), PatchChange::Moved);
+    // It came to rest: only the pose of a tick ago is new.
+    surface.advance(&poses[1], root).unwrap();
+    assert_eq!(update(&surface), PatchChange::Moved);
+    surface.advance(&poses[1], root).unwrap();
+    assert_eq!(update(&surface), PatchChange::Same);
+    // It stands still elsewhere.
+    surface.place(&poses[0], root).unwrap();
+    assert_eq!(update(&surface), PatchChange::Moved);
 }
 
 #[test]
@@ -174,7 +200,7 @@ fn away_from_the_skin_it_is_empty() {
     let low = Vec3::splat(20.0);
     for _ in 0..2 {
         let change = patch.update(&surface, low, low, 30.0).unwrap();
-        assert_eq!(change, PatchChange::Moved);
+        assert_eq!(change, PatchChange::Same);
         assert!(patch.is_empty());
     }
 }

@@ -40,17 +40,6 @@ impl Word for AtomicU64 {
 /// Marks the stamp of an entry that was filled before anybody asked for it.
 const UNASKED: u64 = 1 << 63;
 
-/// What [`Cache::recall`] found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Recall {
-    /// Nothing: compute the numbers, and [`Cache::keep`] them.
-    Nothing,
-    /// Numbers that were kept ahead, and that nobody has asked for before.
-    First,
-    /// Numbers that somebody asked for before.
-    Again,
-}
-
 impl<W: Word> Cache<W> {
     /// All entries empty. No epoch may be 0.
     pub(super) fn new(entries: usize, numbers: usize) -> Self {
@@ -69,17 +58,17 @@ impl<W: Word> Cache<W> {
     }
 
     /// Copies an entry's numbers out, if they are of this epoch: part after part, of even lengths, from
-    /// the number `first` on, which is even.
+    /// the number `first` on, which is even. If false, compute them and [`Cache::keep`] them.
     pub(super) fn recall<const N: usize>(
         &self,
         entry: usize,
         epoch: u64,
         first: usize,
         parts: [&mut [f32]; N],
-    ) -> Recall {
+    ) -> bool {
         let stamp = self.stamps[entry].load(Ordering::Acquire);
         if stamp & !UNASKED != epoch {
-            return Recall::Nothing;
+            return false;
         }
         let mut words = &self.words[first / 2..];
         for part in parts {
@@ -89,11 +78,10 @@ impl<W: Word> Cache<W> {
             }
             words = after;
         }
-        if stamp & UNASKED == 0 {
-            return Recall::Again;
+        if stamp & UNASKED != 0 {
+            self.stamps[entry].store(epoch, Ordering::Release);
         }
-        self.stamps[entry].store(epoch, Ordering::Release);
-        Recall::First
+        true
     }
 
     /// Keeps an entry's numbers, as [`Cache::recall`] takes them.
@@ -157,9 +145,9 @@ impl Cache<AtomicU64> {
         }
     }
 
-    /// Empties an entry; true if somebody had asked for it in this epoch.
-    pub(super) fn forget(&mut self, entry: usize, epoch: u64) -> bool {
-        std::mem::take(self.stamps[entry].get_mut()) == epoch
+    /// Empties an entry.
+    pub(super) fn forget(&mut self, entry: usize) {
+        *self.stamps[entry].get_mut() = 0;
     }
 
     /// Copies numbers out, of whatever epoch, as whoever has the cache alone may.

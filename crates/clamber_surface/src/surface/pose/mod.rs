@@ -3,11 +3,9 @@
 mod cache;
 mod whole;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::Vec3;
 
-use self::cache::{Cache, Recall};
+use self::cache::Cache;
 use super::bounds::{JointTable, RootBox, Spheres, spheres};
 use crate::geometry::Affine;
 use crate::mesh::ColliderMesh;
@@ -33,8 +31,6 @@ pub(super) struct Pose {
     epoch: u64,
     nodes: Cache,
     clusters: Cache,
-    /// Clusters asked for in this epoch; a few may count twice where threads met.
-    asked: AtomicUsize,
 }
 
 impl Pose {
@@ -57,7 +53,6 @@ impl Pose {
             epoch: 0,
             nodes: Cache::new(0, 0),
             clusters: Cache::new(0, 0),
-            asked: AtomicUsize::new(0),
         };
         pose.grow(mesh);
         pose.renew(mesh);
@@ -76,12 +71,9 @@ impl Pose {
     /// Follows an edit of the mesh in which some clusters died and others were appended: what was
     /// computed of the rest stays. O(joints and clusters edited).
     pub(super) fn follow(&mut self, mesh: &ColliderMesh, dead: &[u32]) {
-        let asked = dead
-            .iter()
-            .filter(|cluster| self.clusters.forget(**cluster as usize, self.epoch));
-        let asked = asked.count();
-        let count = self.asked.get_mut();
-        *count = count.saturating_sub(asked);
+        for cluster in dead {
+            self.clusters.forget(*cluster as usize);
+        }
         self.grow(mesh);
         self.root = mesh.root_balls().bounds(&self.table);
     }
@@ -99,7 +91,6 @@ impl Pose {
         self.table.update(&self.palette);
         self.root = mesh.root_balls().bounds(&self.table);
         self.epoch += 1;
-        *self.asked.get_mut() = 0;
     }
 
     pub(super) fn palette(&self) -> &[Affine] {
@@ -121,7 +112,7 @@ impl Pose {
         let index = node as usize;
         let mut found = Spheres::ZERO;
         let parts = found.rows_mut().map(|row| &mut row[..]);
-        if self.nodes.recall(index, self.epoch, index * NODE, parts) != Recall::Nothing {
+        if self.nodes.recall(index, self.epoch, index * NODE, parts) {
             return found;
         }
         let hierarchy = mesh.hierarchy();
@@ -140,21 +131,11 @@ impl Pose {
         let cluster = &clusters.clusters[index];
         let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
         let parts = out.0.each_mut().map(|axis| &mut axis[..slots]);
-        let recall = self.clusters.recall(index, self.epoch, first, parts);
-        if recall == Recall::Again {
-            return;
-        }
-        if recall == Recall::Nothing {
+        if !self.clusters.recall(index, self.epoch, first, parts) {
             skin_cluster(self.level, clusters, cluster, &self.palette, out);
             let parts = out.0.each_ref().map(|axis| &axis[..slots]);
             self.clusters.keep(index, self.epoch, first, parts);
         }
-        self.asked.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// How many clusters anybody asked for: about, where threads met.
-    pub(super) fn clusters_asked(&self) -> usize {
-        self.asked.load(Ordering::Relaxed)
     }
 
     /// Clusters that anybody asked for.

@@ -1,3 +1,5 @@
+use std::cmp::Ordering;
+
 use glam::{DVec3, Vec3};
 
 use crate::geometry::triangle::{TrianglePoint, point_at, scaled_normal};
@@ -33,10 +35,17 @@ pub(in crate::surface) struct Nearest {
 }
 
 impl Nearest {
-    fn precedes(&self, other: &Self) -> bool {
-        self.found.distance < other.found.distance
-            || (self.found.distance == other.found.distance && self.triangle < other.triangle)
+    /// By distance, equal ones by triangle id: the order of every query that finds several triangles.
+    pub(in crate::surface) fn compare(&self, other: &Self) -> Ordering {
+        by_length(self.found.distance, other.found.distance)
+            .then_with(|| self.triangle.cmp(&other.triangle))
     }
+}
+
+/// The order of lengths, none of which is NaN. -0 equals 0: which of them a distance of zero comes out as
+/// depends on the order of a triangle's corners.
+pub(in crate::surface) fn by_length(a: f64, b: f64) -> Ordering {
+    a.partial_cmp(&b).unwrap_or(Ordering::Equal)
 }
 
 /// The nearest triangle so far. Of equal distances the smaller triangle id wins, so the order in
@@ -63,7 +72,7 @@ impl Best {
 
     pub(in crate::surface) fn offer(&mut self, candidate: Nearest) {
         let nearer = match &self.nearest {
-            Some(best) => candidate.precedes(best),
+            Some(best) => candidate.compare(best).is_lt(),
             None => candidate.found.distance <= self.limit,
         };
         if nearer {

@@ -1,11 +1,10 @@
 use super::closest::farthest_first;
-use super::hit::{Best, Nearest};
+use super::hit::{Best, Nearest, by_length};
 use super::posed_cluster::PosedCluster;
 use super::stack::Stack;
 use super::{broad, check_length, root};
 use crate::geometry::triangle::{ShearedRay, TrianglePoint, intersect_sheared};
 use crate::geometry::{Ray, round_up_to_f32};
-use crate::mesh::TriangleId;
 use crate::mesh::hierarchy::Child;
 use crate::skin::ClusterPositions;
 use crate::surface::{SkinnedSurface, SurfaceError, SurfaceHit};
@@ -48,7 +47,8 @@ impl SkinnedSurface {
     }
 
     /// All triangles that a ray meets, from either side, up to `max_distance` (may be infinite), by
-    /// distance, equal ones by triangle id. A ray through an edge or a corner meets all triangles
+    /// their distances before these are rounded to f32, equal ones by triangle id: the first is the hit
+    /// of [`SkinnedSurface::cast_ray`]. A ray through an edge or a corner meets all triangles
     /// that share it. `hits` is cleared first and keeps its memory.
     ///
     /// # Errors
@@ -70,13 +70,24 @@ impl SkinnedSurface {
             hits.push(self.hit(nearest, posed.view.cluster.part, corners, ray.origin()));
             Some(limit)
         });
-        sort_along(hits);
+        let sheared = ShearedRay::new(ray);
+        hits.sort_unstable_by(|a, b| {
+            // Most distances differ in f32 as well. Those that do not are computed again, since keeping all
+            // of them in f64 would take memory that the caller does not keep.
+            let exact = |hit: &SurfaceHit| {
+                let found = sheared.intersect(self.corners(hit.triangle), f64::INFINITY);
+                found.map_or(f64::from(hit.distance), |found| found.distance)
+            };
+            by_length(a.distance.into(), b.distance.into())
+                .then_with(|| by_length(exact(a), exact(b)))
+                .then_with(|| a.triangle.cmp(&b.triangle))
+        });
         Ok(())
     }
 
     /// Calls `visit` with every triangle met, nearest bounds first; it gives the distance that still
     /// matters, or none to stop.
-    fn visit_ray<'a>(
+    pub(super) fn visit_ray<'a>(
         &'a self,
         ray: &Ray,
         limit: f64,
@@ -134,13 +145,4 @@ impl SkinnedSurface {
 
 pub(super) fn check(max_distance: f32) -> Result<f64, SurfaceError> {
     check_length("the ray's maximum distance", max_distance)
-}
-
-/// By distance, equal ones by triangle id.
-pub(in crate::surface) fn sort_along(hits: &mut [SurfaceHit]) {
-    let key = |hit: &SurfaceHit| (hit.distance, hit.triangle);
-    hits.sort_unstable_by(|a, b| {
-        let ((a, first), (b, second)): ((f32, TriangleId), _) = (key(a), key(b));
-        a.total_cmp(&b).then(first.cmp(&second))
-    });
 }

@@ -4,6 +4,8 @@ mod accuracy;
 mod best;
 mod extremes;
 mod hidden;
+mod inside;
+mod nearest;
 mod places;
 mod sweeps;
 mod watertight;

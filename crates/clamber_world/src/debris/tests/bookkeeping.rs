@@ -3,7 +3,7 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
-use super::scene::{DT, Scene, at, lifted, slab};
+use super::scene::{CREATURE, DT, Scene, at, lifted, slab};
 use crate::debris::{Debris, DebrisConfig, DebrisError};
 
 const HALF: Vec3 = Vec3::new(4.0, 0.5, 4.0);
@@ -107,7 +107,7 @@ fn a_piece_of_skin_meets_its_own_rock_only_and_contacts_name_its_triangles() {
                     manifold.subshape2
                 };
                 let (surface, triangle) = scene.debris.triangle_at(skin, subshape).unwrap();
-                assert_eq!(surface, 0);
+                assert_eq!(surface, CREATURE);
                 // It is the triangle there, within rapier's prediction and a tick of motion.
                 let corners = scene.surface.mesh().triangles()[triangle.index()];
                 let corners = corners.map(|v| scene.surface.previous_position(v).unwrap());
@@ -185,10 +185,10 @@ fn bad_input_is_an_error() {
         Err(DebrisError::NotSolid(bare))
     );
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let result = debris.before_step(&[&scene.surface], bodies, colliders, dt);
+        let result = debris.before_step(&[(CREATURE, &scene.surface)], bodies, colliders, dt);
         assert!(matches!(result, Err(DebrisError::Tick(_))), "{dt}");
         let (broad, narrow) = (&scene.world.broad_phase, &scene.world.narrow_phase);
-        let surfaces = [&scene.surface];
+        let surfaces = [(CREATURE, &scene.surface)];
         let result = debris.after_step(&surfaces, bodies, colliders, broad, narrow, dt);
         assert!(matches!(result, Err(DebrisError::Tick(_))), "{dt}");
     }
@@ -197,9 +197,9 @@ fn bad_input_is_an_error() {
     bodies[rock].set_translation(Vector::splat(f32::INFINITY), false);
     let result = scene
         .debris
-        .before_step(&[&scene.surface], bodies, colliders, DT);
+        .before_step(&[(CREATURE, &scene.surface)], bodies, colliders, DT);
     assert!(
-        matches!(&result, Err(DebrisError::Surface { body, surface: 0, .. }) if *body == rock),
+        matches!(&result, Err(DebrisError::Surface { body, obstacle: CREATURE, .. }) if *body == rock),
         "{result:?}"
     );
 }

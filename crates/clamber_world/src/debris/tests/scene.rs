@@ -7,9 +7,13 @@ use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::prelude::*;
 
+use crate::ObstacleId;
 use crate::debris::{Debris, DebrisConfig, DebrisReport};
 
 pub(super) const DT: f64 = 1.0 / 60.0;
+
+/// The one creature of most scenes.
+pub(super) const CREATURE: ObstacleId = ObstacleId(5);
 
 /// A closed box around the origin, its faces cut into cells of about `cell` metres, on `joints` joints
 /// evenly along x, each vertex on the two nearest.
@@ -131,13 +135,13 @@ impl Scene {
         self.surface.advance(palette, world_from_model).unwrap();
         let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
         self.debris
-            .before_step(&[&self.surface], bodies, colliders, DT)
+            .before_step(&[(CREATURE, &self.surface)], bodies, colliders, DT)
             .unwrap();
         self.world.step_with_events(&self.debris, &());
         let report = self
             .debris
             .after_step(
-                &[&self.surface],
+                &[(CREATURE, &self.surface)],
                 &mut self.world.bodies,
                 &self.world.colliders,
                 &self.world.broad_phase,

@@ -86,12 +86,12 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     };
     assert_eq!(after, wanted);
     assert!(after.vertices_skinned > 0 && after.vertices_skinned < after.vertices);
-    assert_eq!(surface.current.clusters_asked(), before.len());
+    assert_eq!(surface.current.asked_clusters().count(), before.len());
 
     // The rest is skinned when it is asked for, and nothing twice.
     assert_eq!(touch_everything(&surface), all);
     assert_eq!(surface.diagnostics().clusters_skinned, wanted.clusters);
-    assert_eq!(surface.current.clusters_asked(), wanted.clusters);
+    assert_eq!(surface.current.asked_clusters().count(), wanted.clusters);
     assert_poses_hold(&surface, "lazily");
 
     // So it is with what was skinned ahead.
@@ -100,7 +100,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     let diagnostics = ahead.diagnostics();
     assert_eq!(diagnostics.clusters_skinned, before.len());
     assert_eq!(diagnostics.clusters_touched, 0);
-    assert_eq!(ahead.current.clusters_asked(), 0);
+    assert_eq!(ahead.current.asked_clusters().count(), 0);
     assert_poses_hold(&ahead, "ahead");
     // Nothing dead is skinned, nor does it make a bound larger.
     ahead.skin_ahead();

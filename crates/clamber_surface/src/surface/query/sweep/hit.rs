@@ -1,5 +1,8 @@
+use std::cmp::Ordering;
+
 use glam::{DVec3, Vec3};
 
+use super::super::by_length;
 use super::Sweep;
 use crate::geometry::triangle::Contact;
 use crate::geometry::{round_to_f32, widen};
@@ -50,7 +53,7 @@ pub(in crate::surface) struct First {
 impl First {
     fn precedes(&self, other: &Self) -> bool {
         let key = |first: &Self| (first.contact.time, first.contact.distance, first.triangle);
-        key(self) < key(other)
+        by_time(key(self), key(other)).is_lt()
     }
 }
 
@@ -127,11 +130,15 @@ impl SkinnedSurface {
     }
 }
 
-/// By time, then distance, then triangle id.
+/// The order of contacts: by time, then distance, then triangle id.
+fn by_time(a: (f64, f64, TriangleId), b: (f64, f64, TriangleId)) -> Ordering {
+    by_length(a.0, b.0)
+        .then_with(|| by_length(a.1, b.1))
+        .then_with(|| a.2.cmp(&b.2))
+}
+
+/// Sorts contacts into the order in which [`Earliest`] prefers them.
 pub(in crate::surface) fn sort_by_time(hits: &mut [SweepHit]) {
-    hits.sort_unstable_by(|a, b| {
-        let by_time = a.time.total_cmp(&b.time);
-        let by_distance = a.distance.total_cmp(&b.distance);
-        by_time.then(by_distance).then(a.triangle.cmp(&b.triangle))
-    });
+    let key = |hit: &SweepHit| (hit.time, hit.distance, hit.triangle);
+    hits.sort_unstable_by(|a, b| by_time(key(a), key(b)));
 }

@@ -1,0 +1,28 @@
+//! Whether a point is inside a mesh, from the solid angle: the oracle of [`SkinnedSurface::is_inside`].
+//!
+//! [`SkinnedSurface::is_inside`]: super::SkinnedSurface::is_inside
+
+use glam::{DVec3, Vec3};
+
+use crate::mesh::ColliderMesh;
+
+/// How often a mesh winds around `point`: 1 inside a closed mesh, 0 outside, 2 where two closed pieces overlap, in
+/// between near holes.
+///
+/// The solid angle of all triangles as seen from the point, over that of a sphere (van Oosterom and Strackee 1983,
+/// "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering 30(2)). `positions` are the
+/// mesh's vertices, skinned; triangles count whether enabled or not. No query takes part, so it can judge them. Looks
+/// at every triangle.
+pub fn winding_number(positions: &[Vec3], mesh: &ColliderMesh, point: DVec3) -> f64 {
+    let triangles = mesh.triangles().iter();
+    let covered: f64 = triangles
+        .map(|corners| {
+            let [a, b, c] = corners.map(|v| positions[v.index()].as_dvec3() - point);
+            let (la, lb, lc) = (a.length(), b.length(), c.length());
+            let volume = a.dot(b.cross(c));
+            let spread = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+            2.0 * libm::atan2(volume, spread)
+        })
+        .sum();
+    covered / (4.0 * core::f64::consts::PI)
+}

@@ -1,0 +1,122 @@
+//! When a body is outside of a creature again, against the solid angle.
+
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::JointId;
+use clamber_surface::surface::{SkinnedSurface, winding_number};
+use glam::{DVec3, Vec3};
+use rapier3d::math::Pose;
+
+use super::scene::{at, lifted};
+use crate::debris::core::Core;
+use crate::debris::let_through::is_outside;
+
+/// Closed boxes, each from a low corner to a high one, as one creature of one joint; they may overlap.
+fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for [low, high] in corners {
+        let first = positions.len() as u32;
+        for corner in 0..8 {
+            let side = |axis: usize| {
+                if corner >> axis & 1 == 1 {
+                    high[axis]
+                } else {
+                    low[axis]
+                }
+            };
+            positions.push(Vec3::new(side(0), side(1), side(2)));
+        }
+        let faces = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        for [a, b, c, d] in faces.map(|face| face.map(|corner| first + corner)) {
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    creature(&positions, &triangles)
+}
+
+fn creature(positions: &[Vec3], triangles: &[[u32; 3]]) -> SkinnedSurface {
+    let one = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions,
+        triangles,
+        influences: &vec![one; positions.len()],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    SkinnedSurface::new(Arc::new(mesh))
+}
+
+fn ball(radius: f64) -> Core {
+    Core {
+        ends: [DVec3::ZERO; 2],
+        radius,
+    }
+}
+
+#[test]
+fn a_body_is_outside_where_nothing_winds_around_it_and_it_touches_nothing() {
+    // Their overlaps hold skin of one box inside of another.
+    let mut surface = boxes(&[
+        [Vec3::new(-2.0, -1.0, -1.0), Vec3::new(2.0, 1.0, 1.0)],
+        [Vec3::new(-0.5, 0.2, -0.6), Vec3::new(0.5, 3.0, 0.6)],
+        [Vec3::new(1.0, -0.4, -3.0), Vec3::new(1.6, 0.5, 3.0)],
+    ]);
+    let origin = DVec3::new(3e4, 0.0, -1e4);
+    let turned = at(origin + DVec3::Y, DVec3::Z, 0.4);
+    surface.place(&lifted(1, |_| 0.0), turned).unwrap();
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    let mut rng = fastrand::Rng::with_seed(4);
+    let mut counts = [0; 3];
+    for _ in 0..20_000 {
+        let mut coordinate = |size: f32| (rng.f32() * 2.0 - 1.0) * size;
+        let in_model = Vec3::new(coordinate(2.5), coordinate(3.5), coordinate(3.5));
+        let place = turned.transform_point_f32(in_model) - origin;
+        let core = ball(0.05);
+        let pose = Pose::from_translation(place.as_vec3());
+        let exact = pose.translation.as_dvec3() + origin;
+        let middle = surface
+            .world_from_model()
+            .inverse_transform_point_f32(exact);
+        let touches = surface.closest_point(middle, 0.05).unwrap().is_some();
+        let winding = winding_number(&positions, surface.mesh(), middle.as_dvec3());
+        let found = is_outside(&surface, &core, &pose, origin).unwrap();
+        assert_eq!(
+            found,
+            !touches && winding < 0.5,
+            "{in_model}: winds {winding}, touches {touches}"
+        );
+        counts[if touches { 2 } else { usize::from(found) }] += 1;
+    }
+    assert!(counts.iter().all(|count| *count > 500), "{counts:?}");
+}
+
+#[test]
+fn a_body_under_an_open_roof_is_outside() {
+    // One-sided, as ears and wings often are.
+    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
+    let positions = corners.map(|[x, z]| Vec3::new(x, 2.0, z));
+    for [a, b, c, d] in [[0, 3, 2, 1], [0, 1, 2, 3]] {
+        let mut roof = creature(&positions, &[[a, b, c], [a, c, d]]);
+        roof.place(&lifted(1, |_| 0.0), Similarity::IDENTITY)
+            .unwrap();
+        for height in [0.0, 1.0, 3.0] {
+            let pose = Pose::from_translation(Vec3::new(0.3, height, 0.2));
+            let found = is_outside(&roof, &ball(0.3), &pose, DVec3::ZERO).unwrap();
+            assert!(found, "{height} m");
+        }
+    }
+}

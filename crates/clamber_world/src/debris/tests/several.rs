@@ -1,0 +1,315 @@
+//! Several creatures: what debris remembers belongs to an obstacle, not to a place in the list.
+
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::SkinnedSurface;
+use glam::{DVec3, Vec3};
+use rapier3d::prelude::*;
+
+use super::scene::{DT, lifted, slab};
+use crate::ObstacleId;
+use crate::debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
+
+const RADIUS: f64 = 0.3;
+
+/// One rock of 0.3 m, and rapier's world.
+struct Rock {
+    world: PhysicsWorld,
+    debris: Debris,
+    body: RigidBodyHandle,
+}
+
+impl Rock {
+    fn new(place: Vector) -> Self {
+        let mut world = PhysicsWorld::default();
+        let (body, _) = world.insert(
+            RigidBodyBuilder::dynamic().translation(place),
+            ColliderBuilder::ball(RADIUS as f32)
+                .density(2500.0)
+                .friction(0.8),
+        );
+        let mut debris = Debris::new(DebrisConfig::default());
+        debris
+            .add(body, &mut world.bodies, &world.colliders)
+            .unwrap();
+        Self {
+            world,
+            debris,
+            body,
+        }
+    }
+
+    fn tick(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) -> DebrisReport {
+        let world = &mut self.world;
+        self.debris
+            .before_step(surfaces, &mut world.bodies, &mut world.colliders, DT)
+            .unwrap();
+        world.step_with_events(&self.debris, &());
+        self.debris
+            .after_step(
+                surfaces,
+                &mut world.bodies,
+                &world.colliders,
+                &world.broad_phase,
+                &world.narrow_phase,
+                DT,
+            )
+            .unwrap()
+    }
+
+    fn place(&self) -> DVec3 {
+        self.world.bodies[self.body].translation().as_dvec3()
+    }
+
+    fn bits(&self) -> Vec<u32> {
+        let body = &self.world.bodies[self.body];
+        let numbers = body.translation().to_array().into_iter();
+        let numbers = numbers.chain(body.rotation().to_array());
+        let numbers = numbers.chain(body.linvel().to_array());
+        numbers
+            .chain(body.angvel().to_array())
+            .map(f32::to_bits)
+            .collect()
+    }
+}
+
+fn stone(half: Vec3) -> SkinnedSurface {
+    slab(half, 0.6, 1)
+}
+
+fn rest() -> Palette {
+    lifted(1, |_| 0.0)
+}
+
+fn moved(surface: &mut SkinnedSurface, place: DVec3) {
+    surface
+        .advance(&rest(), Similarity::from_translation(place))
+        .unwrap();
+}
+
+fn placed(surface: &mut SkinnedSurface, place: DVec3) {
+    surface
+        .place(&rest(), Similarity::from_translation(place))
+        .unwrap();
+}
+
+/// Two hands clap at a speed on a rock in mid-air, which has less room between them than it needs; the hand with
+/// number `first` comes first in the list.
+fn clap(speed: f64, first: usize) -> Vec<(Vec<u32>, DebrisReport)> {
+    let mut hands = [0, 1].map(|_| stone(Vec3::new(0.5, 2.0, 2.0)));
+    let mut rock = Rock::new(Vector::ZERO);
+    rock.world.gravity = Vector::ZERO;
+    let mut ticks = Vec::new();
+    for tick in 0..300 {
+        let closed = (2.0 - speed * DT * f64::from(tick)).max(0.5 + RADIUS * 0.5);
+        let apart = closed + 2.0 * DT * f64::from((tick - 240).max(0));
+        for (hand, side) in hands.iter_mut().zip([-apart, apart]) {
+            let place = DVec3::X * side;
+            if tick == 0 {
+                placed(hand, place)
+            } else {
+                moved(hand, place)
+            }
+        }
+        let list = [first, 1 - first].map(|hand| (ObstacleId(hand as u32), &hands[hand]));
+        let report = rock.tick(&list);
+        ticks.push((rock.bits(), report));
+    }
+    ticks
+}
+
+#[test]
+fn the_order_of_the_list_changes_no_bit() {
+    for speed in [1.0, 5.0, 20.0] {
+        let [wanted, found] = [0, 1].map(|first| clap(speed, first));
+        for (tick, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
+            assert_eq!(found, wanted, "{speed} m/s, tick {tick}");
+        }
+    }
+}
+
+#[test]
+fn a_creature_that_leaves_the_list_leaves_what_the_others_hold_alone() {
+    // A foot stands on a rock and is let through it. In the tick in which the foot leaves the list, an arm reaches
+    // the rock.
+    const GONE: i32 = 60;
+    for speed in [2.0, 10.0, 20.0, 40.0, 60.0] {
+        for listed_first in [false, true] {
+            let mut foot = stone(Vec3::ONE);
+            let mut arm = stone(Vec3::new(0.3, 0.5, 4.0));
+            let mut rock = Rock::new(Vector::new(0.0, RADIUS as f32, 0.0));
+            let ground = ColliderBuilder::cuboid(500.0, 1.0, 50.0).friction(0.6);
+            let ground = ground.translation(Vector::new(0.0, -1.0, 0.0));
+            rock.world.insert_collider(ground, None);
+            let arm_at = |tick: i32| {
+                let x = -0.61 + speed * DT * f64::from(tick - GONE + 1);
+                DVec3::new(x, 0.55, 0.0)
+            };
+            placed(&mut foot, DVec3::Y * 2.0);
+            placed(&mut arm, arm_at(0));
+            for tick in 1..GONE + 60 {
+                moved(&mut arm, arm_at(tick));
+                let ids = if listed_first { [4, 7] } else { [7, 4] };
+                let [of_foot, of_arm] = ids.map(ObstacleId);
+                if tick < GONE {
+                    let sole = (2.0 - 0.05 * f64::from(tick)).max(1.05);
+                    moved(&mut foot, DVec3::Y * sole);
+                    rock.tick(&[(of_foot, &foot), (of_arm, &arm)]);
+                    continue;
+                }
+                if tick == GONE {
+                    assert!(rock.debris.is_let_through(rock.body), "under the foot");
+                }
+                rock.tick(&[(of_arm, &arm)]);
+                let (face, place) = (arm_at(tick).x + 0.3, rock.place());
+                let case = format!("{speed} m/s, {ids:?}, tick {}", tick - GONE);
+                assert!(
+                    place.x > face - 0.02,
+                    "{case}: rock at {place:.2}, arm's face at {face:.2}"
+                );
+                assert!(!rock.debris.is_let_through(rock.body), "{case}");
+            }
+        }
+    }
+}
+
+/// How a creature that stands still gets elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    Palette,
+    Root,
+    /// Another surface takes over its id.
+    Successor,
+    /// Another surface comes, under an id of its own.
+    Other,
+}
+
+#[test]
+fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
+    for way in [Way::Palette, Way::Root, Way::Successor, Way::Other] {
+        // Up to where the rock sleeps already.
+        for calm in [20, 400] {
+            for up in [-0.1, -0.03, -0.002, 0.005, 0.03, 0.1] {
+                let mut one = stone(Vec3::new(4.0, 1.0, 4.0));
+                let mut two = SkinnedSurface::new(one.mesh().clone());
+                let mut matrix = Affine::IDENTITY;
+                matrix.rows[1][3] = up;
+                let shifted = Palette::from_matrices([matrix]);
+                let lifted = Similarity::from_translation(DVec3::Y * f64::from(up));
+                let (palette, root) = match way {
+                    Way::Root => (rest(), lifted),
+                    _ => (shifted, Similarity::IDENTITY),
+                };
+                two.place(&palette, root).unwrap();
+                let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
+                for _ in 0..calm {
+                    moved(&mut one, DVec3::ZERO);
+                    rock.tick(&[(ObstacleId(3), &one)]);
+                }
+                assert_eq!(rock.world.bodies[rock.body].is_sleeping(), calm == 400);
+                for tick in 0..200 {
+                    if tick == 0 {
+                        one.place(&palette, root)
+                    } else {
+                        one.advance(&palette, root)
+                    }
+                    .unwrap();
+                    two.advance(&palette, root).unwrap();
+                    let now = match way {
+                        Way::Palette | Way::Root => (ObstacleId(3), &one),
+                        Way::Successor => (ObstacleId(3), &two),
+                        Way::Other => (ObstacleId(1), &two),
+                    };
+                    rock.tick(&[now]);
+                }
+                let gap = rock.place().y - RADIUS - 1.0 - f64::from(up);
+                assert!(
+                    gap.abs() < 2e-3,
+                    "{way:?}, {calm} calm ticks, {up} m up: {gap} m over the skin"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rock_falls_when_its_creature_leaves_the_list_and_lies_on_one_that_comes() {
+    let mut back = stone(Vec3::new(4.0, 1.0, 4.0));
+    let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
+    for _ in 0..400 {
+        moved(&mut back, DVec3::ZERO);
+        rock.tick(&[(ObstacleId(3), &back)]);
+    }
+    assert!(rock.world.bodies[rock.body].is_sleeping());
+    let known = rock.world.bodies.len();
+    for _ in 0..10 {
+        rock.tick(&[]);
+    }
+    let fallen = rock.place().y;
+    assert!(fallen < 1.25, "{fallen}");
+    // It takes over the skin of the one that is gone.
+    placed(&mut back, DVec3::NEG_Y);
+    for _ in 0..200 {
+        moved(&mut back, DVec3::NEG_Y);
+        rock.tick(&[(ObstacleId(9), &back)]);
+    }
+    let lies = rock.place().y;
+    assert!((lies - RADIUS).abs() < 2e-3, "{lies}");
+    assert_eq!(rock.world.bodies.len(), known);
+}
+
+#[test]
+fn one_id_for_two_surfaces_is_refused_and_changes_nothing() {
+    let back = stone(Vec3::new(4.0, 1.0, 4.0));
+    let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
+    rock.tick(&[(ObstacleId(3), &back)]);
+    let before = (rock.bits(), rock.world.bodies.len());
+    let twice = [3, 1, 3].map(|id| (ObstacleId(id), &back));
+    let wanted = DebrisError::TwiceListed(ObstacleId(3));
+    let world = &mut rock.world;
+    let found = rock
+        .debris
+        .before_step(&twice, &mut world.bodies, &mut world.colliders, DT);
+    assert_eq!(found.as_ref(), Err(&wanted));
+    assert_eq!(
+        wanted.to_string(),
+        "obstacle 3 is twice in the list of surfaces"
+    );
+    let found = rock.debris.after_step(
+        &twice,
+        &mut world.bodies,
+        &world.colliders,
+        &world.broad_phase,
+        &world.narrow_phase,
+        DT,
+    );
+    assert_eq!(found, Err(wanted));
+    assert_eq!((rock.bits(), rock.world.bodies.len()), before);
+}
+
+#[test]
+fn skin_that_a_rock_takes_over_belongs_to_it() {
+    let back = stone(Vec3::new(4.0, 1.0, 4.0));
+    let list = [(ObstacleId(3), &back)];
+    let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));
+    rock.tick(&list);
+    let owned_by = |rock: &Rock, body: RigidBodyHandle| {
+        let colliders = rock.world.colliders.iter().map(|(handle, _)| handle);
+        let own = colliders.filter(|collider| rock.debris.owner_of(*collider) == Some(body));
+        own.collect::<Vec<_>>()
+    };
+    let skin = owned_by(&rock, rock.body);
+    assert_eq!(skin.len(), 1);
+    assert!(rock.debris.remove(rock.body, &mut rock.world.colliders));
+    assert_eq!(owned_by(&rock, rock.body), []);
+    let (second, _) = rock.world.insert(
+        RigidBodyBuilder::dynamic().translation(Vector::new(-1.0, 1.31, 0.3)),
+        ColliderBuilder::ball(RADIUS as f32),
+    );
+    let world = &mut rock.world;
+    rock.debris
+        .add(second, &mut world.bodies, &world.colliders)
+        .unwrap();
+    rock.tick(&list);
+    assert_eq!(owned_by(&rock, second), skin);
+}
