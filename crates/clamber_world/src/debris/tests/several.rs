@@ -111,7 +111,7 @@ fn clap(speed: f64, first: usize) -> Vec<(Vec<u32>, DebrisReport)> {
                 moved(hand, place)
             }
         }
-        let list = [first, 1 - first].map(|hand| (ObstacleId(hand as u32), &hands[hand]));
+        let list = [first, 1 - first].map(|hand| (ObstacleId(hand as u64), &hands[hand]));
         let report = rock.tick(&list);
         ticks.push((rock.bits(), report));
     }
