@@ -13,6 +13,8 @@ use crate::{Hit, MoverBody, MoverError, Touch};
 #[derive(Clone, Debug, Default)]
 pub struct MoverMemory {
     contacts: Vec<Contact>,
+    /// What the core began inside of.
+    pub(crate) inside: Vec<Touch>,
     pub(crate) overlaps: Vec<Touch>,
     pub(crate) half_spaces: Vec<HalfSpace>,
     /// Steep slopes once more, as vertical walls.
@@ -31,7 +33,7 @@ impl MoverMemory {
         self.surroundings.forget();
         self.contacts.clear();
         self.contacts.reserve(CONTACTS);
-        for touches in [&mut self.overlaps, &mut self.touched] {
+        for touches in [&mut self.overlaps, &mut self.touched, &mut self.inside] {
             touches.clear();
             touches.reserve(CONTACTS);
         }
@@ -47,7 +49,7 @@ impl MoverMemory {
 /// Obstacles already stand where they are at the tick's end. Nothing here remembers anything from one call to the next
 /// but the [`Mover::overlaps`] and [`Mover::touched`] of the last one.
 pub struct Mover<'a> {
-    obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
+    pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
     pub(crate) memory: &'a mut MoverMemory,
 }
@@ -56,6 +58,9 @@ pub struct Mover<'a> {
 /// where it went in; only a crushed body gets this deep. A body that is deeper takes the nearest way out: one may climb
 /// on both sides of thin skin.
 const PRESSED: f64 = 0.5;
+
+/// An axis nearer to a contact than this share of the radius lies on the face: its direction from there is rounding.
+const ON_FACE: f64 = 1e-5;
 
 /// Contacts farther than the nearest by less than this share of the core's radius are as near: triangles around a vertex.
 const AS_NEAR: f64 = 2.5e-4;
@@ -92,14 +97,12 @@ impl<'a> Mover<'a> {
 
     /// An obstacle of this tick.
     pub fn obstacle(&self, id: ObstacleId) -> Option<&'a dyn Obstacle> {
-        let found = self.obstacles.iter().find(|(known, _)| *known == id);
-        found.map(|(_, obstacle)| *obstacle)
+        find(self.obstacles, id)
     }
 
     /// How a material point moves over the tick; `None` if it is gone, or its motion is not finite.
     pub fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
-        let motion = self.obstacle(obstacle)?.motion(point, self.dt)?;
-        motion.is_finite().then_some(motion)
+        motion_among(self.obstacles, obstacle, point, self.dt)
     }
 
     /// Velocity of the material at a contact, metres a second; zero where it has no motion.
@@ -139,7 +142,11 @@ impl<'a> Mover<'a> {
             memory.contacts.clear();
             obstacle.overlap_capsule(&capsule, &mut memory.contacts);
             for contact in &memory.contacts {
-                let normal = contact.away(capsule.nearest_on_axis(contact.point));
+                let normal = if contact.distance.abs() < ON_FACE * body.radius {
+                    contact.normal
+                } else {
+                    contact.away(capsule.nearest_on_axis(contact.point))
+                };
                 if contact.point.is_finite() && contact.distance.is_finite() && normal.is_finite() {
                     memory.overlaps.push(Touch {
                         obstacle: id,
@@ -161,14 +168,28 @@ impl<'a> Mover<'a> {
 
     /// The first contact of a capsule that moves by `way` over the tick, with every obstacle on its own way.
     pub fn sweep(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
-        self.first(capsule, way, |obstacle| {
+        self.first(capsule, way, |_, obstacle| {
             obstacle.sweep_capsule(capsule, way)
+        })
+    }
+
+    /// [`Mover::sweep`] among the contacts that count, which are shown in no order.
+    pub fn sweep_where(
+        &mut self,
+        capsule: &WorldCapsule,
+        way: DVec3,
+        mut counts: impl FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.first(capsule, way, |id, obstacle| {
+            obstacle.sweep_capsule_where(capsule, way, &mut |sweep| counts(&Hit::new(id, sweep)))
         })
     }
 
     /// The first contact of a capsule that moves by `way`, with every obstacle as it stands now.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
-        self.first(capsule, way, |obstacle| obstacle.cast_capsule(capsule, way))
+        self.first(capsule, way, |_, obstacle| {
+            obstacle.cast_capsule(capsule, way)
+        })
     }
 
     /// The first contact along a ray, up to a length in metres, with every obstacle as it stands now. `direction` may have
@@ -205,7 +226,7 @@ impl<'a> Mover<'a> {
         &mut self,
         capsule: &WorldCapsule,
         way: DVec3,
-        ask: impl Fn(&dyn Obstacle) -> Option<SweepContact>,
+        mut ask: impl FnMut(ObstacleId, &dyn Obstacle) -> Option<SweepContact>,
     ) -> Option<Hit> {
         let (middle, reach) = capsule.bounding_ball();
         let half = way * 0.5;
@@ -213,25 +234,14 @@ impl<'a> Mover<'a> {
         let near = self.memory.surroundings.near(self.obstacles, middle, reach);
         let mut first: Option<Hit> = None;
         for (id, obstacle) in near {
-            let Some(hit) = ask(obstacle) else {
+            let Some(hit) = ask(id, obstacle) else {
                 continue;
             };
-            let is_sound = (0.0..=1.0).contains(&hit.time)
-                && hit.contact.point.is_finite()
-                && hit.away.is_finite()
-                && hit.contact.distance.is_finite();
+            let hit = Hit::new(id, &hit);
+            let is_sound = (0.0..=1.0).contains(&hit.time) && hit.touch.is_finite();
             // In ascending order of ids: the first of equals stays.
             if is_sound && first.is_none_or(|best| hit.time < best.time) {
-                first = Some(Hit {
-                    touch: Touch {
-                        obstacle: id,
-                        contact: hit.contact,
-                        normal: hit.away,
-                        swept: true,
-                    },
-                    time: hit.time,
-                    started_inside: hit.started_inside,
-                });
+                first = Some(hit);
             }
         }
         first
@@ -241,6 +251,25 @@ impl<'a> Mover<'a> {
     pub(crate) fn is_pressed_into(body: &MoverBody, touch: &Touch) -> bool {
         touch.faces_inward() && touch.contact.distance < PRESSED * body.core_radius()
     }
+}
+
+fn find<'a>(
+    obstacles: &[(ObstacleId, &'a dyn Obstacle)],
+    id: ObstacleId,
+) -> Option<&'a dyn Obstacle> {
+    let found = obstacles.iter().find(|(known, _)| *known == id);
+    found.map(|(_, obstacle)| *obstacle)
+}
+
+/// [`Mover::motion`].
+pub(crate) fn motion_among(
+    obstacles: &[(ObstacleId, &dyn Obstacle)],
+    id: ObstacleId,
+    point: &MaterialPoint,
+    dt: f64,
+) -> Option<PointMotion> {
+    let motion = find(obstacles, id)?.motion(point, dt)?;
+    motion.is_finite().then_some(motion)
 }
 
 /// Looks at the contacts of one obstacle, from index `first` on, body by body: how deep the climber is in one says nothing

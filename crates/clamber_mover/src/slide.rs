@@ -15,6 +15,7 @@
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
+use crate::mover::motion_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
 /// Most rounds of one movement, each a sweep, a look at what overlaps, or both. Corners take two or three; after eight
@@ -148,24 +149,25 @@ impl Mover<'_> {
         self.keep_arm(path, &mut moved);
         let near = path.body.margin * NEAR;
         let touch = TOUCH * path.body.radius;
-        let mut swept = path.begin == Begin::Start;
+        let mut past = false;
         // The way to here is known to be clear.
         let mut clear_to: Option<DVec3> = None;
         loop {
             moved.rounds += 1;
             if clear_to.is_none_or(|clear_to| moved.position.distance(clear_to) > near) {
                 clear_to = None;
-                if swept && let Some(inside) = self.meet(path, &mut moved) {
+                let swept = path.begin == Begin::Start;
+                if swept && let Some(inside) = self.meet(path, past, &mut moved) {
                     if inside {
-                        // The contact that it is inside of already shows the way out, and would hide all others. Whatever
-                        // else it is in is to be seen from here, not from beyond where that alone would push it.
-                        swept = false;
-                    } else if moved.rounds < ROUNDS {
-                        continue;
-                    } else {
-                        moved.is_clear = false;
-                        self.stop(path, &mut moved);
+                        // What it began inside of would hide everything else.
+                        past = true;
+                        self.go_with_overlaps(path, &mut moved);
                     }
+                    if moved.rounds < ROUNDS {
+                        continue;
+                    }
+                    moved.is_clear = false;
+                    self.stop(path, past, &mut moved);
                 }
             }
             let before = moved.position;
@@ -187,11 +189,42 @@ impl Mover<'_> {
         &self.memory.touched
     }
 
+    /// What overlaps the core at the start carries the body along over the tick: it comes no deeper.
+    fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
+        let core = path.body.core_at(path.start);
+        let mut inside = std::mem::take(&mut self.memory.inside);
+        inside.clear();
+        self.sweep_where(&core, moved.position - path.start, |hit| {
+            if hit.started_inside && hit.touch.is_finite() {
+                inside.push(hit.touch);
+            }
+            false
+        });
+        inside.sort_unstable_by(Touch::order);
+        inside.truncate(PUSHES);
+        for (index, touch) in inside.iter().enumerate() {
+            // Of one face the nearest contact tells how deep the body is; the others are edges within the face.
+            let margin = path.body.margin;
+            let continues = |nearer: &Touch| touch.continues(touch.contact.point, nearer, margin);
+            let is_known = inside[..index].iter().any(continues);
+            if is_known || Self::is_pressed_into(&path.body, touch) {
+                continue;
+            }
+            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            let way = motion.map_or(DVec3::ZERO, |motion| {
+                motion.position - motion.previous_position
+            });
+            self.add_half_space(path, *touch, touch.normal.dot(way), moved.position);
+        }
+        self.memory.inside = inside;
+        self.solve(path, moved);
+    }
+
     /// Sweeps to the wanted position, and keeps clear of the first contact: whether the body was inside it from the
     /// start. `None` if nothing is in the way.
-    fn meet(&mut self, path: &Path, moved: &mut Moved) -> Option<bool> {
+    fn meet(&mut self, path: &Path, past: bool, moved: &mut Moved) -> Option<bool> {
         let way = moved.position - path.start;
-        let hit = self.sweep(&path.body.core_at(path.start), way)?;
+        let hit = self.sweep_from(path, past, way)?;
         let touch = hit.touch;
         let at = path.start + way * hit.time;
         let end = self
@@ -199,19 +232,38 @@ impl Mover<'_> {
             .map_or(touch.contact.point, |motion| motion.position);
         let on_axis = path.body.core_at(at).nearest_on_axis(touch.contact.point) - at;
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
-        if !(hit.started_inside && Self::is_pressed_into(&path.body, &touch)) {
-            self.add_half_space(path, touch, offset, moved.position);
-        }
         if !hit.started_inside {
+            self.add_half_space(path, touch, offset, moved.position);
             self.solve(path, moved);
         }
         Some(hit.started_inside)
     }
 
+    /// `past` what the core began inside of.
+    fn sweep_from(&mut self, path: &Path, past: bool, way: DVec3) -> Option<Hit> {
+        let core = path.body.core_at(path.start);
+        if !past {
+            return self.sweep(&core, way);
+        }
+        let inside = std::mem::take(&mut self.memory.inside);
+        let margin = path.body.margin;
+        let (obstacles, dt) = (self.obstacles, self.dt());
+        let hit = self.sweep_where(&core, way, |hit| {
+            let (id, point) = (hit.touch.obstacle, hit.touch.contact.material);
+            let motion = motion_among(obstacles, id, &point, dt);
+            let start = motion.map_or(hit.touch.contact.point, |motion| motion.previous_position);
+            let mut inside = inside.iter();
+            let continues = |inside: &Touch| hit.touch.continues(start, inside, margin);
+            !hit.started_inside && !inside.any(continues)
+        });
+        self.memory.inside = inside;
+        hit
+    }
+
     /// Stops where the sweep meets something, and goes with it for the rest of the tick.
-    fn stop(&mut self, path: &Path, moved: &mut Moved) {
+    fn stop(&mut self, path: &Path, past: bool, moved: &mut Moved) {
         let way = moved.position - path.start;
-        if let Some(Hit { touch, time, .. }) = self.sweep(&path.body.core_at(path.start), way) {
+        if let Some(Hit { touch, time, .. }) = self.sweep_from(path, past, way) {
             let end = self.motion(touch.obstacle, &touch.contact.material);
             let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
             moved.position = path.start + way * time + carried;
@@ -220,15 +272,14 @@ impl Mover<'_> {
 
     /// Gets the body out of everything that overlaps it where it is; gives the number of pushes.
     fn push_out(&mut self, path: &Path, moved: &mut Moved) -> usize {
-        let found = moved.position;
         let body = &path.body;
+        let found = moved.position;
         self.overlap(body, found, body.margin * NEAR);
-        let mut overlaps = std::mem::take(&mut self.memory.overlaps);
         let mut pushes = 0;
         while pushes < PUSHES {
             let capsule = body.at(moved.position);
             let mut worst: Option<(f64, Touch)> = None;
-            for touch in &overlaps {
+            for touch in self.overlaps() {
                 let now = touch.after_push(&capsule, moved.position - found);
                 let depth = body.radius - now.contact.distance;
                 if depth > worst.map_or(TOUCH * body.radius, |(deepest, _)| deepest) {
@@ -248,12 +299,11 @@ impl Mover<'_> {
             }
         }
         let capsule = body.at(moved.position);
-        let depths = overlaps.iter().map(|touch| {
+        let depths = self.overlaps().iter().map(|touch| {
             let now = touch.after_push(&capsule, moved.position - found);
             body.radius - now.contact.distance
         });
         moved.penetration = (depths.fold(0.0, f64::max) - body.margin).max(0.0);
-        std::mem::swap(&mut self.memory.overlaps, &mut overlaps);
         pushes
     }
 
@@ -377,9 +427,9 @@ fn project_onto_relaxed(wanted: DVec3, half_spaces: &mut [HalfSpace], by: f64) -
 /// crushed by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
 const FARTHEST: f64 = 4.0;
 
-/// Halvings in search of the least relief, which begins at the overlap: to the rounding of f64, since walls that are all
-/// but opposite magnify what is left a hundredfold.
-const HALVINGS: u32 = 50;
+/// Halvings in search of the least relief, which begins at the overlap: down to 6e-8 of it, since walls that are all but
+/// opposite magnify the rest a hundredfold.
+const HALVINGS: u32 = 24;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

@@ -1,4 +1,6 @@
-use clamber_world::{Contact, ObstacleId, WorldCapsule};
+use std::cmp::Ordering;
+
+use clamber_world::{Contact, ObstacleId, SweepContact, WorldCapsule};
 use glam::DVec3;
 
 /// A contact between the body and an obstacle.
@@ -16,6 +18,34 @@ pub struct Touch {
 }
 
 impl Touch {
+    /// By depth, then obstacle, then material, so that the order in which contacts were met does not matter.
+    pub(crate) fn order(a: &Self, b: &Self) -> Ordering {
+        let depth = a.contact.distance.total_cmp(&b.contact.distance);
+        let material = a.contact.material.key.cmp(&b.contact.material.key);
+        let points = a.contact.point.to_array().into_iter();
+        let points = points.zip(b.contact.point.to_array());
+        let places = points.map(|(a, b)| a.total_cmp(&b));
+        depth
+            .then(a.obstacle.cmp(&b.obstacle))
+            .then(material)
+            .then(places.fold(Ordering::Equal, Ordering::then))
+    }
+
+    /// The contact, whose material was at `start` when the tick began, lies on the same face as another that the body is
+    /// inside of then, and does not stand out from it by more than a length: its edge within that face is none.
+    pub(crate) fn continues(&self, start: DVec3, other: &Self, length: f64) -> bool {
+        let normal = other.contact.normal;
+        let out = normal.dot(start - other.contact.point).abs();
+        self.obstacle == other.obstacle
+            && self.contact.normal.dot(normal) > ONE_FACE
+            && out <= length
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        let contact = &self.contact;
+        contact.point.is_finite() && contact.distance.is_finite() && self.normal.is_finite()
+    }
+
     /// The contact points into the material: the body is behind the face.
     pub(crate) fn faces_inward(&self) -> bool {
         self.normal.dot(self.contact.normal) < 0.0
@@ -25,11 +55,13 @@ impl Touch {
     pub(crate) fn after_push(&self, capsule: &WorldCapsule, push: DVec3) -> Self {
         let mut now = *self;
         let apart = capsule.nearest_on_axis(self.contact.point) - self.contact.point;
-        if self.contact.distance > 0.0 && apart.dot(self.normal) > 0.0 {
+        // A face goes on beside the contact; an edge does not.
+        let is_edge = self.normal.dot(self.contact.normal).abs() < ONE_FACE;
+        if is_edge && self.contact.distance > 0.0 && apart.dot(self.normal) > 0.0 {
             now.contact.distance = apart.length();
             now.normal = apart.normalize_or(self.normal);
         } else {
-            // Past the contact point, its other side is no way out: the body goes back the way it came.
+            // Past an edge, its other side is no way out: the body goes back the way it came.
             now.contact.distance += self.normal.dot(push);
         }
         now
@@ -46,3 +78,21 @@ pub struct Hit {
     /// They overlap at the start already; the time is 0.
     pub started_inside: bool,
 }
+
+impl Hit {
+    pub(crate) fn new(obstacle: ObstacleId, sweep: &SweepContact) -> Self {
+        Self {
+            touch: Touch {
+                obstacle,
+                contact: sweep.contact,
+                normal: sweep.away,
+                swept: true,
+            },
+            time: sweep.time,
+            started_inside: sweep.started_inside,
+        }
+    }
+}
+
+/// Cosine of the angle up to which neighbouring triangles are one face: 8 degrees, as skin bends.
+const ONE_FACE: f64 = 0.99;

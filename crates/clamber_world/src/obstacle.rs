@@ -192,6 +192,20 @@ pub trait Obstacle {
     /// from where it stood a tick ago to where it stands now.
     fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
 
+    /// [`Obstacle::sweep_capsule`] among the contacts that count: of each triangle and solid that may be the first to be
+    /// touched its contact is shown to `counts`, in no order. A body that is pressed into one thing still meets the others.
+    ///
+    /// The default shows the first contact alone, which is right for a single solid.
+    fn sweep_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacement: DVec3,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.sweep_capsule(capsule, displacement)
+            .filter(|contact| counts(contact))
+    }
+
     /// The speed, metres a second, that an impulse of 1 N s along a unit `direction` gives to a material point; 0 for
     /// what cannot be pushed.
     fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {

@@ -164,6 +164,27 @@ impl Obstacle for SkinnedSurface {
         Some(sweep_contact(self, &hit.ok()??))
     }
 
+    fn sweep_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacement: DVec3,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
+        let mut counts = |hit: &SweepHit| counts(&sweep_contact(self, hit));
+        let hit = if capsule.is_ball() {
+            let sphere = Sphere {
+                center: local.a,
+                radius: local.radius,
+            };
+            self.sweep_sphere_where(&sphere, motion, tolerance, &mut counts)
+        } else {
+            let motions = [motion; 2];
+            SkinnedSurface::sweep_capsule_where(self, &local, motions, tolerance, &mut counts)
+        };
+        Some(sweep_contact(self, &hit.ok()??))
+    }
+
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let triangle = TriangleId(u32::try_from(point.key).ok()?);
         if !self.is_enabled(triangle) {

@@ -7,6 +7,7 @@ use rapier3d::geometry::{BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, R
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::Shape;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
@@ -172,14 +173,13 @@ impl<'a> RapierTerrain<'a> {
             .map_or_else(SurfaceTag::default, |tags| tags(handle, collider))
     }
 
-    /// The first contact of a sweep in the world, with its tag.
-    fn tagged(&self, first: &FirstContact) -> Option<SweepContact> {
-        let mut sweep = first.contact(self.origin)?;
+    /// A contact of a sweep with its tag.
+    fn tagged(&self, mut sweep: SweepContact) -> SweepContact {
         let handle = Self::collider_of(&sweep.contact.material);
         if let Some(collider) = self.colliders.get(handle) {
             sweep.contact.tag = self.tag(handle, collider);
         }
-        Some(sweep)
+        sweep
     }
 
     /// Rapier's own queries of what [`RapierTerrain::sees`] lets through.
@@ -251,7 +251,7 @@ impl<'a> RapierTerrain<'a> {
     }
 
     /// Tries what moved, all along its way.
-    fn meet_moved(&self, first: &mut FirstContact) {
+    fn meet_moved(&self, first: &mut FirstContact, meet: &mut Meet<'_>) {
         let all = self.moved();
         all.tree.traverse(|node| {
             if !first.may_meet(&node.aabb()) {
@@ -262,14 +262,24 @@ impl<'a> RapierTerrain<'a> {
                 && let Some(collider) = self.colliders.get(*handle)
                 && self.sees(*handle, collider)
             {
-                first.meet(collider.shape(), &moved.tick, key_of(*handle));
+                let met = Met {
+                    shape: collider.shape(),
+                    tick: moved.tick,
+                    key: key_of(*handle),
+                };
+                meet(first, &met);
             }
             TraversalAction::Continue
         });
     }
 
     /// Tries what the broad phase finds in the way, as it stands now, if it is to be tried.
-    fn meet_near(&self, first: &mut FirstContact, is_tried: impl Fn(&Collider) -> bool) {
+    fn meet_near(
+        &self,
+        first: &mut FirstContact,
+        is_tried: impl Fn(&Collider) -> bool,
+        meet: &mut Meet<'_>,
+    ) {
         self.tree().traverse(|node| {
             if !first.may_meet(&node.aabb()) {
                 return TraversalAction::Prune;
@@ -280,8 +290,12 @@ impl<'a> RapierTerrain<'a> {
                 && self.sees(handle, collider)
                 && is_tried(collider)
             {
-                let tick = Tick::still(pose_of(collider.position()));
-                first.meet(collider.shape(), &tick, key_of(handle));
+                let met = Met {
+                    shape: collider.shape(),
+                    tick: Tick::still(pose_of(collider.position())),
+                    key: key_of(handle),
+                };
+                meet(first, &met);
             }
             TraversalAction::Continue
         });
@@ -346,17 +360,40 @@ impl Obstacle for RapierTerrain<'_> {
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
         let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
-        self.meet_near(&mut first, |_| true);
-        self.tagged(&first)
+        self.meet_near(&mut first, |_| true, &mut |first, met| {
+            first.meet(met.shape, &met.tick, met.key);
+        });
+        Some(self.tagged(first.contact(self.origin)?))
     }
 
     fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
         let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
-        self.meet_near(&mut first, |collider| {
-            self.previous_pose(collider).is_none()
-        });
-        self.meet_moved(&mut first);
-        self.tagged(&first)
+        let mut meet = |first: &mut FirstContact, met: &Met<'_>| {
+            first.meet(met.shape, &met.tick, met.key);
+        };
+        self.meet_near(&mut first, is_still(self), &mut meet);
+        self.meet_moved(&mut first, &mut meet);
+        Some(self.tagged(first.contact(self.origin)?))
+    }
+
+    fn sweep_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacement: DVec3,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        let mut counts = |sweep: &SweepContact| {
+            let mut sweep = *sweep;
+            sweep.contact.point += self.origin;
+            counts(&self.tagged(sweep))
+        };
+        let mut meet = |first: &mut FirstContact, met: &Met<'_>| {
+            first.meet_where(met.shape, &met.tick, met.key, &mut counts);
+        };
+        self.meet_near(&mut first, is_still(self), &mut meet);
+        self.meet_moved(&mut first, &mut meet);
+        Some(self.tagged(first.contact(self.origin)?))
     }
 
     fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
@@ -378,6 +415,19 @@ impl Obstacle for RapierTerrain<'_> {
         let before = self.previous_pose(collider);
         now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }
+}
+
+/// A collider that a sweep may meet.
+struct Met<'a> {
+    shape: &'a dyn Shape,
+    tick: Tick,
+    key: u64,
+}
+
+type Meet<'a> = dyn FnMut(&mut FirstContact, &Met<'_>) + 'a;
+
+fn is_still<'a>(terrain: &'a RapierTerrain<'_>) -> impl Fn(&Collider) -> bool + 'a {
+    |collider| terrain.previous_pose(collider).is_none()
 }
 
 /// Whether a point in a collider's space is still part of its shape.

@@ -4,7 +4,8 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
 
 use super::reach::{Reach, is_usable, is_usable_radius};
-use super::{TOLERANCE, Tick, sweep_shape};
+use super::sweep::sweep_shape_where;
+use super::{ShapeTouch, TOLERANCE, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
 /// The first contact of a capsule on its way among many shapes; in whatever order they are met, the same.
@@ -70,11 +71,29 @@ impl FirstContact {
     pub fn meet(&mut self, shape: &dyn Shape, tick: &Tick, key: u64) {
         let sweep = tick.sweep(&self.capsule, self.displacement);
         if let Some(touch) = sweep_shape(shape, &sweep, self.limit()) {
-            let contact = tick.contact(&touch, key);
-            let earlier = |first: &SweepContact| precedes(&contact, first);
-            if self.first.as_ref().is_none_or(earlier) {
-                self.first = Some(contact);
-            }
+            self.offer(tick.contact(&touch, key));
+        }
+    }
+
+    /// [`FirstContact::meet`] among the contacts that count, which are shown in the engine's space.
+    pub fn meet_where(
+        &mut self,
+        shape: &dyn Shape,
+        tick: &Tick,
+        key: u64,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) {
+        let sweep = tick.sweep(&self.capsule, self.displacement);
+        let mut counts = |touch: &ShapeTouch| counts(&tick.contact(touch, key));
+        if let Some(touch) = sweep_shape_where(shape, &sweep, self.limit(), &mut counts) {
+            self.offer(tick.contact(&touch, key));
+        }
+    }
+
+    fn offer(&mut self, contact: SweepContact) {
+        let earlier = |first: &SweepContact| precedes(&contact, first);
+        if self.first.as_ref().is_none_or(earlier) {
+            self.first = Some(contact);
         }
     }
 

@@ -63,14 +63,16 @@ pub fn closest_by_overlap(
 /// By ascending key, and by place and normal within one body, so that the order of its tree does not matter. In
 /// place, so that a steady tick allocates nothing.
 pub fn sort_contacts(contacts: &mut [Contact]) {
+    contacts.sort_unstable_by(compare);
+}
+
+fn compare(a: &Contact, b: &Contact) -> Ordering {
     let compare = |a: [f64; 3], b: [f64; 3]| {
         let each = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b));
         each.fold(Ordering::Equal, Ordering::then)
     };
-    contacts.sort_unstable_by(|a, b| {
-        let by_key = a.material.key.cmp(&b.material.key);
-        by_key
-            .then_with(|| compare(a.material.coordinates, b.material.coordinates))
-            .then_with(|| compare(a.normal.to_array(), b.normal.to_array()))
-    });
+    let by_key = a.material.key.cmp(&b.material.key);
+    by_key
+        .then_with(|| compare(a.material.coordinates, b.material.coordinates))
+        .then_with(|| compare(a.normal.to_array(), b.normal.to_array()))
 }

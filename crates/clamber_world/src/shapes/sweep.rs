@@ -53,6 +53,25 @@ impl ShapeTouch {
 /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm. Triangles are met from both
 /// sides. `None` if anything is not finite or beyond 2^100, or the radius negative.
 pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
+    search(shape, sweep, limit, None)
+}
+
+/// [`sweep_shape`] among the contacts that count.
+pub(super) fn sweep_shape_where(
+    shape: &dyn Shape,
+    sweep: &ShapeSweep,
+    limit: f64,
+    counts: &mut dyn FnMut(&ShapeTouch) -> bool,
+) -> Option<ShapeTouch> {
+    search(shape, sweep, limit, Some(counts))
+}
+
+fn search(
+    shape: &dyn Shape,
+    sweep: &ShapeSweep,
+    limit: f64,
+    mut counts: Option<&mut dyn FnMut(&ShapeTouch) -> bool>,
+) -> Option<ShapeTouch> {
     let path = &sweep.path;
     let mut ends = path.start.into_iter().chain(path.end);
     let usable = ends.all(is_usable) && is_usable_radius(path.radius);
@@ -67,7 +86,7 @@ pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<
         &reach.bounds(),
         &|bounds| reach.meets(bounds, until.get()),
         &mut |part| {
-            let Some(touch) = sweep.meet(part, until.get()) else {
+            let Some(touch) = sweep.meet(part, until.get(), &mut counts) else {
                 return;
             };
             if touch.time <= until.get() && first.is_none_or(|first| touch.precedes(&first)) {
@@ -110,8 +129,13 @@ impl ShapeSweep {
         Reach::new(&path, (touch + slack) / half_cosine.max(f64::MIN_POSITIVE))
     }
 
-    fn meet(&self, part: Part<'_>, limit: f64) -> Option<ShapeTouch> {
-        match part {
+    fn meet(
+        &self,
+        part: Part<'_>,
+        limit: f64,
+        counts: &mut Option<&mut dyn FnMut(&ShapeTouch) -> bool>,
+    ) -> Option<ShapeTouch> {
+        let touch = match part {
             Part::Triangle(corners) => self.meet_triangle(corners, limit),
             Part::Convex(convex) => self.meet_solid(&convex, limit),
             Part::HalfSpace(normal) => self.meet_half_space(normal),
@@ -126,18 +150,27 @@ impl ShapeSweep {
                         .before
                         .map(|before| pose.inverse().then(&before.then(&pose))),
                 };
-                let touch = sweep_shape(part, &inner, limit)?;
-                Some(ShapeTouch {
+                let outer = |touch: &ShapeTouch| ShapeTouch {
                     contact: ShapeContact {
                         point: pose.transform(touch.contact.point),
                         normal: pose.rotation * touch.contact.normal,
                         ..touch.contact
                     },
                     away: pose.rotation * touch.away,
-                    ..touch
-                })
+                    ..*touch
+                };
+                // Its parts have been asked about one by one.
+                let touch = match counts {
+                    Some(counts) => {
+                        let mut counts = |touch: &ShapeTouch| counts(&outer(touch));
+                        search(part, &inner, limit, Some(&mut counts))
+                    }
+                    None => search(part, &inner, limit, None),
+                };
+                return Some(outer(&touch?));
             }
-        }
+        };
+        touch.filter(|touch| counts.as_mut().is_none_or(|counts| counts(touch)))
     }
 
     fn meet_triangle(&self, corners: [Vec3; 3], limit: f64) -> Option<ShapeTouch> {

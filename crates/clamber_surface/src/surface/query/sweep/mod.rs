@@ -215,6 +215,38 @@ impl SkinnedSurface {
         Ok(self.first_contact([&self.previous, &self.current], &sweep))
     }
 
+    /// [`SkinnedSurface::sweep_sphere`] among the contacts that count: of each triangle that may be the first to be touched
+    /// its contact is shown to `counts`, in no order. For a body that is pressed into skin, while other skin is still on
+    /// its way: contacts that [started inside](SweepHit::started_inside) do not count then.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::sweep_sphere`].
+    pub fn sweep_sphere_where(
+        &self,
+        sphere: &Sphere,
+        motion: Vec3,
+        tolerance: f32,
+        counts: &mut dyn FnMut(&SweepHit) -> bool,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_sphere(sphere, motion, tolerance)?;
+        Ok(self.first_contact_where([&self.previous, &self.current], &sweep, counts))
+    }
+
+    /// [`SkinnedSurface::sweep_sphere_where`] for a capsule.
+    ///
+    /// # Errors
+    /// As [`SkinnedSurface::sweep_sphere`].
+    pub fn sweep_capsule_where(
+        &self,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+        tolerance: f32,
+        counts: &mut dyn FnMut(&SweepHit) -> bool,
+    ) -> Result<Option<SweepHit>, SurfaceError> {
+        let sweep = Sweep::of_capsule(capsule, motions, tolerance)?;
+        Ok(self.first_contact_where([&self.previous, &self.current], &sweep, counts))
+    }
+
     /// Every triangle that [`SkinnedSurface::cast_sphere`] may meet, each with its own first contact,
     /// by time, at one time by distance, then by id. `hits` is cleared first and keeps its memory.
     ///

@@ -13,11 +13,31 @@ use crate::surface::bounds::Spheres;
 use crate::surface::pose::Pose;
 
 impl SkinnedSurface {
-    /// Earliest bounds first.
+    /// The first contact.
     pub(super) fn first_contact<const N: usize>(
         &self,
         poses: [&Pose; 2],
         sweep: &Sweep<N>,
+    ) -> Option<SweepHit> {
+        self.search(poses, sweep, None)
+    }
+
+    /// The first contact that counts.
+    pub(super) fn first_contact_where<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+        counts: &mut dyn FnMut(&SweepHit) -> bool,
+    ) -> Option<SweepHit> {
+        self.search(poses, sweep, Some(counts))
+    }
+
+    /// Earliest bounds first. With `counts`, among the contacts that count.
+    fn search<const N: usize>(
+        &self,
+        poses: [&Pose; 2],
+        sweep: &Sweep<N>,
+        mut counts: Option<&mut dyn FnMut(&SweepHit) -> bool>,
     ) -> Option<SweepHit> {
         let sweep = &self.near(poses, sweep)?;
         let mut earliest = Earliest::NONE;
@@ -34,9 +54,19 @@ impl SkinnedSurface {
             match child {
                 Child::Cluster(index) => {
                     if cluster.visit(index) {
-                        let limit = earliest.limit().min(cluster.touched_by(sweep).into());
+                        // The first that is touched may be one that is passed over.
+                        let touched_by = match counts {
+                            None => cluster.touched_by(sweep).into(),
+                            Some(_) => f64::INFINITY,
+                        };
+                        let limit = earliest.limit().min(touched_by);
                         count.add(contacts(&cluster, sweep, limit, |first| {
-                            earliest.offer(first);
+                            let is_counted = counts.as_mut().is_none_or(|counts| {
+                                self.sweep_hit(sweep, first).is_some_and(|hit| counts(&hit))
+                            });
+                            if is_counted {
+                                earliest.offer(first);
+                            }
                             earliest.limit()
                         }));
                     }
