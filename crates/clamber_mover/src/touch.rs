@@ -56,7 +56,7 @@ impl Touch {
         let mut now = *self;
         let apart = capsule.nearest_on_axis(self.contact.point) - self.contact.point;
         // A face goes on beside the contact; an edge does not.
-        let is_edge = self.normal.dot(self.contact.normal).abs() < ONE_FACE;
+        let is_edge = self.normal.dot(self.contact.normal).abs() < SQUARE;
         if is_edge && self.contact.distance > 0.0 && apart.dot(self.normal) > 0.0 {
             now.contact.distance = apart.length();
             now.normal = apart.normalize_or(self.normal);
@@ -96,3 +96,7 @@ impl Hit {
 
 /// Cosine of the angle up to which neighbouring triangles are one face: 8 degrees, as skin bends.
 const ONE_FACE: f64 = 0.99;
+
+/// Cosine of the angle up to which a contact lies within a face, its normal that of the face: a quarter of a degree, above
+/// the rounding of f32.
+const SQUARE: f64 = 0.99999;
