@@ -185,6 +185,20 @@ impl<'a> Mover<'a> {
         })
     }
 
+    /// Whether a correction of a movement from `start` to `end` would have met nothing on its way over the tick: a step up,
+    /// or a snap down, is looked for among obstacles as they stand at the tick's end, and something may have come by
+    /// before. Overlaps at the start do not count.
+    pub fn is_clear_with(
+        &mut self,
+        body: &MoverBody,
+        [start, end]: [DVec3; 2],
+        correction: DVec3,
+    ) -> bool {
+        let core = body.core_at(start + correction);
+        self.sweep_where(&core, end - start, |hit| !hit.started_inside)
+            .is_none()
+    }
+
     /// The first contact of a capsule that moves by `way`, with every obstacle as it stands now.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         self.first(capsule, way, |_, obstacle| {

@@ -133,15 +133,28 @@ impl Tick<'_> {
 
     fn step_up(&mut self, carried: &Carried, target: DVec3) -> Option<DVec3> {
         let ground = &self.config.ground;
-        self.mover.step_up(&StepUp {
+        let from = self.state.position;
+        let position = self.mover.step_up(&StepUp {
             probe: GroundProbe {
                 max_slope: ground.max_slope,
                 ..self.ground_probe(ground.step_height)
             },
             from: carried.position,
             target,
-            position: self.state.position,
-        })
+            position: from,
+        })?;
+        self.is_corrected_clear(carried, position)
+            .then_some(position)
+    }
+
+    /// Nothing came by where a correction of its movement leads it.
+    fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
+        let moved = self.state.position;
+        let body = self.body();
+        !carried.swept
+            || self
+                .mover
+                .is_clear_with(&body, [carried.start, moved], corrected - moved)
     }
 
     /// Stands on ground; keeps of its own velocity what the last movement lets it.
@@ -155,7 +168,9 @@ impl Tick<'_> {
     /// Stands on what is below it now, or leaves the ground.
     fn find_new_ground(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
         let reach = self.config.ground.snap_distance;
-        if let Some(ground) = self.ground_below(self.state.position, reach) {
+        if let Some(ground) = self.ground_below(self.state.position, reach)
+            && self.is_corrected_clear(carried, ground.position)
+        {
             let moved = self.slide(&Path::placed(self.body(), ground.position), Intent::Go);
             let ground = Ground {
                 position: moved.position,
