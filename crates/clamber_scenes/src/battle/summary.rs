@@ -11,9 +11,12 @@ use super::checks::{
 use super::{Battle, BattleError, BattleOptions, Story};
 use crate::measure::quantile;
 
-/// Largest share of a ride's ticks that may be spent off the creature: one in ten. The script itself spends up to three in
-/// a hundred in the air, on the drop and on a jump.
+/// Largest share of a ride's ticks that may be spent off the creature: one in ten.
 const MAX_OFF: f64 = 0.1;
+
+/// Seconds that the script of a ride spends in the air by itself, on the drop and on the jump: more than `MAX_OFF` of a ride
+/// shorter than 20 s.
+const SCRIPT_OFF: f64 = 2.0;
 
 /// Something that a battle must fulfil.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -146,7 +149,8 @@ impl Summary {
             checks.insert(1, check(PUSHED_OFF, watch.pushed_off, MAX_PUSHED_OFF));
             checks.insert(2, check(STANDS_OFF, watch.stands_off, MAX_STANDS_OFF));
             checks.insert(3, check(PUSH_OUT, push_out, MAX_PUSH_OUT));
-            checks.push(check(NOT_RIDING, off, MAX_OFF));
+            let at_most = MAX_OFF.max(SCRIPT_OFF / options.seconds());
+            checks.push(check(NOT_RIDING, off, at_most));
             checks.push(check(FALLS, f64::from(watch.falls), 0.0));
         }
         if !rides && options.is_whole() {
