@@ -17,6 +17,11 @@ pub fn height(x: f64, z: f64) -> f64 {
     rolling + beyond * beyond * 0.008
 }
 
+/// True above or below the valley's ground: outside of it there is none, and whatever gets there falls for ever.
+pub fn contains(x: f64, z: f64) -> bool {
+    x.abs() <= 0.5 * SIZE && z.abs() <= 0.5 * SIZE
+}
+
 /// A rapier world with the valley as its only collider, ready for queries.
 pub fn world() -> PhysicsWorld {
     let mut world = PhysicsWorld::default();

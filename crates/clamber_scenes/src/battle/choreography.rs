@@ -1,10 +1,13 @@
 //! What the creature does: which clip plays when, and where it stands. A pure function of the
 //! ticks gone by.
 
+use std::collections::BTreeSet;
+
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
+use super::repeat::{Repeat, SeamProbe};
 use super::{BattleError, Story};
 use crate::{Creature, valley};
 
@@ -20,11 +23,15 @@ const SPEED_PER_HEIGHT: f64 = 0.2;
 /// When the foot comes down in a clip of a stomp, as a share of its length.
 const FOOT_DOWN: f64 = 0.51;
 
+/// Seconds for which a creature that cannot stand idle holds still at first: more than a rider falls.
+const LANDING: f64 = 2.0;
+
 /// A stretch of time with one clip.
 struct Act {
     clip: Option<usize>,
     seconds: f64,
     kind: Kind,
+    repeat: Repeat,
 }
 
 /// What of an act matters to others.
@@ -52,6 +59,8 @@ pub struct Choreography<'a> {
     speed: f64,
     time: f64,
     walked: f64,
+    /// Of the creature as a whole, without its clips, over the last tick.
+    velocity: DVec3,
     /// Of the current tick, and memory for the fade.
     pose: Pose,
     fading: Pose,
@@ -64,7 +73,7 @@ impl<'a> Choreography<'a> {
     /// # Errors
     /// [`BattleError::NoHeight`], [`BattleError::Creature`].
     pub fn new(creature: &'a Creature, height: f64, story: Story) -> Result<Self, BattleError> {
-        let acts = acts(creature, story);
+        let mut acts = acts(creature, story);
         let rest = creature.skeleton.rest_pose();
         let mut first = rest.clone();
         if let Some(clip) = acts[0].clip {
@@ -78,6 +87,13 @@ impl<'a> Choreography<'a> {
                 creature: creature.name.clone(),
                 height,
             });
+        }
+        let probe = SeamProbe::new(creature, tall);
+        let repeats = |act: &&mut Act| act.kind != Kind::Stomp && act.repeat != Repeat::Hold;
+        for act in acts.iter_mut().filter(repeats) {
+            if let Some(clip) = act.clip {
+                act.repeat = probe.measure(&creature.clips[clip])?.repeat();
+            }
         }
         let speed = creature
             .walk_speed
@@ -93,6 +109,7 @@ impl<'a> Choreography<'a> {
             speed,
             time: 0.0,
             walked: 0.0,
+            velocity: DVec3::ZERO,
             palette: Palette::default(),
         })
     }
@@ -106,7 +123,9 @@ impl<'a> Choreography<'a> {
         let (now, before, share) = self.moment();
         let walking = |act: usize| f64::from(u8::from(self.acts[act].kind == Kind::Walk));
         let pace = walking(before) * (1.0 - share) + walking(now) * share;
+        let before = self.world_from_model().translation;
         self.walked += pace * self.speed * dt;
+        self.velocity = (self.world_from_model().translation - before) / dt;
         Ok(())
     }
 
@@ -117,13 +136,13 @@ impl<'a> Choreography<'a> {
     pub fn pose(&mut self) -> Result<(&Palette, Similarity), BattleError> {
         let (now, before, share) = self.moment();
         self.pose.clone_from(&self.rest);
-        if let Some((clip, time, playback)) = self.clip(before) {
-            clip.sample_into(time, playback, &mut self.pose)?;
+        if let Some((clip, time)) = self.clip(before) {
+            clip.sample_into(time, Playback::Clamp, &mut self.pose)?;
         }
         if share > 0.0 && now != before {
             self.fading.clone_from(&self.rest);
-            if let Some((clip, time, playback)) = self.clip(now) {
-                clip.sample_into(time, playback, &mut self.fading)?;
+            if let Some((clip, time)) = self.clip(now) {
+                clip.sample_into(time, Playback::Clamp, &mut self.fading)?;
             }
             self.pose.blend_in(&self.fading, share)?;
         }
@@ -170,14 +189,44 @@ impl<'a> Choreography<'a> {
         (within - dt..within).contains(&down)
     }
 
-    /// What an act plays: the clip, at what time of it, and how.
-    fn clip(&self, act: usize) -> Option<(&'a Clip, f64, Playback)> {
+    /// Velocity of the creature as a whole over the last tick, its clips left out, metres a second.
+    pub fn velocity(&self) -> DVec3 {
+        self.velocity
+    }
+
+    /// The clip that plays, and where in it, for messages.
+    pub fn playing(&self) -> String {
+        let (now, before, share) = self.moment();
+        let Some((clip, time)) = self.clip(now) else {
+            return "at rest".into();
+        };
+        let fading = if share < 1.0 { self.clip(before) } else { None };
+        let fading = fading.map_or(String::new(), |(from, _)| {
+            format!(", {:.0} % faded in from {}", share * 100.0, from.name)
+        });
+        format!("{} at {time:.2} s{fading}", clip.name)
+    }
+
+    /// Names of the clips that are no loops, and are played back and forth.
+    pub fn turned_back(&self) -> Vec<String> {
+        let acts = self
+            .acts
+            .iter()
+            .filter(|act| act.repeat == Repeat::BackAndForth);
+        let clips: BTreeSet<usize> = acts.filter_map(|act| act.clip).collect();
+        let name = |clip: usize| self.creature.clips[clip].name.clone();
+        clips.into_iter().map(name).collect()
+    }
+
+    /// What an act plays: the clip, and at what time of it.
+    fn clip(&self, act: usize) -> Option<(&'a Clip, f64)> {
         let clip = &self.creature.clips[self.acts[act].clip?];
-        Some(if self.acts[act].kind == Kind::Stomp {
-            (clip, self.within(act), Playback::Clamp)
+        let time = if self.acts[act].kind == Kind::Stomp {
+            self.within(act)
         } else {
-            (clip, self.time, Playback::Loop)
-        })
+            self.acts[act].repeat.time(self.time, clip.duration())
+        };
+        Some((clip, time))
     }
 
     /// Seconds since an act last began.
@@ -229,7 +278,7 @@ impl<'a> Choreography<'a> {
 }
 
 /// Where clips are named so: idle, walk, shake, walk to ride; idle, stomp, idle, shake, idle, walk, idle to climb. Every clip
-/// but dying in turn where not.
+/// but dying in turn where not, after the first pose of the first.
 fn acts(creature: &Creature, story: Story) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;
@@ -242,6 +291,7 @@ fn acts(creature: &Creature, story: Story) -> Vec<Act> {
         clip: Some(clip),
         seconds,
         kind,
+        repeat: Repeat::Loop,
     };
     let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
     let (shake, stomp) = (index(&["shake", "attack"]), index(&["stomp"]));
@@ -272,11 +322,20 @@ fn acts(creature: &Creature, story: Story) -> Vec<Act> {
         !name.contains("death") && !name.contains("die")
     });
     let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, Kind::Calm)).collect();
+    // Still until a rider has landed: some attack at once, at 70 m/s.
+    if let Some(first) = acts.first().and_then(|first| first.clip) {
+        let still = Act {
+            repeat: Repeat::Hold,
+            ..act(first, LANDING, Kind::Calm)
+        };
+        acts.insert(0, still);
+    }
     if acts.is_empty() {
         acts.push(Act {
             clip: None,
             seconds: 8.0,
             kind: Kind::Calm,
+            repeat: Repeat::Loop,
         });
     }
     acts

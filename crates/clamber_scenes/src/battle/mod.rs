@@ -7,12 +7,15 @@
 pub mod bot;
 mod checks;
 mod choreography;
+mod faults;
 mod options;
 mod outcrop;
 mod pilot;
 #[cfg(feature = "record")]
 mod record;
 mod recording;
+mod repeat;
+mod rides;
 mod rockfall;
 mod scene;
 mod snapshot;
@@ -28,11 +31,14 @@ pub use outcrop::mesh as outcrop;
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
 pub use recording::{Recording, Sample};
+pub use rides::{Ride, RidesOptions, ride_all, table as rides_table};
 pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
 pub use snapshot::BattleSnapshot;
 pub use story::Story;
 pub use summary::{Check, ModeTicks, Summary};
+
+use options::Progress;
 
 use crate::CreatureError;
 use clamber_climber::ClimberError;
@@ -88,6 +94,9 @@ pub enum BattleError {
     /// Settings that no battle can be made from.
     #[error("no battle can be made from these settings: {0}")]
     Settings(String),
+    /// There are no models to ride.
+    #[error("no models to ride: {0}")]
+    NoModels(String),
     /// Whoever watches the battle failed.
     #[error(transparent)]
     Watching(Box<dyn std::error::Error + Send + Sync>),
@@ -131,7 +140,7 @@ pub fn run_watched(
     watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
 ) -> Result<Summary, BattleError> {
     let Some(path) = &options.record else {
-        return fight(options, watch);
+        return fight(options, &Progress::new(options.ticks()), watch);
     };
     #[cfg(feature = "record")]
     {
@@ -146,6 +155,7 @@ pub fn run_watched(
 
 fn fight(
     options: &BattleOptions,
+    progress: &Progress,
     mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
 ) -> Result<Summary, BattleError> {
     // First, so that a folder that cannot be is not found out about at the end.
@@ -156,7 +166,6 @@ fn fight(
     let creature = options.load_creature()?;
     let mut battle = Battle::new(&creature, options)?;
     let ticks = options.ticks();
-    let progress = options::Progress::new(ticks);
     watch(&battle)?;
     for tick in 0..ticks {
         battle.step(options.input_at(tick))?;

@@ -22,9 +22,9 @@ const RIDE_SECONDS: f64 = 60.0;
 /// A climber climbs and rides a walking, stomping, shaking creature on which rocks fall.
 ///
 /// The climber comes over an outcrop, is knocked down by a stomp, grips a leg and climbs to the creature's top, where it
-/// stays; or it is dropped on the back, where it stands, walks and jumps. Checks at every tick that it is carried exactly
+/// stays; or it is dropped on the back, where it stands, walks and jumps, and holds on where it is too steep to stand. Checks at every tick that it is carried exactly
 /// and stays above the ground, and several times a second that neither it nor a rock is inside the creature. Ends with
-/// a table, and exits with 1 if a check failed.
+/// a table, with the first fault of each check that failed, and exits with 1 if one did.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {
@@ -64,7 +64,7 @@ pub struct BattleOptions {
     pub record: Option<PathBuf>,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
         Ok(_) => Err("must be above 0 and at most 1000000".into()),
@@ -173,7 +173,8 @@ impl BattleOptions {
     }
 
     /// The script. To climb: all the way. To ride: stands for four tenths of the battle, walks up and down the back for the
-    /// next third, jumps once in the middle of that, and stands again.
+    /// next third, jumps once as soon as the skin is calm after the middle of that, and stands again; where it is too steep to
+    /// stand it holds on and climbs up.
     pub fn input_at(&self, tick: u64) -> Intent {
         if self.story() == Story::Climb {
             return Intent::Climb;
@@ -190,8 +191,9 @@ impl BattleOptions {
     }
 }
 
-/// A bar on a terminal, a line every ten seconds of the battle elsewhere.
+/// A bar on a terminal, a line every ten seconds of the battle elsewhere; nothing where many battles are fought.
 pub(super) enum Progress {
+    Quiet,
     Bar(ProgressBar),
     Lines { ticks: u64 },
 }
@@ -218,6 +220,7 @@ impl Progress {
             sample.height
         );
         match self {
+            Self::Quiet => {}
             Self::Bar(bar) => {
                 if done.is_multiple_of(16) {
                     bar.set_message(line);

@@ -8,6 +8,7 @@ use clamber_record::{
     RecordingInfo, ReplayError, Replayed, TickView, creature_fingerprint, palette_fingerprint,
 };
 
+use super::options::Progress;
 use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
 use crate::Creature;
 
@@ -95,7 +96,8 @@ pub(super) fn run(
     let file = std::fs::File::create(path).map_err(failed)?;
     let mut out = Some(std::io::BufWriter::new(file));
     let mut recorder = None;
-    let summary = fight(options, |battle| {
+    let progress = Progress::new(options.ticks());
+    let summary = fight(options, &progress, |battle| {
         watch(battle)?;
         if let Some(out) = out.take() {
             let how = RecordOptions::default();

@@ -11,8 +11,8 @@ pub struct Sample {
     pub mode: ClimberMode,
     /// True if it stands on the creature, or holds on to it.
     pub riding: bool,
-    /// Distance from a rider's contact to the material point recorded when its input ended, metres; `None` if there is
-    /// input, or it does not ride. In a climb from its contact to its own material point, on the creature.
+    /// Distance from a standing rider's contact to the material point recorded when its input ended, metres. In a climb,
+    /// and while it holds on, from its contact to its own material point, on the creature. `None` elsewhere.
     pub drift: Option<f64>,
     /// By how much contacts kept it from where it was carried and wanted to go, metres.
     pub push_out: f64,
@@ -81,9 +81,10 @@ impl Recording {
             .fold(0.0, f64::max)
     }
 
-    /// The longest push-out of the ticks with a drift: standing without input.
+    /// The longest push-out of the ticks with a drift in which it stands: without input.
     pub fn max_push_out(&self) -> f64 {
-        let standing = self.samples.iter().filter(|s| s.drift.is_some());
+        let stands = |s: &&Sample| s.drift.is_some() && s.mode == ClimberMode::Standing;
+        let standing = self.samples.iter().filter(stands);
         standing.map(|s| s.push_out).fold(0.0, f64::max)
     }
 

@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::*;
 use clamber_world::{Debris, DebrisConfig};
 use glam::DVec3;
 
+use super::checks::ROCKS_INSIDE;
+use super::faults::{Faults, Moment};
 use super::scene::CREATURE;
 use super::{BattleError, TICK};
 use crate::rocks::scatter;
@@ -53,6 +54,8 @@ pub struct RockfallReport {
     pub caught: u32,
     /// How often one was seen under the ground, or inside the creature other than under its feet.
     pub fell_through: u32,
+    /// Rocks batted out of the valley, where there is no ground to lie on.
+    pub left: u32,
 }
 
 impl Rockfall {
@@ -87,11 +90,12 @@ impl Rockfall {
     /// Steps the world with its rocks. Now and then one falls again, from `above`.
     pub(super) fn step(
         &mut self,
-        surface: &SkinnedSurface,
+        moment: &Moment<'_>,
         world: &mut PhysicsWorld,
         above: DVec3,
-        tick: u64,
+        faults: &mut Faults,
     ) -> Result<(), BattleError> {
+        let (surface, tick) = (moment.surface, moment.tick);
         let start = Instant::now();
         let surfaces = [(CREATURE, surface)];
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
@@ -113,43 +117,81 @@ impl Rockfall {
         self.report.put_back += report.put_back;
         self.report.caught += report.caught;
         if tick.is_multiple_of(LOOK_EVERY) {
-            self.look(surface, world);
+            self.look_inside(moment, world, faults);
         }
+        self.bring_back(moment, world, above, faults);
         if tick.is_multiple_of(AGAIN) {
             self.drop_again(world, above);
         }
         Ok(())
     }
 
-    fn look(&mut self, surface: &SkinnedSurface, world: &PhysicsWorld) {
+    fn look_inside(&mut self, moment: &Moment<'_>, world: &PhysicsWorld, faults: &mut Faults) {
+        let surface = moment.surface;
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
-        for rock in &self.rocks {
+        for (index, rock) in self.rocks.iter().enumerate() {
             let place = world.bodies[*rock].translation().as_dvec3();
-            let through = self.debris.is_let_through(*rock);
             let in_model = surface.world_from_model().inverse_transform_point(place);
             let inside = solid_angle::is_inside(&positions, surface.mesh(), in_model);
-            let under = place.y < valley::height(place.x, place.z);
-            self.report.fell_through += u32::from(inside && !through || under);
+            if inside && !self.debris.is_let_through(*rock) {
+                self.report.fell_through += 1;
+                faults.note(ROCKS_INSIDE, || {
+                    moment.describe(&format!("rock {index} inside"), place)
+                });
+            }
+        }
+    }
+
+    /// Rocks that no ground will stop fall again from above: those batted out of the valley, which are counted by
+    /// themselves, and those under its ground, which should not be there.
+    fn bring_back(
+        &mut self,
+        moment: &Moment<'_>,
+        world: &mut PhysicsWorld,
+        above: DVec3,
+        faults: &mut Faults,
+    ) {
+        for index in 0..self.rocks.len() {
+            let body = &mut world.bodies[self.rocks[index]];
+            let place = body.translation().as_dvec3();
+            if !valley::contains(place.x, place.z) {
+                self.report.left += 1;
+            } else if place.y < valley::height(place.x, place.z) {
+                self.report.fell_through += 1;
+                faults.note(ROCKS_INSIDE, || {
+                    moment.describe(&format!("rock {index} below the ground"), place)
+                });
+            } else {
+                continue;
+            }
+            // A rock that was batted away spins; one that lies does not.
+            body.set_angvel(Vector::ZERO, true);
+            self.let_fall(index, world, above);
         }
     }
 
     /// The next of those that lie in the valley.
     fn drop_again(&mut self, world: &mut PhysicsWorld, above: DVec3) {
         for _ in 0..self.rocks.len() {
-            let rock = self.rocks[self.next];
+            let index = self.next;
             self.next = (self.next + 1) % self.rocks.len();
-            let body = &mut world.bodies[rock];
-            let place = body.translation().as_dvec3();
+            let place = world.bodies[self.rocks[index]].translation().as_dvec3();
             if place.y - valley::height(place.x, place.z) < LIES * self.scale {
-                let aside = DVec3::new(self.rng.f64() - 0.5, 0.0, self.rng.f64() - 0.5);
-                let place = above + aside * (6.0 * self.scale);
-                body.set_translation(place.as_vec3(), true);
-                body.set_linvel(Vector::ZERO, true);
-                self.report.drops += 1;
+                self.let_fall(index, world, above);
                 return;
             }
         }
+    }
+
+    /// Lets a rock fall from rest, from somewhere about `above`.
+    fn let_fall(&mut self, index: usize, world: &mut PhysicsWorld, above: DVec3) {
+        let aside = DVec3::new(self.rng.f64() - 0.5, 0.0, self.rng.f64() - 0.5);
+        let place = above + aside * (6.0 * self.scale);
+        let body = &mut world.bodies[self.rocks[index]];
+        body.set_translation(place.as_vec3(), true);
+        body.set_linvel(Vector::ZERO, true);
+        self.report.drops += 1;
     }
 
     /// The rocks, in the world's own handles.

@@ -2,8 +2,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState,
-    StepReport, StepRules,
+    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, GripConfig, StepReport,
+    StepRules,
 };
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
@@ -12,8 +12,9 @@ use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
 use glam::DVec3;
 
-use super::bot::{self, Intent};
-use super::checks::Watch;
+use super::bot::{Intent, Rider, RiderScene};
+use super::checks::{Watch, Watched};
+use super::faults::Moment;
 use super::pilot::{Grips, Pilot};
 use super::rockfall::Rockfall;
 use super::{
@@ -32,6 +33,9 @@ pub const CREATURE: ObstacleId = ObstacleId(1);
 
 /// How far above the perch the climber is dropped, metres.
 const DROP: f64 = 2.0;
+
+/// How far above the skin it is dropped again, metres: for a creature in full motion soon carries its back away from below.
+const DROP_AGAIN: f64 = 0.1;
 
 /// How far above the perch rocks fall from, as a share of the creature's height.
 const ROCKS_ABOVE: f64 = 0.5;
@@ -61,6 +65,8 @@ pub struct Battle<'a> {
     grips: Grips,
     /// Where it is dropped to ride; rocks fall from above it.
     perch: MaterialPoint,
+    /// How it rides, if it does not climb.
+    rider: Rider,
     /// How it climbs, if it does.
     pilot: Option<Pilot>,
     height: f64,
@@ -98,7 +104,7 @@ impl<'a> Battle<'a> {
                     Some(Pilot::new(creature)?),
                 )
             }
-            Story::Ride => (rider_above(perch.point)?, None),
+            Story::Ride => (rider_above(perch.point, DROP)?, None),
         };
         let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
         let rocks = Rockfall::new(&mut world, options.rocks as usize, seed, above, height)?;
@@ -113,6 +119,7 @@ impl<'a> Battle<'a> {
             grips: Grips::of(creature),
             perch: perch.material,
             drops: u32::from(pilot.is_none()),
+            rider: Rider::new(),
             pilot,
             height,
             tick: 0,
@@ -133,13 +140,21 @@ impl<'a> Battle<'a> {
         let start = Instant::now();
         self.pose_creature()?;
         let seconds = self.tick as f64 * TICK;
-        let state = self.climber.state();
         let (surface, perch) = (&self.surface, &self.perch);
         let mut input = match &mut self.pilot {
             Some(pilot) if intent == Intent::Climb => {
                 pilot.input(&self.climber, surface, self.choreography.is_calm(), seconds)
             }
-            _ => bot::input(intent, state, surface, perch, seconds, self.height),
+            _ => {
+                let scene = RiderScene {
+                    surface,
+                    perch,
+                    velocity: self.choreography.velocity(),
+                    seconds,
+                    height: self.height,
+                };
+                self.rider.input(intent, &self.climber, &scene)
+            }
         };
         input.blow = self.stomp();
         self.step_posed(input, start)
@@ -206,8 +221,9 @@ impl<'a> Battle<'a> {
         let perch = Obstacle::motion(&self.surface, &self.perch, TICK);
         let perch = perch.map_or(DVec3::ZERO, |perch| perch.position);
         let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
-        self.rocks
-            .step(&self.surface, &mut self.world, above, self.tick)?;
+        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        let faults = &mut self.watch.faults;
+        self.rocks.step(&moment, &mut self.world, above, faults)?;
         (self.input, self.report) = (input, report);
         self.record(touched, microseconds);
         self.lift_if_grounded()
@@ -221,13 +237,14 @@ impl<'a> Battle<'a> {
         let idle = input == ClimberInput::default();
         let palette = self.choreography.palette();
         let climbs = self.pilot.is_some();
-        let drift = self.watch.tick(
-            &self.surface,
-            palette,
-            &self.climber,
-            (idle, climbs),
-            self.tick,
-        );
+        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        let watched = Watched {
+            climber: &self.climber,
+            report,
+            idle,
+            climbs,
+        };
+        let drift = self.watch.tick(&moment, palette, &watched);
         let sample = Sample {
             seconds: self.tick as f64 * TICK,
             height: state.position.y,
@@ -245,33 +262,37 @@ impl<'a> Battle<'a> {
         self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
-    /// Once it has stood on the ground for a while, a rider is dropped on the back again.
+    /// Once it has stood on the ground for a while, or is out of the valley, a rider is dropped on the back again.
     fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
         if self.pilot.is_some() {
             return Ok(());
         }
-        let state = *self.climber.state();
+        let state = self.climber.state();
         let on_ground = state
             .support
             .is_some_and(|support| support.attachment.obstacle == TERRAIN);
         self.grounded = if on_ground { self.grounded + 1 } else { 0 };
-        if self.grounded < GROUNDED_TICKS {
+        let is_lost = !valley::contains(state.position.x, state.position.z);
+        if self.grounded < GROUNDED_TICKS && !is_lost {
             return Ok(());
         }
         let Some(perch) = Obstacle::motion(&self.surface, &self.perch, TICK) else {
             return Ok(());
         };
-        let up = self.climber.config().up();
-        let above = perch.position + up * (DROP + self.climber.config().body.radius);
-        self.climber.restore(ClimberState {
-            position: above,
-            velocity: perch.velocity,
-            mode: ClimberMode::Falling,
-            support: None,
-            support_velocity: None,
-            coyote: 0.0,
-            ..state
-        })?;
+        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        self.watch.fell(&moment, state.position);
+        // Onto the skin that is uppermost there now. At rest relative to the creature as a whole: the perch itself may
+        // just be flung about, and would throw the climber away.
+        let sky = perch.position + DVec3::Y * (4.0 * self.height);
+        let top = Obstacle::cast_ray(&self.surface, sky, -DVec3::Y, 4.0 * self.height);
+        let place = top.map_or(perch.position, |top| top.point);
+        let dropped = ClimberState {
+            velocity: self.choreography.velocity(),
+            ..*rider_above(place, DROP_AGAIN)?.state()
+        };
+        self.climber.restore(dropped)?;
+        self.watch.dropped();
+        self.rider.dropped();
         self.grounded = 0;
         self.drops += 1;
         Ok(())
@@ -386,8 +407,27 @@ impl<'a> Battle<'a> {
         self.landings
     }
 
+    /// Names of the creature's clips that are no loops, and are played back and forth.
+    pub fn turned_back(&self) -> Vec<String> {
+        self.choreography.turned_back()
+    }
+
     pub(super) fn watch(&self) -> &Watch {
         &self.watch
+    }
+}
+
+fn moment<'a>(
+    surface: &'a SkinnedSurface,
+    choreography: &'a Choreography<'a>,
+    height: f64,
+    tick: u64,
+) -> Moment<'a> {
+    Moment {
+        surface,
+        choreography,
+        height,
+        tick,
     }
 }
 
@@ -408,11 +448,16 @@ fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
     Ok(Climber::new(config, position)?)
 }
 
-/// A climber that rides whatever the creature does, in the air above a place.
-fn rider_above(place: DVec3) -> Result<Climber, BattleError> {
+/// A climber that rides whatever the creature does, in the air so far above a place: feet and arms hold in any shake.
+fn rider_above(place: DVec3, drop: f64) -> Result<Climber, BattleError> {
+    let strong = ClimberConfig::colossus_climber().grip;
     let mut config = ClimberConfig::walker();
     config.ground.throw_acceleration = f64::INFINITY;
-    let position = place + config.up() * (DROP + config.body.radius);
+    config.grip = strong.map(|grip| GripConfig {
+        hang_acceleration: f64::INFINITY,
+        ..grip
+    });
+    let position = place + config.up() * (drop + config.body.radius);
     Ok(Climber::new(config, position)?)
 }
 
@@ -444,3 +489,6 @@ fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contac
     }
     best.map(|(_, hit)| hit)
 }
+
+#[cfg(test)]
+mod tests;

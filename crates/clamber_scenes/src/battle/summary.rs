@@ -4,18 +4,19 @@ use std::path::Path;
 use clamber_climber::ClimberMode;
 use serde::Serialize;
 
+use super::checks::{
+    DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_PUSH_OUT, MAX_PUSHED_OFF, MAX_STANDS_OFF, NOT_RIDING,
+    OUT_OF_REACH, PUSH_OUT, PUSHED_OFF, ROCKS_INSIDE, STANDS_OFF,
+};
 use super::{Battle, BattleError, BattleOptions, Story};
 use crate::measure::quantile;
 
-/// Farthest that a standing climber's contact may be from its material point, metres.
-const MAX_DRIFT: f64 = 1e-4;
+/// Largest share of a ride's ticks that may be spent off the creature: one in ten.
+const MAX_OFF: f64 = 0.1;
 
-/// Largest share of the ticks that may be spent off the creature: a battle that rides less has
-/// shown nothing.
-const MAX_OFF: f64 = 0.9;
-
-/// Longest push-out of a climber that stands without input, metres.
-const MAX_PUSH_OUT: f64 = 0.01;
+/// Seconds that the script of a ride spends in the air by itself, on the drop and on the jump: more than `MAX_OFF` of a ride
+/// shorter than 20 s.
+const SCRIPT_OFF: f64 = 2.0;
 
 /// Something that a battle must fulfil.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,6 +29,8 @@ pub struct Check {
     pub at_most: f64,
     /// True if it is.
     pub holds: bool,
+    /// Where and when it first failed, if it did.
+    pub cause: Option<String>,
 }
 
 /// How long a climber did something.
@@ -52,6 +55,8 @@ pub struct Summary {
     pub triangles: usize,
     /// Its height, metres.
     pub height_m: f64,
+    /// Clips that are no loops, and are played back and forth.
+    pub turned_back: Vec<String>,
     /// Ticks fought.
     pub ticks: usize,
     /// Their length, seconds.
@@ -60,6 +65,10 @@ pub struct Summary {
     pub hash: String,
     /// Times that a rider was dropped on the creature: 1 if it never fell to the ground; 0 of a climb.
     pub drops: u32,
+    /// Times that a rider came to the ground, or out of the valley.
+    pub falls: u32,
+    /// Ticks at which the climber was seen inside the creature or below the ground.
+    pub ticks_inside: u32,
     /// Times that it landed on anything.
     pub landings: u32,
     /// Ticks in each mode of the climber.
@@ -71,6 +80,10 @@ pub struct Summary {
     /// Largest distance from a standing rider's contact to the material point recorded when its input ended; in a climb
     /// from its contact to its own material point.
     pub max_anchor_drift_m: f64,
+    /// Farthest that other skin pushed a rider's body off its material point while standing without input.
+    pub max_pushed_off_m: Option<f64>,
+    /// Farthest that a rider stood off its material point with no skin in between while standing without input.
+    pub max_stands_off_m: Option<f64>,
     /// Longest push-out of a rider while standing without input.
     pub max_push_out_m: Option<f64>,
     /// Deepest that a rider's ball reached into the skin while standing without input.
@@ -81,6 +94,10 @@ pub struct Summary {
     pub rocks: usize,
     /// How often any of them was let fall.
     pub rock_drops: u32,
+    /// How often a rock was seen inside the creature or below the ground.
+    pub rocks_inside: u32,
+    /// Rocks batted out of the valley, which fell again.
+    pub rocks_left: u32,
     /// Rocks at the creature's skin: the mean over the ticks.
     pub rocks_near: f64,
     /// Rocks that the physics let skin into, and that were put back in front of it.
@@ -102,11 +119,16 @@ impl Summary {
         let mesh = battle.surface().mesh();
         let watch = battle.watch();
         let (rocks, report) = (battle.rocks(), battle.rocks().report());
-        let check = |name, found: f64, at_most: f64| Check {
+        let check = |name: &'static str, found: f64, at_most: f64| Check {
             name,
             found,
             at_most,
             holds: found <= at_most,
+            cause: watch
+                .faults
+                .first(name)
+                .filter(|_| found > at_most)
+                .map(str::to_owned),
         };
         let modes = ClimberMode::ALL.map(|mode| ModeTicks {
             mode: format!("{mode:?}"),
@@ -114,20 +136,22 @@ impl Summary {
         });
         let never = modes.iter().filter(|mode| mode.ticks == 0).count();
         let mut checks = vec![
-            check("anchor drift, m", recording.max_drift(), MAX_DRIFT),
-            check("ticks inside or below", f64::from(watch.fell_through), 0.0),
-            check("rocks inside or below", f64::from(report.fell_through), 0.0),
+            check(DRIFT, recording.max_drift(), MAX_DRIFT),
+            check(INSIDE, f64::from(watch.fell_through), 0.0),
+            check(ROCKS_INSIDE, f64::from(report.fell_through), 0.0),
         ];
         let off = 1.0 - recording.riding_share();
+        let far = f64::from(watch.out_of_reach);
+        checks.push(check(OUT_OF_REACH, far, 0.0));
         let rides = options.story() == Story::Ride;
         if rides {
             let push_out = recording.max_push_out();
-            let push_out = check("push-out while standing, m", push_out, MAX_PUSH_OUT);
-            checks.insert(1, push_out);
-            checks.push(check("share of ticks not riding", off, MAX_OFF));
-        } else {
-            let far = f64::from(watch.out_of_reach);
-            checks.push(check("ticks out of its reach", far, 0.0));
+            checks.insert(1, check(PUSHED_OFF, watch.pushed_off, MAX_PUSHED_OFF));
+            checks.insert(2, check(STANDS_OFF, watch.stands_off, MAX_STANDS_OFF));
+            checks.insert(3, check(PUSH_OUT, push_out, MAX_PUSH_OUT));
+            let at_most = MAX_OFF.max(SCRIPT_OFF / options.seconds());
+            checks.push(check(NOT_RIDING, off, at_most));
+            checks.push(check(FALLS, f64::from(watch.falls), 0.0));
         }
         if !rides && options.is_whole() {
             let arrived = battle.arrived().unwrap_or(f64::INFINITY);
@@ -143,20 +167,27 @@ impl Summary {
             vertices: mesh.positions().len(),
             triangles: mesh.triangles().len(),
             height_m: options.height(),
+            turned_back: battle.turned_back(),
             ticks: recording.samples().len(),
             seconds: recording.samples().last().map_or(0.0, |s| s.seconds),
             hash: format!("{:016x}", recording.hash()),
             drops: battle.drops(),
+            falls: watch.falls,
+            ticks_inside: watch.fell_through,
             landings: battle.landings(),
             modes: modes.to_vec(),
             arrived_s: battle.arrived(),
             riding_share: recording.riding_share(),
             max_anchor_drift_m: recording.max_drift(),
+            max_pushed_off_m: rides.then_some(watch.pushed_off),
+            max_stands_off_m: rides.then_some(watch.stands_off),
             max_push_out_m: rides.then(|| recording.max_push_out()),
             max_penetration_m: rides.then_some(watch.deepest),
             vertices_skinned_share: recording.skinned_share(),
             rocks: rocks.len(),
             rock_drops: report.drops,
+            rocks_inside: report.fell_through,
+            rocks_left: report.left,
             rocks_near: report.near as f64 / recording.samples().len().max(1) as f64,
             rocks_put_back: report.put_back,
             rocks_us_median: quantile(&mut rocks.times().to_vec(), 0.5),
@@ -213,6 +244,9 @@ impl fmt::Display for Summary {
             .map(|mode| format!("{} {}", mode.mode, mode.ticks))
             .collect();
         row(f, "ticks by mode", seen.join(", "))?;
+        if !self.turned_back.is_empty() {
+            row(f, "no loops, back and forth", self.turned_back.join(", "))?;
+        }
         if let Some(seconds) = self.arrived_s {
             row(f, "at the top", format!("after {seconds:.1} s"))?;
         }
@@ -230,8 +264,8 @@ impl fmt::Display for Summary {
             f,
             "rocks, drops, at the skin",
             format!(
-                "{}, {}, {:.1}",
-                self.rocks, self.rock_drops, self.rocks_near
+                "{}, {}, {:.1}; {} left the valley",
+                self.rocks, self.rock_drops, self.rocks_near, self.rocks_left
             ),
         )?;
         row(
@@ -250,6 +284,9 @@ impl fmt::Display for Summary {
                 check.found, check.at_most
             );
             row(f, check.name, values)?;
+            if let Some(cause) = &check.cause {
+                writeln!(f, "    {cause}")?;
+            }
         }
         Ok(())
     }

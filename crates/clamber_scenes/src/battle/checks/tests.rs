@@ -1,0 +1,191 @@
+//! Each check of a ride fails on the fault that it is there for, and on none else.
+
+use clamber_climber::{Climber, ClimberState};
+use clamber_surface::rig::Palette;
+use clamber_world::Obstacle;
+use glam::DVec3;
+
+use super::super::bot::Intent;
+use super::super::{Battle, BattleOptions, Choreography, Story};
+use super::*;
+use crate::Creature;
+use crate::beast::beast;
+
+const HEIGHT: f64 = 20.0;
+
+/// A rider that has stood on a beast for a while, and a watch that has seen it there.
+struct Scene<'a> {
+    battle: &'a Battle<'a>,
+    choreography: Choreography<'a>,
+    watch: Watch,
+}
+
+impl<'a> Scene<'a> {
+    fn new(creature: &'a Creature, battle: &'a Battle<'a>) -> Self {
+        let mut scene = Self {
+            battle,
+            choreography: Choreography::new(creature, HEIGHT, Story::Ride).unwrap(),
+            watch: Watch::default(),
+        };
+        // The first look records the point that it stands on.
+        scene.look(*battle.climber().state());
+        scene
+    }
+
+    /// Looks at the rider as if it were in a state; gives the drift.
+    fn look(&mut self, state: ClimberState) -> Option<f64> {
+        let mut climber: Climber = self.battle.climber().clone();
+        climber.restore(state).unwrap();
+        let moment = Moment {
+            surface: self.battle.surface(),
+            choreography: &self.choreography,
+            height: HEIGHT,
+            tick: self.battle.tick(),
+        };
+        let watched = Watched {
+            climber: &climber,
+            report: self.battle.report(),
+            idle: true,
+            climbs: false,
+        };
+        let palette: &Palette = self.battle.palette();
+        self.watch.tick(&moment, palette, &watched)
+    }
+}
+
+fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
+    let creature = beast(3_000);
+    let options = BattleOptions {
+        height: Some(HEIGHT),
+        ..BattleOptions::ride(0, 1)
+    };
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    for _ in 0..120 {
+        battle.step(Intent::Stand).unwrap();
+    }
+    let state = *battle.climber().state();
+    assert!(state.support.is_some(), "it has not landed: {state:?}");
+    test(&mut Scene::new(&creature, &battle), state)
+}
+
+/// The state with its body moved, and nothing else.
+fn moved(state: ClimberState, by: DVec3) -> ClimberState {
+    ClimberState {
+        position: state.position + by,
+        ..state
+    }
+}
+
+fn normal(state: &ClimberState) -> DVec3 {
+    state.support.unwrap().normal_in_world()
+}
+
+#[test]
+fn a_rider_that_stands_where_it_stood_has_no_fault() {
+    stood(|scene, state| {
+        let drift = scene.look(state).unwrap();
+        assert!(drift < MAX_DRIFT, "drift {drift}");
+        let watch = &scene.watch;
+        assert!(watch.stands_off < 1e-4, "stands off {}", watch.stands_off);
+        assert_eq!((watch.pushed_off, watch.falls), (0.0, 0));
+        assert!(watch.faults.first(DRIFT).is_none());
+    });
+}
+
+#[test]
+fn a_contact_off_its_material_point_is_drift() {
+    stood(|scene, state| {
+        let mut support = state.support.unwrap();
+        support.attachment.contact += normal(&state).any_orthonormal_vector() * 2e-4;
+        let drift = scene.look(ClimberState {
+            support: Some(support),
+            ..state
+        });
+        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
+        assert!(scene.watch.faults.first(DRIFT).is_some());
+    });
+}
+
+#[test]
+fn another_material_point_without_input_is_drift() {
+    stood(|scene, state| {
+        let elsewhere = state.position + normal(&state).any_orthonormal_vector() * 0.5;
+        let nearest = Obstacle::closest_point(scene.battle.surface(), elsewhere, 5.0).unwrap();
+        let mut support = state.support.unwrap();
+        (support.attachment.point, support.attachment.contact) = (nearest.material, nearest.point);
+        let drift = scene.look(ClimberState {
+            support: Some(support),
+            ..state
+        });
+        assert!(drift.unwrap() > 0.1, "drift {drift:?}");
+    });
+}
+
+#[test]
+fn a_body_sunk_into_its_point_is_drift() {
+    stood(|scene, state| {
+        let drift = scene.look(moved(state, normal(&state) * -2e-4));
+        assert!(drift.unwrap() > 1.5e-4, "drift {drift:?}");
+        assert!(scene.watch.deepest > 1.5e-4, "{}", scene.watch.deepest);
+    });
+}
+
+#[test]
+fn a_body_that_floats_stands_off_and_is_not_pushed() {
+    stood(|scene, state| {
+        scene.look(moved(state, normal(&state) * 0.011));
+        let watch = &scene.watch;
+        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
+        assert_eq!(watch.pushed_off, 0.0);
+        assert!(watch.faults.first(STANDS_OFF).is_some());
+        assert!(watch.faults.first(DRIFT).is_none());
+    });
+}
+
+/// The ball touches skin, but skin that would leave it room on its point: it went there by itself.
+#[test]
+fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
+    stood(|scene, state| {
+        let surface = scene.battle.surface();
+        let radius = scene.battle.climber().config().body.radius;
+        let aside = state.position + normal(&state).any_orthonormal_vector() * 0.3;
+        let under = Obstacle::closest_point(surface, aside, 5.0).unwrap();
+        let place = under.point + under.away(aside) * radius;
+        scene.look(moved(state, place - state.position));
+        let watch = &scene.watch;
+        assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);
+        assert_eq!(watch.pushed_off, 0.0);
+    });
+}
+
+#[test]
+fn a_rider_on_the_ground_has_fallen_once_until_it_is_dropped_again() {
+    stood(|scene, state| {
+        let mut support = state.support.unwrap();
+        support.attachment.obstacle = TERRAIN;
+        let down = ClimberState {
+            support: Some(support),
+            ..state
+        };
+        scene.look(down);
+        scene.look(down);
+        assert_eq!(scene.watch.falls, 1);
+        let cause = scene.watch.faults.first(FALLS).unwrap();
+        assert!(cause.contains("left the creature"), "{cause}");
+        scene.watch.dropped();
+        scene.look(down);
+        assert_eq!(scene.watch.falls, 2, "dropped beside it");
+    });
+}
+
+#[test]
+fn a_rider_under_the_ground_is_below_it_but_not_outside_of_the_valley() {
+    stood(|scene, state| {
+        scene.look(moved(state, DVec3::Y * -60.0));
+        assert_eq!(scene.watch.fell_through, 1);
+        let cause = scene.watch.faults.first(INSIDE).unwrap();
+        assert!(cause.contains("below the ground"), "{cause}");
+        scene.look(moved(state, DVec3::new(valley::SIZE, -60.0, 0.0)));
+        assert_eq!(scene.watch.fell_through, 1, "there is no ground outside");
+    });
+}

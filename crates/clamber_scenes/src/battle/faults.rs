@@ -1,0 +1,75 @@
+//! Why checks fail: for each check the first tick at which it did, in words that let it be found again.
+
+use std::collections::BTreeMap;
+
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::Obstacle;
+use glam::DVec3;
+
+use super::{Choreography, TICK};
+
+/// How far from a place skin is looked for to name it, as a share of the creature's height.
+const NEAR: f64 = 0.25;
+
+/// A tick of the creature, to describe places in.
+#[derive(Clone, Copy)]
+pub(super) struct Moment<'a> {
+    /// The creature's skin.
+    pub(super) surface: &'a SkinnedSurface,
+    /// What it plays.
+    pub(super) choreography: &'a Choreography<'a>,
+    /// Its height, metres.
+    pub(super) height: f64,
+    /// The tick.
+    pub(super) tick: u64,
+}
+
+impl Moment<'_> {
+    /// What happened at a place, the tick, the clip, and the skin nearest to the place with its velocity.
+    pub(super) fn describe(&self, what: &str, place: DVec3) -> String {
+        let seconds = self.tick as f64 * TICK;
+        let near = Obstacle::closest_point(self.surface, place, NEAR * self.height);
+        let skin = near.map_or("no skin near".into(), |near| {
+            let motion = Obstacle::motion(self.surface, &near.material, TICK);
+            let speed = motion.map_or(0.0, |motion| motion.velocity.length());
+            let (distance, joint) = (near.distance, self.joint(near.material.key));
+            format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")
+        });
+        format!(
+            "tick {} ({seconds:.2} s, {}): {what} at ({:.2}, {:.2}, {:.2}), {skin}",
+            self.tick,
+            self.choreography.playing(),
+            place.x,
+            place.y,
+            place.z,
+        )
+    }
+
+    /// The name of the joint that moves a triangle most.
+    fn joint(&self, triangle: u64) -> String {
+        let mesh = self.surface.mesh();
+        let part = mesh.part_of(TriangleId(triangle as u32));
+        let joint = part.and_then(|part| mesh.parts().get(part.index()));
+        let joints = self.choreography.creature().skeleton.joints();
+        joint
+            .and_then(|part| joints.get(part.joint.0 as usize))
+            .map_or("no joint".into(), |joint| joint.name.clone())
+    }
+}
+
+/// The first fault of every check, by the check's name.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Faults(BTreeMap<&'static str, String>);
+
+impl Faults {
+    /// Keeps what `describe` says, if it is the check's first fault.
+    pub(super) fn note(&mut self, check: &'static str, describe: impl FnOnce() -> String) {
+        self.0.entry(check).or_insert_with(describe);
+    }
+
+    /// The first fault of a check; `None` if there was none.
+    pub(super) fn first(&self, check: &str) -> Option<&str> {
+        self.0.get(check).map(String::as_str)
+    }
+}

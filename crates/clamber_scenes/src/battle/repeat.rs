@@ -1,0 +1,265 @@
+//! How a clip is repeated. A file does not say which of its clips are loops: a death or an attack ends in another pose
+//! than it began with, and started again it throws the skin from one pose to the other within a tick.
+//!
+//! The seam of each clip is measured, at the outermost vertices of every joint: how fast each of them is in a tick that
+//! spans the end and the beginning, beside the fastest that it is within the clip. If any is much faster at the seam, the
+//! clip is not a loop; it is played to its end and back again, so that its poses stay those of the file and nothing jumps. (`place` at the seam would claim no motion either, but it teleports
+//! whatever stands on the skin, and a ride is there to test carrying.)
+
+use std::collections::BTreeMap;
+
+use clamber_surface::mesh::{ColliderMesh, VertexId};
+use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose};
+use clamber_surface::skin::skin_vertex_reference;
+use glam::DVec3;
+
+use super::{BattleError, TICK};
+use crate::Creature;
+
+/// Skin this many times as fast at the seam as anywhere within the clip jumps there. A loop that lacks its closing key frame,
+/// a 24th or a 30th of a second, is two to three times as fast there: that is a jump as well.
+const JUMP: f64 = 1.5;
+
+/// A seam slower than this many heights of the creature a second is no jump, however slow the clip is: 0.2 m/s on a
+/// creature of 20 m.
+const SLOW: f64 = 0.01;
+
+/// Seconds over which a clip that turns back slows down and turns, at most its own length. Shorter jerks harder.
+const TURN: f64 = 0.25;
+
+/// How a clip goes on once it has come to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Repeat {
+    /// Begins again.
+    Loop,
+    /// Runs backwards to its beginning, and forwards again.
+    BackAndForth,
+    /// Stays at its beginning.
+    Hold,
+}
+
+impl Repeat {
+    /// Seconds after a clip's first key frame, `time` seconds after it was first played, for a clip of this length.
+    pub(super) fn time(self, time: f64, duration: f64) -> f64 {
+        if duration <= 0.0 || self == Self::Hold {
+            return 0.0;
+        }
+        if self == Self::Loop {
+            return time.rem_euclid(duration);
+        }
+        // A triangle wave, its corners rounded to parabolas over `turn` seconds, which makes it that much longer.
+        let turn = TURN.min(duration);
+        let half = duration + turn;
+        let phase = time.rem_euclid(2.0 * half);
+        let along = phase.min(2.0 * half - phase);
+        let rounded = |from_end: f64| {
+            if from_end < turn {
+                0.5 * from_end * from_end / turn
+            } else {
+                from_end - 0.5 * turn
+            }
+        };
+        if along < 0.5 * half {
+            rounded(along)
+        } else {
+            duration - rounded(half - along)
+        }
+    }
+}
+
+/// What the skin does where a clip's end meets its beginning, and within the clip: of the vertex that jumps most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Seam {
+    /// Its speed across the seam, heights of the creature a second.
+    pub(super) speed: f64,
+    /// Its largest speed within the clip, heights of the creature a second.
+    pub(super) within: f64,
+}
+
+impl Seam {
+    /// By how much it is faster than skin that does not jump, heights of the creature a second; negative if it is not.
+    fn excess(self) -> f64 {
+        self.speed - (JUMP * self.within).max(SLOW)
+    }
+
+    /// How a clip with this seam is repeated.
+    pub(super) fn repeat(self) -> Repeat {
+        if self.excess() > 0.0 {
+            Repeat::BackAndForth
+        } else {
+            Repeat::Loop
+        }
+    }
+}
+
+/// Measures the seams of a creature's clips.
+pub(super) struct SeamProbe<'a> {
+    creature: &'a Creature,
+    /// Height of the creature in model units.
+    height: f64,
+    /// The outermost vertices of every joint.
+    vertices: Vec<VertexId>,
+}
+
+impl<'a> SeamProbe<'a> {
+    /// For a creature that is `height` model units tall.
+    pub(super) fn new(creature: &'a Creature, height: f64) -> Self {
+        Self {
+            creature,
+            height,
+            vertices: outermost(&creature.collider),
+        }
+    }
+
+    /// The seam of a clip.
+    ///
+    /// # Errors
+    /// [`BattleError::Creature`] if the clip does not fit the skeleton.
+    pub(super) fn measure(&self, clip: &Clip) -> Result<Seam, BattleError> {
+        let duration = clip.duration();
+        let per_second = 1.0 / (self.height * TICK);
+        let speeds = |from: &[DVec3], to: &[DVec3]| -> Vec<f64> {
+            let ways = from.iter().zip(to).map(|(a, b)| a.distance(*b));
+            ways.map(|way| way * per_second).collect()
+        };
+        let mut before = self.skinned(clip, 0.0)?;
+        let mut within = vec![0.0f64; before.len()];
+        for tick in 1..=(duration / TICK) as u32 {
+            let now = self.skinned(clip, f64::from(tick) * TICK)?;
+            for (fastest, speed) in within.iter_mut().zip(speeds(&before, &now)) {
+                *fastest = fastest.max(speed);
+            }
+            before = now;
+        }
+        // The tick that has the seam in its middle.
+        let end = self.skinned(clip, duration - 0.5 * TICK)?;
+        let start = self.skinned(clip, 0.5 * TICK)?;
+        let seams = speeds(&end, &start).into_iter().zip(within);
+        let seams = seams.map(|(speed, within)| Seam { speed, within });
+        let worst = seams.max_by(|a, b| a.excess().total_cmp(&b.excess()));
+        Ok(worst.unwrap_or_default())
+    }
+
+    fn skinned(&self, clip: &Clip, time: f64) -> Result<Vec<DVec3>, BattleError> {
+        let skeleton = &self.creature.skeleton;
+        let mut pose: Pose = skeleton.rest_pose();
+        clip.sample_into(time, Playback::Clamp, &mut pose)?;
+        let palette: Palette = skeleton.palette(&pose)?;
+        let mesh = &self.creature.collider;
+        let place = |v: &VertexId| skin_vertex_reference(mesh, palette.matrices(), *v);
+        Ok(self.vertices.iter().filter_map(place).collect())
+    }
+}
+
+/// Of the vertices that a joint moves more than any other joint does, the outermost along each axis.
+fn outermost(mesh: &ColliderMesh) -> Vec<VertexId> {
+    let mut by_joint: BTreeMap<u32, [VertexId; 6]> = BTreeMap::new();
+    let along = |v: VertexId, axis: usize| {
+        let coordinate = mesh.positions()[v.index()][axis / 2];
+        if axis.is_multiple_of(2) {
+            coordinate
+        } else {
+            -coordinate
+        }
+    };
+    for index in 0..mesh.positions().len() {
+        let vertex = VertexId(index as u32);
+        let strongest = mesh.influences(vertex).max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((JointId(joint), _)) = strongest else {
+            continue;
+        };
+        let farthest = by_joint.entry(joint).or_insert([vertex; 6]);
+        for (axis, best) in farthest.iter_mut().enumerate() {
+            if along(vertex, axis) > along(*best, axis) {
+                *best = vertex;
+            }
+        }
+    }
+    let mut vertices: Vec<VertexId> = by_joint.into_values().flatten().collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
+#[cfg(test)]
+mod tests {
+    use clamber_surface::rig::{Channel, Interpolation, Keyframes};
+    use glam::Vec3;
+
+    use super::*;
+    use crate::beast::beast;
+
+    /// Ticks in a minute of a clip, and the longest step of its time in one of them.
+    fn longest_step(repeat: Repeat, duration: f64) -> f64 {
+        let at = |tick: u32| repeat.time(f64::from(tick) * TICK, duration);
+        let steps = (0..3600).map(|tick| (at(tick + 1) - at(tick)).abs());
+        steps.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn back_and_forth_covers_the_clip_and_never_jumps() {
+        for duration in [0.05, 0.25, 0.62, 3.0] {
+            let times: Vec<f64> = (0..36_000)
+                .map(|n| Repeat::BackAndForth.time(f64::from(n) * 0.001, duration))
+                .collect();
+            let (low, high) = times
+                .iter()
+                .fold((f64::INFINITY, 0.0f64), |(low, high), t| {
+                    (low.min(*t), high.max(*t))
+                });
+            assert!((0.0..1e-4).contains(&low), "{duration}: begins at {low}");
+            assert!(
+                (duration - 1e-4..=duration).contains(&high),
+                "{duration}: ends at {high}"
+            );
+            // No faster than forwards, and no change of speed from one moment to the next.
+            let speeds: Vec<f64> = times.windows(2).map(|w| (w[1] - w[0]) / 0.001).collect();
+            let fastest = speeds.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            assert!(fastest < 1.0 + 1e-9, "{duration}: {fastest} of its speed");
+            let jerk = speeds.windows(2).map(|w| (w[1] - w[0]).abs());
+            let jerk = jerk.fold(0.0, f64::max);
+            assert!(jerk < 0.021, "{duration}: speed changes by {jerk} in 1 ms");
+        }
+    }
+
+    #[test]
+    fn clips_of_a_creature_are_measured() {
+        let creature = beast(1_000);
+        let (low, high) = creature.bounds(&creature.skeleton.rest_pose()).unwrap();
+        let height = f64::from(high.y - low.y);
+        let probe = SeamProbe::new(&creature, height);
+        for clip in &creature.clips {
+            let seam = probe.measure(clip).unwrap();
+            assert_eq!(seam.repeat(), Repeat::Loop, "{}: {seam:?}", clip.name);
+        }
+        // A second's way across its own height, and back to the beginning in no time.
+        let way = Vec3::new(height as f32, 0.0, 0.0);
+        let mut joints = creature.skeleton.joints().iter();
+        let root = joints.position(|joint| joint.parent.is_none()).unwrap();
+        let rest = creature.skeleton.joints()[root].rest.translation;
+        let there = Keyframes::Translation(vec![rest, rest + way]);
+        let linear = Interpolation::Linear;
+        let joint = JointId(root as u32);
+        let channel = Channel::new(joint, linear, vec![0.0, 1.0], there).unwrap();
+        let seam = probe.measure(&Clip::new("leap", vec![channel])).unwrap();
+        assert!((seam.within - 1.0).abs() < 1e-3, "{seam:?}");
+        assert!((58.0..60.0).contains(&seam.speed), "{seam:?}");
+        assert_eq!(seam.repeat(), Repeat::BackAndForth);
+    }
+
+    #[test]
+    fn only_a_loop_jumps_at_its_end() {
+        assert!(longest_step(Repeat::Loop, 1.3) > 1.2);
+        assert!(longest_step(Repeat::BackAndForth, 1.3) <= TICK + 1e-9);
+    }
+
+    #[test]
+    fn a_seam_is_judged_by_the_clip_around_it() {
+        let seam = |speed, within| Seam { speed, within }.repeat();
+        assert_eq!(seam(12.0, 1.0), Repeat::BackAndForth);
+        assert_eq!(seam(1.0, 1.0), Repeat::Loop);
+        // A quick clip may be quick at its seam; a still one may creep.
+        assert_eq!(seam(12.0, 11.0), Repeat::Loop);
+        assert_eq!(seam(0.005, 0.0), Repeat::Loop);
+    }
+}
