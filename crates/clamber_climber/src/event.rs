@@ -81,7 +81,7 @@ pub enum ClimberEvent {
     },
     /// Caught between obstacles that leave no room.
     Crushed {
-        /// How deep they overlap beyond the skin width, metres.
+        /// How deep they overlap beyond the margin, metres.
         depth: f64,
     },
     /// Lost hit points.
@@ -137,7 +137,7 @@ pub struct StepReport {
     pub pushes: Vec<Push>,
     /// By how much contacts moved it away from where it was carried and wanted to go.
     pub pushed_out: DVec3,
-    /// How deep anything is below its skin width, metres: 0 but when crushed, or when rounds did not suffice.
+    /// How deep anything is in the core, below the margin, metres: 0 but when crushed, or when rounds did not suffice.
     pub penetration: f64,
     /// Rounds that the movement took.
     pub rounds: u32,

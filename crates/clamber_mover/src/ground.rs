@@ -180,11 +180,11 @@ impl Mover<'_> {
 pub struct StepUp {
     /// The body, the slope that a tread may have, and how high a step may be (the probe's reach).
     pub probe: GroundProbe,
-    /// Where the walk began, and where it was to lead, in world space.
+    /// Where the walk began, in world space: where the ground has carried the body by the tick's end.
     pub from: DVec3,
-    /// Where it was to lead.
+    /// Where it was to lead, in world space.
     pub target: DVec3,
-    /// Where it was blocked.
+    /// Where it was blocked, in world space.
     pub position: DVec3,
 }
 

@@ -1,7 +1,8 @@
 use std::ops::Range;
 
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+    WorldCapsule,
 };
 use glam::DVec3;
 
@@ -109,6 +110,12 @@ impl<'a> Mover<'a> {
     pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
         self.motion(touch.obstacle, &touch.contact.material)
             .map_or(DVec3::ZERO, |motion| motion.velocity)
+    }
+
+    /// Fixes something at `place`, in world space, to the material of a contact. [`Attachment::follow`] it in later ticks.
+    pub fn attach(&self, touch: &Touch, place: DVec3) -> Attachment {
+        let motion = self.motion(touch.obstacle, &touch.contact.material);
+        Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), place)
     }
 
     /// The speed, metres a second, that an impulse of 1 N s along a unit `direction` gives to a material point; 0 for

@@ -7,8 +7,8 @@ use crate::half_spaces::{HalfSpace, project_onto_half_spaces};
 const STOPS: usize = 24;
 
 impl Mover<'_> {
-    /// The nearest velocity that goes into nothing that the last movement touched, the velocity of that included, nor
-    /// beyond one more half-space of velocities.
+    /// The nearest velocity that does not lead into anything that the last movement touched, as fast as that moves
+    /// itself; `limit` is one more half-space of velocities to stay in.
     ///
     /// Relative to `frame`, the velocity of the support or of the frame that the body is in, never faster than the body and
     /// the fastest of the obstacles together: between half-spaces that close like scissors the nearest velocity has no

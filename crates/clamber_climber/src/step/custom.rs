@@ -58,8 +58,8 @@ impl Tick<'_> {
         let modes = self.rules.modes;
         match modes.iter().find(|mode| mode.id() == id) {
             Some(mode) => mode.step(&mut ModeContext { tick: self }),
-            // A step without the handler knows no such mode.
-            None => self.leave(ClimberMode::Falling),
+            // A step without the handler knows no such mode: the climber goes on through the air as fast as it was.
+            None => ModeContext { tick: self }.let_go(),
         }
     }
 }
@@ -111,9 +111,16 @@ impl<'a> ModeContext<'_, 'a> {
         &mut self.tick.mover
     }
 
-    /// Where the climber is before its own movement, in world space: where its support has carried it, else where it was.
+    /// Where the climber is before its own movement, in world space, as of the tick's end: where its support has carried
+    /// it, else where [`ModeContext::base_velocity`] has. Obstacles stand there at that time, too. What it is after its
+    /// movement is in [`ModeContext::state`].
     pub fn position(&self) -> DVec3 {
-        self.tick.place()
+        let tick = &self.tick;
+        match &tick.carried {
+            Some(carried) => carried.position,
+            None if tick.has_moved => tick.state.position,
+            None => tick.state.position + tick.state.base_velocity * tick.dt(),
+        }
     }
 
     /// Its velocity before its own movement, in world space, metres a second, a blow included: of its support, and its own.
@@ -125,10 +132,16 @@ impl<'a> ModeContext<'_, 'a> {
         }
     }
 
-    /// Velocity of what supports it, or supported it last.
+    /// Velocity of what supports it, or supported it last: what its own motion is measured against.
     pub fn base_velocity(&self) -> DVec3 {
         let carried = self.tick.carried;
         carried.map_or(self.tick.state.base_velocity, |carried| carried.velocity())
+    }
+
+    /// Measures its own motion against another velocity from now on, in world space, metres a second: of the water that
+    /// it swims in, of the wind. A support that it has, or gets, counts in its place.
+    pub fn set_base_velocity(&mut self, velocity: DVec3) {
+        self.tick.state.base_velocity = velocity;
     }
 
     /// Sweeps the body to a target at the tick's end, in world space, and says where it came. `velocity` is what it
@@ -144,9 +157,11 @@ impl<'a> ModeContext<'_, 'a> {
         moved
     }
 
-    /// [`ModeContext::move_to`] where a velocity leads in this tick.
+    /// [`ModeContext::move_to`] where a velocity leads in this tick: in world space, that of the support included.
     pub fn move_by(&mut self, velocity: DVec3) -> Moved {
-        self.move_to(self.position() + velocity * self.dt(), velocity)
+        // Where it is carried is in the position already.
+        let own = velocity - self.base_velocity();
+        self.move_to(self.position() + own * self.dt(), velocity)
     }
 
     /// What the last movement touched.
@@ -169,14 +184,23 @@ impl<'a> ModeContext<'_, 'a> {
 
     /// Attaches the climber to a contact, which carries it from now on, at its position: before it stands or holds.
     pub fn attach(&mut self, touch: &Touch) {
-        let place = self.tick.state.position;
+        let place = if self.tick.has_moved {
+            self.tick.state.position
+        } else {
+            self.position()
+        };
         self.tick.attach(touch, place);
+    }
+
+    /// Attaches the climber to ground and puts it there, in the mode that it is in.
+    pub fn attach_to_ground(&mut self, ground: &Ground) {
+        self.tick.state.position = ground.position;
+        self.tick.attach(&ground.touch, ground.position);
     }
 
     /// Attaches the climber to ground and puts it there; answer with this to stand.
     pub fn stand_on(&mut self, ground: &Ground) -> NextMode {
-        self.tick.state.position = ground.position;
-        self.tick.attach(&ground.touch, ground.position);
+        self.attach_to_ground(ground);
         NextMode::Change(ClimberMode::Standing)
     }
 
@@ -186,9 +210,20 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.leave(ClimberMode::Falling)
     }
 
-    /// Lets go of what supports the climber, and goes on in this mode.
+    /// [`ModeContext::fall`] with the velocity that it has.
+    pub fn let_go(&mut self) -> NextMode {
+        self.detach();
+        NextMode::Change(ClimberMode::Falling)
+    }
+
+    /// Lets go of what supports the climber, and goes on in this mode, with the velocity that it has.
     pub fn detach(&mut self) {
-        let velocity = self.velocity();
+        let moved = self.tick.has_moved;
+        let velocity = if moved {
+            self.tick.state.velocity
+        } else {
+            self.velocity()
+        };
         self.tick.detach();
         self.tick.state.velocity = velocity;
     }

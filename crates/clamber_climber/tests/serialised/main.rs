@@ -13,7 +13,10 @@ mod creature;
 #[expect(dead_code, reason = "the random runs look at more of it")]
 mod scene;
 
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_climber::{
+    Blow, Climber, ClimberConfig, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode,
+    StepRules,
+};
 use clamber_world::ObstacleId;
 use glam::DVec3;
 use scene::Scene;
@@ -114,4 +117,57 @@ fn inputs_keep_every_bit() {
         assert_eq!(bits(&read), bits(&input), "{input:?}");
         assert_eq!(read.blow.is_some(), input.blow.is_some());
     }
+}
+
+/// A mode of a game's own that rises for a second, which it remembers.
+struct Rise;
+
+impl CustomMode for Rise {
+    fn id(&self) -> u16 {
+        700
+    }
+
+    fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
+        context.memory()[7] = 1.0;
+        context.input().actions == 1 << 31
+    }
+
+    fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
+        context.memory()[7] -= context.dt();
+        if context.memory()[7] <= 0.0 {
+            return context.let_go();
+        }
+        context.move_by(context.input().aim);
+        NextMode::Stay
+    }
+}
+
+#[test]
+fn a_mode_of_a_game_goes_on_with_the_same_bits() {
+    let mut climber = Climber::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
+    let rules = StepRules::with_modes(&[&Rise]);
+    let input = ClimberInput {
+        actions: 1 << 31,
+        aim: DVec3::new(0.1, 1.7, -0.3),
+        ..ClimberInput::IDLE
+    };
+    let mut rose = 0;
+    for tick in 0..90 {
+        let mut other = Climber::new(copy(climber.config()), DVec3::ZERO).unwrap();
+        other.restore(copy(climber.state())).unwrap();
+        let input = if tick < 5 {
+            copy(&input)
+        } else {
+            ClimberInput {
+                actions: 0,
+                ..input
+            }
+        };
+        climber.step_with(&input, &[], &rules, 1.0 / 60.0).unwrap();
+        other.step_with(&input, &[], &rules, 1.0 / 60.0).unwrap();
+        let (a, b) = (climber.state(), other.state());
+        assert_eq!(a.fingerprint(), b.fingerprint(), "tick {tick}: {a:?} {b:?}");
+        rose += u32::from(a.mode == ClimberMode::Custom(700));
+    }
+    assert!((59..=60).contains(&rose), "{rose}");
 }

@@ -1,0 +1,90 @@
+//! A dash: a quarter of a second at 12 m/s where the climber faces, then a second until the next.
+//!
+//! On the ground it follows the ground, and is relative to it: a platform that turns takes the dash round. In the air it
+//! is level.
+
+use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
+
+/// Numbers of [`ModeContext::memory`]: seconds that are left of the dash, and until the next may begin.
+const LEFT: usize = 0;
+const REST: usize = 1;
+
+pub(crate) struct Dash {
+    /// Bit of [`ClimberInput::actions`](clamber::climber::ClimberInput::actions) that begins it.
+    pub(crate) action: u32,
+    /// Metres a second.
+    pub(crate) speed: f64,
+    /// Seconds.
+    pub(crate) duration: f64,
+    /// Seconds from the end of one to the next.
+    pub(crate) cooldown: f64,
+}
+
+impl Default for Dash {
+    fn default() -> Self {
+        Self {
+            action: 1,
+            speed: 12.0,
+            duration: 0.25,
+            cooldown: 1.0,
+        }
+    }
+}
+
+impl CustomMode for Dash {
+    fn id(&self) -> u16 {
+        1
+    }
+
+    fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
+        let rest = (context.memory()[REST] - context.dt()).max(0.0);
+        context.memory()[REST] = rest;
+        let input = *context.input();
+        let is_free = matches!(
+            context.state().mode,
+            ClimberMode::Standing | ClimberMode::Sliding | ClimberMode::Falling
+        );
+        if !is_free || rest > 0.0 || input.actions & self.action == 0 {
+            return false;
+        }
+        context.face(input.walk);
+        context.memory()[LEFT] = self.duration;
+        true
+    }
+
+    fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
+        context.memory()[REST] = self.cooldown;
+        if context.input().blow.is_some() {
+            return context.let_go();
+        }
+        let left = context.memory()[LEFT] - context.dt();
+        context.memory()[LEFT] = left.max(0.0);
+        // Half a tick, since tenths of seconds are no whole ticks, nor exact.
+        let is_last = left < 0.5 * context.dt();
+        let ground = context.config().ground;
+        // The heading turns with what the climber stands on.
+        let along = context.state().heading;
+        let target = context.position() + along * (self.speed * context.dt());
+        // At the end it keeps the speed of a walk, or it would slide on.
+        let speed = if is_last {
+            ground.walk_speed
+        } else {
+            self.speed
+        };
+        let velocity = context.base_velocity() + along * speed;
+        context.move_to(target, velocity);
+        let was_on_ground = context.state().support.is_some();
+        let reach = if was_on_ground {
+            ground.snap_distance
+        } else {
+            0.0
+        };
+        match context.ground_below(reach) {
+            Some(ground) if is_last => return context.stand_on(&ground),
+            Some(ground) => context.attach_to_ground(&ground),
+            None if is_last => return context.let_go(),
+            None => context.detach(),
+        }
+        NextMode::Stay
+    }
+}

@@ -1,0 +1,96 @@
+//! A wall run: up to 1.5 s along a wall, from the air, until the climber has stood on its feet again.
+
+use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
+use clamber::mover::Touch;
+use glam::DVec3;
+
+/// Number of [`ModeContext::memory`]: seconds that it has run since it last stood.
+const RAN: usize = 3;
+
+/// How far from the body the wall may be, metres.
+const REACH: f64 = 0.15;
+
+/// Sine of how far a wall may lean: 12 degrees.
+const LEAN: f64 = 0.2;
+
+/// Metres a second, and the slowest at which it begins.
+const SPEED: f64 = 5.0;
+const LEAST_SPEED: f64 = 1.5;
+
+/// Seconds.
+const DURATION: f64 = 1.5;
+
+/// As long as this bit of the input's `actions` is held.
+pub(crate) struct WallRun {
+    pub(crate) action: u32,
+}
+
+/// The nearest wall beside the climber. Beyond its end there is only its edge, which is none.
+fn wall_beside(context: &mut ModeContext<'_, '_>) -> Option<Touch> {
+    let (body, up, position) = (context.body(), context.up(), context.position());
+    let touches = context.mover().overlap(&body, position, REACH);
+    let is_wall = |touch: &&Touch| {
+        touch.normal.dot(up).abs() < LEAN && touch.normal.dot(touch.contact.normal) > 0.9
+    };
+    let distance = |touch: &&Touch| touch.contact.distance;
+    let walls = touches.iter().filter(is_wall);
+    let nearest = walls.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.copied()
+}
+
+/// The level part of a vector along the face that is touched, not round its edges.
+fn along(wall: &Touch, vector: DVec3, up: DVec3) -> DVec3 {
+    let level = wall.contact.normal.cross(up).normalize_or_zero();
+    level * level.dot(vector)
+}
+
+impl CustomMode for WallRun {
+    fn id(&self) -> u16 {
+        3
+    }
+
+    fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
+        let (mode, input) = (context.state().mode, *context.input());
+        if mode == ClimberMode::Standing {
+            context.memory()[RAN] = 0.0;
+        }
+        let may_run = context.memory()[RAN] + 0.5 * context.dt() < DURATION;
+        if mode != ClimberMode::Falling || input.actions & self.action == 0 || !may_run {
+            return false;
+        }
+        let own = context.velocity() - context.base_velocity();
+        let up = context.up();
+        let run = wall_beside(context).map(|wall| along(&wall, own, up));
+        let run = run.filter(|run| run.length() > LEAST_SPEED);
+        let run = run.filter(|run| run.dot(input.walk) > 0.5 * run.length());
+        run.inspect(|run| context.face(*run)).is_some()
+    }
+
+    fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
+        let (input, velocity, dt) = (*context.input(), context.velocity(), context.dt());
+        let (heading, up) = (context.state().heading, context.up());
+        let wants = input.actions & self.action != 0 && input.blow.is_none();
+        let (Some(wall), true) = (wall_beside(context), wants) else {
+            return context.let_go();
+        };
+        if input.jump {
+            let jump = (wall.normal + up) * context.config().ground.jump_speed;
+            return context.fall(velocity + jump);
+        }
+        context.memory()[RAN] += dt;
+        let is_last = context.memory()[RAN] + 0.5 * dt > DURATION;
+        // Measured against the wall from now on, which may move.
+        context.attach(&wall);
+        let run = along(&wall, heading, up).normalize_or_zero() * SPEED;
+        let gap = (wall.contact.distance - context.body().radius).max(0.0);
+        let toward = wall.normal * (gap / dt).min(SPEED);
+        let base = context.base_velocity();
+        context.move_by(base + run - toward);
+        context.face(run);
+        let own = context.state().velocity - base;
+        if is_last || own.dot(run) < 0.5 * run.length_squared() {
+            return context.let_go();
+        }
+        NextMode::Stay
+    }
+}

@@ -1,0 +1,225 @@
+//! A character controller of one's own on the mover alone: it walks, jumps, falls, and rides the walking giant.
+//!
+//! Jolt and box3d call this layer a character's mover. Everything above it is here: one struct, one tick.
+
+use clamber::mover::{Ground, GroundProbe, Mover, MoverBody, MoverMemory, Path, StepUp, Walking};
+use clamber::prelude::*;
+use clamber_scenes::giant::giant;
+use glam::DVec3;
+
+const DT: f64 = 1.0 / 60.0;
+const GRAVITY: f64 = 9.81;
+const JUMP: f64 = 4.0;
+const BODY: MoverBody = MoverBody::ball(0.4, 0.01);
+/// 50 degrees.
+const MAX_SLOPE: f64 = 0.87;
+const STEP_HEIGHT: f64 = 0.3;
+/// How far below the feet a walking character still finds the ground, metres.
+const SNAP: f64 = 0.2;
+/// How far a material point may be from where it was left, metres: more than rounding, less than is seen.
+const SLACK: f64 = 0.01;
+
+/// Of the run below.
+const JUMP_TICK: u32 = 360;
+
+struct Controller {
+    position: DVec3,
+    velocity: DVec3,
+    /// Velocity of the ground, or of the last one: its own motion is measured against this.
+    base: DVec3,
+    /// `None` in the air.
+    ground: Option<Attachment>,
+    memory: MoverMemory,
+    /// Deepest that the core has been in anything, metres.
+    deepest: f64,
+}
+
+impl Controller {
+    /// In the air.
+    fn at(position: DVec3) -> Self {
+        Self {
+            position,
+            velocity: DVec3::ZERO,
+            base: DVec3::ZERO,
+            ground: None,
+            memory: MoverMemory::default(),
+            deepest: 0.0,
+        }
+    }
+
+    /// One tick. `walk` is a level velocity over the ground.
+    fn step(
+        &mut self,
+        walk: DVec3,
+        jumps: bool,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        let mut memory = std::mem::take(&mut self.memory);
+        let mut mover = Mover::new(obstacles, DT, &mut memory)?;
+        let carried = self.be_carried(&mover);
+        match carried {
+            Some(place) if !jumps => self.walk(&mut mover, place, walk),
+            _ => {
+                if carried.is_some() {
+                    self.velocity = self.base + walk + DVec3::Y * JUMP;
+                    self.ground = None;
+                }
+                self.fly(&mut mover);
+            }
+        }
+        self.memory = memory;
+        Ok(())
+    }
+
+    /// Where the ground takes it by the tick's end; `None` in the air, and where the ground is gone.
+    fn be_carried(&mut self, mover: &Mover<'_>) -> Option<DVec3> {
+        let mut ground = self.ground.take()?;
+        let followed = ground.follow(mover.obstacle(ground.obstacle)?, DT, SLACK)?;
+        self.base = followed.motion.velocity;
+        self.ground = Some(ground);
+        Some(ground.place())
+    }
+
+    fn walk(&mut self, mover: &mut Mover<'_>, place: DVec3, walk: DVec3) {
+        let target = place + walk * DT;
+        // Slopes up to the limit are climbed, steeper ones are walls.
+        let walking = Some(Walking {
+            up: DVec3::Y,
+            max_slope: MAX_SLOPE,
+        });
+        let path = Path {
+            walking,
+            frame: place - self.position,
+            ..Path::new(BODY, self.position, target)
+        };
+        let moved = mover.slide(&path);
+        self.deepest = self.deepest.max(moved.penetration);
+        self.position = moved.position;
+        self.velocity = mover.clip_velocity(self.base + walk, self.base, None);
+        if walk == DVec3::ZERO {
+            // Stays on its material point, or leans where it is pushed.
+            self.ground = self.ground.map(|ground| ground.moved_to(moved.position));
+            return;
+        }
+        let over_step = mover.step_up(&StepUp {
+            probe: probe(STEP_HEIGHT),
+            from: place,
+            target,
+            position: moved.position,
+        });
+        self.position = over_step.unwrap_or(moved.position);
+        self.ground = None;
+        if let Some(ground) = mover.find_ground(&probe(SNAP), self.position) {
+            self.stand_on(mover, &ground);
+        }
+    }
+
+    fn fly(&mut self, mover: &mut Mover<'_>) {
+        let change = DVec3::NEG_Y * (GRAVITY * DT);
+        let target = self.position + (self.velocity + change * 0.5) * DT;
+        let path = Path {
+            frame: self.base * DT,
+            ..Path::new(BODY, self.position, target)
+        };
+        let moved = mover.slide(&path);
+        self.deepest = self.deepest.max(moved.penetration);
+        self.position = moved.position;
+        let falling = self.velocity + change;
+        self.velocity = mover.clip_velocity(falling, self.base, None);
+        if let Some(ground) = mover.find_ground(&probe(0.0), moved.position) {
+            let approach = falling - mover.velocity_of(&ground.touch);
+            if approach.dot(ground.touch.normal) < 0.0 {
+                self.stand_on(mover, &ground);
+            }
+        }
+    }
+
+    fn stand_on(&mut self, mover: &Mover<'_>, ground: &Ground) {
+        self.position = ground.position;
+        self.base = mover.velocity_of(&ground.touch);
+        self.ground = Some(mover.attach(&ground.touch, ground.position));
+    }
+}
+
+fn probe(reach: f64) -> GroundProbe {
+    GroundProbe {
+        body: BODY,
+        up: DVec3::Y,
+        max_slope: MAX_SLOPE,
+        reach,
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let giant = giant()?;
+    let clip = giant.clip_like(&["walk"]).ok_or("no walk")?;
+    let rest = giant.skeleton.rest_pose();
+    let pace = DVec3::Z * giant.walk_speed.ok_or("no speed")?;
+    let mut skin = SkinnedSurface::new(giant.collider.clone());
+    // Above the back, as fast as the giant.
+    let mut player = Controller::at(DVec3::new(0.0, 36.0, 0.0));
+    (player.velocity, player.base) = (pace, pace);
+    let (mut rode, mut drift, mut walked, mut nearest) = (0, 0.0f64, 0.0, f64::INFINITY);
+    let (mut jump_from, mut jump_height) = (DVec3::ZERO, 0.0f64);
+    for tick in 0..540_u32 {
+        let time = f64::from(tick) * DT;
+        let palette = giant
+            .skeleton
+            .palette(&clip.sample(&rest, time, Playback::Loop)?)?;
+        skin.advance(&palette, Similarity::from_translation(pace * time))?;
+        let (walk, jumps) = match tick {
+            120..240 => (DVec3::Z, false),
+            JUMP_TICK => (DVec3::ZERO, true),
+            _ => (DVec3::ZERO, false),
+        };
+        let (ground, start) = (player.ground, player.position);
+        player.step(walk, jumps, &[(ObstacleId(1), &skin)])?;
+
+        // How far it went over the skin, by where the skin alone would have carried it.
+        if let (Some(mut ground), Some(_)) = (ground, player.ground) {
+            ground.follow(&skin, DT, SLACK).ok_or("the skin is gone")?;
+            let went = player.position.distance(ground.place());
+            rode += 1;
+            if walk != DVec3::ZERO {
+                walked += went;
+            } else if tick < JUMP_TICK {
+                // It comes down in a fold of the shoulder, which may push it by millimetres.
+                drift = drift.max(went);
+            }
+        }
+        // How high it jumped, against the velocity of the skin that it left.
+        if jumps {
+            jump_from = start;
+        }
+        if tick >= JUMP_TICK && player.ground.is_none() {
+            let left = jump_from + player.base * (f64::from(tick - JUMP_TICK + 1) * DT);
+            jump_height = jump_height.max((player.position - left).y);
+        }
+        let skin_is: &dyn Obstacle = &skin;
+        let closest = skin_is
+            .closest_point(player.position, 100.0)
+            .ok_or("no skin")?;
+        nearest = nearest.min(closest.distance);
+    }
+    let height = JUMP * JUMP / (2.0 * GRAVITY);
+    println!(
+        "rode for {:.1} s, drift {:.1e} m a tick",
+        f64::from(rode) * DT,
+        drift
+    );
+    println!("walked {walked:.2} m in 2 s");
+    println!("jumped {jump_height:.3} m high, v^2/2g is {height:.3} m");
+    println!(
+        "nearest to the skin {nearest:.4} m, core in it by {:.1e} m",
+        player.deepest
+    );
+    assert!(player.ground.is_some() && rode > 400, "fell off: {rode}");
+    assert!(drift < 1e-5, "{drift}");
+    assert!((walked - 2.0).abs() < 0.2, "{walked}");
+    assert!((jump_height - height).abs() < 1e-3, "{jump_height}");
+    assert!(
+        nearest > BODY.core_radius() - 1e-4 && player.deepest < 1e-4,
+        "{nearest}"
+    );
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! What every mode has to do. That its state can be restored in any tick is checked by [`Scene::step`].
+
+use clamber::climber::{Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, StepRules};
+use clamber::prelude::Climber;
+use glam::DVec3;
+
+use crate::modes::dash::Dash;
+use crate::scene::{DASH, SWIM, Scene, VAULT, WALL_RUN};
+use crate::{dash, swim, vault, wall_run};
+
+/// A mode, a scene that is in the midst of it, and how that goes on.
+type Play = (ClimberMode, fn(DVec3) -> Scene, fn(&mut Scene));
+
+const PLAYS: [Play; 4] = [
+    (DASH, dash::play, dash::end),
+    (VAULT, vault::play, vault::end),
+    (WALL_RUN, wall_run::play, wall_run::end),
+    (SWIM, swim::play, swim::end),
+];
+
+const FRAME: DVec3 = DVec3::new(25.0, -10.0, 13.0);
+
+#[test]
+fn in_a_frame_that_moves_every_mode_is_the_same() {
+    for (mode, play, end) in PLAYS {
+        let run = |frame| {
+            let mut scene = play(frame);
+            assert_eq!(scene.mode(), mode, "{frame}");
+            end(&mut scene);
+            assert_ne!(scene.mode(), mode, "{frame}");
+            scene
+        };
+        let (still, moving) = (run(DVec3::ZERO), run(FRAME));
+        for (tick, (a, b)) in still.trace.iter().zip(&moving.trace).enumerate() {
+            let apart = [a.0.distance(b.0), a.1.distance(b.1)];
+            assert!(
+                apart[0] < 1e-6 && a.2 == b.2,
+                "{mode:?} tick {tick}: {a:?} {b:?}"
+            );
+            assert!(apart[1] < 1e-5, "{mode:?} tick {tick}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn a_blow_ends_every_mode_and_adds_its_velocity() {
+    for (mode, play, _) in PLAYS {
+        let mut scene = play(DVec3::ZERO);
+        assert_eq!(scene.mode(), mode);
+        let before = scene.velocity();
+        let blow = Blow {
+            velocity: DVec3::new(0.0, 2.0, 3.0),
+            ..Blow::default()
+        };
+        scene.step(&ClimberInput {
+            blow: Some(blow),
+            ..ClimberInput::IDLE
+        });
+        let state = scene.climber.state();
+        assert_eq!(state.mode, ClimberMode::Falling, "{mode:?}");
+        assert!(state.support.is_none(), "{mode:?}");
+        let change = state.velocity - before - blow.velocity + DVec3::Y * 9.81 / 60.0;
+        assert!(change.length() < 1e-6, "{mode:?}: {change}");
+    }
+}
+
+#[test]
+fn without_its_handler_every_mode_ends_in_a_fall_as_fast_as_it_was() {
+    for (mode, play, _) in PLAYS {
+        for frame in [DVec3::ZERO, FRAME] {
+            let mut scene = play(frame);
+            let before = scene.velocity();
+            scene.step_without(&ClimberInput::IDLE, Some(mode));
+            let state = *scene.climber.state();
+            assert!(!state.mode.is_custom(), "{mode:?}: {:?}", state.mode);
+            let mut change = scene.velocity() - before;
+            // In the dash it is on the ground, and lands at once.
+            change.y = 0.0;
+            assert!(change.length() < 1e-6, "{mode:?} {frame}: {change}");
+        }
+    }
+}
+
+#[test]
+fn two_modes_of_one_number_are_an_error_and_change_nothing() {
+    let scene = Scene::new(DVec3::ZERO, DVec3::Y);
+    let mut climber: Climber = scene.climber;
+    let before = *climber.state();
+    let (one, other) = (
+        Dash::default(),
+        Dash {
+            speed: 3.0,
+            ..Dash::default()
+        },
+    );
+    let modes: [&dyn CustomMode; 2] = [&one, &other];
+    let rules = StepRules::with_modes(&modes);
+    let refused = climber.step_with(&ClimberInput::IDLE, &[], &rules, 0.1);
+    assert_eq!(refused, Err(ClimberError::SameMode(1)));
+    assert_eq!(*climber.state(), before);
+}
