@@ -141,6 +141,7 @@ impl Tick<'_> {
         self.state.arm = 0.0;
         self.state.pull_up = 0.0;
         self.state.calm = 0.0;
+        self.state.shoved = false;
         self.carried = None;
     }
 

@@ -12,7 +12,7 @@ const EXHAUSTED: f64 = 1.0;
 
 impl Tick<'_> {
     /// What struck it since the last tick. A blow above the knocking speed knocks it over, if it can tumble. In the air any
-    /// other adds its velocity. On its feet it is moved along the ground, and off it where the blow points off it. On a
+    /// other adds its velocity. On its feet it slides along the ground until friction has braked it, and is lifted off it where the blow points off it. On a
     /// hold it hangs on and swings; a blow faster than a jump off the hold takes it off. From a ledge, too; a weaker one it
     /// withstands.
     pub(super) fn be_struck(&mut self) {
@@ -39,6 +39,7 @@ impl Tick<'_> {
             if mode == ClimberMode::Standing || mode == ClimberMode::Hanging {
                 self.state.velocity += blow.velocity;
             }
+            self.state.shoved |= mode == ClimberMode::Standing && blow.velocity != DVec3::ZERO;
         } else {
             self.state.velocity += blow.velocity;
         }
