@@ -20,7 +20,12 @@ pub(super) fn positive(name: &'static str, x: f64) -> Result<(), ClimberError> {
 }
 
 pub(super) fn not_negative(name: &'static str, x: f64) -> Result<(), ClimberError> {
-    check(name, "not negative and finite", x, x >= 0.0 && x.is_finite())
+    check(
+        name,
+        "not negative and finite",
+        x,
+        x >= 0.0 && x.is_finite(),
+    )
 }
 
 /// A limit that may be infinite: never reached.

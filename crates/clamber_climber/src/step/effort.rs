@@ -25,7 +25,7 @@ impl Tick<'_> {
         let knocks = self.config.tumble.map(|tumble| speed > tumble.knock_speed);
         let takes_off = mode.is_holding() && speed > self.holds_against();
         if knocks == Some(true) {
-            self.state.velocity += blow.velocity;
+            self.state.velocity = self.off_the_ground(self.state.velocity) + blow.velocity;
             if mode != ClimberMode::Tumbling {
                 let next = self.begin_tumbling(blow.by);
                 self.follow_at_once(next);
@@ -44,6 +44,17 @@ impl Tick<'_> {
             self.state.velocity += blow.velocity;
         }
         self.was = self.state.velocity;
+    }
+
+    /// A velocity without its part into the ground underfoot, which has held that up: a climber that is knocked over as it
+    /// walks onto the edge of a step does not bounce off it.
+    fn off_the_ground(&self, velocity: DVec3) -> DVec3 {
+        let Some(support) = self.state.support else {
+            return velocity;
+        };
+        let normal = support.normal_in_world();
+        let into = (velocity - self.state.base_velocity).dot(normal).min(0.0);
+        velocity - normal * into
     }
 
     /// The fastest blow that arms hold against, metres a second.
