@@ -1,7 +1,7 @@
 //! Blows on a climber that stands or holds on.
 
-use clamber_climber::{Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput};
 use clamber_climber::ClimberMode;
+use clamber_climber::{Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput};
 use glam::{DVec3, Vec3};
 
 use crate::common::{tick, v};
@@ -44,7 +44,10 @@ fn a_blow_moves_a_climber_on_its_feet() {
             // Braked by friction all the way down: what slides is not brought to a halt by its feet.
             let expected = speed * speed / (2.0 * run.config().ground.friction);
             let slack = 0.02 * expected + speed / hz;
-            assert!((moved - expected).abs() <= slack, "{told}: {moved} m of {expected} m");
+            assert!(
+                (moved - expected).abs() <= slack,
+                "{told}: {moved} m of {expected} m"
+            );
             assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
             if speed == 50.0 {
                 last = moved;

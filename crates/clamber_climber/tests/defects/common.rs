@@ -113,12 +113,6 @@ impl Obstacle for Mute<'_> {
     }
 }
 
-/// Turned about up.
-pub(crate) fn yaw(angle: f64) -> DQuat {
-    let half = angle * 0.5;
-    DQuat::from_xyzw(0.0, libm::sin(half), 0.0, libm::cos(half))
-}
-
 /// A shape as a triangle mesh of rapier.
 pub(crate) fn trimesh(shape: &Shape) -> ColliderBuilder {
     let corners: Vec<Vector> = shape.positions.iter().map(|p| p.as_vec3()).collect();

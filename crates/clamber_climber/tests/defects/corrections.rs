@@ -41,18 +41,38 @@ fn stepped_up(hz: f64, config: ClimberConfig) -> Run {
     panic!("at {hz} Hz it never stepped up");
 }
 
-/// What a standing climber reports is its support's velocity and, along the ground, its walk.
-fn assert_walks(run: &Run, told: &str) {
-    let state = run.state();
-    let Some(support) = state.support else {
-        panic!("{told}: {:?}", state.mode);
-    };
+/// A tick of walking along Z. What it reports is its support's velocity and its walk along the ground that it walked on, or
+/// walks on now.
+fn assert_walks(run: &mut Run, told: &str) {
     let speed = run.config().ground.walk_speed;
+    let before = *run.state();
+    run.step(&walk(DVec3::Z));
+    let state = run.state();
     let own = state.velocity - state.base_velocity;
-    let off = own.dot(support.normal_in_world());
-    assert!(off.abs() <= 0.01 * speed, "{told}: {off} m/s off the ground, {state:?}");
-    assert!(own.length() <= 1.01 * speed, "{told}: {own} of its own, {state:?}");
-    assert!(own.x.abs() <= 0.01 * speed, "{told}: {own} aside, {state:?}");
+    let is_off = [before, *state].iter().any(|state| state.support.is_none());
+    if is_off {
+        // Over an edge it may leave the ground for a moment, at the speed of its walk.
+        let most = 1.01 * speed + 9.81 * run.stage.dt;
+        assert!(own.length() <= most, "{told}: {own} of its own, {state:?}");
+        return;
+    }
+    let grounds = [before, *state].map(|state| {
+        let support = state
+            .support
+            .unwrap_or_else(|| panic!("{told}: {:?}", state.mode));
+        support.normal_in_world()
+    });
+    let off = grounds.map(|normal| {
+        let along = (DVec3::Z - DVec3::Y * (normal.z / normal.y)).normalize() * speed;
+        // It came down on the ground that it walks on now.
+        let stopped = along - grounds[1] * along.dot(grounds[1]).min(0.0);
+        own.distance(along).min(own.distance(stopped))
+    });
+    let off = off[0].min(off[1]);
+    assert!(
+        off <= 0.01 * speed,
+        "{told}: {own} of its own, off by {off}, {state:?}"
+    );
 }
 
 #[test]
@@ -60,13 +80,16 @@ fn steps_up_do_not_become_velocity() {
     for hz in RATES {
         for (name, config) in configs() {
             for frame in [DVec3::ZERO, v(2.0, 1.0, 0.0), v(0.0, -3.0, 5.0)] {
+                // The frame begins to move all at once.
+                let mut config = config;
+                config.tumble = None;
+                config.ground.throw_acceleration = f64::INFINITY;
                 let mut run = one_step(hz, config, frame);
                 let mut highest = 0.0f64;
                 for k in 0..(1.0 * hz) as u32 {
                     let was = run.position();
-                    run.step(&walk(DVec3::Z));
                     let told = format!("{name} at {hz} Hz in a frame of {frame}, tick {k}");
-                    assert_walks(&run, &told);
+                    assert_walks(&mut run, &told);
                     highest = highest.max((run.position() - was - frame / hz).y);
                     let base = run.state().base_velocity;
                     assert!((base - frame).length() < 0.03, "{told}: support {base}");
@@ -86,8 +109,7 @@ fn steps_down_do_not_become_velocity() {
         let config = ClimberConfig::colossus_climber();
         let mut run = Run::new(stage, config, v(0.1, 0.18, -1.0)).settle();
         for k in 0..(1.5 * hz) as u32 {
-            run.step(&walk(DVec3::Z));
-            assert_walks(&run, &format!("{hz} Hz, tick {k}"));
+            assert_walks(&mut run, &format!("{hz} Hz, tick {k}"));
         }
         assert!(run.feet().y < 0.01, "{hz} Hz: {}", run.feet());
     }
@@ -101,8 +123,8 @@ fn stairs_do_not_become_velocity() {
         let config = ClimberConfig::colossus_climber();
         let mut run = Run::new(stage, config, v(0.1, 0.0, -1.0)).settle();
         for k in 0..3000 {
-            run.step(&walk(DVec3::Z));
-            assert_walks(&run, &format!("{hz} Hz, tick {k} at {}", run.position()));
+            let told = format!("{hz} Hz, tick {k} at {}", run.position());
+            assert_walks(&mut run, &told);
             if run.position().z > 3.6 {
                 break;
             }
@@ -111,23 +133,30 @@ fn stairs_do_not_become_velocity() {
     }
 }
 
-/// How high it flies from where it is, with an input in the first tick.
+/// How high it flies above the ground, or without ground above where it was, with an input in the first tick.
 fn rises(run: &mut Run, first: &ClimberInput, keeps_ground: bool) -> f64 {
     let from = run.position().y;
-    let mut top = from;
+    let mut highest = 0.0f64;
     let ticks = (1.0 / run.stage.dt) as u32;
     for k in 0..ticks {
         let input = if k == 0 { first } else { &IDLE };
         if keeps_ground {
             run.step(input);
-            top = top.max(run.position().y);
+            let place = run.position();
+            let near = run.stage.obstacles(|obstacles| {
+                let all = obstacles.iter();
+                let all = all.filter_map(|(_, obstacle)| obstacle.closest_point(place, 9.0));
+                all.map(|contact| contact.distance)
+                    .fold(f64::INFINITY, f64::min)
+            });
+            highest = highest.max(near - run.config().body.radius);
         } else {
             let dt = run.stage.dt;
             run.climber.step(input, &[], dt).unwrap();
-            top = top.max(run.climber.state().position.y);
+            highest = highest.max(run.climber.state().position.y - from);
         }
     }
-    top - from
+    highest
 }
 
 fn level_blow(tumbles: bool) -> ClimberInput {
@@ -144,6 +173,7 @@ fn level_blow(tumbles: bool) -> ClimberInput {
 
 #[test]
 fn nothing_is_thrown_up_right_after_a_step_up() {
+    let (mut worst, mut all) = (0.0f64, String::new());
     for hz in RATES {
         for (name, config) in configs() {
             for (what, first, keeps_ground) in [
@@ -155,14 +185,17 @@ fn nothing_is_thrown_up_right_after_a_step_up() {
             ] {
                 let mut run = stepped_up(hz, config);
                 let risen = rises(&mut run, &first, keeps_ground);
-                assert!(risen <= 0.05, "{name} at {hz} Hz, {what}: thrown up by {risen} m");
+                all += &format!("\n{name} at {hz} Hz, {what}: thrown up by {risen} m");
+                worst = worst.max(risen);
             }
         }
     }
+    assert!(worst <= 0.05, "{worst}: {all}");
 }
 
 #[test]
-fn a_level_blow_anywhere_on_stairs_throws_nothing_up() {
+fn a_level_blow_right_after_any_step_of_stairs_throws_nothing_up() {
+    let (mut worst, mut all) = (0.0f64, String::new());
     for hz in RATES {
         let stairs = || {
             let shape = Shape::stairs(6, 0.2, 0.3, 4.0);
@@ -171,21 +204,32 @@ fn a_level_blow_anywhere_on_stairs_throws_nothing_up() {
         };
         let mut run = stairs();
         let mut state = *run.state();
+        let (mut has_stepped, mut steps) = (false, 0);
         for k in 0..3000 {
-            let mut other = stairs();
-            other.put(state);
-            let risen = rises(&mut other, &level_blow(true), true);
-            assert!(risen <= 0.05, "{hz} Hz, tick {k} at {}: {risen} m", state.position);
-            for _ in 0..(hz / 30.0) as u32 {
-                run.step(&walk(DVec3::Z));
+            if has_stepped {
+                steps += 1;
+                let mut other = stairs();
+                other.put(state);
+                let risen = rises(&mut other, &level_blow(true), true);
+                if risen > 0.05 {
+                    all += &format!("\n{hz} Hz, tick {k} at {}: {risen} m", state.position);
+                }
+                worst = worst.max(risen);
             }
+            run.step(&walk(DVec3::Z));
+            has_stepped = run.position().y - state.position.y > 0.05;
             state = *run.state();
             if state.position.z > 1.8 {
                 break;
             }
         }
         assert!(state.position.z > 1.8, "{hz} Hz: {}", state.position);
+        assert!(
+            steps > 0,
+            "{hz} Hz: no step-up of more than 0.05 m in a tick"
+        );
     }
+    assert!(worst <= 0.05, "{worst}: {all}");
 }
 
 #[test]
@@ -250,7 +294,10 @@ fn a_climber_as_an_obstacle_is_where_it_is_expected() {
                 let expected = expected + way * 0.5;
                 run.step(&walk(DVec3::Z));
                 let off = expected.distance(run.position());
-                assert!(off <= 0.02 + 0.28, "{name} at {hz} Hz, tick {k}: off by {off}");
+                assert!(
+                    off <= 0.02 + 0.28,
+                    "{name} at {hz} Hz, tick {k}: off by {off}"
+                );
             }
         }
     }

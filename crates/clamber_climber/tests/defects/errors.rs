@@ -4,8 +4,8 @@ use clamber_climber::{
     Climber, ClimberConfig, ClimberError, ClimberInput, ClimberState, HangConfig,
 };
 use clamber_mover::{Mover, MoverBody, MoverMemory};
-use clamber_surface::surface::{Anchor, SkinnedSurface};
 use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::{Anchor, SkinnedSurface};
 use clamber_world::rapier3d::prelude::PhysicsWorld;
 use clamber_world::{Debris, DebrisConfig};
 use glam::{DVec3, Quat, Vec3};
@@ -48,7 +48,10 @@ fn assert_true(told: &str, error: &ClimberError, number: f64) {
             let is_it = found.to_bits() == number.to_bits();
             assert!(is_it, "{told}: {error}: set to {number}");
             assert!(!holds(range, *found), "{told}: {name} is {range}: {error}");
-            assert!(error.to_string().contains(&format!("found {found}")), "{error}");
+            assert!(
+                error.to_string().contains(&format!("found {found}")),
+                "{error}"
+            );
         }
         ClimberError::NotFinite(_) => assert!(!number.is_finite(), "{told}: {error}: {number}"),
         other => panic!("{told}: {other}"),
@@ -77,11 +80,19 @@ fn of_configurations() {
         ("ground.step_height", |c, x| c.ground.step_height = x),
         ("ground.acceleration", |c, x| c.ground.acceleration = x),
         ("ground.friction", |c, x| c.ground.friction = x),
-        ("ground.jump_release_gravity", |c, x| c.ground.jump_release_gravity = x),
-        ("ground.throw_acceleration", |c, x| c.ground.throw_acceleration = x),
+        ("ground.jump_release_gravity", |c, x| {
+            c.ground.jump_release_gravity = x
+        }),
+        ("ground.throw_acceleration", |c, x| {
+            c.ground.throw_acceleration = x
+        }),
         ("grip.reach", |c, x| c.grip.as_mut().unwrap().reach = x),
-        ("grip.max_overhang", |c, x| c.grip.as_mut().unwrap().max_overhang = x),
-        ("grip.hang_acceleration", |c, x| c.grip.as_mut().unwrap().hang_acceleration = x),
+        ("grip.max_overhang", |c, x| {
+            c.grip.as_mut().unwrap().max_overhang = x
+        }),
+        ("grip.hang_acceleration", |c, x| {
+            c.grip.as_mut().unwrap().hang_acceleration = x
+        }),
         ("hang.arm_length", |c, x| {
             c.hang = HangConfig {
                 arm_length: x,
@@ -89,15 +100,31 @@ fn of_configurations() {
             };
         }),
         ("hang.damping", |c, x| c.hang.damping = x),
-        ("ledge.pull_up_time", |c, x| c.ledge.as_mut().unwrap().pull_up_time = x),
+        ("ledge.pull_up_time", |c, x| {
+            c.ledge.as_mut().unwrap().pull_up_time = x
+        }),
         ("ledge.drop", |c, x| c.ledge.as_mut().unwrap().drop = x),
-        ("stamina.refill", |c, x| c.stamina.as_mut().unwrap().refill = x),
-        ("stamina.hold_drain", |c, x| c.stamina.as_mut().unwrap().hold_drain = x),
-        ("stamina.shake_threshold", |c, x| c.stamina.as_mut().unwrap().shake_threshold = x),
-        ("tumble.restitution", |c, x| c.tumble.as_mut().unwrap().restitution = x),
-        ("tumble.friction", |c, x| c.tumble.as_mut().unwrap().friction = x),
-        ("tumble.knock_speed", |c, x| c.tumble.as_mut().unwrap().knock_speed = x),
-        ("health.fall_damage", |c, x| c.health.as_mut().unwrap().fall_damage = x),
+        ("stamina.refill", |c, x| {
+            c.stamina.as_mut().unwrap().refill = x
+        }),
+        ("stamina.hold_drain", |c, x| {
+            c.stamina.as_mut().unwrap().hold_drain = x
+        }),
+        ("stamina.shake_threshold", |c, x| {
+            c.stamina.as_mut().unwrap().shake_threshold = x
+        }),
+        ("tumble.restitution", |c, x| {
+            c.tumble.as_mut().unwrap().restitution = x
+        }),
+        ("tumble.friction", |c, x| {
+            c.tumble.as_mut().unwrap().friction = x
+        }),
+        ("tumble.knock_speed", |c, x| {
+            c.tumble.as_mut().unwrap().knock_speed = x
+        }),
+        ("health.fall_damage", |c, x| {
+            c.health.as_mut().unwrap().fall_damage = x
+        }),
     ];
     let mut refused = 0;
     for (name, set) in sets {

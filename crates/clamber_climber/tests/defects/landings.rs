@@ -51,7 +51,12 @@ fn lands_only_where_it_is_held_up() {
         }
     }
     assert!(landings > 1000, "{landings} of {runs}");
-    assert!(wrong.is_empty(), "{} of {landings}: {}", wrong.len(), wrong[0]);
+    assert!(
+        wrong.is_empty(),
+        "{} of {landings}: {}",
+        wrong.len(),
+        wrong[0]
+    );
 }
 
 #[test]
@@ -90,7 +95,10 @@ fn a_fast_landing_slides_or_tumbles_on() {
                 let slid = run.position().x - landed;
                 let expected = speed * speed / (2.0 * config.ground.friction);
                 let off = slid / expected - 1.0;
-                assert!(off.abs() <= 0.02 + speed * DT / expected, "{told}: {slid} of {expected} m");
+                assert!(
+                    off.abs() <= 0.02 + speed * DT / expected,
+                    "{told}: {slid} of {expected} m"
+                );
             }
         }
     }

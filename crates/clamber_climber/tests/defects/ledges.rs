@@ -62,7 +62,10 @@ fn oblique_ledges_are_caught_faced_and_followed() {
             assert_eq!(other.state().mode, ClimberMode::LedgeHanging, "{told}");
             let made = other.state().position - from;
             assert!((made.dot(way) - 1.0).abs() <= 0.01, "made {made} {told}");
-            assert!((made - way * made.dot(way)).length() < 0.01, "made {made} {told}");
+            assert!(
+                (made - way * made.dot(way)).length() < 0.01,
+                "made {made} {told}"
+            );
         }
     }
 }
@@ -93,7 +96,11 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
                 let is_new = events.iter().any(is_caught);
                 caught += u32::from(is_new);
                 // The fall into the catch is its own.
-                let falling = if is_new { before.velocity.length() * DT + 9.81 * DT * DT } else { 0.0 };
+                let falling = if is_new {
+                    before.velocity.length() * DT + 9.81 * DT * DT
+                } else {
+                    0.0
+                };
                 is_on |= is_new;
                 if is_on && state.mode == ClimberMode::LedgeHanging {
                     assert!(

@@ -23,4 +23,5 @@ mod slopes;
 #[path = "../scenarios/stage/mod.rs"]
 mod stage;
 mod supports;
+mod sweeps;
 mod twice;

@@ -15,7 +15,13 @@ struct Watch {
 }
 
 impl Watch {
-    fn step(&mut self, climber: &mut Climber, obstacles: &[&dyn Obstacle], input: &ClimberInput, told: &str) {
+    fn step(
+        &mut self,
+        climber: &mut Climber,
+        obstacles: &[&dyn Obstacle],
+        input: &ClimberInput,
+        told: &str,
+    ) {
         let before = *climber.state();
         let report = tick(climber, obstacles, input);
         let state = climber.state();
@@ -24,8 +30,23 @@ impl Watch {
         let speed = before.velocity.length().max(state.velocity.length());
         let fastest = speed.max(3.0 * grip.climb_speed);
         let way = state.position.distance(before.position);
-        let most = fastest * DT + grip.reach;
-        assert!(way <= most, "{told}: {way} m, most {most}; {before:?} {state:?} {:?}", report.events);
+        let arms = match before.mode {
+            ClimberMode::Hanging => config.hang.arm_length,
+            ClimberMode::LedgeHanging => ledge.reach,
+            _ => grip.reach,
+        };
+        let most = fastest * DT + arms;
+        assert!(
+            way <= most,
+            "{told}: {way} m, most {most}; from {:?} {} at {} to {:?} {} at {}, {:?}",
+            before.mode,
+            before.position,
+            before.velocity,
+            state.mode,
+            state.position,
+            state.velocity,
+            report.events
+        );
         let radius = config.body.radius;
         let reach = match state.mode {
             ClimberMode::Holding => 1.25 * radius + grip.reach,
@@ -33,17 +54,31 @@ impl Watch {
             ClimberMode::Hanging => 1.5 * config.hang.arm_length,
             _ => 1.25 * radius,
         };
-        let offset = state.support.map_or(0.0, |support| support.attachment.offset.length());
-        self.out_of_reach = if offset > reach { self.out_of_reach + 1 } else { 0 };
+        let offset = state
+            .support
+            .map_or(0.0, |support| support.attachment.offset.length());
+        self.out_of_reach = if offset > reach {
+            self.out_of_reach + 1
+        } else {
+            0
+        };
         let time = f64::from(self.out_of_reach) * DT;
-        assert!(time <= 0.25, "{told}: {offset} m from its support for {time} s, {state:?}");
+        assert!(
+            time <= 0.25,
+            "{told}: {offset} m from its support for {time} s, {state:?}"
+        );
     }
 }
 
 fn directions() -> impl Iterator<Item = DVec3> {
     (0..26).map(|k| {
         let k = if k < 13 { k } else { k + 1 };
-        v(f64::from(k % 3 - 1), f64::from(k / 3 % 3 - 1), f64::from(k / 9 - 1)).normalize()
+        v(
+            f64::from(k % 3 - 1),
+            f64::from(k / 3 % 3 - 1),
+            f64::from(k / 9 - 1),
+        )
+        .normalize()
     })
 }
 
@@ -66,12 +101,18 @@ fn in_a_hollow() {
     let obstacles: Vec<&dyn Obstacle> = walls.iter().map(|wall| wall as &dyn Obstacle).collect();
     for first in directions() {
         for second in [DVec3::X, -DVec3::Y, DVec3::Z] {
-            let mut climber = Climber::new(ClimberConfig::colossus_climber(), v(0.1, 0.0, -0.55)).unwrap();
+            let mut climber =
+                Climber::new(ClimberConfig::colossus_climber(), v(0.1, 0.0, -0.55)).unwrap();
             let mut watch = Watch::default();
             for k in 0..90 {
                 let climb = if k % 30 < 20 { first } else { second };
                 let input = ClimberInput { climb, ..HOLD };
-                watch.step(&mut climber, &obstacles, &input, &format!("{first} {second} tick {k}"));
+                watch.step(
+                    &mut climber,
+                    &obstacles,
+                    &input,
+                    &format!("{first} {second} tick {k}"),
+                );
             }
         }
     }
@@ -82,9 +123,13 @@ fn in_a_hollow() {
 fn at_a_blocked_edge() {
     let block = cuboid(Vec3::ONE, FUR);
     for gap in [0.1, 0.3, 0.5, 0.7, 0.85] {
-        let plate = at(cuboid(Vec3::new(0.1, 3.0, 3.0), STONE), v(1.1 + gap, 0.0, 0.0));
+        let plate = at(
+            cuboid(Vec3::new(0.1, 3.0, 3.0), STONE),
+            v(1.1 + gap, 0.0, 0.0),
+        );
         for first in directions() {
-            let mut climber = Climber::new(ClimberConfig::colossus_climber(), v(0.0, 0.0, 1.42)).unwrap();
+            let mut climber =
+                Climber::new(ClimberConfig::colossus_climber(), v(0.0, 0.0, 1.42)).unwrap();
             let mut watch = Watch::default();
             for k in 0..120 {
                 let climb = if k < 60 { first } else { -DVec3::Z };
@@ -96,15 +141,16 @@ fn at_a_blocked_edge() {
     }
 }
 
-/// What it holds, hangs from or stands on goes away behind a fence that keeps the climber back.
-#[test]
-fn held_back_by_a_fence() {
-    for (name, start, walk) in [
-        ("fur", v(0.0, 1.0, 3.42), DVec3::ZERO),
-        ("ledge", v(0.3, 2.75, 3.45), -DVec3::Z * 0.1),
-        ("ground", v(0.0, 3.41, 0.0), DVec3::ZERO),
+/// What it holds, hangs from or stands on goes away, and a post keeps the climber back; or comes along, and crushes it
+/// against the post.
+fn against_a_post(is_crushed: bool) {
+    for (name, start, walk, out) in [
+        ("fur", v(0.0, 1.0, 3.42), DVec3::ZERO, DVec3::Z),
+        ("ledge", v(0.3, 2.75, 3.45), -DVec3::Z * 0.1, DVec3::Z),
+        ("ground", v(0.0, 3.41, 0.0), DVec3::ZERO, DVec3::Y),
     ] {
-        for way in directions() {
+        let ways = directions().filter(|way| (way.dot(out) > 0.1) == is_crushed);
+        for way in ways {
             for speed in [0.5, 2.0, 8.0] {
                 let tag = if name == "fur" { FUR } else { STONE };
                 let mut block = cuboid(Vec3::new(4.0, 3.0, 3.0), tag);
@@ -113,10 +159,10 @@ fn held_back_by_a_fence() {
                 for k in 0..20 {
                     moved(&mut block, DVec3::ZERO, DQuat::IDENTITY);
                     let input = ClimberInput { walk, ..HOLD };
-                    watch.step(&mut climber, &[&block], &input, &format!("{name} tick {k}"));
+                    let told = format!("{name} tick {k}");
+                    watch.step(&mut climber, &[&block], &input, &told);
                 }
-                // A post at the climber's back.
-                let place = climber.state().position + way * 0.72;
+                let place = climber.state().position + way * 0.95;
                 let post = at(cuboid(Vec3::splat(0.3), STONE), place);
                 for k in 0..60 {
                     let by = way * (speed * DT * f64::from(k));
@@ -127,4 +173,14 @@ fn held_back_by_a_fence() {
             }
         }
     }
+}
+
+#[test]
+fn held_back_by_a_post() {
+    against_a_post(false);
+}
+
+#[test]
+fn crushed_against_a_post() {
+    against_a_post(true);
 }

@@ -29,8 +29,15 @@ fn walks_on_slopes_where_the_input_points() {
                 );
                 let level = v(way.x, 0.0, way.z).normalize();
                 let off = libm::asin(level.cross(toward).length()).to_degrees();
-                assert!(off < 0.1 && level.dot(toward) > 0.0, "{told}: {off} degrees off");
-                assert!((way.length() / speed - 1.0).abs() < 0.005, "{told}: {}", way.length());
+                assert!(
+                    off < 0.1 && level.dot(toward) > 0.0,
+                    "{told}: {off} degrees off"
+                );
+                assert!(
+                    (way.length() / speed - 1.0).abs() < 0.005,
+                    "{told}: {}",
+                    way.length()
+                );
             }
         }
     }

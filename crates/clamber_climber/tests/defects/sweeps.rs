@@ -25,7 +25,10 @@ fn an_overlap_at_the_start_does_not_let_a_plate_through() {
         let mut climber = Climber::new(ClimberConfig::walker(), start).unwrap();
         let report = tick(&mut climber, &[&floor, &plate], &IDLE);
         let place = climber.state().position;
-        assert!(place.x > 0.5, "core {deep} m in the floor: ends at {place}, {report:?}");
+        assert!(
+            place.x > 0.5,
+            "core {deep} m in the floor: ends at {place}, {report:?}"
+        );
     }
 }
 
@@ -82,7 +85,10 @@ fn a_fold_does_not_let_a_plate_through() {
             fold.step(&mut climber, &plate, 1.0 / 60.0);
         }
         let place = climber.state().position;
-        assert!(place.x > 0.8, "fold {short} m short of room: ends at {place}");
+        assert!(
+            place.x > 0.8,
+            "fold {short} m short of room: ends at {place}"
+        );
     }
 }
 
@@ -104,7 +110,11 @@ fn a_fold_does_not_let_a_limb_through() {
                         let hit = 50;
                         let limb_at = |k: u32| {
                             let first = -0.42 - thick * 0.5 - speed * dt * 0.1 * f64::from(phase);
-                            v(first + speed * dt * (f64::from(k) - f64::from(hit)), 3.05, 0.0)
+                            v(
+                                first + speed * dt * (f64::from(k) - f64::from(hit)),
+                                3.05,
+                                0.0,
+                            )
                         };
                         for k in 0..70 {
                             fold.advance(k);
@@ -147,7 +157,11 @@ fn a_step_up_does_not_let_a_beam_through() {
             let beam = Shape::boxed(v(-4.0, 0.85, -0.05), v(4.0, 0.95, 0.05));
             stage = stage.with(&beam, move |time| {
                 let k = libm::round(time * 60.0) - f64::from(tick);
-                let z = if k < 0.0 { middle + 0.55 } else { middle - 0.45 - k };
+                let z = if k < 0.0 {
+                    middle + 0.55
+                } else {
+                    middle - 0.45 - k
+                };
                 shifted(DVec3::Z * z)
             });
         }
@@ -160,12 +174,19 @@ fn a_step_up_does_not_let_a_beam_through() {
             .collect::<Vec<_>>()
     };
     let free = steps(None);
-    let up = (1..free.len()).find(|k| free[*k].y - free[k - 1].y > 0.05).unwrap();
+    let up = (1..free.len())
+        .find(|k| free[*k].y - free[k - 1].y > 0.05)
+        .unwrap();
     for late in 0..4 {
         let k = up + late;
         let with = steps(Some((k as u32 + 1, free[k].z)));
         let off = with[k].distance(free[k]);
-        assert!(off > 0.05, "{late} ticks after the step-up: {} and free {}", with[k], free[k]);
+        assert!(
+            off > 0.05,
+            "{late} ticks after the step-up: {} and free {}",
+            with[k],
+            free[k]
+        );
     }
 }
 
@@ -212,7 +233,9 @@ fn legs_that_swing_go_through_no_plate() {
                     };
                     for _ in 0..(0.2 * hz) as u32 {
                         let before = tip(&climber);
-                        climber.step(&HOLD, &list(&[&beam, &plate]), 1.0 / hz).unwrap();
+                        climber
+                            .step(&HOLD, &list(&[&beam, &plate]), 1.0 / hz)
+                            .unwrap();
                         if climber.state().mode != ClimberMode::Hanging {
                             break;
                         }
@@ -260,7 +283,9 @@ fn legs_that_are_thrown_ahead_go_through_no_plate() {
                 };
                 for _ in 0..(0.12 * hz).max(2.0) as u32 {
                     let before = tip(&climber);
-                    climber.step(&HOLD, &list(&[&beam, &plate]), 1.0 / hz).unwrap();
+                    climber
+                        .step(&HOLD, &list(&[&beam, &plate]), 1.0 / hz)
+                        .unwrap();
                     if climber.state().mode != ClimberMode::Hanging {
                         break;
                     }
