@@ -123,6 +123,9 @@ impl Tick<'_> {
         self.state.position = moved.position;
         if let Some(position) = self.step_up(carried, target) {
             self.state.position = position;
+            // It has the speed of its walk, but not the rise of the edge that it came from.
+            let level = walk - up * walk.dot(up).max(0.0);
+            let walk = level.normalize_or_zero() * walk.length();
             return self.find_new_ground(carried, walk);
         }
         match self.held_up(moved.position, limit) {

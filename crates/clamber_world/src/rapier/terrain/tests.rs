@@ -205,7 +205,11 @@ fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
 fn no_query_sees_what_has_no_motion() {
     type Change = fn(&mut Collider);
     let hide: [(&str, Change, Change); 2] = [
-        ("disabled", |c| c.set_enabled(false), |c| c.set_enabled(true)),
+        (
+            "disabled",
+            |c| c.set_enabled(false),
+            |c| c.set_enabled(true),
+        ),
         ("a sensor", |c| c.set_sensor(true), |c| c.set_sensor(false)),
     ];
     for moves in [false, true] {
@@ -245,7 +249,11 @@ fn no_query_sees_what_has_no_motion() {
                 show(&mut world.colliders[handle]);
                 let poses = tick(&mut world, 0.15);
                 let terrain = RapierTerrain::of_world(&world, &poses);
-                assert_eq!(seen(&terrain, &hit.material), [true; 6], "shown again, {told}");
+                assert_eq!(
+                    seen(&terrain, &hit.material),
+                    [true; 6],
+                    "shown again, {told}"
+                );
             }
         }
     }
