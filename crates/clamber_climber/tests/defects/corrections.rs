@@ -219,17 +219,16 @@ fn a_level_blow_right_after_any_step_of_stairs_throws_nothing_up() {
                 worst = worst.max(risen);
             }
             run.step(&walk(DVec3::Z));
-            has_stepped = run.position().y - state.position.y > 0.05;
+            // Higher than it rolls over an edge by itself.
+            let rolls = state.velocity.y.max(run.state().velocity.y) / hz;
+            has_stepped = run.position().y - state.position.y > rolls + 0.02;
             state = *run.state();
             if state.position.z > 1.8 {
                 break;
             }
         }
         assert!(state.position.z > 1.8, "{hz} Hz: {}", state.position);
-        assert!(
-            steps > 0,
-            "{hz} Hz: no step-up of more than 0.05 m in a tick"
-        );
+        assert!(steps > 0, "{hz} Hz: no step-up");
     }
     assert!(worst <= 0.05, "{worst}: {all}");
 }
@@ -289,16 +288,21 @@ fn a_climber_as_an_obstacle_is_where_it_is_expected() {
     for hz in RATES {
         for (name, config) in configs() {
             let mut run = one_step(hz, config, DVec3::ZERO);
+            run.step(&walk(DVec3::Z));
             for k in 0..(1.5 * hz) as u32 {
                 let obstacle = ClimberObstacle::new(&run.climber, 1.0 / hz);
                 let (expected, _) = obstacle.bounds().unwrap();
+                let from = run.position();
                 let way = run.state().velocity / hz;
                 let expected = expected + way * 0.5;
                 run.step(&walk(DVec3::Z));
                 let off = expected.distance(run.position());
+                // What it steps up in this tick is not expected; it is in no later one. At 30 Hz its walk turns by
+                // 0.03 m where it rolls off the edge.
+                let rise = (run.position().y - from.y).max(0.0);
                 assert!(
-                    off <= 0.02 + 0.28,
-                    "{name} at {hz} Hz, tick {k}: off by {off}"
+                    off <= 0.04 + rise && rise < 0.3,
+                    "{name} at {hz} Hz, tick {k}: off by {off}, rise {rise}"
                 );
             }
         }

@@ -93,12 +93,15 @@ fn a_fast_landing_slides_or_tumbles_on() {
                 }
                 assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
                 let slid = run.position().x - landed;
-                let expected = speed * speed / (2.0 * config.ground.friction);
+                // At 40 m/s what its feet brake in the end is less than a percent.
+                let feet = if speed < 40.0 {
+                    1.05 * config.ground.walk_speed
+                } else {
+                    0.0
+                };
+                let expected = (speed * speed - feet * feet) / (2.0 * config.ground.friction);
                 let off = slid / expected - 1.0;
-                assert!(
-                    off.abs() <= 0.02 + speed * DT / expected,
-                    "{told}: {slid} of {expected} m"
-                );
+                assert!(off.abs() <= 0.02, "{told}: {slid} of {expected} m");
             }
         }
     }
