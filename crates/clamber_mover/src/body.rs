@@ -67,7 +67,7 @@ impl MoverBody {
         }
         let fails = |name, range, found| Err(MoverError::OutOfRange { name, range, found });
         if !(self.radius > 0.0 && self.radius.is_finite()) {
-            return fails("radius", "positive", self.radius);
+            return fails("radius", "positive and finite", self.radius);
         }
         if !(0.0..self.radius).contains(&self.margin) {
             return fails(

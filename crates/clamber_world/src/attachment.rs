@@ -6,6 +6,13 @@ use crate::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 /// steady speed. A larger gap is another obstacle under the same id.
 const MOST_MOVES: f64 = 8.0;
 
+/// A gap of this share of the last move or more is other moves before it: two in one tick leave a gap as long as the last.
+const PART: f64 = 0.5;
+
+/// Below this share of the slack a gap is rounding: 0.2 mm of 10 mm, the steps of f32 some kilometres out. What is between
+/// is part of the motion, or a slow creature that is advanced twice would be said to move at half its speed.
+const ROUNDING: f64 = 0.02;
+
 /// Something fixed to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
 ///
 /// A small plain value that survives any deformation. [`Attachment::follow`] it once a tick; [`Attachment::place`] is
@@ -135,19 +142,23 @@ impl Attachment {
         let mut motion = obstacle.motion(&self.point, dt)?;
         let frame = motion.frame.unwrap_or(self.frame);
         let gap = motion.previous_position.distance(self.contact);
-        let continuity = if gap <= slack {
+        let step = motion.position.distance(motion.previous_position);
+        let continuity = if gap <= slack * ROUNDING || motion.placed && gap <= slack {
             Continuity::Moved
         } else if motion.placed {
             Continuity::Placed
         } else {
-            let step = motion.position.distance(motion.previous_position);
-            if gap > MOST_MOVES * step {
+            if gap > slack.max(MOST_MOVES * step) {
                 return None;
             }
             motion.previous_position = self.contact;
             motion.velocity = (motion.position - self.contact) / dt;
             motion.turn = (frame * self.frame.conjugate()).normalize();
-            Continuity::MovedTwice
+            if gap >= PART * step {
+                Continuity::MovedTwice
+            } else {
+                Continuity::Moved
+            }
         };
         self.frame = frame;
         self.contact = motion.position;

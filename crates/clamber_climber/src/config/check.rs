@@ -16,11 +16,16 @@ pub(super) fn check(
 }
 
 pub(super) fn positive(name: &'static str, x: f64) -> Result<(), ClimberError> {
-    check(name, "positive", x, x > 0.0 && x.is_finite())
+    check(name, "positive and finite", x, x > 0.0 && x.is_finite())
 }
 
 pub(super) fn not_negative(name: &'static str, x: f64) -> Result<(), ClimberError> {
-    check(name, "not negative", x, x >= 0.0 && x.is_finite())
+    check(
+        name,
+        "not negative and finite",
+        x,
+        x >= 0.0 && x.is_finite(),
+    )
 }
 
 /// A limit that may be infinite: never reached.

@@ -70,7 +70,7 @@ impl GroundConfig {
         let name = "ground.jump_release_gravity";
         check::check(
             name,
-            "at least 1",
+            "at least 1 and finite",
             gravity,
             gravity >= 1.0 && gravity.is_finite(),
         )?;

@@ -33,7 +33,9 @@ impl ClimberState {
         for x in self.memory {
             hash.word(x.to_bits());
         }
-        hash.word(u64::from(self.crouched) | u64::from(self.jumping) << 1);
+        let flags = [self.crouched, self.jumping, self.shoved];
+        let flags = flags.iter().rev();
+        hash.word(flags.fold(0, |word, flag| word << 1 | u64::from(*flag)));
         hash.0
     }
 }

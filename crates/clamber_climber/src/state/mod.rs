@@ -51,6 +51,8 @@ pub struct ClimberState {
     pub crouched: bool,
     /// It rises from a jump.
     pub jumping: bool,
+    /// A blow shoves it along the ground that it stands on: friction brakes it, not its feet.
+    pub shoved: bool,
     /// Numbers of modes of the game's own, in whatever mode it is: timers, directions. Any finite values.
     pub memory: [f64; MEMORY],
 }
@@ -82,6 +84,7 @@ impl ClimberState {
             open_handed: 0.0,
             crouched: false,
             jumping: false,
+            shoved: false,
             memory: [0.0; MEMORY],
         }
     }

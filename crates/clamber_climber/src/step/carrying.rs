@@ -95,6 +95,13 @@ impl Tick<'_> {
             .map_or(own, |carried| carried.motion.turn * own)
     }
 
+    /// Its material can carry the climber: its motion is known. An obstacle that queries see but that tells no motion is in
+    /// the way, and nothing to stand on or hold.
+    pub(super) fn carries(&self, touch: &Touch) -> bool {
+        let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
+        motion.is_some()
+    }
+
     /// Attaches the climber, at a position, to something it touches; `how` it carries it is known from then on.
     pub(super) fn attach(&mut self, touch: &Touch, position: DVec3) {
         let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
@@ -141,6 +148,7 @@ impl Tick<'_> {
         self.state.arm = 0.0;
         self.state.pull_up = 0.0;
         self.state.calm = 0.0;
+        self.state.shoved = false;
         self.carried = None;
     }
 

@@ -12,7 +12,7 @@ const EXHAUSTED: f64 = 1.0;
 
 impl Tick<'_> {
     /// What struck it since the last tick. A blow above the knocking speed knocks it over, if it can tumble. In the air any
-    /// other adds its velocity. On its feet it is moved along the ground, and off it where the blow points off it. On a
+    /// other adds its velocity. On its feet it slides along the ground until friction has braked it, and is lifted off it where the blow points off it. On a
     /// hold it hangs on and swings; a blow faster than a jump off the hold takes it off. From a ledge, too; a weaker one it
     /// withstands.
     pub(super) fn be_struck(&mut self) {
@@ -25,7 +25,7 @@ impl Tick<'_> {
         let knocks = self.config.tumble.map(|tumble| speed > tumble.knock_speed);
         let takes_off = mode.is_holding() && speed > self.holds_against();
         if knocks == Some(true) {
-            self.state.velocity += blow.velocity;
+            self.state.velocity = self.off_the_ground(self.state.velocity) + blow.velocity;
             if mode != ClimberMode::Tumbling {
                 let next = self.begin_tumbling(blow.by);
                 self.follow_at_once(next);
@@ -39,10 +39,22 @@ impl Tick<'_> {
             if mode == ClimberMode::Standing || mode == ClimberMode::Hanging {
                 self.state.velocity += blow.velocity;
             }
+            self.state.shoved |= mode == ClimberMode::Standing && blow.velocity != DVec3::ZERO;
         } else {
             self.state.velocity += blow.velocity;
         }
         self.was = self.state.velocity;
+    }
+
+    /// A velocity without its part into the ground underfoot, which has held that up: a climber that is knocked over as it
+    /// walks onto the edge of a step does not bounce off it.
+    fn off_the_ground(&self, velocity: DVec3) -> DVec3 {
+        let Some(support) = self.state.support else {
+            return velocity;
+        };
+        let normal = support.normal_in_world();
+        let into = (velocity - self.state.base_velocity).dot(normal).min(0.0);
+        velocity - normal * into
     }
 
     /// The fastest blow that arms hold against, metres a second.

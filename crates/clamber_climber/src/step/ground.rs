@@ -23,7 +23,8 @@ impl Tick<'_> {
 
     pub(super) fn ground_below(&mut self, position: DVec3, reach: f64) -> Option<Ground> {
         let probe = self.ground_probe(reach);
-        self.mover.find_ground(&probe, position)
+        let ground = self.mover.find_ground(&probe, position)?;
+        self.carries(&ground.touch).then_some(ground)
     }
 
     /// The contact of the last movement that holds the climber up at a position, and the position at which it stands on
@@ -35,6 +36,9 @@ impl Tick<'_> {
         let met = self.mover.holding_up(up, max_slope)?;
         let body = self.body();
         let mut touch = self.mover.still_underfoot(&body, position, up, &met)?;
+        if !self.carries(&touch) {
+            return None;
+        }
         let gap = touch.contact.distance - body.radius;
         let mut position = position;
         if gap > 0.0 {

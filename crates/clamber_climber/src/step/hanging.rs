@@ -92,6 +92,8 @@ impl Tick<'_> {
         } else {
             self.clipped_by_arm(velocity, carried, moved.position - pivot)
         };
+        // A blow that it swings from leaves the hold calm: only a while of it ends the swing.
+        let calm_time = self.config.grip.map_or(0.0, |grip| grip.calm_time);
         let longest = hang.arm_length.max(radius) * STRETCH;
         let reach = moved.position.distance(pivot);
         if reach > longest {
@@ -99,7 +101,7 @@ impl Tick<'_> {
             self.state.open_handed = OPEN_HANDED;
             return self.lose_footing();
         }
-        if self.state.calm > 0.0 && reach <= CLOSE * radius {
+        if self.state.calm >= calm_time && reach <= CLOSE * radius {
             self.state.arm = 0.0;
             self.state.calm = 0.0;
             return NextMode::Change(ClimberMode::Holding);

@@ -183,13 +183,14 @@ impl Tick<'_> {
     ) -> Option<Touch> {
         let (config, input, rules) = (self.config, self.input, self.rules);
         let body = self.body();
-        self.mover.find_grip(
+        let touch = self.mover.find_grip(
             &body,
             position,
             grip.reach,
             |touch| (rules.can_grip)(touch.obstacle, &touch.contact),
             |touch| holds.map_or(0.0, |held| leads_on(config, input, held, touch.normal)),
-        )
+        )?;
+        self.carries(&touch).then_some(touch)
     }
 
     /// Attaches it to what it climbs on to. A corner is turned when it lies flat on a face that differs from the last.

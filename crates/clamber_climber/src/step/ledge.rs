@@ -67,7 +67,8 @@ impl Tick<'_> {
 
     fn find_ledge(&mut self, from: DVec3, facing: DVec3, config: &LedgeConfig) -> Option<Ledge> {
         let probe = self.ledge_probe(facing, config);
-        self.mover.find_ledge(&probe, from)
+        let ledge = self.mover.find_ledge(&probe, from)?;
+        self.carries(&ledge.touch).then_some(ledge)
     }
 
     pub(super) fn hang_from_ledge(&mut self) -> NextMode {

@@ -123,6 +123,9 @@ impl Tick<'_> {
         self.state.position = moved.position;
         if let Some(position) = self.step_up(carried, target) {
             self.state.position = position;
+            // It has the speed of its walk, but not the rise of the edge that it came from.
+            let level = walk - up * walk.dot(up).max(0.0);
+            let walk = level.normalize_or_zero() * walk.length();
             return self.find_new_ground(carried, walk);
         }
         match self.held_up(moved.position, limit) {
@@ -200,7 +203,7 @@ impl Tick<'_> {
     }
 
     /// Its own velocity along the ground: what it was, brought towards what the input asks for.
-    fn walk_velocity(&self, normal: DVec3, own: DVec3) -> DVec3 {
+    fn walk_velocity(&mut self, normal: DVec3, own: DVec3) -> DVec3 {
         let ground = &self.config.ground;
         let up = self.config.up();
         let walk = self.input.walk;
@@ -211,11 +214,14 @@ impl Tick<'_> {
         let along = (level + rise).try_normalize().unwrap_or(DVec3::ZERO);
         let wanted = along * (share * ground.walk_speed);
         let own = own - normal * own.dot(normal);
-        let change = if own.length() > ground.walk_speed * EXCESS {
+        let is_fast = own.length() > ground.walk_speed * EXCESS;
+        let change = if is_fast || self.state.shoved {
             ground.friction
         } else {
             ground.acceleration
         };
-        own.move_towards(wanted, change * self.dt())
+        let walk = own.move_towards(wanted, change * self.dt());
+        self.state.shoved &= walk != wanted;
+        walk
     }
 }

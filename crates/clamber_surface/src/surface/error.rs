@@ -27,10 +27,12 @@ pub enum SurfaceError {
     )]
     WorldFromModel,
     /// A number of a query is NaN or negative, or a tick has no length.
-    #[error("{what} must be a number that is not negative, found {found}")]
+    #[error("{what} must be {range}, found {found}")]
     Query {
         /// Which number.
         what: &'static str,
+        /// What it may be.
+        range: &'static str,
         /// Its value.
         found: f64,
     },

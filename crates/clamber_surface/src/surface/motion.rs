@@ -53,6 +53,7 @@ impl SkinnedSurface {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(SurfaceError::Query {
                 what: "the length of a tick",
+                range: "positive and finite",
                 found: dt,
             });
         }
@@ -81,7 +82,8 @@ impl SkinnedSurface {
         let angular_velocity = rotation_vector(frame * previous_frame.conjugate()) / dt;
         if velocity.length().max(angular_velocity.length()) > f64::from(f32::MAX) {
             return Err(SurfaceError::Query {
-                what: "the length of a tick, too short for what moved,",
+                what: "the length of a tick",
+                range: "long enough for velocities that fit in f32",
                 found: dt,
             });
         }

@@ -109,6 +109,7 @@ impl Patch {
         if !(margin >= 0.0 && margin.is_finite()) {
             return Err(SurfaceError::Query {
                 what: "the margin of a patch",
+                range: "not negative and finite",
                 found: f64::from(margin),
             });
         }

@@ -37,6 +37,7 @@ pub(super) fn check_length(what: &'static str, length: f32) -> Result<f64, Surfa
     } else {
         Err(SurfaceError::Query {
             what,
+            range: "not negative",
             found: f64::from(length),
         })
     }

@@ -184,6 +184,81 @@ fn sensors_and_what_a_filter_excludes_are_not_there() {
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
 }
 
+/// Which queries see a moving box about the origin: a ray, the closest point, an overlap, a cast, a sweep, its motion.
+fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
+    let capsule = WorldCapsule::ball(DVec3::Y * 3.0, 0.4);
+    let way = DVec3::Y * -2.5;
+    let mut contacts = Vec::new();
+    terrain.overlap_sphere(DVec3::Y * 1.2, 0.4, &mut contacts);
+    [
+        terrain.cast_ray(DVec3::Y * 3.0, way, 9.0).is_some(),
+        terrain.closest_point(DVec3::Y * 1.2, 9.0).is_some(),
+        !contacts.is_empty(),
+        terrain.cast_capsule(&capsule, way).is_some(),
+        terrain.sweep_capsule(&capsule, way).is_some(),
+        terrain.motion(material, 0.1).is_some(),
+    ]
+}
+
+/// As rapier's tree has it: a collider that was disabled or became a sensor stays in it until the next step.
+#[test]
+fn no_query_sees_what_has_no_motion() {
+    type Change = fn(&mut Collider);
+    let hide: [(&str, Change, Change); 2] = [
+        (
+            "disabled",
+            |c| c.set_enabled(false),
+            |c| c.set_enabled(true),
+        ),
+        ("a sensor", |c| c.set_sensor(true), |c| c.set_sensor(false)),
+    ];
+    for moves in [false, true] {
+        let mut world = PhysicsWorld::default();
+        let (body, handle) = world.insert(
+            RigidBodyBuilder::kinematic_position_based(),
+            ColliderBuilder::cuboid(1.0, 1.0, 1.0),
+        );
+        world.step();
+        let mut before = BodyPoses::new();
+        let mut tick = |world: &mut PhysicsWorld, height: f32| {
+            before.record(&world.bodies);
+            let place = Vector::new(0.0, if moves { height } else { 0.0 }, 0.0);
+            world.bodies[body].set_next_kinematic_translation(place);
+            world.step();
+            before.clone()
+        };
+        let poses = tick(&mut world, 0.1);
+        let terrain = RapierTerrain::of_world(&world, &poses);
+        let hit = terrain.closest_point(DVec3::Y * 3.0, 9.0).unwrap();
+        let all = seen(&terrain, &hit.material);
+        assert_eq!(all, [true; 6], "moves: {moves}");
+        let filtered = terrain.with_filter(&|_, _| false);
+        let none = seen(&filtered, &hit.material);
+        assert_eq!(none, [false; 6], "filtered, moves: {moves}");
+        for (name, hide, show) in hide {
+            for steps_after in [false, true] {
+                let told = format!("{name}, stepped after it: {steps_after}, moves: {moves}");
+                hide(&mut world.colliders[handle]);
+                let poses = if steps_after {
+                    tick(&mut world, 0.2)
+                } else {
+                    poses.clone()
+                };
+                let terrain = RapierTerrain::of_world(&world, &poses);
+                assert_eq!(seen(&terrain, &hit.material), [false; 6], "{told}");
+                show(&mut world.colliders[handle]);
+                let poses = tick(&mut world, 0.15);
+                let terrain = RapierTerrain::of_world(&world, &poses);
+                assert_eq!(
+                    seen(&terrain, &hit.material),
+                    [true; 6],
+                    "shown again, {told}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_not_finite_or_gone_finds_nothing() {
     let mut world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));

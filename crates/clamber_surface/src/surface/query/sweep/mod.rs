@@ -130,6 +130,7 @@ fn check_finite(what: &'static str, length: f32) -> Result<(), SurfaceError> {
     } else {
         Err(SurfaceError::Query {
             what,
+            range: "not negative and finite",
             found: f64::from(length),
         })
     }

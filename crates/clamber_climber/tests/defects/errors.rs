@@ -1,0 +1,231 @@
+//! Error messages are true of the value that they name.
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberError, ClimberInput, ClimberState, HangConfig,
+};
+use clamber_mover::{Mover, MoverBody, MoverMemory};
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::{Anchor, SkinnedSurface};
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{Debris, DebrisConfig};
+use glam::{DVec3, Quat, Vec3};
+
+use crate::scene::{STONE, cuboid};
+use crate::stage::IDLE;
+
+const NUMBERS: [f64; 8] = [
+    f64::NEG_INFINITY,
+    -1.0,
+    -f64::MIN_POSITIVE,
+    0.0,
+    1.0,
+    2.0,
+    f64::INFINITY,
+    f64::NAN,
+];
+
+/// Whether a number is what the words of a range say.
+fn holds(range: &str, x: f64) -> bool {
+    match range {
+        "positive" => x > 0.0,
+        "positive and finite" | "longer than 0 s and finite" => x > 0.0 && x.is_finite(),
+        "not negative" => x >= 0.0,
+        "not negative and finite" => x >= 0.0 && x.is_finite(),
+        "from 0 to 1" => (0.0..=1.0).contains(&x),
+        "from 0 to below a right angle" => (0.0..core::f64::consts::FRAC_PI_2).contains(&x),
+        "at least 1" => x >= 1.0,
+        "at least 1 and finite" => x >= 1.0 && x.is_finite(),
+        "1" => x == 1.0,
+        // The test's body has a radius of 0.4 m.
+        "not negative and less than the radius" => (0.0..0.4).contains(&x),
+        _ => panic!("no such range is known here: {range}"),
+    }
+}
+
+fn assert_true(told: &str, error: &ClimberError, number: f64) {
+    match error {
+        ClimberError::OutOfRange { name, range, found } => {
+            let is_it = found.to_bits() == number.to_bits();
+            assert!(is_it, "{told}: {error}: set to {number}");
+            assert!(!holds(range, *found), "{told}: {name} is {range}: {error}");
+            assert!(
+                error.to_string().contains(&format!("found {found}")),
+                "{error}"
+            );
+        }
+        ClimberError::NotFinite(_) => assert!(!number.is_finite(), "{told}: {error}: {number}"),
+        other => panic!("{told}: {other}"),
+    }
+}
+
+type Set<T> = fn(&mut T, f64);
+
+#[test]
+fn of_configurations() {
+    let sets: [(&str, Set<ClimberConfig>); 30] = [
+        ("gravity", |c, x| c.gravity = DVec3::new(0.0, x, 0.0)),
+        ("shake_time", |c, x| c.shake_time = x),
+        ("body.radius", |c, x| {
+            c.body.radius = x;
+            c.body.margin = 0.0;
+        }),
+        ("body.height", |c, x| c.body.height = x),
+        ("body.margin", |c, x| c.body.margin = x),
+        ("body.mass", |c, x| c.body.mass = x),
+        ("body.push_force", |c, x| c.body.push_force = x),
+        ("ground.max_slope", |c, x| c.ground.max_slope = x),
+        ("ground.walk_speed", |c, x| c.ground.walk_speed = x),
+        ("ground.jump_speed", |c, x| c.ground.jump_speed = x),
+        ("ground.snap_distance", |c, x| c.ground.snap_distance = x),
+        ("ground.step_height", |c, x| c.ground.step_height = x),
+        ("ground.acceleration", |c, x| c.ground.acceleration = x),
+        ("ground.friction", |c, x| c.ground.friction = x),
+        ("ground.jump_release_gravity", |c, x| {
+            c.ground.jump_release_gravity = x
+        }),
+        ("ground.throw_acceleration", |c, x| {
+            c.ground.throw_acceleration = x
+        }),
+        ("grip.reach", |c, x| c.grip.as_mut().unwrap().reach = x),
+        ("grip.max_overhang", |c, x| {
+            c.grip.as_mut().unwrap().max_overhang = x
+        }),
+        ("grip.hang_acceleration", |c, x| {
+            c.grip.as_mut().unwrap().hang_acceleration = x
+        }),
+        ("hang.arm_length", |c, x| {
+            c.hang = HangConfig {
+                arm_length: x,
+                ..c.hang
+            };
+        }),
+        ("hang.damping", |c, x| c.hang.damping = x),
+        ("ledge.pull_up_time", |c, x| {
+            c.ledge.as_mut().unwrap().pull_up_time = x
+        }),
+        ("ledge.drop", |c, x| c.ledge.as_mut().unwrap().drop = x),
+        ("stamina.refill", |c, x| {
+            c.stamina.as_mut().unwrap().refill = x
+        }),
+        ("stamina.hold_drain", |c, x| {
+            c.stamina.as_mut().unwrap().hold_drain = x
+        }),
+        ("stamina.shake_threshold", |c, x| {
+            c.stamina.as_mut().unwrap().shake_threshold = x
+        }),
+        ("tumble.restitution", |c, x| {
+            c.tumble.as_mut().unwrap().restitution = x
+        }),
+        ("tumble.friction", |c, x| {
+            c.tumble.as_mut().unwrap().friction = x
+        }),
+        ("tumble.knock_speed", |c, x| {
+            c.tumble.as_mut().unwrap().knock_speed = x
+        }),
+        ("health.fall_damage", |c, x| {
+            c.health.as_mut().unwrap().fall_damage = x
+        }),
+    ];
+    let mut refused = 0;
+    for (name, set) in sets {
+        for number in NUMBERS {
+            let mut config = ClimberConfig::colossus_climber();
+            set(&mut config, number);
+            if let Err(error) = Climber::new(config, DVec3::ZERO) {
+                refused += 1;
+                assert_true(&format!("{name} = {number}"), &error, number);
+            }
+        }
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+#[test]
+fn of_steps_inputs_and_states() {
+    for number in NUMBERS {
+        let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::ZERO).unwrap();
+        match climber.step(&IDLE, &[], number) {
+            Err(error) => assert_true("dt", &error, number),
+            Ok(_) => assert!(number > 0.0 && number.is_finite(), "dt {number}"),
+        }
+        let mut input = ClimberInput::IDLE;
+        input.walk.x = number;
+        match climber.step(&input, &[], 0.1) {
+            Err(error) => assert_true("walk", &error, number),
+            Ok(_) => assert!(number.is_finite(), "walk {number}"),
+        }
+        let sets: [Set<ClimberState>; 6] = [
+            |state, x| state.stamina = x,
+            |state, x| state.hit_points = x,
+            |state, x| state.arm = x,
+            |state, x| state.coyote = x,
+            |state, x| state.velocity.x = x,
+            |state, x| state.heading = DVec3::X * x.abs(),
+        ];
+        for (index, set) in sets.iter().enumerate() {
+            let mut state = *climber.state();
+            set(&mut state, number);
+            if let Err(error) = climber.restore(state) {
+                // Of a heading its length is named, which may underflow.
+                let found = match &error {
+                    ClimberError::OutOfRange { found, .. } if index == 5 => *found,
+                    _ => number,
+                };
+                assert_true(&format!("state {index}"), &error, found);
+            }
+        }
+    }
+}
+
+#[test]
+fn of_movers() {
+    for number in NUMBERS {
+        let mut memory = MoverMemory::default();
+        if let Err(error) = Mover::new(&[], number, &mut memory) {
+            assert_true("dt", &error.into(), number);
+        }
+        for (body, name) in [
+            (MoverBody::ball(number, 0.0), "radius"),
+            (MoverBody::ball(0.4, number), "margin"),
+            (MoverBody::capsule(DVec3::Y * number, 0.4, 0.01), "axis"),
+        ] {
+            if let Err(error) = body.validate() {
+                assert_true(name, &error.into(), number);
+            }
+        }
+    }
+}
+
+#[test]
+fn of_debris_and_surfaces() {
+    let surface: SkinnedSurface = cuboid(Vec3::ONE, STONE);
+    let anchor = Anchor {
+        triangle: TriangleId(0),
+        barycentric: [1.0, 0.0, 0.0],
+        frame: Quat::IDENTITY,
+    };
+    for number in NUMBERS {
+        let is_tick = number > 0.0 && number.is_finite();
+        let mut world = PhysicsWorld::default();
+        let mut debris = Debris::new(DebrisConfig::default());
+        let found = debris.before_step(&[], &mut world.bodies, &mut world.colliders, number);
+        assert_eq!(found.is_ok(), is_tick, "{number}");
+        if let Err(error) = found {
+            let text = error.to_string();
+            let expected = format!("longer than 0 s and finite, found {number} s");
+            assert!(text.contains(&expected), "{text}");
+        }
+        let found = surface.motion(&anchor, number);
+        if let Err(error) = found {
+            let text = error.to_string();
+            let is_short = number > 0.0 && number.is_finite();
+            let expected = if is_short {
+                "long enough for velocities that fit in f32"
+            } else {
+                "positive and finite"
+            };
+            let expected = format!("the length of a tick must be {expected}, found {number}");
+            assert_eq!(text, expected);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Hands do not reach through what is solid.
+
+use std::sync::Arc;
+
+use clamber_climber::{ClimberEvent, ClimberInput, ClimberMode};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::JointId;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DQuat, DVec3, Vec3};
+
+use crate::common::{at, tick, v};
+use crate::scene::{FUR, HOLD, STONE, climber, cuboid, moved};
+
+const UP: ClimberInput = ClimberInput {
+    climb: DVec3::Y,
+    ..HOLD
+};
+
+#[test]
+fn does_not_grip_fur_behind_a_plate() {
+    for thick in [0.02, 0.1, 0.3] {
+        for gap in [0.0, 0.01, 0.05] {
+            for off in [0.38, 0.4, 0.42, 0.6] {
+                // The fur's front is at z = 0.
+                let fur = at(cuboid(Vec3::new(4.0, 3.0, 1.0), FUR), v(0.0, 0.0, -1.0));
+                let half = thick * 0.5;
+                let plate = at(
+                    cuboid(Vec3::new(4.0, 3.0, half as f32), STONE),
+                    v(0.0, 0.0, gap + half),
+                );
+                let mut climber = climber(v(0.0, 0.0, gap + thick + off));
+                for k in 0..40 {
+                    let input = if k < 20 { &HOLD } else { &UP };
+                    let report = tick(&mut climber, &[&fur, &plate], input);
+                    let state = climber.state();
+                    let told = format!(
+                        "plate {thick} m thick, {gap} m before fur, {off} m off, tick {k}: {:?}",
+                        report.events
+                    );
+                    assert!(!state.mode.is_holding(), "{told}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn does_not_grip_fur_below_a_floor() {
+    for thick in [0.02, 0.1, 0.3] {
+        let fur = at(cuboid(Vec3::new(4.0, 1.0, 4.0), FUR), v(0.0, -1.0, 0.0));
+        let half = thick * 0.5;
+        let plate = at(
+            cuboid(Vec3::new(4.0, half as f32, 4.0), STONE),
+            v(0.0, 0.01 + half, 0.0),
+        );
+        let mut climber = climber(v(0.0, 0.01 + thick + 0.41, 0.0));
+        for k in 0..40 {
+            let report = tick(&mut climber, &[&fur, &plate], &HOLD);
+            let state = climber.state();
+            let told = format!("floor of {thick} m, tick {k}: {:?}", report.events);
+            assert!(!state.mode.is_holding(), "{told}");
+            let on = state.support.map(|support| support.attachment.obstacle);
+            assert_ne!(on, Some(ObstacleId(0)), "{told}");
+        }
+        assert_eq!(climber.state().mode, ClimberMode::Standing, "{thick}");
+    }
+}
+
+/// Sheets that face +Z.
+fn sheets(each: &[(f32, clamber_surface::mesh::SurfaceTag)]) -> SkinnedSurface {
+    let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
+    for (z, tag) in each {
+        let a = positions.len() as u32;
+        let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
+        positions.extend(corners.map(|(x, y)| Vec3::new(x, y, *z)));
+        triangles.extend([[a, a + 1, a + 2], [a, a + 2, a + 3]]);
+        tags.extend([*tag, *tag]);
+    }
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![influence; positions.len()],
+        tags: &tags,
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    SkinnedSurface::new(Arc::new(mesh))
+}
+
+#[test]
+fn does_not_grip_fur_below_a_stone_shell_of_the_same_mesh() {
+    for shell in [0.02, 0.05, 0.1, 0.2, 0.3] {
+        let skin = sheets(&[(0.0, FUR), (shell, STONE)]);
+        for off in [0.4, 0.41, 0.42] {
+            let mut climber = climber(v(0.0, 0.0, f64::from(shell) + off));
+            for k in 0..10 {
+                let report = tick(&mut climber, &[&skin], &HOLD);
+                let told = format!("shell {shell} m over fur, {off} m off, tick {k}");
+                assert!(
+                    !climber.state().mode.is_holding(),
+                    "{told}: {:?}",
+                    report.events
+                );
+            }
+        }
+    }
+}
+
+/// Climbs along fur that a plate covers from its middle on.
+#[test]
+fn climbing_does_not_move_a_hold_behind_a_plate() {
+    for thick in [0.02, 0.1, 0.3] {
+        for (name, way) in [
+            ("up", DVec3::Y),
+            ("aside", DVec3::X),
+            ("up and aside", v(1.0, 1.0, 0.0).normalize()),
+        ] {
+            let half = thick * 0.5;
+            let fur = at(cuboid(Vec3::new(4.0, 4.0, 1.0), FUR), v(0.0, 0.0, -1.0));
+            // Its edge is a metre ahead.
+            let size = Vec3::new(2.0, 2.0, half as f32);
+            let middle = v(
+                way.x.signum() * 3.0 * way.x.abs().ceil(),
+                way.y.ceil() * 3.0,
+                0.0,
+            );
+            let plate = at(cuboid(size, STONE), middle + DVec3::Z * (0.01 + half));
+            let mut climber = climber(v(0.0, 0.0, 0.42));
+            let input = ClimberInput { climb: way, ..HOLD };
+            for k in 0..180 {
+                let report = tick(
+                    &mut climber,
+                    &[&fur, &plate],
+                    if k < 10 { &HOLD } else { &input },
+                );
+                let state = climber.state();
+                let told = format!(
+                    "plate {thick} m thick, climbs {name}, tick {k}: {:?} at {}, {:?}",
+                    state.mode, state.position, report.events
+                );
+                let Some(support) = state.support else {
+                    continue;
+                };
+                let hold = support.attachment;
+                let apart = (hold.contact - middle).abs();
+                let is_behind = hold.obstacle == ObstacleId(0) && apart.x < 1.98 && apart.y < 1.98;
+                assert!(!is_behind, "{told}: holds {}", hold.contact);
+                // A hand's way is free.
+                let reach = hold.contact - state.position;
+                let clear = reach.length() - 0.02;
+                let hit = Obstacle::cast_ray(&plate, state.position, reach, clear);
+                assert_eq!(hit, None, "{told}: holds {}", hold.contact);
+            }
+        }
+    }
+}
+
+/// Fur that goes aside behind a plate takes nothing along.
+#[test]
+fn fur_behind_a_fence_drags_nobody_along() {
+    let mut fur = at(cuboid(Vec3::new(4.0, 3.0, 1.0), FUR), v(0.0, 0.0, -1.0));
+    let plate = at(cuboid(Vec3::new(4.0, 3.0, 0.05), STONE), v(0.0, 0.0, 0.06));
+    let mut climber = climber(v(0.0, 0.0, 0.53));
+    for k in 0..90 {
+        if climber.state().position.y < -1.5 {
+            // It has fallen past the fence's lower edge.
+            return;
+        }
+        let by = v(0.05 * f64::from(k), 0.0, -1.0);
+        moved(&mut fur, by, DQuat::IDENTITY);
+        let report = tick(&mut climber, &[&fur, &plate], &HOLD);
+        let grabbed = |event: &ClimberEvent| matches!(event, ClimberEvent::Grabbed { .. });
+        assert!(
+            !report.events.iter().any(grabbed),
+            "tick {k}: {:?}",
+            report.events
+        );
+        assert!(
+            climber.state().position.x.abs() < 1e-3,
+            "tick {k}: {:?}",
+            climber.state()
+        );
+    }
+}

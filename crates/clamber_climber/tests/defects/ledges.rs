@@ -1,0 +1,116 @@
+//! Ledges that are met obliquely or caught from anywhere.
+
+use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
+use glam::{DVec3, Vec3};
+
+use crate::common::{tick, v};
+use crate::scene::{DT, HOLD, STONE, climber, cuboid};
+
+fn is_caught(event: &ClimberEvent) -> bool {
+    matches!(event, ClimberEvent::LedgeCaught { .. })
+}
+
+/// At 0 to 70 degrees from straight at the wall, to either side.
+#[test]
+fn oblique_ledges_are_caught_faced_and_followed() {
+    let block = cuboid(Vec3::new(8.0, 3.0, 3.0), STONE);
+    for step in -14..=14 {
+        let degrees = 5.0 * f64::from(step);
+        let angle = degrees.to_radians();
+        let toward = v(libm::sin(angle), 0.0, -libm::cos(angle));
+        let mut climber = climber(v(0.3, 2.75, 3.5));
+        let input = ClimberInput {
+            walk: toward * 0.1,
+            ..HOLD
+        };
+        let caught = (0..20).any(|_| {
+            let events = tick(&mut climber, &[&block], &input).events;
+            events.iter().any(is_caught)
+        });
+        assert!(caught, "at {degrees} degrees: {:?}", climber.state());
+        for _ in 0..60 {
+            tick(&mut climber, &[&block], &HOLD);
+        }
+        let heading = climber.state().heading;
+        let off = libm::acos(heading.dot(-DVec3::Z).clamp(-1.0, 1.0)).to_degrees();
+        assert!(off < 0.5, "at {degrees} degrees: heading {off} degrees off");
+        for input in [
+            ClimberInput {
+                walk: DVec3::X,
+                ..HOLD
+            },
+            ClimberInput {
+                walk: -DVec3::X,
+                ..HOLD
+            },
+            ClimberInput {
+                climb: DVec3::X,
+                ..HOLD
+            },
+            ClimberInput {
+                climb: -DVec3::X,
+                ..HOLD
+            },
+        ] {
+            let way = input.walk + input.climb;
+            let mut other = climber.clone();
+            let from = other.state().position;
+            for _ in 0..60 {
+                tick(&mut other, &[&block], &input);
+            }
+            let told = format!("at {degrees} degrees along {way}: {:?}", other.state());
+            assert_eq!(other.state().mode, ClimberMode::LedgeHanging, "{told}");
+            let made = other.state().position - from;
+            assert!((made.dot(way) - 1.0).abs() <= 0.01, "made {made} {told}");
+            assert!(
+                (made - way * made.dot(way)).length() < 0.01,
+                "made {made} {told}"
+            );
+        }
+    }
+}
+
+/// From everywhere around the edge where it can be caught, at rest and in flight.
+#[test]
+fn catching_a_ledge_moves_no_faster_than_arms_do() {
+    let block = cuboid(Vec3::new(4.0, 3.0, 3.0), STONE);
+    let config = ClimberConfig::colossus_climber();
+    let most = 3.0 * config.grip.map_or(0.0, |grip| grip.climb_speed) * DT;
+    let (mut caught, mut starts) = (0, 0);
+    for (i, j) in (0..10).flat_map(|i| (0..14).map(move |j| (i, j))) {
+        for degrees in [-60.0f64, 0.0, 45.0] {
+            let start = v(0.3, 2.0 + 0.1 * f64::from(j), 3.41 + 0.04 * f64::from(i));
+            let angle = degrees.to_radians();
+            let input = ClimberInput {
+                walk: v(libm::sin(angle), 0.0, -libm::cos(angle)) * 0.1,
+                ..HOLD
+            };
+            starts += 1;
+            let mut climber = Climber::new(config, start).unwrap();
+            let mut is_on = false;
+            for k in 0..40 {
+                let before = *climber.state();
+                let events = tick(&mut climber, &[&block], &input).events;
+                let state = climber.state();
+                let way = state.position.distance(before.position);
+                let is_new = events.iter().any(is_caught);
+                caught += u32::from(is_new);
+                // The fall into the catch is its own.
+                let falling = if is_new {
+                    before.velocity.length() * DT + 9.81 * DT * DT
+                } else {
+                    0.0
+                };
+                is_on |= is_new;
+                if is_on && state.mode == ClimberMode::LedgeHanging {
+                    assert!(
+                        way <= most.max(falling) + 1e-6,
+                        "from {start} at {degrees} degrees, tick {k}: {way} m, most {most}; \
+                         {before:?} {state:?} {events:?}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(caught * 3 > starts, "{caught} of {starts}");
+}
