@@ -156,6 +156,8 @@ pub(crate) struct State {
     pub(crate) jumping: bool,
     #[prost(message, required, tag = "19")]
     pub(crate) memory: Memory,
+    #[prost(bool, tag = "20")]
+    pub(crate) shoved: bool,
 }
 
 /// How the tick went.
@@ -434,6 +436,7 @@ impl From<&ClimberState> for State {
             base_velocity: state.base_velocity.into(),
             jumping: state.jumping,
             memory: state.memory.into(),
+            shoved: state.shoved,
         }
     }
 }
@@ -512,6 +515,7 @@ impl State {
             crouched: self.crouched,
             base_velocity: self.base_velocity.into(),
             jumping: self.jumping,
+            shoved: self.shoved,
             memory: self.memory.into(),
         })
     }

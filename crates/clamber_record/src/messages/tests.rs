@@ -50,6 +50,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         open_handed: next(),
         crouched: true,
         jumping: true,
+        shoved: true,
         memory: core::array::from_fn(|_| next()),
     };
     let input = ClimberInput {
