@@ -94,6 +94,13 @@ fn a_fold_does_not_let_a_plate_through() {
 
 #[test]
 fn a_fold_does_not_let_a_limb_through() {
+    crate::open(
+        "4a: limbs at 30 to 60 m/s, 24 mm short of room",
+        limbs_in_folds,
+    );
+}
+
+fn limbs_in_folds() {
     let mut all = String::new();
     let mut wrong = 0;
     for hz in [60.0, 30.0] {
@@ -208,6 +215,10 @@ fn hung(hz: f64, beam: &SkinnedSurface) -> Climber {
 /// A plate that only the legs can meet, at the lowest point of their way.
 #[test]
 fn legs_that_swing_go_through_no_plate() {
+    crate::open("4c: 2 of 8 at 30 Hz and 25 m/s", legs_that_swing);
+}
+
+fn legs_that_swing() {
     let mut all = String::new();
     let mut wrong = 0;
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
