@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             walk: DVec3::new(1.0, 0.0, if runs { 0.2 } else { 0.0 }),
             jump: (14.0..14.5).contains(&at.x) && climber.state().mode == ClimberMode::Standing,
             // Dashes at once, and holds the other buttons.
-            actions: u32::from(tick == 60) * dash.action | vault.action | wall_run.action,
+            actions: vault.action | wall_run.action | if tick == 60 { dash.action } else { 0 },
             ..ClimberInput::default()
         };
         let report = climber.step_with(&input, &[(ObstacleId(0), &terrain)], &rules, DT)?;

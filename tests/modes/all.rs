@@ -1,6 +1,8 @@
 //! What every mode has to do. That its state can be restored in any tick is checked by [`Scene::step`].
 
-use clamber::climber::{Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, StepRules};
+use clamber::climber::{
+    Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode, StepRules,
+};
 use clamber::prelude::Climber;
 use glam::DVec3;
 
@@ -98,4 +100,44 @@ fn two_modes_of_one_number_are_an_error_and_change_nothing() {
     let refused = climber.step_with(&ClimberInput::IDLE, &[], &rules, 0.1);
     assert_eq!(refused, Err(ClimberError::SameMode(1)));
     assert_eq!(*climber.state(), before);
+}
+
+/// Never begins, and remembers how far below it the ground is.
+struct Feel;
+
+impl CustomMode for Feel {
+    fn id(&self) -> u16 {
+        9
+    }
+
+    fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool {
+        let ground = context.ground_below(3.0);
+        let gap = ground.map_or(-1.0, |ground| ground.position.distance(context.position()));
+        context.memory()[7] = gap;
+        false
+    }
+
+    fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode {
+        context.let_go()
+    }
+}
+
+/// A post of 0.2 m, which a climber that looks from where it was a tick ago misses at 30 m/s.
+#[test]
+fn before_its_movement_a_mode_sees_the_ground_of_the_same_time() {
+    for frame in [DVec3::ZERO, FRAME] {
+        let scene = Scene::new(frame, DVec3::Y * 2.4).without_floor();
+        let mut scene = scene.with_box([-0.1, -9.0, -0.1], [0.1, 0.0, 0.1]);
+        scene.extra = Some(Box::new(Feel));
+        for tick in 0..90 {
+            let height = scene.position().y - 0.4;
+            scene.step(&ClimberInput::IDLE);
+            let felt = scene.climber.state().memory[7];
+            assert!(
+                (felt - height).abs() < 1e-6,
+                "{frame}, tick {tick}: {felt} {height}"
+            );
+        }
+        assert_eq!(scene.mode(), ClimberMode::Standing);
+    }
 }

@@ -44,6 +44,7 @@ pub(crate) struct Scene {
     tick: u32,
     pub(crate) climber: Climber,
     pub(crate) dash: Dash,
+    pub(crate) extra: Option<Box<dyn CustomMode>>,
     pub(crate) trace: Vec<(DVec3, DVec3, ClimberMode)>,
 }
 
@@ -63,6 +64,7 @@ impl Scene {
             tick: 0,
             climber,
             dash: Dash::default(),
+            extra: None,
             trace: Vec::new(),
         }
         .with_box([-50.0, -5.0, -50.0], [50.0, 0.0, 50.0])
@@ -128,6 +130,7 @@ impl Scene {
         let (vault, wall_run) = (Vault::default(), WallRun { action: 4 });
         let mut modes: Vec<&dyn CustomMode> = vec![&self.dash, &vault, &wall_run];
         modes.extend(swim.iter().map(|swim| swim as &dyn CustomMode));
+        modes.extend(self.extra.as_deref());
         modes.retain(|mode| Some(ClimberMode::Custom(mode.id())) != missing);
         let rules = StepRules::with_modes(&modes);
 

@@ -169,10 +169,19 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.mover.touched()
     }
 
-    /// Ground below the climber, up to `reach` metres below its feet.
+    /// Ground below the climber, up to `reach` metres below its feet: where its movement has led, else where it is before
+    /// that.
     pub fn ground_below(&mut self, reach: f64) -> Option<Ground> {
-        let position = self.tick.state.position;
+        let position = self.here();
         self.tick.ground_below(position, reach)
+    }
+
+    fn here(&self) -> DVec3 {
+        if self.tick.has_moved {
+            self.tick.state.position
+        } else {
+            self.position()
+        }
     }
 
     /// The contact of the last movement that holds the climber up, if one does.
@@ -182,13 +191,10 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.held_up(position, slope)
     }
 
-    /// Attaches the climber to a contact, which carries it from now on, at its position: before it stands or holds.
+    /// Attaches the climber to a contact, which carries it from now on: to a wall that it runs along, or before it stands
+    /// or holds.
     pub fn attach(&mut self, touch: &Touch) {
-        let place = if self.tick.has_moved {
-            self.tick.state.position
-        } else {
-            self.position()
-        };
+        let place = self.here();
         self.tick.attach(touch, place);
     }
 
