@@ -24,7 +24,7 @@ fn a_climb_has_the_same_bits_in_every_build() {
     let mut modes = BTreeSet::new();
     for tick in 0..2_400 {
         battle.step(options.input_at(tick)).unwrap();
-        modes.insert(battle.climber().state().mode as u8);
+        modes.insert(battle.climber().state().mode.number());
     }
     // Or the hash is of little.
     assert!(modes.len() == ClimberMode::ALL.len(), "modes {modes:?}");
@@ -41,7 +41,8 @@ fn a_battle_has_the_same_bits_in_every_build() {
     for tick in 0..1_200 {
         battle.step(options.input_at(tick)).unwrap();
         let support = battle.climber().state().support;
-        carried += usize::from(support.is_some_and(|support| support.obstacle == CREATURE));
+        carried +=
+            usize::from(support.is_some_and(|support| support.attachment.obstacle == CREATURE));
     }
     // Or the hash is of little.
     assert!(carried > 600, "{carried} ticks on the creature");

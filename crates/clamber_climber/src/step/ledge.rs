@@ -20,6 +20,9 @@ const OVER: f64 = 0.6;
 /// under an overhang it goes out as it goes up, and lags.
 const KEPT: f64 = 0.5;
 
+/// Drawn by less than this share of what its arms draw it in a tick, it is as near to its place as it comes.
+const DRAWN: f64 = 0.5;
+
 /// Farther from its place than this share of its radius, it is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
 
@@ -214,6 +217,11 @@ impl Tick<'_> {
             return self.be_torn_off(carried);
         }
         if is_out_of_place {
+            let made = (moved.position - carried.position).dot(way.normalize_or_zero());
+            if made < DRAWN * (target - carried.position).length() {
+                // Something bulges into its place: up from where it is.
+                self.state.pull_up = share;
+            }
             return NextMode::Stay;
         }
         // Walls and grounds that bulge push it ahead or aside; only what keeps it back is in its way.

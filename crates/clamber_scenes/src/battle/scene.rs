@@ -72,6 +72,8 @@ pub struct Battle<'a> {
     height: f64,
     tick: u64,
     grounded: u32,
+    /// It began the tick faster than it walks, as after a landing: friction brakes it, and it leaves its point.
+    slides: bool,
     drops: u32,
     landings: u32,
     input: ClimberInput,
@@ -124,6 +126,7 @@ impl<'a> Battle<'a> {
             height,
             tick: 0,
             grounded: 0,
+            slides: false,
             landings: 0,
             input: ClimberInput::default(),
             report: StepReport::default(),
@@ -212,6 +215,9 @@ impl<'a> Battle<'a> {
         let can_grip =
             |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
         let climber = &mut self.climber;
+        let state = climber.state();
+        let own = state.velocity - state.base_velocity;
+        self.slides = own.length() > climber.config().ground.walk_speed;
         let report =
             climber.step_with(&input, &obstacles, &StepRules::gripping(&can_grip), TICK)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
@@ -234,7 +240,7 @@ impl<'a> Battle<'a> {
         let state = *self.climber.state();
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
-        let idle = input == ClimberInput::default();
+        let idle = input == ClimberInput::default() && !self.slides;
         let palette = self.choreography.palette();
         let climbs = self.pilot.is_some();
         let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
