@@ -1,40 +1,38 @@
-//! The nearest point above planes: where a body may go, or how fast, between walls that move.
+//! Projection of a point onto the intersection of half-spaces: where a body may go, or how fast, between walls that move.
 //!
-//! A least-distance problem in three dimensions, solved from below: at most three planes hold the
-//! point up; the worst of those that it misses joins them, and of the joint sets the nearest point
-//! that is above all four counts. This is the pivot rule of dual active sets (Goldfarb and Idnani
-//! 1983) with the basis found by looking at all of its at most seven candidates, which needs no
-//! sign of a multiplier and so bears normals that are parallel to rounding.
+//! A least-distance problem in three dimensions, solved by a dual active-set method (Goldfarb and Idnani 1983, "A
+//! numerically stable dual method for solving strictly convex quadratic programs"). At most three planes support the
+//! point. In each pivot the plane that is violated most joins them, and of the at most seven subsets that contain it the
+//! one whose point satisfies all four planes is the next basis. Testing every subset needs no sign of a multiplier, so
+//! normals that are parallel to rounding do no harm.
 //!
-//! Where planes leave no point, all are lowered by one amount, the least that leaves one. Planes
-//! that are opposite but for a hundredth of a degree meet somewhere, thousands of times as far away
-//! as they overlap; that point is of no use, so they count as leaving none.
+//! If the intersection is empty, all planes are relaxed by the same amount, the least that makes it non-empty. Planes that
+//! are opposite to within a hundredth of a degree intersect thousands of times as far away as they overlap. Such an
+//! intersection is of no use, and counts as empty.
 
 use glam::DVec3;
 
-/// What lies beyond this many times the relief that it takes to avoid it counts as out of reach: if
-/// lowering all planes by d brings the point nearer by more than this times d, they are lowered.
-/// Opposite planes hence need to differ by 2e-4 radians to be a wedge that one can be squeezed out
-/// of. Greater, and normals of f32 triangles throw a crushed body hundreds of metres; less, and
-/// acute valleys are seen as closed.
+/// If relaxing all planes by d brings the point nearer by more than this times d, they are relaxed. Opposite planes
+/// therefore have to differ by 2e-4 radians to count as a wedge. With a larger value the rounding of f32 normals throws a
+/// crushed body hundreds of metres; with a smaller one acute valleys count as closed.
 const STEEPEST: f64 = 1e4;
 
-/// By how much to lower the planes to see how steep they are, as a share of the largest gap and of
-/// the distance: a hundred times [`HELD`], which blurs how far each of them reaches.
+/// By how much planes are relaxed to measure how fast the point follows, as a share of the largest gap and of the distance:
+/// a hundred times the tolerance [`HELD`].
 const PROBE: f64 = 1e-11;
 
-/// A plane missed by this share of the largest gap, or of the distance, is held: a hundred roundings
-/// of a point on three planes. Times [`STEEPEST`] it stays 1e-9.
+/// A plane that is violated by no more than this share of the largest gap, or of the distance, counts as satisfied: a
+/// hundred roundings of a point on three planes. Times [`STEEPEST`] it stays 1e-9.
 const HELD: f64 = 1e-13;
 
-/// Pivots after which [`HELD`] doubles with each: where many planes meet in one point, rounding
-/// could let them take turns for ever. Sets of 32 planes take a dozen pivots at most.
+/// After this many pivots [`HELD`] doubles with each: where many planes meet in one point, rounding could make them take
+/// turns for ever. Sets of 32 planes take a dozen pivots at most.
 const PATIENCE: usize = 64;
 
-/// Doublings of [`HELD`] until everything is held.
+/// Doublings of [`HELD`] until everything counts as satisfied.
 const DOUBLINGS: usize = 44;
 
-/// Sines below this are of rounding alone: such planes cannot both carry.
+/// Smaller sines are rounding: two such planes cannot both support the point.
 const PARALLEL: f64 = 1e-13;
 
 /// Halvings in search of the least relief, which begins at the largest gap and ends at the rounding
@@ -51,21 +49,20 @@ pub struct HalfSpace {
     pub offset: f64,
 }
 
-/// A point above planes, if there is one.
+/// The projection of a point onto half-spaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// The nearest point.
     pub point: DVec3,
-    /// By how much the worst plane is missed; 0, or rounding, where all hold.
+    /// By how much the worst plane is violated; 0, or rounding, if the intersection is not empty.
     pub missed: f64,
 }
 
-/// The point nearest to `target` on or above all planes.
+/// The point nearest to `target` inside all half-spaces. If their intersection is empty, the point that violates the worst
+/// plane least, and of these the nearest.
 ///
-/// Where there is none, the one that misses the worst plane least, and of those the nearest.
-/// Exact to 1e-9 of the largest gap between target and plane, of the distance, and to the rounding
-/// of coordinates; the same bits in whatever order the planes come. Planes that are not finite, or
-/// farther away than numbers reach, are ignored.
+/// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
+/// The same bits in whatever order the planes come. Planes that are not finite are ignored.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
     let Some(search) = Search::new(target, planes) else {
         return Projection {

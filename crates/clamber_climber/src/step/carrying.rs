@@ -102,7 +102,7 @@ impl Tick<'_> {
         motion.is_some()
     }
 
-    /// Attaches the climber, at a position, to something it touches; `how` it carries it is known from then on.
+    /// Attaches the climber, at a position, to something that it touches.
     pub(super) fn attach(&mut self, touch: &Touch, position: DVec3) {
         let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
         let attachment =

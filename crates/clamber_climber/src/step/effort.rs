@@ -11,10 +11,10 @@ use crate::{ClimberEvent, ClimberMode};
 const EXHAUSTED: f64 = 1.0;
 
 impl Tick<'_> {
-    /// What struck it since the last tick. A blow above the knocking speed knocks it over, if it can tumble. In the air any
-    /// other adds its velocity. On its feet it slides along the ground until friction has braked it, and is lifted off it where the blow points off it. On a
-    /// hold it hangs on and swings; a blow faster than a jump off the hold takes it off. From a ledge, too; a weaker one it
-    /// withstands.
+    /// What struck it since the last tick. A blow above the knocking speed knocks the climber over, if it can tumble. In the
+    /// air any other blow adds its velocity. A standing climber slides along the ground until friction has braked it, and is
+    /// lifted off the ground if the blow points off it. A blow that is faster than a jump off a hold takes a holding climber
+    /// off; a weaker one lets it swing from the hold, and does nothing to a climber that hangs from a ledge.
     pub(super) fn be_struck(&mut self) {
         let Some(blow) = self.input.blow else {
             return;

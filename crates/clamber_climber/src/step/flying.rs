@@ -18,7 +18,10 @@ impl Tick<'_> {
     /// In the air, or down what is too steep.
     pub(super) fn fly(&mut self) -> NextMode {
         if self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
-            return self.jump_late();
+            self.jump_late();
+            if self.state.mode != ClimberMode::Falling {
+                return NextMode::Change(ClimberMode::Falling);
+            }
         }
         self.steer();
         let falling = self.fall();
@@ -30,17 +33,12 @@ impl Tick<'_> {
     }
 
     /// A jump shortly after the ground has ended.
-    fn jump_late(&mut self) -> NextMode {
+    fn jump_late(&mut self) {
         let up = self.config.up();
         let rising = (self.state.velocity - self.state.base_velocity).dot(up);
         let jump = self.config.ground.jump_speed;
         self.state.velocity += up * (jump + rising.max(0.0) - rising);
         self.begin_jump();
-        if self.state.mode == ClimberMode::Falling {
-            // The mode does not change; the jump does not come again, since its buffer is empty.
-            return self.fly();
-        }
-        NextMode::Change(ClimberMode::Falling)
     }
 
     /// What the input changes of the velocity in the air.
