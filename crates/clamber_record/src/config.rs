@@ -209,7 +209,7 @@ mod tests {
         let mut metadata = Metadata::new();
         write(&ClimberConfig::colossus_climber(), &mut metadata);
         // 3 of gravity, the shake's time, and 5, 8, 6, 3, 5, 4, 6, 2 of the groups.
-        assert_eq!(metadata.len(), 43, "{metadata:?}");
+        assert_eq!(metadata.len(), 47, "{metadata:?}");
     }
 
     #[test]
