@@ -11,8 +11,18 @@ use crate::build;
 use crate::run::program;
 
 /// What an example cannot do without.
-const ARGUMENTS: [(&str, &[&str]); 3] = [
+const ARGUMENTS: [(&str, &[&str]); 4] = [
     ("inspect", &["assets/colossus.glb", "--poses", "2"]),
+    (
+        "rides",
+        &[
+            "assets/colossus.glb",
+            "--seconds",
+            "10",
+            "--out",
+            "target/rides-brief",
+        ],
+    ),
     ("seeds", &["target/fuzz-seeds"]),
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];
