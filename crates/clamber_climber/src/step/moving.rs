@@ -64,7 +64,7 @@ impl Tick<'_> {
         moved
     }
 
-    /// A velocity as far as what the last movement touched lets it, in the frame of the support.
+    /// A velocity without the parts that go into the contacts of the last movement, in the frame of the support.
     pub(super) fn clipped(&self, velocity: DVec3) -> DVec3 {
         self.mover
             .clip_velocity(velocity, self.state.base_velocity, None)
