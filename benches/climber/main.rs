@@ -7,11 +7,14 @@
 //! And what a thousand climbers on ten giants of 10,000 vertices in a valley take of two cores: of five two stand, one walks,
 //! two climb.
 //!
+//! And what a tick costs in which walls close in on a climber and crush it, beside one in which it has room.
+//!
 //! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
 //!
 //! `cargo bench --bench climber`; brief with `-- --test`.
 
 mod crowd;
+mod crushed;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -111,6 +114,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.push(name, standing / controller, Bound::Most(1.5));
     let name = "climbing / rapier's controller";
     cells.push(name, climbing / controller, Bound::Most(4.0));
+    crushed::measure(if brief { 1 } else { 10 }, &mut cells)?;
     if brief {
         crowd::measure((2, 2_000, 10), 3, &mut cells)?;
     } else {

@@ -6,9 +6,10 @@
 //! one whose point satisfies all four planes is the next basis. Testing every subset needs no sign of a multiplier, so
 //! normals that are parallel to rounding do no harm.
 //!
-//! If the intersection is empty, all planes are relaxed by the same amount, the least that makes it non-empty. Planes that
-//! are opposite to within a hundredth of a degree intersect thousands of times as far away as they overlap. Such an
-//! intersection is of no use, and counts as empty.
+//! If the intersection is empty, or too far away, all planes are relaxed by the same amount, the least that helps. Planes
+//! that are opposite to within a hundredth of a degree intersect thousands of times as far away as they overlap. Such an
+//! intersection is of no use, and counts as empty. The distance of the nearest point is a convex function of the relief, so
+//! that each attempt that fails tells how much more is needed at least.
 
 use glam::DVec3;
 
@@ -35,9 +36,16 @@ const DOUBLINGS: usize = 44;
 /// Smaller sines are rounding: two such planes cannot both support the point.
 const PARALLEL: f64 = 1e-13;
 
-/// Halvings in search of the least relief, which begins at the largest gap and ends at the rounding
-/// of it.
-const HALVINGS: usize = 50;
+/// The least relief is found to this share of the largest gap.
+const NARROW: f64 = 1e-12;
+
+/// How far beyond where the least relief seems to be one looks first, and by which factor farther each time that this is
+/// not enough.
+const FIRST_STEP: f64 = 0.25 * NARROW;
+const LONGER: f64 = 8.0;
+
+/// Most attempts to find it. Three or four are the rule; every third halves what is left, down to [`NARROW`].
+const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,25 +72,19 @@ pub struct Projection {
 /// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
 /// The same bits in whatever order the planes come. Planes that are not finite are ignored.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
-    let Some(search) = Search::new(target, planes) else {
-        return Projection {
+    project_within(target, planes, f64::INFINITY)
+}
+
+/// [`project_onto_half_spaces`] onto a point no farther from the target than `reach`: planes are also relaxed until there is
+/// one.
+pub(crate) fn project_within(target: DVec3, planes: &[HalfSpace], reach: f64) -> Projection {
+    match Search::new(target, planes, reach) {
+        Some(search) => search.above(search.least_relieved()),
+        None => Projection {
             point: target,
             missed: 0.0,
-        };
-    };
-    if let Some(point) = search.sound(0.0) {
-        return search.above(point);
+        },
     }
-    // Relieved of the largest gap, the target itself is above all.
-    let (mut low, mut high, mut point) = (0.0, 1.0, DVec3::ZERO);
-    for _ in 0..HALVINGS {
-        let relief = 0.5 * (low + high);
-        match search.sound(relief) {
-            Some(found) => (high, point) = (relief, found),
-            None => low = relief,
-        }
-    }
-    search.above(point)
 }
 
 /// The problem with the target at the origin and the largest gap 1.
@@ -91,6 +93,17 @@ struct Search<'a> {
     planes: &'a [HalfSpace],
     /// The largest gap: by how much the target misses the worst plane.
     size: f64,
+    /// Farthest that a point may be, in largest gaps.
+    reach: f64,
+}
+
+/// What is known of a relief that is not enough.
+#[derive(Clone, Copy)]
+struct TooLittle {
+    /// No relief below this is enough.
+    least: f64,
+    /// Other planes carry from here on: where planes that are all but closed end to carry.
+    turn: f64,
 }
 
 /// A plane seen from the target: all x with `normal . x >= gap`.
@@ -106,6 +119,8 @@ struct Corner {
     walls: [Wall; 3],
     count: usize,
     point: DVec3,
+    /// The multipliers of the planes: the point is the sum of their normals by so much each.
+    pushes: [f64; 3],
     /// Whether all planes push: their multipliers are positive.
     carries: bool,
     /// How much nearer the point comes for each metre by which the planes are lowered: by duality,
@@ -115,7 +130,7 @@ struct Corner {
 
 impl<'a> Search<'a> {
     /// None if the target is above all planes.
-    fn new(target: DVec3, planes: &'a [HalfSpace]) -> Option<Self> {
+    fn new(target: DVec3, planes: &'a [HalfSpace], reach: f64) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
         // Below, reciprocals overflow.
@@ -123,7 +138,46 @@ impl<'a> Search<'a> {
             target,
             planes,
             size,
+            reach: (reach / size).min(STEEPEST),
         })
+    }
+
+    /// The nearest point with the least relief.
+    fn least_relieved(&self) -> DVec3 {
+        let mut low = match self.sound(0.0) {
+            Ok(point) => return point,
+            Err(too_little) => too_little,
+        };
+        // Relieved of the largest gap, the target itself is above all.
+        let (mut high, mut point) = (1.0, DVec3::ZERO);
+        let mut step = FIRST_STEP;
+        for attempt in 1..=ATTEMPTS {
+            if high - low.least <= NARROW {
+                break;
+            }
+            let halves = attempt % 3 == 0;
+            let relief = if halves {
+                0.5 * (low.least + high)
+            } else {
+                low.next(high, step)
+            };
+            match self.sound(relief) {
+                Ok(found) => (high, point) = (relief, found),
+                Err(too_little) => {
+                    // Planes that are all but opposite say less than what is needed.
+                    step *= if too_little.least > relief || halves {
+                        1.0
+                    } else {
+                        LONGER
+                    };
+                    low = TooLittle {
+                        least: too_little.least.max(low.least),
+                        ..too_little
+                    };
+                }
+            }
+        }
+        point
     }
 
     fn above(&self, point: DVec3) -> Projection {
@@ -140,25 +194,38 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The nearest point above all planes lowered by `relief`, if it is within reach.
-    fn sound(&self, relief: f64) -> Option<DVec3> {
-        let corner = self.nearest(relief)?;
+    /// The nearest point above all planes lowered by `relief`, if it is within reach and in no wedge that is all but closed.
+    fn sound(&self, relief: f64) -> Result<DVec3, TooLittle> {
+        let at = |relief: f64| {
+            let least = |least| TooLittle { least, turn: least };
+            self.nearest(relief).map_err(least)
+        };
+        let corner = at(relief)?;
+        let too_steep = || TooLittle {
+            least: relief,
+            turn: relief + corner.carries_for(),
+        };
         // In most cases the planes that carry tell at once. Where more than three meet they may not
         // be the only ones; then the distance itself has the last word, unless it is all rounding.
         if corner.carries && corner.steepness <= STEEPEST {
-            return Some(corner.point);
+            return Ok(corner.point);
         }
         if corner.steepness > STEEPEST * 1e3 {
-            return None;
+            return Err(too_steep());
         }
         let distance = corner.point.length();
         let probe = PROBE * (1.0 + distance);
-        let nearer = distance - self.nearest(relief + probe)?.point.length();
-        (nearer <= STEEPEST * probe).then_some(corner.point)
+        let nearer = distance - at(relief + probe)?.point.length();
+        if nearer <= STEEPEST * probe {
+            Ok(corner.point)
+        } else {
+            Err(too_steep())
+        }
     }
 
-    /// The nearest point above all planes lowered by `relief`, and what carries it.
-    fn nearest(&self, relief: f64) -> Option<Corner> {
+    /// The nearest point above all planes lowered by `relief`, and what carries it. If there is none within reach, the
+    /// relief that is needed at least, as far as that is seen.
+    fn nearest(&self, relief: f64) -> Result<Corner, f64> {
         let mut corner = Corner::nowhere();
         let mut held = HELD;
         for pivot in 0..PATIENCE + DOUBLINGS {
@@ -167,14 +234,17 @@ impl<'a> Search<'a> {
             }
             let slack = held * (1.0 + corner.point.length());
             let Some(wall) = self.worst(corner.point, relief, slack) else {
-                return Some(corner);
+                return Ok(corner);
             };
-            corner = corner.joined(wall, slack)?;
-            if corner.point.length_squared() > STEEPEST * STEEPEST {
-                return None;
+            corner = match corner.joined(wall, slack) {
+                Some(corner) => corner,
+                None => return Err(relief + corner.lacks(wall, self.reach).max(0.0)),
+            };
+            if corner.point.length() > self.reach * (1.0 + HELD) {
+                return Err(relief + corner.lacks_itself(self.reach).max(0.0));
             }
         }
-        None
+        Err(relief)
     }
 
     /// The plane that a point misses most, if by more than `slack`.
@@ -196,6 +266,17 @@ impl<'a> Search<'a> {
             }
         }
         worst
+    }
+}
+
+impl TooLittle {
+    /// Where to try next, below a relief that is enough: a step above, and then below, where other planes carry.
+    fn next(&self, high: f64, step: f64) -> f64 {
+        let turn = self.turn.max(self.least);
+        let tries = [turn + step, turn - step, high - step];
+        let is_between = |relief: &&f64| **relief >= self.least + step && **relief <= high - step;
+        let next = tries.iter().find(is_between);
+        next.map_or(0.5 * (self.least + high), |relief| *relief)
     }
 }
 
@@ -231,6 +312,7 @@ impl Corner {
             }; 3],
             count: 0,
             point: DVec3::ZERO,
+            pushes: [0.0; 3],
             carries: true,
             steepness: 0.0,
         }
@@ -276,6 +358,72 @@ impl Corner {
         best
     }
 
+    /// For how much more relief all of these walls carry.
+    fn carries_for(&self) -> f64 {
+        let mut lowered = *self;
+        lowered.walls.iter_mut().for_each(|wall| wall.gap = 1.0);
+        if !lowered.settle() {
+            return 0.0;
+        }
+        let pairs = self.pushes.iter().zip(&lowered.pushes).take(self.count);
+        let left = pairs
+            .filter(|(_, lost)| **lost > 0.0)
+            .map(|(push, lost)| push / lost);
+        let least = left.fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            least.max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// How much relief these walls need at least for a point within reach: what they push with tells it. Their point says
+    /// the same, but not between walls that are all but parallel, where it is mostly rounding.
+    fn lacks_itself(&self, reach: f64) -> f64 {
+        let (mut sum, mut weights, mut gap) = (DVec3::ZERO, 0.0, 0.0);
+        for (wall, push) in self.walls().iter().zip(self.pushes) {
+            sum += wall.normal * push;
+            weights += push;
+            gap += wall.gap * push;
+        }
+        if self.carries && weights > 0.0 {
+            (gap - sum.length() * reach) / weights
+        } else {
+            0.0
+        }
+    }
+
+    /// How much relief these walls and a new one need at least for a point within reach, as far as one sees: each
+    /// combination of walls with weights of at least zero tells some.
+    fn lacks(&self, wall: Wall, reach: f64) -> f64 {
+        let mut most = f64::NEG_INFINITY;
+        for kept in 0b000..1_usize << self.count {
+            let mut others = Self::nowhere();
+            for (index, &old) in self.walls().iter().enumerate() {
+                if kept >> index & 1 == 1 {
+                    others.push(old);
+                }
+            }
+            let Some(axes) = axes(others.walls()) else {
+                continue;
+            };
+            // What the others oppose of the new one.
+            let (mut sum, mut weights, mut gap) = (wall.normal, 1.0, wall.gap);
+            let mut opposes = true;
+            for (other, axis) in others.walls().iter().zip(&axes).rev() {
+                let weight = -sum.dot(*axis) / other.normal.dot(*axis);
+                opposes &= weight >= 0.0;
+                sum += other.normal * weight;
+                weights += weight;
+                gap += other.gap * weight;
+            }
+            if opposes {
+                most = most.max((gap - sum.length() * reach) / weights);
+            }
+        }
+        most
+    }
+
     fn push(&mut self, wall: Wall) {
         if let Some(free) = self.walls.get_mut(self.count) {
             *free = wall;
@@ -299,13 +447,15 @@ impl Corner {
             }
         }
         let (mut rest, mut sum, mut carries) = (point, 0.0, true);
+        let mut pushes = [0.0; 3];
         // The last axis is square to all walls but the last.
-        for (wall, axis) in pairs().rev() {
-            let multiplier = rest.dot(*axis) / wall.normal.dot(*axis);
-            rest -= wall.normal * multiplier;
-            sum += multiplier.abs();
-            carries &= multiplier >= 0.0;
+        for ((wall, axis), push) in pairs().zip(&mut pushes).rev() {
+            *push = rest.dot(*axis) / wall.normal.dot(*axis);
+            rest -= wall.normal * *push;
+            sum += push.abs();
+            carries &= *push >= 0.0;
         }
+        self.pushes = pushes;
         self.steepness = sum / point.length();
         (self.point, self.carries) = (point, carries);
         true

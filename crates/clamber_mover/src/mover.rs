@@ -21,6 +21,8 @@ pub struct MoverMemory {
     /// Steep slopes once more, as vertical walls.
     pub(crate) walls: Vec<HalfSpace>,
     pub(crate) touched: Vec<Touch>,
+    /// Of what is touched, each at the same index.
+    pub(crate) velocities: Vec<DVec3>,
     surroundings: Surroundings,
 }
 
@@ -38,6 +40,8 @@ impl MoverMemory {
             touches.clear();
             touches.reserve(CONTACTS);
         }
+        self.velocities.clear();
+        self.velocities.reserve(CONTACTS);
         for half_spaces in [&mut self.half_spaces, &mut self.walls] {
             half_spaces.clear();
             half_spaces.reserve(HALF_SPACES);
@@ -104,12 +108,6 @@ impl<'a> Mover<'a> {
     /// How a material point moves over the tick; `None` if it is gone, or its motion is not finite.
     pub fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
         motion_among(self.obstacles, obstacle, point, self.dt)
-    }
-
-    /// Velocity of the material at a contact, metres a second; zero where it has no motion.
-    pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
-        self.motion(touch.obstacle, &touch.contact.material)
-            .map_or(DVec3::ZERO, |motion| motion.velocity)
     }
 
     /// Fixes something at `place`, in world space, to the material of a contact. [`Attachment::follow`] it in later ticks.

@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
+use crate::half_spaces::{HalfSpace, Projection, project_within};
 use crate::mover::motion_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
@@ -131,6 +131,12 @@ impl Mover<'_> {
     /// A path that is not finite, or of a body that is none, leads nowhere: the body stays at its start, and the way
     /// is not clear.
     pub fn slide(&mut self, path: &Path) -> Moved {
+        let moved = self.find_way(path);
+        self.know_velocities();
+        moved
+    }
+
+    fn find_way(&mut self, path: &Path) -> Moved {
         self.memory.half_spaces.clear();
         self.memory.walls.clear();
         self.memory.touched.clear();
@@ -149,25 +155,18 @@ impl Mover<'_> {
         self.keep_arm(path, &mut moved);
         let near = path.body.margin * NEAR;
         let touch = TOUCH * path.body.radius;
-        let mut past = false;
         // The way to here is known to be clear.
         let mut clear_to: Option<DVec3> = None;
         loop {
             moved.rounds += 1;
             if clear_to.is_none_or(|clear_to| moved.position.distance(clear_to) > near) {
                 clear_to = None;
-                let swept = path.begin == Begin::Start;
-                if swept && let Some(inside) = self.meet(path, past, &mut moved) {
-                    if inside {
-                        // What it began inside of would hide everything else.
-                        past = true;
-                        self.go_with_overlaps(path, &mut moved);
-                    }
+                if path.begin == Begin::Start && self.meet(path, &mut moved) {
                     if moved.rounds < ROUNDS {
                         continue;
                     }
                     moved.is_clear = false;
-                    self.stop(path, past, &mut moved);
+                    self.stop(path, &mut moved);
                 }
             }
             let before = moved.position;
@@ -191,15 +190,7 @@ impl Mover<'_> {
 
     /// What overlaps the core at the start carries the body along over the tick: it comes no deeper.
     fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
-        let core = path.body.core_at(path.start);
         let mut inside = std::mem::take(&mut self.memory.inside);
-        inside.clear();
-        self.sweep_where(&core, moved.position - path.start, |hit| {
-            if hit.started_inside && hit.touch.is_finite() {
-                inside.push(hit.touch);
-            }
-            false
-        });
         inside.sort_unstable_by(Touch::order);
         inside.truncate(PUSHES);
         for (index, touch) in inside.iter().enumerate() {
@@ -220,50 +211,79 @@ impl Mover<'_> {
         self.solve(path, moved);
     }
 
-    /// Sweeps to the wanted position, and keeps clear of the first contact: whether the body was inside it from the
-    /// start. `None` if nothing is in the way.
-    fn meet(&mut self, path: &Path, past: bool, moved: &mut Moved) -> Option<bool> {
+    /// Sweeps to the wanted position, and keeps clear of the first contact; at first also of what the core was inside of
+    /// from the start, which would hide everything else. False if nothing is in the way.
+    fn meet(&mut self, path: &Path, moved: &mut Moved) -> bool {
         let way = moved.position - path.start;
-        let hit = self.sweep_from(path, past, way)?;
-        let touch = hit.touch;
-        let at = path.start + way * hit.time;
+        let hit = if moved.rounds == 1 {
+            let hit = self.sweep_at_first(path, way);
+            if !self.memory.inside.is_empty() {
+                self.go_with_overlaps(path, moved);
+                return true;
+            }
+            hit
+        } else {
+            self.sweep_from(path, way)
+        };
+        let Some(Hit { touch, time, .. }) = hit else {
+            return false;
+        };
+        let at = path.start + way * time;
         let end = self
             .motion(touch.obstacle, &touch.contact.material)
             .map_or(touch.contact.point, |motion| motion.position);
         let on_axis = path.body.core_at(at).nearest_on_axis(touch.contact.point) - at;
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
-        if !hit.started_inside {
-            self.add_half_space(path, touch, offset, moved.position);
-            self.solve(path, moved);
-        }
-        Some(hit.started_inside)
+        self.add_half_space(path, touch, offset, moved.position);
+        self.solve(path, moved);
+        true
     }
 
-    /// `past` what the core began inside of.
-    fn sweep_from(&mut self, path: &Path, past: bool, way: DVec3) -> Option<Hit> {
+    /// The first contact on a way; notes what the core begins inside of, which is none.
+    fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.body.core_at(path.start);
-        if !past {
-            return self.sweep(&core, way);
-        }
+        let mut inside = std::mem::take(&mut self.memory.inside);
+        inside.clear();
+        let hit = self.sweep_where(&core, way, |hit| {
+            if hit.started_inside && hit.touch.is_finite() {
+                inside.push(hit.touch);
+            }
+            !hit.started_inside
+        });
+        self.memory.inside = inside;
+        hit
+    }
+
+    /// The first contact on a way past what the core began inside of.
+    fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
+        let core = path.body.core_at(path.start);
         let inside = std::mem::take(&mut self.memory.inside);
         let margin = path.body.margin;
         let (obstacles, dt) = (self.obstacles, self.dt());
         let hit = self.sweep_where(&core, way, |hit| {
-            let (id, point) = (hit.touch.obstacle, hit.touch.contact.material);
-            let motion = motion_among(obstacles, id, &point, dt);
-            let start = motion.map_or(hit.touch.contact.point, |motion| motion.previous_position);
-            let mut inside = inside.iter();
-            let continues = |inside: &Touch| hit.touch.continues(start, inside, margin);
-            !hit.started_inside && !inside.any(continues)
+            let touch = &hit.touch;
+            if hit.started_inside {
+                return false;
+            }
+            let mut of_its_face = inside
+                .iter()
+                .filter(|other| touch.is_on_face_of(other))
+                .peekable();
+            if of_its_face.peek().is_none() {
+                return true;
+            }
+            let motion = motion_among(obstacles, touch.obstacle, &touch.contact.material, dt);
+            let start = motion.map_or(touch.contact.point, |motion| motion.previous_position);
+            !of_its_face.any(|other| touch.continues(start, other, margin))
         });
         self.memory.inside = inside;
         hit
     }
 
     /// Stops where the sweep meets something, and goes with it for the rest of the tick.
-    fn stop(&mut self, path: &Path, past: bool, moved: &mut Moved) {
+    fn stop(&mut self, path: &Path, moved: &mut Moved) {
         let way = moved.position - path.start;
-        if let Some(Hit { touch, time, .. }) = self.sweep_from(path, past, way) {
+        if let Some(Hit { touch, time, .. }) = self.sweep_from(path, way) {
             let end = self.motion(touch.obstacle, &touch.contact.material);
             let carried = end.map_or(DVec3::ZERO, |motion| motion.position - touch.contact.point);
             moved.position = path.start + way * time + carried;
@@ -275,28 +295,33 @@ impl Mover<'_> {
         let body = &path.body;
         let found = moved.position;
         self.overlap(body, found, body.margin * NEAR);
+        let touching = TOUCH * body.radius;
         let mut pushes = 0;
         while pushes < PUSHES {
             let capsule = body.at(moved.position);
-            let mut worst: Option<(f64, Touch)> = None;
+            // Half-spaces that are relaxed already take this much more.
+            let mut deepest = moved.missing_room + touching;
+            let mut worst: Option<Touch> = None;
             for touch in self.overlaps() {
                 let now = touch.after_push(&capsule, moved.position - found);
                 let depth = body.radius - now.contact.distance;
-                if depth > worst.map_or(TOUCH * body.radius, |(deepest, _)| deepest) {
-                    worst = Some((depth, now));
+                if depth > deepest {
+                    (deepest, worst) = (depth, Some(now));
                 }
             }
-            let Some((depth, touch)) = worst else {
+            let Some(touch) = worst else {
                 break;
             };
-            let offset = touch.normal.dot(moved.position - path.start) + depth;
-            self.add_half_space(path, touch, offset, moved.position);
+            self.keep_off(path, touch, moved.position);
             pushes += 1;
             let before = moved.position;
             self.solve(path, moved);
             if moved.position == before {
                 break;
             }
+        }
+        if moved.missing_room > touching {
+            self.touch_the_rest(path, moved, found);
         }
         let capsule = body.at(moved.position);
         let depths = self.overlaps().iter().map(|touch| {
@@ -305,6 +330,28 @@ impl Mover<'_> {
         });
         moved.penetration = (depths.fold(0.0, f64::max) - body.margin).max(0.0);
         pushes
+    }
+
+    /// What overlaps a crushed body no deeper than the others moves it no further, but touches it as well.
+    fn touch_the_rest(&mut self, path: &Path, moved: &Moved, found: DVec3) {
+        let body = &path.body;
+        let capsule = body.at(moved.position);
+        for index in 0..self.overlaps().len() {
+            let touch = self.overlaps()[index].after_push(&capsule, moved.position - found);
+            let overlaps = body.radius - touch.contact.distance > TOUCH * body.radius;
+            // Of one face one triangle is enough.
+            let is_known = self.touched().iter().any(|other| touch.pushes_like(other));
+            if overlaps && !is_known && self.touched().len() < PUSHES {
+                self.keep_off(path, touch, moved.position);
+            }
+        }
+    }
+
+    /// A body at a position may end no deeper than at a contact's face.
+    fn keep_off(&mut self, path: &Path, touch: Touch, position: DVec3) {
+        let depth = path.body.radius - touch.contact.distance;
+        let offset = touch.normal.dot(position - path.start) + depth;
+        self.add_half_space(path, touch, offset, position);
     }
 
     /// `position` is where the body would be without the half-space.
@@ -352,32 +399,14 @@ impl Mover<'_> {
     ///
     /// Walls that are all but opposite meet somewhere, many times as far away as they overlap: no body slips out there
     /// within a tick. They crush it.
-    fn nearest_displacement(&mut self, wanted: DVec3, frame: DVec3) -> Projection {
-        let half_spaces = &mut self.memory.half_spaces;
-        let nearest = project_onto_half_spaces(wanted, half_spaces);
+    fn nearest_displacement(&self, wanted: DVec3, frame: DVec3) -> Projection {
+        let half_spaces = &self.memory.half_spaces;
         let gaps = half_spaces
             .iter()
             .map(|half_space| half_space.offset - half_space.normal.dot(wanted));
         let gap = gaps.fold(0.0, f64::max);
         let farthest = wanted.distance(frame) + FARTHEST * gap;
-        let is_near = |nearest: &Projection| nearest.point.distance(frame) <= farthest;
-        if is_near(&nearest) {
-            return nearest;
-        }
-        let (mut too_little, mut enough) = (0.0, gap);
-        for _ in 0..HALVINGS {
-            let relief = (too_little + enough) * 0.5;
-            if is_near(&project_onto_relaxed(wanted, half_spaces, relief)) {
-                enough = relief;
-            } else {
-                too_little = relief;
-            }
-        }
-        let nearest = project_onto_relaxed(wanted, half_spaces, enough);
-        Projection {
-            missed: nearest.missed + enough,
-            ..nearest
-        }
+        project_within(wanted, half_spaces, farthest)
     }
 
     /// A body at the end of a taut arm stays there: half-spaces that touch the ball of its reach where the body is.
@@ -410,26 +439,10 @@ impl Mover<'_> {
     }
 }
 
-/// The projection onto half-spaces that are all relaxed by a length.
-fn project_onto_relaxed(wanted: DVec3, half_spaces: &mut [HalfSpace], by: f64) -> Projection {
-    half_spaces
-        .iter_mut()
-        .for_each(|half_space| half_space.offset -= by);
-    let nearest = project_onto_half_spaces(wanted, half_spaces);
-    half_spaces
-        .iter_mut()
-        .for_each(|half_space| half_space.offset += by);
-    nearest
-}
-
 /// A push that leads farther than the wanted displacement and this many times the deepest overlap is refused: walls that
 /// differ by less than 29 degrees from opposite are no wedge to slip out of. A larger value throws a body that is
 /// crushed by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
 const FARTHEST: f64 = 4.0;
-
-/// Halvings in search of the least relief, which begins at the overlap: down to 6e-8 of it, since walls that are all but
-/// opposite magnify the rest a hundredfold.
-const HALVINGS: u32 = 24;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

@@ -34,11 +34,18 @@ impl Touch {
     /// The contact, whose material was at `start` when the tick began, lies on the same face as another that the body is
     /// inside of then, and does not stand out from it by more than a length: its edge within that face is none.
     pub(crate) fn continues(&self, start: DVec3, other: &Self, length: f64) -> bool {
-        let normal = other.contact.normal;
-        let out = normal.dot(start - other.contact.point).abs();
-        self.obstacle == other.obstacle
-            && self.contact.normal.dot(normal) > ONE_FACE
-            && out <= length
+        let out = other.contact.normal.dot(start - other.contact.point).abs();
+        self.is_on_face_of(other) && out <= length
+    }
+
+    /// Both lie on faces of one obstacle that point alike.
+    pub(crate) fn is_on_face_of(&self, other: &Self) -> bool {
+        self.obstacle == other.obstacle && self.contact.normal.dot(other.contact.normal) > ONE_FACE
+    }
+
+    /// Both push the body alike, away from one obstacle.
+    pub(crate) fn pushes_like(&self, other: &Self) -> bool {
+        self.obstacle == other.obstacle && self.normal.dot(other.normal) > ONE_FACE
     }
 
     pub(crate) fn is_finite(&self) -> bool {

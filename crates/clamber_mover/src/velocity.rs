@@ -1,12 +1,39 @@
 use glam::DVec3;
 
-use crate::Mover;
-use crate::half_spaces::{HalfSpace, project_onto_half_spaces};
+use crate::half_spaces::{HalfSpace, project_within};
+use crate::{Mover, Touch};
 
 /// Most half-spaces that stop a velocity together.
 const STOPS: usize = 24;
 
 impl Mover<'_> {
+    /// Velocity of the material at a contact, metres a second; zero where it has no motion.
+    pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
+        let known = self.touched().iter().zip(&self.memory.velocities);
+        let mut same = known.filter(|(other, _)| {
+            other.obstacle == touch.obstacle && other.contact.material == touch.contact.material
+        });
+        same.next()
+            .map_or_else(|| self.ask_for_velocity(touch), |(_, velocity)| *velocity)
+    }
+
+    fn ask_for_velocity(&self, touch: &Touch) -> DVec3 {
+        let motion = self.motion(touch.obstacle, &touch.contact.material);
+        motion.map_or(DVec3::ZERO, |motion| motion.velocity)
+    }
+
+    /// Asks once for the velocities of what a movement has touched: they are needed several times.
+    pub(crate) fn know_velocities(&mut self) {
+        let mut velocities = std::mem::take(&mut self.memory.velocities);
+        velocities.clear();
+        velocities.extend(
+            self.touched()
+                .iter()
+                .map(|touch| self.ask_for_velocity(touch)),
+        );
+        self.memory.velocities = velocities;
+    }
+
     /// The nearest velocity that does not lead into anything that the last movement touched, as fast as that moves
     /// itself; `limit` is one more half-space of velocities to stay in.
     ///
@@ -34,9 +61,10 @@ impl Mover<'_> {
             fastest = fastest.max(own.distance(frame));
             count += 1;
         }
-        let clipped = project_onto_half_spaces(velocity, &half_spaces[..count]).point;
+        let own = velocity.distance(frame);
+        let limit = own + fastest;
+        let clipped = project_within(velocity, &half_spaces[..count], own + limit).point;
         let relative = clipped - frame;
-        let limit = velocity.distance(frame) + fastest;
         if relative.length() > limit {
             frame + relative.clamp_length_max(limit)
         } else {

@@ -12,6 +12,9 @@ use crate::{ClimberEvent, ClimberMode};
 /// by, it looks for new ground.
 const SHOVED: f64 = 0.1;
 
+/// Crushed into its ground by up to this share of its radius it still stands on it.
+const SUNK: f64 = 0.5;
+
 /// Its own speed off the ground from which a blow lifts it off, as a share of the speed of a jump.
 const LIFTS: f64 = 0.1;
 
@@ -80,7 +83,10 @@ impl Tick<'_> {
         self.state.position = moved.position;
         let radius = self.config.body.radius;
         let upright = carried.motion.position + carried.normal() * radius;
-        let is_shoved = moved.position.distance(upright) > SHOVED * radius;
+        let apart = moved.position - upright;
+        // What crushes it into its ground does not push it off.
+        let into = apart.dot(carried.normal()).clamp(-SUNK * radius, 0.0);
+        let is_shoved = (apart - carried.normal() * into).length() > SHOVED * radius;
         if is_shoved && moved.missing_room > self.config.body.margin {
             // Crushed away from its ground: whatever is below it now is no place to stand.
             self.state.velocity = carried.velocity();

@@ -218,7 +218,7 @@ fn input(index: u32, tick: u32, position: DVec3) -> ClimberInput {
     let angle = f64::from(index * 2 + tick / 45);
     let about = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
     ClimberInput {
-        walk: middle.clamp_length_max(0.5) + about * 0.3,
+        walk: middle.clamp_length_max(0.7) + about * 0.3,
         jump: (tick + 13 * index).is_multiple_of(80),
         grip: index.is_multiple_of(2) && !(tick / 60 + index).is_multiple_of(3),
         ..ClimberInput::default()

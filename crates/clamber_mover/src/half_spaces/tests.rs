@@ -1,6 +1,9 @@
 use super::*;
 use fastrand::Rng;
 
+/// Halvings in search of the least relief, which begins at the largest gap and ends at the rounding of it.
+const HALVINGS: usize = 50;
+
 /// The slow twin: of all sets of at most three planes, the nearest of the points that they hold and
 /// that are above all others; lowered, where there is none, until there is one.
 fn project_onto_half_spaces_reference(target: DVec3, planes: &[HalfSpace]) -> Projection {
