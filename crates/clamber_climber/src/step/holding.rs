@@ -25,7 +25,7 @@ const FLAT: f64 = 0.985;
 const STUCK: f64 = 0.25;
 
 /// With this share of its input along the hold it climbs at full speed; with less slower.
-const FULL: f64 = 0.5;
+const FULL: f64 = 0.1;
 
 /// What opposes its way by more than this cosine is climbed onto rather than along.
 const AHEAD: f64 = 0.3;

@@ -41,6 +41,10 @@ const HEIGHT_COUNTS: f64 = 5.0;
 /// Stamina that it rests for where it can stand.
 const RESTED: f64 = 0.95;
 
+/// With less stamina it lets go where it is level enough to stand, radians, and rests.
+const TIRED: f64 = 0.5;
+const LEVEL: f64 = 0.8;
+
 /// Shake in which it stands at the top; in more it holds on, metres a second squared.
 const CALM: f64 = 3.0;
 
@@ -156,7 +160,13 @@ impl Pilot {
                 ..ClimberInput::default()
             };
         }
-        if stands && state.stamina < RESTED {
+        let could_stand = state.mode == ClimberMode::Holding
+            && state.support.is_some_and(|support| {
+                let up = climber.config().up();
+                slope(support.normal_in_world(), up) < LEVEL
+            });
+        let is_tired = state.stamina < TIRED && state.shake.length() < CALM;
+        if stands && state.stamina < RESTED || could_stand && is_tired {
             return ClimberInput::default();
         }
         let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
@@ -327,6 +337,10 @@ fn nearest(
 ) -> Option<VertexId> {
     let distance = |vertex: &VertexId| place(surface, *vertex).distance_squared(to);
     vertices.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+fn slope(normal: DVec3, up: DVec3) -> f64 {
+    libm::acos(normal.dot(up).clamp(-1.0, 1.0))
 }
 
 fn place(surface: &SkinnedSurface, vertex: VertexId) -> DVec3 {
