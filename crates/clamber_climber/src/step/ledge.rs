@@ -95,7 +95,7 @@ impl Tick<'_> {
         let wish = self.ledge_wish();
         if wish.up < -0.5
             && self.state.pull_up == 0.0
-            && let Some(next) = self.grip_below(&carried)
+            && let Some(next) = self.grip_at(carried.position)
         {
             return next;
         }
@@ -106,11 +106,11 @@ impl Tick<'_> {
         }
     }
 
-    /// Grips the wall that it hangs before, if it can, from where it has been carried.
-    fn grip_below(&mut self, carried: &Carried) -> Option<NextMode> {
+    /// Grips what is at a position, if it can: the wall that it hangs before.
+    fn grip_at(&mut self, place: DVec3) -> Option<NextMode> {
         let grip = self.config.grip?;
-        let touch = self.find_grip(carried.position, &grip, None)?;
-        Some(self.take_hold(&touch, carried.position))
+        let touch = self.find_grip(place, &grip, None)?;
+        Some(self.take_hold(&touch, place))
     }
 
     fn ledge_wish(&self) -> LedgeWish {
@@ -237,8 +237,14 @@ impl Tick<'_> {
         }
         let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
         else {
-            return self.lose_footing();
+            // Fur that is too steep to stand on is gripped from here.
+            let gripped = self.grip_at(moved.position);
+            return gripped.unwrap_or_else(|| self.lose_footing());
         };
+        if !self.is_corrected_clear(carried, ground.position) {
+            self.state.pull_up = before;
+            return NextMode::Stay;
+        }
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
         self.state.velocity = self.state.base_velocity;

@@ -157,7 +157,7 @@ impl Tick<'_> {
     }
 
     /// Nothing came by where a correction of its movement leads it.
-    fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
+    pub(super) fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
         let moved = self.state.position;
         let body = self.body();
         !carried.swept
