@@ -48,7 +48,10 @@ impl Mover<'_> {
             }
             let (_, index) = best?;
             let touch = self.overlaps()[index];
-            if self.can_reach(position, &touch, AT_HAND * body.radius) {
+            let at_hand = AT_HAND * body.radius;
+            // Within the core nothing is in the way but what crushes the body.
+            let is_at_body = touch.contact.distance - at_hand <= body.core_radius();
+            if is_at_body || self.can_reach(position, &touch, at_hand) {
                 return Some(touch);
             }
             blocked[tries] = index;
