@@ -116,6 +116,7 @@ impl Tick<'_> {
         let moved = self.slide(&self.path(target), intent);
         let position = moved.position;
         if position.distance(carried.motion.position) > self.reach(grip) {
+            self.state.position = position;
             return self.be_torn_off(carried);
         }
         if wish == DVec3::ZERO && position.distance(target) <= self.config.body.margin {
