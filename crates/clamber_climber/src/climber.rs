@@ -1,7 +1,7 @@
 use clamber_world::{Contact, Obstacle, ObstacleId, SurfaceTag, WorldCapsule};
 use glam::DVec3;
 
-use crate::step::{Scratch, Tick};
+use crate::step::{Asked, Scratch, Tick};
 use crate::{
     ClimberConfig, ClimberContact, ClimberError, ClimberInput, ClimberMode, ClimberState,
     CustomMode, StepReport,
@@ -167,13 +167,13 @@ impl Climber {
                 return Err(ClimberError::SameMode(mode.id()));
             }
         }
-        let tick = Tick::new(
-            &self.config,
-            self.state,
-            (input, rules),
-            (obstacles, dt),
-            &mut self.scratch,
-        )?;
+        let asked = Asked {
+            input,
+            rules,
+            obstacles,
+            dt,
+        };
+        let tick = Tick::new(&self.config, self.state, asked, &mut self.scratch)?;
         let (state, report) = tick.run();
         self.state = state;
         Ok(report)

@@ -28,4 +28,7 @@ pub use event::{ClimberEvent, Push, StepReport};
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};
-pub use step::{CustomMode, ModeContext, NextMode};
+pub use step::{
+    CustomMode, FlyingMemory, HangingMemory, LedgeHangingMemory, ModeContext, NextMode,
+    StandingMemory, TumblingMemory,
+};

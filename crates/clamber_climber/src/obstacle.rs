@@ -10,9 +10,6 @@ use crate::Climber;
 /// Most steps of a sweep. Two capsules that pass take a few; what just grazes a few dozen.
 const STEPS: u32 = 64;
 
-/// How far from touching a sweep may stop, metres.
-const TOLERANCE: f64 = 1e-4;
-
 /// What a climber is to other climbers in a tick: a solid capsule that goes on as it went.
 ///
 /// Take the bodies of all before any is stepped, and give each climber those of the others: then it does not matter in
@@ -91,7 +88,7 @@ impl ClimberObstacle {
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
             // At the last step it is said to touch rather than missed: no contact is late.
-            let is_near = gap <= TOLERANCE || step == STEPS;
+            let is_near = gap <= capsule.sweep_tolerance() || step == STEPS;
             if is_near && (gap <= 0.0 || apart.away.dot(way) < 0.0) {
                 return Some(SweepContact {
                     time,

@@ -1,7 +1,10 @@
 //! clamber's own messages. Their schemas come from foxglove's `Encode`, and they are read by prost: field
 //! numbers follow the order of the fields in both.
 
-use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberState, MEMORY, StepReport, Support};
+use clamber_climber::{
+    Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, LedgeHangingMemory,
+    MEMORY, StandingMemory, StepReport, Support, TumblingMemory,
+};
 use clamber_surface::surface::Diagnostics;
 use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceTag};
 use foxglove::Encode;
@@ -158,6 +161,9 @@ pub(crate) struct State {
     pub(crate) memory: Memory,
     #[prost(bool, tag = "20")]
     pub(crate) shoved: bool,
+    /// For how long it has lain still, seconds.
+    #[prost(double, tag = "21")]
+    pub(crate) still: f64,
 }
 
 /// How the tick went.
@@ -275,6 +281,7 @@ impl State {
             self.arm,
             self.pull_up,
             self.calm,
+            self.still,
             self.coyote,
             self.jump_buffer,
             self.open_handed,
@@ -426,17 +433,18 @@ impl From<&ClimberState> for State {
             shake: state.shake.into(),
             stamina: state.stamina,
             hit_points: state.hit_points,
-            arm: state.arm,
-            pull_up: state.pull_up,
-            calm: state.calm,
+            arm: state.hanging.arm,
+            pull_up: state.ledge_hanging.pull_up,
+            calm: state.hanging.calm,
+            still: state.tumbling.still,
             coyote: state.coyote,
             jump_buffer: state.jump_buffer,
             open_handed: state.open_handed,
             crouched: state.crouched,
             base_velocity: state.base_velocity.into(),
-            jumping: state.jumping,
+            jumping: state.flying.jumping,
             memory: state.memory.into(),
-            shoved: state.shoved,
+            shoved: state.standing.shoved,
         }
     }
 }
@@ -506,16 +514,25 @@ impl State {
             shake: self.shake.into(),
             stamina: self.stamina,
             hit_points: self.hit_points,
-            arm: self.arm,
-            pull_up: self.pull_up,
-            calm: self.calm,
+            hanging: HangingMemory {
+                arm: self.arm,
+                calm: self.calm,
+            },
+            ledge_hanging: LedgeHangingMemory {
+                pull_up: self.pull_up,
+            },
+            tumbling: TumblingMemory { still: self.still },
             coyote: self.coyote,
             jump_buffer: self.jump_buffer,
             open_handed: self.open_handed,
             crouched: self.crouched,
             base_velocity: self.base_velocity.into(),
-            jumping: self.jumping,
-            shoved: self.shoved,
+            flying: FlyingMemory {
+                jumping: self.jumping,
+            },
+            standing: StandingMemory {
+                shoved: self.shoved,
+            },
             memory: self.memory.into(),
         })
     }

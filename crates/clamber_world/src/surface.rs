@@ -7,12 +7,6 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 
-/// How far from touching a sweep of a capsule may stop, metres: a share of its radius below what one sees, 0.1 mm for a
-/// ball of 0.4 m. For thin capsules no less than the steps of f32 some metres out.
-pub(crate) fn sweep_tolerance(radius: f64) -> f64 {
-    (radius * 2.5e-4).max(1e-6)
-}
-
 /// A hit in the world. `from` is the query's point, to which the distance is measured anew: the
 /// one in the hit starts from the point's rounding to f32.
 fn contact(surface: &SkinnedSurface, hit: &SurfaceHit, from: DVec3) -> Contact {
@@ -59,7 +53,7 @@ fn sweep_in_model(
         world_from_model
             .inverse_transform_vector(displacement)
             .as_vec3(),
-        length_in_model(surface, sweep_tolerance(capsule.radius)),
+        length_in_model(surface, capsule.sweep_tolerance()),
     )
 }
 

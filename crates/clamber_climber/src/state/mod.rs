@@ -8,6 +8,9 @@ pub use support::Support;
 use glam::DVec3;
 
 use crate::ClimberError;
+use crate::step::{
+    FlyingMemory, HangingMemory, LedgeHangingMemory, StandingMemory, TumblingMemory,
+};
 
 /// Everything a climber remembers between ticks: a small plain value. Restored, it continues with
 /// the same bits.
@@ -35,12 +38,6 @@ pub struct ClimberState {
     pub stamina: f64,
     /// 0 to 1.
     pub hit_points: f64,
-    /// Length of the arm while hanging, metres: shorter than at full stretch while it pulls itself in. Else 0.
-    pub arm: f64,
-    /// How far it has pulled itself up over a ledge, 0 to 1.
-    pub pull_up: f64,
-    /// For how long it has been calm enough to climb or get up, seconds.
-    pub calm: f64,
     /// For how long a jump still works without ground, seconds.
     pub coyote: f64,
     /// For how long a jump is still remembered, seconds.
@@ -49,10 +46,16 @@ pub struct ClimberState {
     pub open_handed: f64,
     /// Only its ball stands in the way: there is no room to stand up.
     pub crouched: bool,
-    /// It rises from a jump.
-    pub jumping: bool,
-    /// A blow shoves it along the ground that it stands on: friction brakes it, not its feet.
-    pub shoved: bool,
+    /// What it remembers while it stands.
+    pub standing: StandingMemory,
+    /// What it remembers while it falls or slides.
+    pub flying: FlyingMemory,
+    /// What it remembers while it lies knocked over.
+    pub tumbling: TumblingMemory,
+    /// What it remembers while it hangs by its hands.
+    pub hanging: HangingMemory,
+    /// What it remembers while it hangs from a ledge.
+    pub ledge_hanging: LedgeHangingMemory,
     /// Numbers of modes of the game's own, in whatever mode it is: timers, directions. Any finite values.
     pub memory: [f64; MEMORY],
 }
@@ -76,15 +79,15 @@ impl ClimberState {
             shake: DVec3::ZERO,
             stamina: 1.0,
             hit_points: 1.0,
-            arm: 0.0,
-            pull_up: 0.0,
-            calm: 0.0,
             coyote: 0.0,
             jump_buffer: 0.0,
             open_handed: 0.0,
             crouched: false,
-            jumping: false,
-            shoved: false,
+            standing: StandingMemory::default(),
+            flying: FlyingMemory::default(),
+            tumbling: TumblingMemory::default(),
+            hanging: HangingMemory::default(),
+            ledge_hanging: LedgeHangingMemory::default(),
             memory: [0.0; MEMORY],
         }
     }
@@ -99,7 +102,7 @@ impl ClimberState {
             return Err(ClimberError::Support(self.mode));
         }
         for (name, found) in self.numbers() {
-            let is_share = matches!(name, "stamina" | "hit_points" | "pull_up");
+            let is_share = matches!(name, "stamina" | "hit_points" | "ledge_hanging.pull_up");
             let (range, most) = if is_share {
                 ("from 0 to 1", 1.0)
             } else {
@@ -131,13 +134,14 @@ impl ClimberState {
     }
 
     /// Each with its name.
-    fn numbers(&self) -> [(&'static str, f64); 8] {
+    fn numbers(&self) -> [(&'static str, f64); 9] {
         [
             ("stamina", self.stamina),
             ("hit_points", self.hit_points),
-            ("arm", self.arm),
-            ("pull_up", self.pull_up),
-            ("calm", self.calm),
+            ("hanging.arm", self.hanging.arm),
+            ("ledge_hanging.pull_up", self.ledge_hanging.pull_up),
+            ("hanging.calm", self.hanging.calm),
+            ("tumbling.still", self.tumbling.still),
             ("coyote", self.coyote),
             ("jump_buffer", self.jump_buffer),
             ("open_handed", self.open_handed),

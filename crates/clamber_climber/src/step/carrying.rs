@@ -145,10 +145,6 @@ impl Tick<'_> {
     pub(super) fn detach(&mut self) {
         self.state.support = None;
         self.state.support_velocity = None;
-        self.state.arm = 0.0;
-        self.state.pull_up = 0.0;
-        self.state.calm = 0.0;
-        self.state.shoved = false;
         self.carried = None;
     }
 

@@ -39,7 +39,8 @@ impl Tick<'_> {
             if mode == ClimberMode::Standing || mode == ClimberMode::Hanging {
                 self.state.velocity += blow.velocity;
             }
-            self.state.shoved |= mode == ClimberMode::Standing && blow.velocity != DVec3::ZERO;
+            self.state.standing.shoved |=
+                mode == ClimberMode::Standing && blow.velocity != DVec3::ZERO;
         } else {
             self.state.velocity += blow.velocity;
         }

@@ -14,6 +14,22 @@ const BOUNCE: f64 = 0.1;
 /// Slower than this, relative to the ground, is lying still, as a share of the speed of a jump.
 const STILL: f64 = 0.1;
 
+/// What a climber remembers while it falls or slides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FlyingMemory {
+    /// It rises from a jump.
+    pub jumping: bool,
+}
+
+/// What a climber remembers while it lies knocked over.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TumblingMemory {
+    /// For how long it has lain still, seconds.
+    pub still: f64,
+}
+
 impl Tick<'_> {
     /// In the air, or down what is too steep.
     pub(super) fn fly(&mut self) -> NextMode {
@@ -64,8 +80,8 @@ impl Tick<'_> {
         self.has_flown = true;
         let (up, dt) = (self.config.up(), self.dt());
         let rising = (self.state.velocity - self.state.base_velocity).dot(up) > 0.0;
-        self.state.jumping &= rising;
-        let weight = if self.state.jumping && !self.input.jump_held {
+        self.state.flying.jumping &= rising;
+        let weight = if self.state.flying.jumping && !self.input.jump_held {
             self.config.ground.jump_release_gravity
         } else {
             1.0
@@ -104,7 +120,6 @@ impl Tick<'_> {
         let speed = (-own.dot(touch.normal)).max(0.0);
         let along = own - touch.normal * own.dot(touch.normal);
         self.state.position = ground.position;
-        self.state.jumping = false;
         self.attach(touch, ground.position);
         self.state.velocity = self.clipped(self.state.base_velocity + along);
         self.event(ClimberEvent::Landed {
@@ -131,7 +146,7 @@ impl Tick<'_> {
         let falling = self.fall();
         let slope = self.config.ground.max_slope;
         let Some(ground) = self.held_up(self.state.position, slope) else {
-            self.state.calm = 0.0;
+            self.state.tumbling.still = 0.0;
             return NextMode::Stay;
         };
         let touch = &ground.touch;
@@ -149,18 +164,17 @@ impl Tick<'_> {
         let left = (sliding.length() - braked).max(0.0);
         self.state.velocity += sliding.normalize_or_zero() * left - sliding;
         let rest = (self.state.velocity - base).length();
-        self.state.calm = if rest < STILL * jump {
-            self.state.calm + self.dt()
+        self.state.tumbling.still = if rest < STILL * jump {
+            self.state.tumbling.still + self.dt()
         } else {
             0.0
         };
         self.state.base_velocity = base;
-        if self.state.calm < tumble.recover_time {
+        if self.state.tumbling.still < tumble.recover_time {
             return NextMode::Stay;
         }
         self.attach(touch, ground.position);
         self.state.velocity = self.state.base_velocity;
-        self.state.calm = 0.0;
         NextMode::Change(ClimberMode::Standing)
     }
 }

@@ -23,6 +23,16 @@ const STRETCH: f64 = 1.5;
 /// As close to its hands as this share of its radius, it climbs again.
 const CLOSE: f64 = 1.25;
 
+/// What a climber remembers while it hangs by its hands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct HangingMemory {
+    /// Length of its arm, metres: shorter than at full stretch while it pulls itself in.
+    pub arm: f64,
+    /// For how long its hold has been calm enough to climb on, seconds.
+    pub calm: f64,
+}
+
 impl Tick<'_> {
     pub(super) fn hang(&mut self) -> NextMode {
         let (Some(grip), Some(carried)) = (self.config.grip, self.carried) else {
@@ -50,14 +60,18 @@ impl Tick<'_> {
         let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
         let dt = self.dt();
         let is_calm = !shakes && !leans_over && !self.has_entered;
-        self.state.calm = if is_calm { self.state.calm + dt } else { 0.0 };
-        if is_calm && self.state.calm >= grip.calm_time {
+        self.state.hanging.calm = if is_calm {
+            self.state.hanging.calm + dt
+        } else {
+            0.0
+        };
+        if is_calm && self.state.hanging.calm >= grip.calm_time {
             let reach = self.began.distance(carried.motion.previous_position);
             let pulled = PULL * grip.climb_speed * dt;
-            self.state.arm = (self.state.arm.min(reach) - pulled).max(0.0);
+            self.state.hanging.arm = (self.state.hanging.arm.min(reach) - pulled).max(0.0);
         }
-        if self.state.calm == 0.0 {
-            self.state.arm = self.config.hang.arm_length;
+        if self.state.hanging.calm == 0.0 {
+            self.state.hanging.arm = self.config.hang.arm_length;
         }
     }
 
@@ -66,7 +80,7 @@ impl Tick<'_> {
         let hang = &self.config.hang;
         let pivot = carried.motion.position;
         let radius = self.config.body.radius;
-        let length = self.state.arm.max(radius);
+        let length = self.state.hanging.arm.max(radius);
         let mut pendulum = Pendulum {
             arm: carried.start - carried.motion.previous_position,
             velocity: relative,
@@ -101,9 +115,7 @@ impl Tick<'_> {
             self.state.open_handed = OPEN_HANDED;
             return self.lose_footing();
         }
-        if self.state.calm >= calm_time && reach <= CLOSE * radius {
-            self.state.arm = 0.0;
-            self.state.calm = 0.0;
+        if self.state.hanging.calm >= calm_time && reach <= CLOSE * radius {
             return NextMode::Change(ClimberMode::Holding);
         }
         NextMode::Stay
@@ -112,7 +124,7 @@ impl Tick<'_> {
     /// A velocity without its parts into what it touches and beyond its arms.
     fn clipped_by_arm(&self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
         let inward = -arm.normalize_or(DVec3::Y);
-        let is_taut = arm.length() >= self.state.arm * (1.0 - 1e-6);
+        let is_taut = arm.length() >= self.state.hanging.arm * (1.0 - 1e-6);
         let taut = is_taut.then(|| HalfSpace {
             normal: inward,
             offset: inward.dot(carried.velocity()),

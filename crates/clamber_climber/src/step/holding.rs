@@ -50,7 +50,6 @@ impl Tick<'_> {
         self.attach(touch, place);
         self.face(-touch.normal);
         self.state.velocity = self.state.base_velocity;
-        self.state.jumping = false;
         self.event(ClimberEvent::Grabbed {
             obstacle: touch.obstacle,
             point: touch.contact.point,
@@ -72,8 +71,7 @@ impl Tick<'_> {
         let leans_over = self.config.slope(normal) > grip.max_overhang;
         let shakes = self.state.shake.length() > grip.hang_acceleration;
         if leans_over || shakes || self.struck != DVec3::ZERO {
-            self.state.calm = 0.0;
-            self.state.arm = self.config.hang.arm_length;
+            self.state.hanging.arm = self.config.hang.arm_length;
             return NextMode::Change(ClimberMode::Hanging);
         }
         let wish = climb_direction(self.config, self.input, normal);

@@ -26,6 +26,14 @@ const DRAWN: f64 = 0.5;
 /// Farther from its place than this share of its radius, it is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
 
+/// What a climber remembers while it hangs from a ledge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LedgeHangingMemory {
+    /// How far it has pulled itself up, 0 to 1.
+    pub pull_up: f64,
+}
+
 impl Tick<'_> {
     /// Hangs from a ledge in front of a position, if there is one.
     pub(super) fn catch_ledge(&mut self, place: DVec3) -> Option<NextMode> {
@@ -39,9 +47,7 @@ impl Tick<'_> {
         self.attach(&touch, place);
         self.face(facing);
         self.state.velocity = self.state.base_velocity;
-        self.state.pull_up = 0.0;
-        self.state.arm = 0.0;
-        self.state.jumping = false;
+        self.state.ledge_hanging.pull_up = 0.0;
         self.event(ClimberEvent::LedgeCaught {
             obstacle: touch.obstacle,
             point: touch.contact.point,
@@ -94,12 +100,12 @@ impl Tick<'_> {
         }
         let wish = self.ledge_wish();
         if wish.up < -0.5
-            && self.state.pull_up == 0.0
+            && self.state.ledge_hanging.pull_up == 0.0
             && let Some(next) = self.grip_at(carried.position)
         {
             return next;
         }
-        if self.state.pull_up > 0.0 || wish.up > 0.5 {
+        if self.state.ledge_hanging.pull_up > 0.0 || wish.up > 0.5 {
             self.pull_up(&carried, &config)
         } else {
             self.shimmy(&carried, &config, wish.aside)
@@ -184,7 +190,7 @@ impl Tick<'_> {
 
     /// Up, and in over the ledge.
     fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
-        let before = self.state.pull_up;
+        let before = self.state.ledge_hanging.pull_up;
         let place = self.hanging_place(carried, config);
         let up = self.config.up();
         let body = self.body();
@@ -220,7 +226,7 @@ impl Tick<'_> {
             let made = (moved.position - carried.position).dot(way.normalize_or_zero());
             if made < DRAWN * (target - carried.position).length() {
                 // Something bulges into its place: up from where it is.
-                self.state.pull_up = share;
+                self.state.ledge_hanging.pull_up = share;
             }
             return NextMode::Stay;
         }
@@ -228,10 +234,10 @@ impl Tick<'_> {
         let onwards = (at(after) - at(before)).normalize_or_zero();
         if (at(after) - moved.position).dot(onwards) > KEPT * body.radius {
             // No room: back down, unless it is carried on in the next tick.
-            self.state.pull_up = (before - share).max(0.0);
+            self.state.ledge_hanging.pull_up = (before - share).max(0.0);
             return NextMode::Stay;
         }
-        self.state.pull_up = after;
+        self.state.ledge_hanging.pull_up = after;
         if after < 1.0 {
             return NextMode::Stay;
         }
@@ -242,13 +248,12 @@ impl Tick<'_> {
             return gripped.unwrap_or_else(|| self.lose_footing());
         };
         if !self.is_corrected_clear(carried, ground.position) {
-            self.state.pull_up = before;
+            self.state.ledge_hanging.pull_up = before;
             return NextMode::Stay;
         }
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
         self.state.velocity = self.state.base_velocity;
-        self.state.pull_up = 0.0;
         self.event(ClimberEvent::Mantled);
         NextMode::Change(ClimberMode::Standing)
     }

@@ -17,6 +17,10 @@ mod pushing;
 mod standing;
 
 pub use custom::{CustomMode, ModeContext, NextMode};
+pub use flying::{FlyingMemory, TumblingMemory};
+pub use hanging::HangingMemory;
+pub use ledge::LedgeHangingMemory;
+pub use standing::StandingMemory;
 
 use clamber_mover::{Mover, MoverBody, MoverMemory};
 use clamber_world::{Obstacle, ObstacleId};
@@ -45,6 +49,16 @@ pub(crate) struct Scratch {
 
 /// Room for contacts from the first tick on.
 const CONTACTS: usize = 64;
+
+/// What a tick is given.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    pub(crate) input: &'a ClimberInput,
+    pub(crate) rules: &'a StepRules<'a>,
+    pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
+    /// Length of the tick, seconds.
+    pub(crate) dt: f64,
+}
 
 /// One tick of one climber, as its phases see it.
 pub(crate) struct Tick<'a> {
@@ -86,10 +100,15 @@ impl<'a> Tick<'a> {
     pub(crate) fn new(
         config: &'a ClimberConfig,
         state: ClimberState,
-        (input, rules): (&'a ClimberInput, &'a StepRules<'a>),
-        (obstacles, dt): (&'a [(ObstacleId, &'a dyn Obstacle)], f64),
+        asked: Asked<'a>,
         scratch: &'a mut Scratch,
     ) -> Result<Self, ClimberError> {
+        let Asked {
+            input,
+            rules,
+            obstacles,
+            dt,
+        } = asked;
         input.validate()?;
         let mover = Mover::new(obstacles, dt, &mut scratch.mover)?;
         scratch.contacts.clear();
@@ -194,9 +213,26 @@ impl<'a> Tick<'a> {
         if mode != from {
             debug_assert!(from.may_become(mode), "{from:?} became {mode:?}");
             self.state.mode = mode;
+            self.forget(from);
             self.has_entered = true;
             self.report.mode_changes += 1;
             self.event(ClimberEvent::Changed { from, to: mode });
+        }
+    }
+
+    /// What only one mode needs ends with it.
+    fn forget(&mut self, left: ClimberMode) {
+        let state = &mut self.state;
+        match left {
+            ClimberMode::Standing => state.standing = StandingMemory::default(),
+            ClimberMode::Hanging => state.hanging = HangingMemory::default(),
+            ClimberMode::LedgeHanging => state.ledge_hanging = LedgeHangingMemory::default(),
+            ClimberMode::Tumbling => state.tumbling = TumblingMemory::default(),
+            ClimberMode::Falling | ClimberMode::Sliding => {
+                let flies_on = matches!(state.mode, ClimberMode::Falling | ClimberMode::Sliding);
+                state.flying.jumping &= flies_on;
+            }
+            ClimberMode::Holding | ClimberMode::Custom(_) => {}
         }
     }
 

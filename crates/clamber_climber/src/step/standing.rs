@@ -24,6 +24,14 @@ const PRESS: f64 = 0.5;
 /// Faster than its walking speed by this factor is excess speed; less is rounding.
 const EXCESS: f64 = 1.05;
 
+/// What a climber remembers while it stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct StandingMemory {
+    /// A blow shoves it along the ground: friction brakes it, not its feet.
+    pub shoved: bool,
+}
+
 impl Tick<'_> {
     pub(super) fn stand(&mut self) -> NextMode {
         let Some(carried) = self.carried else {
@@ -74,7 +82,7 @@ impl Tick<'_> {
         self.event(ClimberEvent::Jumped);
         self.state.jump_buffer = 0.0;
         self.state.coyote = 0.0;
-        self.state.jumping = true;
+        self.state.flying.jumping = true;
     }
 
     /// Stays on its material point, leaning where it is pushed.
@@ -221,13 +229,13 @@ impl Tick<'_> {
         let wanted = along * (share * ground.walk_speed);
         let own = own - normal * own.dot(normal);
         let is_fast = own.length() > ground.walk_speed * EXCESS;
-        let change = if is_fast || self.state.shoved {
+        let change = if is_fast || self.state.standing.shoved {
             ground.friction
         } else {
             ground.acceleration
         };
         let walk = own.move_towards(wanted, change * self.dt());
-        self.state.shoved &= walk != wanted;
+        self.state.standing.shoved &= walk != wanted;
         walk
     }
 }

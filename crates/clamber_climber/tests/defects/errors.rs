@@ -157,7 +157,7 @@ fn of_steps_inputs_and_states() {
         let sets: [Set<ClimberState>; 6] = [
             |state, x| state.stamina = x,
             |state, x| state.hit_points = x,
-            |state, x| state.arm = x,
+            |state, x| state.hanging.arm = x,
             |state, x| state.coyote = x,
             |state, x| state.velocity.x = x,
             |state, x| state.heading = DVec3::X * x.abs(),

@@ -1,5 +1,8 @@
 use super::*;
-use clamber_climber::{Climber, ClimberConfig};
+use clamber_climber::{
+    Climber, ClimberConfig, FlyingMemory, HangingMemory, LedgeHangingMemory, StandingMemory,
+    TumblingMemory,
+};
 use prost::Message;
 
 /// A state and an input in which every field has a value of its own.
@@ -42,15 +45,18 @@ fn everything() -> (ClimberState, ClimberInput) {
         shake,
         stamina: next(),
         hit_points: next(),
-        arm: next(),
-        pull_up: next(),
-        calm: next(),
+        hanging: HangingMemory {
+            arm: next(),
+            calm: next(),
+        },
+        ledge_hanging: LedgeHangingMemory { pull_up: next() },
+        tumbling: TumblingMemory { still: next() },
         coyote: next(),
         jump_buffer: next(),
         open_handed: next(),
         crouched: true,
-        jumping: true,
-        shoved: true,
+        flying: FlyingMemory { jumping: true },
+        standing: StandingMemory { shoved: true },
         memory: core::array::from_fn(|_| next()),
     };
     let input = ClimberInput {
@@ -145,9 +151,10 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
     list.extend([
         &mut state.stamina,
         &mut state.hit_points,
-        &mut state.arm,
-        &mut state.pull_up,
-        &mut state.calm,
+        &mut state.hanging.arm,
+        &mut state.hanging.calm,
+        &mut state.ledge_hanging.pull_up,
+        &mut state.tumbling.still,
         &mut state.coyote,
         &mut state.jump_buffer,
         &mut state.open_handed,

@@ -5,7 +5,7 @@ use parry3d::shape::Shape;
 
 use super::reach::{Reach, is_usable, is_usable_radius};
 use super::sweep::sweep_shape_where;
-use super::{ShapeTouch, TOLERANCE, Tick, sweep_shape};
+use super::{ShapeTouch, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
 /// The first contact of a capsule on its way among many shapes; in whatever order they are met, the same.
@@ -52,7 +52,7 @@ impl FirstContact {
         Some(Self {
             capsule: *capsule,
             displacement,
-            reach: Reach::new(&path, radius + 2.0 * TOLERANCE),
+            reach: Reach::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
             first: None,
         })
     }

@@ -31,9 +31,6 @@ use crate::Contact;
 /// nothing is.
 const FIRST_REACH: f64 = 1.0;
 
-/// How far from touching a sweep may stop, metres: below what one sees.
-const TOLERANCE: f64 = 1e-4;
-
 /// The contact of least distance up to `max_distance`, by overlaps of growing radius. `reach_of_all` is a radius
 /// that reaches everything.
 pub fn closest_by_overlap(

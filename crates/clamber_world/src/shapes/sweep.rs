@@ -7,7 +7,8 @@ use super::convex::{Convex, Moving};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
 use super::reach::{Reach, is_usable, is_usable_radius};
-use super::{RigidPose, ShapeContact, TOLERANCE};
+use super::{RigidPose, ShapeContact};
+use crate::obstacle::sweep_tolerance;
 
 /// A capsule and a shape over a tick, as seen from where the shape is at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,7 +119,7 @@ impl ShapeSweep {
     /// the way. And points on straight lines come nearer to each other meanwhile, by the cosine at most.
     fn reach(&self) -> Reach {
         let path = self.seen_from_shape();
-        let touch = path.radius + 2.0 * TOLERANCE;
+        let touch = path.radius + 2.0 * sweep_tolerance(path.radius);
         let Some(before) = &self.before else {
             return Reach::new(&path, touch);
         };
@@ -179,9 +180,11 @@ impl ShapeSweep {
             Some(before) => [a, b, c].map(|corner| before.transform(corner)),
             None => [a, b, c],
         };
-        let touch = self
-            .path
-            .cast_at_triangle([start, [a, b, c]], TOLERANCE, limit)?;
+        let touch = self.path.cast_at_triangle(
+            [start, [a, b, c]],
+            sweep_tolerance(self.path.radius),
+            limit,
+        )?;
         let weights = touch.barycentric;
         Some(ShapeTouch {
             time: touch.time,
@@ -201,7 +204,7 @@ impl ShapeSweep {
             convex,
             before: self.before,
         };
-        let touch = moving.advance(&self.path, TOLERANCE, limit)?;
+        let touch = moving.advance(&self.path, sweep_tolerance(self.path.radius), limit)?;
         let time = touch.time;
         let ends = self.path.at(time);
         let contact = match touch.nearest {

@@ -227,7 +227,7 @@ fn states_with_lengths_times_or_headings_that_are_none_are_refused() {
     let changes: [fn(&mut ClimberState); 6] = [
         |state| state.stamina = 1.5,
         |state| state.hit_points = -0.1,
-        |state| state.arm = -1.0,
+        |state| state.hanging.arm = -1.0,
         |state| state.open_handed = -1e-3,
         |state| state.heading = DVec3::ZERO,
         |state| state.heading *= 2.0,

@@ -1,6 +1,8 @@
 //! Between a scenario's units and frame and the world.
 
-use clamber_climber::{ClimberConfig, ClimberEvent, ClimberState, StepReport, Support};
+use clamber_climber::{
+    ClimberConfig, ClimberEvent, ClimberState, HangingMemory, StepReport, Support,
+};
 use clamber_world::{
     Attachment, Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
 };
@@ -62,7 +64,10 @@ impl Place {
             support,
             support_velocity: state.support_velocity.map(|v| self.velocity(v)),
             shake: state.shake * self.scale,
-            arm: state.arm * self.scale,
+            hanging: HangingMemory {
+                arm: state.hanging.arm * self.scale,
+                ..state.hanging
+            },
             ..*state
         }
     }
