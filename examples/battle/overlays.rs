@@ -259,10 +259,7 @@ fn anchors(mesh: &Arc<ColliderMesh>) -> Vec<MaterialPoint> {
         let outward = (part.normal / part.area + away).normalize_or(Vec3::Y);
         let ray = Ray::new(part.middle + outward * far, -outward)?;
         let hit = surface.cast_ray(&ray, 2.0 * far).ok()??;
-        Some(MaterialPoint {
-            key: u64::from(hit.triangle.0),
-            coordinates: hit.barycentric.map(f64::from),
-        })
+        Some(MaterialPoint::on_triangle(hit.triangle, hit.barycentric))
     });
     found.collect()
 }
@@ -386,8 +383,8 @@ fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     let Some(support) = support.filter(|support| support.attachment.obstacle == CREATURE) else {
         return;
     };
-    let triangle = TriangleId(support.attachment.point.key as u32);
-    if let Some(corners) = posed(battle.surface(), triangle) {
+    let triangle = support.attachment.point.triangle();
+    if let Some(corners) = triangle.and_then(|triangle| posed(battle.surface(), triangle)) {
         over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
         let [a, b, c] = corners;
         over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
@@ -451,8 +448,8 @@ fn state(battle: &Battle<'_>) -> String {
         None if state.support.is_none() => verb(state.mode).to_owned(),
         None => format!("{} the ground", verb(state.mode)),
         Some(support) => {
-            let triangle = TriangleId(support.attachment.point.key as u32);
-            let part = mesh.part_of(triangle);
+            let triangle = support.attachment.point.triangle();
+            let part = triangle.and_then(|triangle| mesh.part_of(triangle));
             let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
             let joints = battle.creature().skeleton.joints();
             let joint = joint.and_then(|joint| joints.get(joint));

@@ -140,7 +140,9 @@ fn walking(
         let _ = time(&mut giants.app, PostUpdate);
         pass_frame(&mut giants.app);
         let mut in_bevy = |giants: &mut Giants| {
-            giants.app.insert_resource(Asked::new(entity, now));
+            let surface = giants.app.world().get::<PosedSurface>(entity);
+            let asked = surface.map(|surface| Asked::new(entity, surface, now));
+            giants.app.insert_resource(asked.unwrap_or_default());
             bevy.push(time(&mut giants.app, FixedPostUpdate));
         };
         let mut in_core = || -> Result<usize, Box<dyn Error>> {

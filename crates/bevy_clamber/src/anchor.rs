@@ -6,7 +6,8 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::rig;
 use clamber_surface::surface::{Anchor, SkinnedSurface};
-use glam::{DAffine3, DMat3, DQuat};
+use clamber_world::{Attachment, MaterialPoint, ObstacleId};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::{ClamberSystems, PosedSurface};
 
@@ -30,8 +31,9 @@ pub struct SurfaceAnchor {
     /// The entity with the [`PosedSurface`].
     #[entities]
     pub surface: Entity,
-    /// The point, and how the skin around it is turned.
-    pub anchor: Anchor,
+    /// The point of skin, where it was last drawn, how the skin around it was turned, and how far off it the entity is.
+    /// Its obstacle is [`SurfaceAnchor::obstacle_of`] the surface.
+    pub attachment: Attachment,
     /// Rotation of the entity relative to the skin around the point.
     pub rotation: Quat,
 }
@@ -39,27 +41,57 @@ pub struct SurfaceAnchor {
 impl SurfaceAnchor {
     /// At a point of a surface as it is posed now, turned in the world as given.
     pub fn new(entity: Entity, surface: &SkinnedSurface, anchor: Anchor, rotation: Quat) -> Self {
-        let skin = surface.world_from_model().rotation * anchor.frame.as_dquat();
+        let world_from_model = surface.world_from_model();
+        let skin = (world_from_model.rotation * anchor.frame.as_dquat()).normalize();
+        let here = surface.motion(&anchor, 1.0);
+        let here = here.map(|motion| world_from_model.transform_point_f32(motion.position));
         Self {
             surface: entity,
-            anchor,
+            attachment: Attachment {
+                obstacle: Self::obstacle_of(entity),
+                point: MaterialPoint::on_triangle(anchor.triangle, anchor.barycentric),
+                contact: here.unwrap_or_default(),
+                frame: skin,
+                offset: DVec3::ZERO,
+            },
             rotation: (skin.conjugate() * rotation.as_dquat())
                 .normalize()
                 .as_quat(),
         }
     }
 
-    /// Where the entity belongs on a pose of the surface, in world space, and how the skin there is turned in model
-    /// space; `None` if the point is gone.
-    pub(crate) fn place_on(&self, surface: &SkinnedSurface) -> Option<(DAffine3, Quat)> {
+    /// The id that a surface's entity has as an obstacle.
+    pub fn obstacle_of(surface: Entity) -> ObstacleId {
+        ObstacleId(surface.to_bits())
+    }
+
+    /// The point of skin, to ask its surface about: [`SkinnedSurface::motion`]. `None` if it is none of a surface.
+    pub fn anchor(&self) -> Option<Anchor> {
+        let point = &self.attachment.point;
+        Some(Anchor {
+            triangle: point.triangle()?,
+            barycentric: point.coordinates.map(|weight| weight as f32),
+            frame: Quat::IDENTITY,
+        })
+    }
+
+    /// Follows the skin to a pose of its surface; gives where the entity belongs, in world space. `None` if the point is
+    /// gone.
+    pub(crate) fn follow(&mut self, surface: &SkinnedSurface) -> Option<DAffine3> {
         // The motion is not asked for: any tick will do.
-        let motion = surface.motion(&self.anchor, 1.0).ok()?;
+        let motion = surface.motion(&self.anchor()?, 1.0).ok()?;
         let world_from_model = surface.world_from_model();
-        let skin = world_from_model.rotation * motion.frame.as_dquat();
-        let rotation: DQuat = (skin * self.rotation.as_dquat()).normalize();
-        let position = world_from_model.transform_point_f32(motion.position);
-        let world = DAffine3::from_rotation_translation(rotation, position);
-        Some((world, motion.frame))
+        let attachment = &mut self.attachment;
+        attachment.obstacle = Self::obstacle_of(self.surface);
+        attachment.contact = world_from_model.transform_point_f32(motion.position);
+        if !motion.collapsed {
+            attachment.frame = (world_from_model.rotation * motion.frame.as_dquat()).normalize();
+        }
+        let rotation: DQuat = (attachment.frame * self.rotation.as_dquat()).normalize();
+        Some(DAffine3::from_rotation_translation(
+            rotation,
+            attachment.place(),
+        ))
     }
 }
 
@@ -114,7 +146,7 @@ fn follow(
         let Ok((entity, mut anchor, child_of)) = anchors.get_mut(*entity) else {
             continue;
         };
-        let Some(placed) = place(&anchor, &surfaces) else {
+        let Some(placed) = place(anchor.bypass_change_detection(), &surfaces) else {
             let surface = anchor.surface;
             // Unless it goes at the same time.
             commands
@@ -125,11 +157,10 @@ fn follow(
                 });
             continue;
         };
-        let Some((world, frame)) = placed else {
+        let Some(world) = placed else {
             // This frame's pose cannot be had: it stays where it is.
             continue;
         };
-        anchor.bypass_change_detection().anchor.frame = frame;
         let local = match child_of {
             None => world,
             Some(child_of) => parent(child_of.parent(), &transforms).inverse() * world,
@@ -148,18 +179,16 @@ fn follow(
     }
 }
 
-/// Where an anchored entity belongs, and how the skin there is turned; `None` if the point is gone, `Some(None)`
-/// if the surface has no pose of this frame.
-fn place(
-    anchor: &SurfaceAnchor,
-    surfaces: &Query<&PosedSurface>,
-) -> Option<Option<(DAffine3, Quat)>> {
+/// Where an anchored entity belongs; `None` if the point is gone, `Some(None)` if the surface has no pose of this frame.
+fn place(anchor: &mut SurfaceAnchor, surfaces: &Query<&PosedSurface>) -> Option<Option<DAffine3>> {
     let surface = surfaces.get(anchor.surface).ok()?;
-    surface.mesh().part_of(anchor.anchor.triangle)?;
+    surface
+        .mesh()
+        .part_of(anchor.attachment.point.triangle()?)?;
     let Some(drawn) = surface.as_drawn() else {
         return Some(None);
     };
-    anchor.place_on(drawn).map(Some)
+    anchor.follow(drawn).map(Some)
 }
 
 /// The rotation and translation of a map that may be sheared, as under a parent that is scaled unevenly: +Y is kept,

@@ -286,7 +286,7 @@ impl SurfaceQuery<'_, '_> {
     /// `world_from_model.transform_vector(motion.velocity.as_dvec3())`.
     pub fn motion(&self, anchor: &SurfaceAnchor, dt: f64) -> Option<(Motion, Similarity)> {
         let (_, surface) = self.surfaces.get(anchor.surface).ok()?;
-        let motion = surface.motion(&anchor.anchor, dt).ok()?;
+        let motion = surface.motion(&anchor.anchor()?, dt).ok()?;
         Some((motion, *surface.world_from_model()))
     }
 

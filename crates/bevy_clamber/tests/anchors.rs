@@ -40,7 +40,7 @@ fn an_anchor_lies_on_the_skin_as_it_is_drawn() {
             let arrow = stick(&mut app, above, Dir3::NEG_X);
             let anchor = *app.world().get::<SurfaceAnchor>(arrow).unwrap();
             let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
-            let corners = surface.mesh().triangles()[anchor.anchor.triangle.index()];
+            let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];
             let corners = corners.map(|corner| surface.mesh().positions()[corner.index()]);
             let vertex_of = |position: Vec3| {
                 let index = (position.y / 0.1).round() as usize * 4;
@@ -55,8 +55,8 @@ fn an_anchor_lies_on_the_skin_as_it_is_drawn() {
             for _ in 0..(3.0 * rate) as usize {
                 app.update();
                 let mut expected = glam::DVec3::ZERO;
-                for (corner, weight) in corners.iter().zip(anchor.anchor.barycentric) {
-                    expected += drawn(&app, &limb, vertex_of(*corner)) * f64::from(weight);
+                for (corner, weight) in corners.iter().zip(anchor.attachment.point.coordinates) {
+                    expected += drawn(&app, &limb, vertex_of(*corner)) * weight;
                 }
                 let found = app
                     .world()

@@ -316,7 +316,8 @@ fn a_click_sticks_something_to_moving_skin() {
         app.update();
     }
     let Stuck(arrow) = *app.world().resource::<Stuck>();
-    let anchor = app.world().get::<SurfaceAnchor>(arrow).unwrap().anchor;
+    let anchor = app.world().get::<SurfaceAnchor>(arrow).unwrap();
+    let anchor = anchor.anchor().unwrap();
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     let corners = surface.mesh().triangles()[anchor.triangle.index()];
     let corners = corners.map(|corner| surface.mesh().positions()[corner.index()]);

@@ -36,9 +36,9 @@ fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {
 fn on_skin(app: &App, limb: &Limb, anchor: &SurfaceAnchor) -> (DVec3, DVec3) {
     let posed = oracle::posed(app, limb.mesh);
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
-    let corners = surface.mesh().triangles()[anchor.anchor.triangle.index()];
+    let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];
     let [a, b, c] = corners.map(|corner| posed[corner.index()]);
-    let [u, v, w] = anchor.anchor.barycentric.map(f64::from);
+    let [u, v, w] = anchor.attachment.point.coordinates;
     (a * u + b * v + c * w, (b - a).cross(c - a).normalize())
 }
 
@@ -174,7 +174,7 @@ fn many_stick_to_one_limb_at_any_rate() {
             let posed = oracle::posed(&app, limb.mesh);
             let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
             for (arrow, anchor) in arrows.iter().zip(&anchors) {
-                let corners = surface.mesh().triangles()[anchor.anchor.triangle.index()];
+                let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];
                 let [a, b, c] = corners.map(|corner| posed[corner.index()]);
                 let apart =
                     place(&app, *arrow).translation().as_dvec3() - (a * 0.5 + (b + c) * 0.25);
@@ -235,7 +235,7 @@ fn what_stuck_to_a_triangle_that_is_cut_out_is_lost_once() {
     let mut surface = app.world_mut().get_mut::<PosedSurface>(limb.mesh).unwrap();
     surface
         .surface_mut()
-        .edit(|edit| edit.remove_triangle(cut.anchor.triangle))
+        .edit(|edit| edit.remove_triangle(cut.anchor().unwrap().triangle))
         .unwrap();
     for _ in 0..5 {
         app.update();
@@ -248,7 +248,9 @@ fn what_stuck_to_a_triangle_that_is_cut_out_is_lost_once() {
     assert!(app.world().get::<SurfaceAnchor>(kept_arrow).is_some());
     // What queries no longer see is skin still.
     let mut surface = app.world_mut().get_mut::<PosedSurface>(limb.mesh).unwrap();
-    let hidden = surface.surface_mut().disable_triangle(kept.anchor.triangle);
+    let hidden = surface
+        .surface_mut()
+        .disable_triangle(kept.anchor().unwrap().triangle);
     hidden.unwrap();
     app.world_mut()
         .get_mut::<Transform>(limb.root)

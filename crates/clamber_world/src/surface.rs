@@ -16,10 +16,7 @@ fn contact(surface: &SkinnedSurface, hit: &SurfaceHit, from: DVec3) -> Contact {
         point,
         normal: (world_from_model.rotation * hit.normal.as_dvec3()).normalize_or(DVec3::Y),
         distance: (from - point).length(),
-        material: MaterialPoint {
-            key: u64::from(hit.triangle.0),
-            coordinates: hit.barycentric.map(f64::from),
-        },
+        material: MaterialPoint::on_triangle(hit.triangle, hit.barycentric),
         tag: hit.tag,
     }
 }
@@ -67,14 +64,26 @@ fn sweep_contact(surface: &SkinnedSurface, hit: &SweepHit) -> SweepContact {
             point: world_from_model.transform_point_f32(hit.point),
             normal: direction(hit.surface_normal).normalize_or(away),
             distance: hit.distance * world_from_model.scale,
-            material: MaterialPoint {
-                key: u64::from(hit.triangle.0),
-                coordinates: hit.barycentric.map(f64::from),
-            },
+            material: MaterialPoint::on_triangle(hit.triangle, hit.barycentric),
             tag: hit.tag,
         },
         away,
         started_inside: hit.started_inside,
+    }
+}
+
+impl MaterialPoint {
+    /// A point of a surface: of a triangle, by barycentric coordinates.
+    pub fn on_triangle(triangle: TriangleId, barycentric: [f32; 3]) -> Self {
+        Self {
+            key: u64::from(triangle.0),
+            coordinates: barycentric.map(f64::from),
+        }
+    }
+
+    /// The triangle of a point of a surface; `None` if no surface has one with that key.
+    pub fn triangle(&self) -> Option<TriangleId> {
+        u32::try_from(self.key).ok().map(TriangleId)
     }
 }
 
@@ -180,7 +189,7 @@ impl Obstacle for SkinnedSurface {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let triangle = TriangleId(u32::try_from(point.key).ok()?);
+        let triangle = point.triangle()?;
         if !self.is_enabled(triangle) {
             return None;
         }

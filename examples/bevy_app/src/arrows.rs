@@ -77,10 +77,13 @@ impl Bow<'_, '_> {
         else {
             return;
         };
+        let Some(anchor) = there.anchor() else {
+            return;
+        };
         let rotation = Quat::from_rotation_arc(Vec3::Y, -*direction);
         let half_height = creature.half_size.y.max(LOWEST * creature.radius());
         let arrow = (
-            SurfaceAnchor::new(there.surface, surface, there.anchor, rotation),
+            SurfaceAnchor::new(there.surface, surface, anchor, rotation),
             Arrow { hit: point },
             Transform::from_translation(point)
                 .with_rotation(rotation)

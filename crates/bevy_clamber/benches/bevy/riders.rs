@@ -102,12 +102,9 @@ pub(crate) fn answer(
 pub(crate) struct Asked(Vec<(Rider, SurfaceAnchor)>);
 
 impl Asked {
-    pub(crate) fn new(surface: Entity, riders: &[Rider]) -> Self {
-        let anchored = |rider: &Rider| SurfaceAnchor {
-            surface,
-            anchor: rider.anchor,
-            rotation: Quat::IDENTITY,
-        };
+    pub(crate) fn new(entity: Entity, surface: &SkinnedSurface, riders: &[Rider]) -> Self {
+        let anchored =
+            |rider: &Rider| SurfaceAnchor::new(entity, surface, rider.anchor, Quat::IDENTITY);
         Self(
             riders
                 .iter()

@@ -87,7 +87,8 @@ pub(super) fn draw_anchors(
         let Some(drawn) = surface.pose_as_drawn() else {
             continue;
         };
-        let Some((world_from_anchor, _)) = anchor.place_on(drawn) else {
+        let mut here = *anchor;
+        let Some(world_from_anchor) = here.follow(drawn) else {
             continue;
         };
         let size = f64::from(drawn.mesh().radius()) * drawn.world_from_model().scale;
@@ -97,8 +98,11 @@ pub(super) fn draw_anchors(
             let axes = Transform::from_translation(start).with_rotation(rotation.as_quat());
             gizmos.axes(axes, (size * ANCHOR_AXES) as f32);
         }
-        let motion = surface.motion(&anchor.anchor, tick.timestep().as_secs_f64());
-        if let (true, Ok(motion)) = (show.velocities, motion) {
+        let seconds = tick.timestep().as_secs_f64();
+        let motion = anchor
+            .anchor()
+            .and_then(|anchor| surface.motion(&anchor, seconds).ok());
+        if let (true, Some(motion)) = (show.velocities, motion) {
             let velocity = motion.velocity.as_dvec3() * VELOCITY_ARROW;
             let arrow = surface.world_from_model().transform_vector(velocity);
             let arrow = arrow.as_vec3();

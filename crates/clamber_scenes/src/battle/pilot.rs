@@ -116,7 +116,7 @@ impl Pilot {
         let on_creature = state
             .support
             .filter(|support| support.attachment.obstacle == CREATURE)
-            .map(|support| TriangleId(support.attachment.point.key as u32));
+            .and_then(|support| support.attachment.point.triangle());
         match (state.mode, on_creature) {
             (ClimberMode::Tumbling, _) => {
                 self.free = seconds;

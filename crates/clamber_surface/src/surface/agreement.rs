@@ -171,6 +171,20 @@ fn assert_sweeps_agree(
         hits.first().copied().as_slice(),
         format_args!("first of sweep sphere, {case}"),
     );
+    // Among some only: those that do not start inside, and every third triangle.
+    let counts = [
+        |hit: &SweepHit| !hit.started_inside,
+        |hit: &SweepHit| hit.triangle.0.is_multiple_of(3),
+    ];
+    for counts in counts {
+        let hit = surface.sweep_sphere_where(&sphere, aim, tolerance, &mut |hit| counts(hit));
+        let wanted = hits.iter().copied().find(counts);
+        assert_same_bits(
+            hit.unwrap().as_slice(),
+            wanted.as_slice(),
+            format_args!("first that counts of sweep sphere, {case}"),
+        );
+    }
     found += hits.len();
     let hit = surface.sweep_capsule(&capsule, motions, tolerance).unwrap();
     surface
@@ -185,6 +199,15 @@ fn assert_sweeps_agree(
         hits.first().copied().as_slice(),
         format_args!("first of sweep capsule, {case}"),
     );
+    for counts in counts {
+        let hit = surface.sweep_capsule_where(&capsule, motions, tolerance, &mut |hit| counts(hit));
+        let wanted = hits.iter().copied().find(counts);
+        assert_same_bits(
+            hit.unwrap().as_slice(),
+            wanted.as_slice(),
+            format_args!("first that counts of sweep capsule, {case}"),
+        );
+    }
     found + hits.len()
 }
 

@@ -7,7 +7,7 @@ use rapier3d::geometry::{BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, R
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::Shape;
+use rapier3d::parry::shape::{Shape, TypedShape};
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
@@ -432,9 +432,27 @@ fn is_still<'a>(terrain: &'a RapierTerrain<'_>) -> impl Fn(&Collider) -> bool + 
 
 /// Whether a point in a collider's space is still part of its shape.
 fn is_on(collider: &Collider, local: DVec3) -> bool {
-    let mut is_on = false;
-    overlap_shape(collider.shape(), [local; 2], GONE, &mut |_| is_on = true);
-    is_on
+    match collider.shape().as_typed_shape() {
+        // Of the most common shapes one sees it at once.
+        TypedShape::Ball(ball) => local.length() <= f64::from(ball.radius) + GONE,
+        TypedShape::Cuboid(cuboid) => {
+            let beyond = local.abs() - cuboid.half_extents.as_dvec3();
+            beyond.max_element() <= GONE
+        }
+        TypedShape::Capsule(capsule) => {
+            let ends = [capsule.segment.a, capsule.segment.b].map(|end| end.as_dvec3());
+            let radius = f64::from(capsule.radius);
+            let capsule = WorldCapsule { ends, radius };
+            capsule.nearest_on_axis(local).distance(local) <= radius + GONE
+        }
+        _ => overlaps(collider.shape(), local),
+    }
+}
+
+fn overlaps(shape: &dyn Shape, local: DVec3) -> bool {
+    let mut overlaps = false;
+    overlap_shape(shape, [local; 2], GONE, &mut |_| overlaps = true);
+    overlaps
 }
 
 #[cfg(test)]
