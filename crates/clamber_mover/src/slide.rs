@@ -389,6 +389,10 @@ impl Mover<'_> {
             // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
             nearest = self.nearest_displacement(wanted, path.frame);
         }
+        if nearest.missed > path.body.margin {
+            // It is crushed where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
+            nearest = self.nearest_displacement(path.frame, path.frame);
+        }
         moved.position = path.start + nearest.point;
         moved.missing_room = nearest.missed;
         self.keep_arm(path, moved);

@@ -95,8 +95,11 @@ impl Tick<'_> {
         falling
     }
 
-    /// Stands on what it came down on, or slides down it.
+    /// Stands on what it came down on, or slides down it. What crushes it is no place to stand.
     fn land(&mut self, falling: DVec3) -> NextMode {
+        if self.is_crushed {
+            return NextMode::Stay;
+        }
         let slope = self.config.ground.max_slope;
         if let Some(ground) = self.held_up(self.state.position, slope) {
             return self.land_on(&ground, falling);

@@ -52,7 +52,8 @@ impl Tick<'_> {
         self.report.penetration = moved.penetration;
         self.report.rounds += moved.rounds;
         self.report.is_clear &= moved.is_clear;
-        if moved.missing_room > path.body.margin {
+        self.is_crushed = moved.missing_room > path.body.margin;
+        if self.is_crushed {
             // Down to its ball, which needs least room.
             self.state.crouched = true;
             self.event(ClimberEvent::Crushed {
@@ -64,10 +65,14 @@ impl Tick<'_> {
         moved
     }
 
-    /// A velocity without the parts that go into the contacts of the last movement, in the frame of the support.
+    /// A velocity without the parts that go into the contacts of the last movement, in the frame of the support. What is
+    /// crushed has none of its own: between what closes in on it there is no velocity that does not lead into something.
     pub(super) fn clipped(&self, velocity: DVec3) -> DVec3 {
-        self.mover
-            .clip_velocity(velocity, self.state.base_velocity, None)
+        let base = self.state.base_velocity;
+        if self.is_crushed {
+            return base;
+        }
+        self.mover.clip_velocity(velocity, base, None)
     }
 
     /// Goes on as it went, where more changes of mode were wanted than a tick allows.
