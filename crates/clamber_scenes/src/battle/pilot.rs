@@ -38,7 +38,7 @@ const ELSEWHERE: f64 = 1.5;
 /// How many metres along the ground are worth a metre less to jump.
 const HEIGHT_COUNTS: f64 = 5.0;
 
-/// Stamina that it rests for where it can stand.
+/// Stamina that it rests for where it can stand; on a creature in motion it rests on until that is calm.
 const RESTED: f64 = 0.95;
 
 /// With less stamina it lets go where it is level enough to stand, radians, and rests.
@@ -166,7 +166,7 @@ impl Pilot {
                 slope(support.normal_in_world(), up) < LEVEL
             });
         let is_tired = state.stamina < TIRED && state.shake.length() < CALM;
-        if stands && state.stamina < RESTED || could_stand && is_tired {
+        if stands && (state.stamina < RESTED || !is_calm) || could_stand && is_tired {
             return ClimberInput::default();
         }
         let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
