@@ -453,7 +453,8 @@ fn state(battle: &Battle<'_>) -> String {
             let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
             let joints = battle.creature().skeleton.joints();
             let joint = joint.and_then(|joint| joints.get(joint));
-            let kind = mesh.tags().get(triangle.index()).map(|tag| tag.kind);
+            let tag = triangle.and_then(|triangle| mesh.tags().get(triangle.index()));
+            let kind = tag.map(|tag| tag.kind);
             format!(
                 "{} {} of {}",
                 verb(state.mode),
