@@ -166,7 +166,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let palette = giant
             .skeleton
             .palette(&clip.sample(&rest, time, Playback::Loop)?)?;
-        skin.advance(&palette, Similarity::from_translation(pace * time))?;
+        let place = Similarity::from_translation(pace * time);
+        match tick {
+            0 => skin.place(&palette, place)?,
+            _ => skin.advance(&palette, place)?,
+        }
         let (walk, jumps) = match tick {
             120..240 => (DVec3::Z, false),
             JUMP_TICK => (DVec3::ZERO, true),

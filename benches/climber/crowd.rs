@@ -218,8 +218,6 @@ fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
                 mode: ClimberMode::Falling,
                 support: None,
                 support_velocity: None,
-                arm: 0.0,
-                pull_up: 0.0,
                 stamina: 1.0,
                 ..state
             })?;

@@ -27,11 +27,13 @@ pub use clamber_surface::parry;
 pub use clamber_surface::{SimdLevel, geometry, mesh, rig, skin, surface};
 #[doc(inline)]
 pub use clamber_world as world;
+pub use glam;
 
 /// What most programs need: `use clamber::prelude::*;`.
 pub mod prelude {
     pub use clamber_climber::{
-        Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
+        Climber, ClimberConfig, ClimberContact, ClimberEvent, ClimberInput, ClimberMode,
+        ClimberState, ContactPhase, CustomMode, GripConfig, ModeContext, NextMode, StepReport,
         StepRules, Support,
     };
     pub use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};

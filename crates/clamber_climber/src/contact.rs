@@ -24,7 +24,7 @@ pub struct ClimberContact {
 /// In which phase of a tick something touched a climber.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ContactPhase {
-    /// It was in the way as the climber's support carried it, or struck a climber that wanted to stay.
+    /// The climber wanted to stay where its support carries it: this was in the way there, or struck it.
     Carried,
     /// It was met by the sweep of the climber's own movement.
     Swept,

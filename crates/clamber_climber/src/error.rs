@@ -14,7 +14,8 @@ pub enum ClimberError {
     Support(ClimberMode),
     /// A new configuration switches the mode off that the climber is in.
     #[error(
-        "a climber that is {0:?} cannot take a configuration without that mode; let it end the mode first"
+        "a climber that is {0:?} cannot take a configuration without what that needs (`grip`, `ledge` or `tumble` is \
+         `None`); let it end the mode first: step it without `ClimberInput::grip`, or until it has got up"
     )]
     ModeInUse(ClimberMode),
     /// Two handlers of modes have the same number.

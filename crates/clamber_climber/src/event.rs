@@ -22,8 +22,8 @@ pub enum ClimberEvent {
         /// What was lost.
         from: Attachment,
     },
-    /// What supports it moved several times since the last step, as if a creature was advanced twice: sweeps saw only
-    /// the last move.
+    /// What supports it moved otherwise than once since the last step: the creature was advanced twice, or the climber
+    /// was stepped twice. Sweeps saw only the last move.
     MovedTwice {
         /// The obstacle.
         obstacle: ObstacleId,

@@ -44,8 +44,9 @@ pub struct Path {
     pub start: DVec3,
     /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
     pub target: DVec3,
-    /// How far the body's support, or the frame that it is in, has moved over the tick, metres. What counts as far is
-    /// measured against this, so that results are the same in every frame that moves steadily.
+    /// The way of the body's support, or of the frame that it is in, over the tick, metres. A push that would lead the
+    /// body much farther from there than it wanted to go is refused, and a crushed body stays there; so results are the
+    /// same in every frame that moves steadily.
     pub frame: DVec3,
     /// Treats slopes that are too steep as vertical walls, so that walking does not climb them.
     pub walking: Option<Walking>,
@@ -389,7 +390,7 @@ impl Mover<'_> {
             // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
             nearest = self.nearest_displacement(wanted, path.frame);
         }
-        if nearest.missed > path.body.margin {
+        if nearest.missed > path.body.margin && wanted != path.frame {
             // It is crushed where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
             nearest = self.nearest_displacement(path.frame, path.frame);
         }

@@ -34,8 +34,8 @@ impl Mover<'_> {
         self.memory.velocities = velocities;
     }
 
-    /// The nearest velocity that does not lead into anything that the last movement touched, as fast as that moves
-    /// itself; `limit` is one more half-space of velocities to stay in.
+    /// The nearest velocity that leads into nothing that the last movement touched; what goes away by itself may be
+    /// followed. `limit` is one more half-space of velocities to stay in.
     ///
     /// Relative to `frame`, the velocity of the support or of the frame that the body is in, never faster than the body and
     /// the fastest of the obstacles together: between half-spaces that close like scissors the nearest velocity has no

@@ -81,7 +81,8 @@ impl MaterialPoint {
         }
     }
 
-    /// The triangle of a point of a surface; `None` if no surface has one with that key.
+    /// The triangle of a point of a surface. Of a point of anything else, such as a rapier collider, it is any number, or
+    /// `None`: ask only where the obstacle is a surface.
     pub fn triangle(&self) -> Option<TriangleId> {
         u32::try_from(self.key).ok().map(TriangleId)
     }

@@ -26,9 +26,10 @@ pub trait CustomMode {
     /// Its number: the climber is in [`ClimberMode::Custom`] of it. No two modes of a game have the same.
     fn id(&self) -> u16;
 
-    /// Whether the mode begins now. Asked once in every tick in which the climber is in another mode, after its support
-    /// has carried it and before it moves; modes are asked in the order in which they are given, until one begins. Also
-    /// the place to count down timers.
+    /// Whether the mode begins now. Asked in ticks in which the climber is in another mode, after its support has carried
+    /// it and before it moves; modes are asked in the order in which they are given, and those after one that begins are
+    /// not asked in that tick. Also the place to count down a timer such as a cooldown; while the mode itself runs,
+    /// [`CustomMode::step`] is.
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
     /// One tick of the mode: moves the body at most once, by one of the context's movements, and says what comes next.
@@ -239,7 +240,8 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.face(direction);
     }
 
-    /// Reports [`ClimberEvent::Custom`] of the mode that is given.
+    /// Reports [`ClimberEvent::Custom`]. `mode` is the number of the mode that reports: [`CustomMode::begins`] runs while
+    /// the climber is in another one.
     pub fn report(&mut self, mode: u16, what: u32, value: f64) {
         self.tick.event(ClimberEvent::Custom { mode, what, value });
     }
