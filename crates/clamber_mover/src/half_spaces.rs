@@ -70,6 +70,7 @@ pub struct Projection {
 /// plane least, and of these the nearest.
 ///
 /// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
+/// Where the intersection is empty, what is missed is exact to 1e-12 of that gap, and the point to 1e-8 of it.
 /// The same bits in whatever order the planes come. Planes that are not finite are ignored.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
     project_within(target, planes, f64::INFINITY)

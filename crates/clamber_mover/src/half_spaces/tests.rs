@@ -472,3 +472,52 @@ fn extremes_stay_finite() {
         );
     }
 }
+
+#[test]
+fn within_a_reach_the_least_miss_is_found() {
+    let mut rng = Rng::with_seed(9);
+    let mut relieved = 0;
+    for count in 1..=5 {
+        for _ in 0..40 {
+            let normals = normals(&mut rng, count);
+            let planes = anyhow(&mut rng, &normals);
+            let target = direction(&mut rng) * rng.f64();
+            let gaps = planes
+                .iter()
+                .map(|plane| plane.offset - plane.normal.dot(target));
+            let gap = gaps.fold(0.0, f64::max);
+            let reach = gap * 4.0 * rng.f64();
+            let found = project_within(target, &planes, reach);
+            // The least relief by halving, each time by the slow twin.
+            let is_enough = |relief: f64| {
+                let lowered = planes.iter().map(|plane| HalfSpace {
+                    offset: plane.offset - relief,
+                    ..*plane
+                });
+                let lowered: Vec<HalfSpace> = lowered.collect();
+                let nearest = project_onto_half_spaces_reference(target, &lowered);
+                let near = nearest.point.distance(target) <= reach * (1.0 + 1e-9);
+                near && nearest.missed <= 1e-12 * gap
+            };
+            let mut least = 0.0;
+            if !is_enough(0.0) {
+                let mut low = 0.0;
+                least = gap;
+                for _ in 0..40 {
+                    let relief = 0.5 * (low + least);
+                    if is_enough(relief) {
+                        least = relief;
+                    } else {
+                        low = relief;
+                    }
+                }
+                relieved += 1;
+            }
+            let told = || format!("{found:?}, least {least}\n{target} within {reach} {planes:?}");
+            assert!((found.missed - least).abs() <= 1e-8 * gap, "{}", told());
+            let far = found.point.distance(target);
+            assert!(far <= reach * (1.0 + 1e-9) + 1e-12 * gap, "{}", told());
+        }
+    }
+    assert!(relieved > 60, "{relieved}");
+}
