@@ -93,6 +93,29 @@ fn an_anchor_turns_with_the_skin_and_hangs_under_whatever_it_likes() {
 }
 
 #[test]
+fn what_stands_off_the_skin_goes_along_with_it() {
+    let mut app = app(60.0);
+    app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
+    limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
+    let arrow = stick(&mut app, Vec3::new(9.0, 1.7, 0.05), Dir3::NEG_X);
+    let mut off = *app.world().get::<SurfaceAnchor>(arrow).unwrap();
+    off.attachment.offset = glam::DVec3::new(0.0, 0.3, 0.4);
+    let off = app.world_mut().spawn(off).id();
+    let (mut seen, mut turned) = (None, 0.0f32);
+    for _ in 0..30 {
+        app.update();
+        let at = |entity| *app.world().get::<GlobalTransform>(entity).unwrap();
+        let (on, off) = (at(arrow), at(off));
+        let apart = on.rotation().inverse() * (off.translation() - on.translation());
+        assert!((apart.length() - 0.5).abs() < 1e-5, "{apart}");
+        let first = *seen.get_or_insert((apart, on.rotation()));
+        assert!((apart - first.0).length() < 1e-5, "{apart} {}", first.0);
+        turned = turned.max(on.rotation().angle_between(first.1));
+    }
+    assert!(turned > 0.1, "{turned}");
+}
+
+#[test]
 fn a_lost_surface_is_told() {
     #[derive(Resource, Default)]
     struct Lost(Vec<AnchorLost>);

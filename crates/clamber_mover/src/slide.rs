@@ -240,7 +240,7 @@ impl Mover<'_> {
         true
     }
 
-    /// The first contact on a way; notes what the core begins inside of, which is none.
+    /// The first contact on a way. What the core begins inside of does not count, and is noted.
     fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.body.core_at(path.start);
         let mut inside = std::mem::take(&mut self.memory.inside);
