@@ -257,7 +257,7 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
         DVec3::new(one(), one(), one())
     };
     let mut meetings = Vec::new();
-    for case in 0..800 {
+    for case in 0..2_400 {
         let from = match case % 2 {
             0 => vector(9.0),
             _ => vector(3.0) + carousel(12.0 / RATE).1,
@@ -267,11 +267,15 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
             radius: [0.0, 0.1, 0.4][case % 3],
         };
         let by = vector(2.0);
+        let turning = [by, vector(2.0)];
         let cast = obstacle.cast_capsule(&capsule, by);
-        let swept = obstacle.sweep_capsule(&capsule, by);
-        for (what, met) in [("cast", cast), ("swept", swept)] {
+        let swept = obstacle.sweep_capsule(&capsule, turning);
+        // Past what it begins inside of.
+        let past = obstacle.sweep_capsule_where(&capsule, turning, &mut |met| !met.started_inside);
+        assert!(past.is_none_or(|past| !past.started_inside), "{past:?}");
+        for (what, met) in [("cast", cast), ("swept", swept), ("swept past", past)] {
             let motion = met.and_then(|met| obstacle.motion(&met.contact.material, 1.0 / RATE));
-            meetings.push((format!("{capsule:?} {what} by {by}"), met, motion));
+            meetings.push((format!("{capsule:?} {what} by {turning:?}"), met, motion));
         }
     }
     meetings
@@ -281,7 +285,8 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
 fn capsules_meet_in_avian_what_they_meet_in_rapier() {
     let avian = ask_avian(&mut avian(), sweep);
     let rapier = ask_rapier(&mut rapier(), sweep);
-    let (mut met, mut carried, mut inside, mut grazed) = (0, 0, 0, 0);
+    let (mut met, mut carried, mut inside, mut past, mut grazed) = (0, 0, 0, 0, 0);
+    let mut was_inside = false;
     for ((question, avian, motion), (_, rapier, _)) in avian.iter().zip(&rapier) {
         let (Some(a), Some(b)) = (avian, rapier) else {
             grazed += usize::from(avian.is_some() != rapier.is_some());
@@ -289,6 +294,8 @@ fn capsules_meet_in_avian_what_they_meet_in_rapier() {
         };
         met += 1;
         inside += usize::from(a.started_inside);
+        past += usize::from(was_inside && question.contains("past"));
+        was_inside = a.started_inside;
         carried += usize::from(motion.unwrap().velocity != DVec3::ZERO);
         // What comes near slowly may stop anywhere within the tolerance.
         grazed += usize::from((a.time - b.time).abs() > 1e-3);
@@ -302,10 +309,12 @@ fn capsules_meet_in_avian_what_they_meet_in_rapier() {
             assert!(apart < SAME, "{question}: {a:?} {b:?}");
         }
     }
-    println!("{met} meetings, {carried} on what moves, {inside} inside, {grazed} grazed");
+    println!(
+        "{met} meetings, {carried} on what moves, {inside} inside, {past} past those, {grazed} grazed"
+    );
     assert!(
-        met > 400 && carried > 100 && inside > 50,
-        "{met} {carried} {inside}"
+        met > 400 && carried > 100 && inside > 50 && past > 20,
+        "{met} {carried} {inside} {past}"
     );
     assert!(grazed < 8, "{grazed}");
 }
@@ -398,7 +407,7 @@ fn check_limits(obstacle: &dyn Obstacle) {
                 "{capsule:?} {by}"
             );
             assert_eq!(
-                obstacle.sweep_capsule(&capsule, by),
+                obstacle.sweep_capsule(&capsule, [by; 2]),
                 None,
                 "{capsule:?} {by}"
             );
@@ -408,7 +417,11 @@ fn check_limits(obstacle: &dyn Obstacle) {
     for bad in [f64::NAN, -1.0, f64::INFINITY] {
         let capsule = good.with_radius(bad);
         assert_eq!(obstacle.cast_capsule(&capsule, -DVec3::Y), None, "{bad}");
-        assert_eq!(obstacle.sweep_capsule(&capsule, -DVec3::Y), None, "{bad}");
+        assert_eq!(
+            obstacle.sweep_capsule(&capsule, [-DVec3::Y; 2]),
+            None,
+            "{bad}"
+        );
     }
     assert!(contacts.is_empty(), "{contacts:?}");
 
@@ -453,6 +466,7 @@ fn limits_and_bad_input_are_as_the_trait_says() {
 
 #[test]
 fn what_stands_still_again_and_what_is_gone_says_so() {
+    use avian3d::prelude::Collider;
     let on_carousel = |obstacle: &dyn Obstacle, now| {
         let (rotation, place) = carousel(now);
         let normal = rotation * DVec3::Y;
@@ -469,6 +483,18 @@ fn what_stands_still_again_and_what_is_gone_says_so() {
         avian.update();
         let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
         assert_eq!(motion.unwrap().velocity, DVec3::ZERO, "after {ticks} ticks");
+    }
+    let body = move |obstacle: &dyn Obstacle| obstacle.body_of(&material);
+    assert_eq!(ask_avian(&mut avian, body), carousel.to_bits());
+    // Of another shape, and the shape again.
+    let shape = avian.world().get::<Collider>(carousel).cloned();
+    for (shape, holds) in [(Some(Collider::sphere(0.1)), false), (shape, true)] {
+        avian
+            .world_mut()
+            .entity_mut(carousel)
+            .insert(shape.unwrap());
+        let motion = ask_avian(&mut avian, move |obstacle| obstacle.motion(&material, 0.1));
+        assert_eq!(motion.is_some(), holds, "of another shape: {motion:?}");
     }
     avian
         .world_mut()

@@ -50,6 +50,8 @@ struct Apart {
     distance: f64,
     /// The nearest point of this body's axis.
     on_axis: DVec3,
+    /// The nearest point of the other's axis, as a share from its first end.
+    on_other: f64,
 }
 
 impl ClimberObstacle {
@@ -76,20 +78,21 @@ impl ClimberObstacle {
         }
     }
 
-    /// The first contact of a capsule that moves by `way` relative to this body, which ends where it is now.
-    fn meet(&self, capsule: &WorldCapsule, way: DVec3) -> Option<SweepContact> {
+    /// The first contact of a capsule whose ends move by `ways` relative to this body, which ends where it is now.
+    fn meet(&self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<SweepContact> {
         let sum = self.now.radius + capsule.radius;
-        if !is_capsule(capsule) || !way.is_finite() {
+        if !is_capsule(capsule) || !ways.iter().all(|way| way.is_finite()) {
             return None;
         }
         let mut time = 0.0;
         for step in 0..=STEPS {
-            let moved = capsule.moved(way * time);
+            let moved = capsule.with_ends_moved(ways.map(|way| way * time));
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
             // At the last step it is said to touch rather than missed: no contact is late.
             let is_near = gap <= capsule.sweep_tolerance() || step == STEPS;
-            if is_near && (gap <= 0.0 || apart.away.dot(way) < 0.0) {
+            let there = ways[0].lerp(ways[1], apart.on_other);
+            if is_near && (gap <= 0.0 || apart.away.dot(there) < 0.0) {
                 return Some(SweepContact {
                     time,
                     contact: self.contact(&apart),
@@ -97,8 +100,9 @@ impl ClimberObstacle {
                     started_inside: step == 0 && gap <= 0.0,
                 });
             }
-            // Both stay on their sides of the plane between them until then.
-            let closing = -apart.away.dot(way);
+            // Both stay on their sides of the plane between them until then, whichever end comes first.
+            let [a, b] = ways.map(|way| -apart.away.dot(way));
+            let closing = a.max(b);
             if closing <= 0.0 || time + gap / closing > 1.0 {
                 return None;
             }
@@ -142,6 +146,7 @@ fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
         away,
         distance: between.length(),
         on_axis,
+        on_other,
     }
 }
 
@@ -180,12 +185,17 @@ impl Obstacle for ClimberObstacle {
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.meet(capsule, displacement)
+        self.meet(capsule, [displacement; 2])
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
         // As seen from this body, which then stands where it ends.
-        let mut hit = self.meet(&capsule.moved(self.way), displacement - self.way)?;
+        let ways = displacements.map(|way| way - self.way);
+        let mut hit = self.meet(&capsule.moved(self.way), ways)?;
         hit.contact.point -= self.way * (1.0 - hit.time);
         Some(hit)
     }

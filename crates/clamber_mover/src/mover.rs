@@ -171,10 +171,10 @@ impl<'a> Mover<'a> {
         &self.memory.overlaps
     }
 
-    /// The first contact of a capsule that moves by `way` over the tick, with every obstacle on its own way.
-    pub fn sweep(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
-        self.first(capsule, way, |_, obstacle| {
-            obstacle.sweep_capsule(capsule, way)
+    /// The first contact of a capsule whose ends move by `ways` over the tick, with every obstacle on its own way.
+    pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
+        self.first(capsule, ways, |_, obstacle| {
+            obstacle.sweep_capsule(capsule, ways)
         })
     }
 
@@ -182,11 +182,11 @@ impl<'a> Mover<'a> {
     pub fn sweep_where(
         &mut self,
         capsule: &WorldCapsule,
-        way: DVec3,
+        ways: [DVec3; 2],
         mut counts: impl FnMut(&Hit) -> bool,
     ) -> Option<Hit> {
-        self.first(capsule, way, |id, obstacle| {
-            obstacle.sweep_capsule_where(capsule, way, &mut |sweep| counts(&Hit::new(id, sweep)))
+        self.first(capsule, ways, |id, obstacle| {
+            obstacle.sweep_capsule_where(capsule, ways, &mut |sweep| counts(&Hit::new(id, sweep)))
         })
     }
 
@@ -200,13 +200,13 @@ impl<'a> Mover<'a> {
         correction: DVec3,
     ) -> bool {
         let core = body.core_at(start + correction);
-        self.sweep_where(&core, end - start, |hit| !hit.started_inside)
+        self.sweep_where(&core, [end - start; 2], |hit| !hit.started_inside)
             .is_none()
     }
 
     /// The first contact of a capsule that moves by `way`, with every obstacle as it stands now.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
-        self.first(capsule, way, |_, obstacle| {
+        self.first(capsule, [way; 2], |_, obstacle| {
             obstacle.cast_capsule(capsule, way)
         })
     }
@@ -244,12 +244,14 @@ impl<'a> Mover<'a> {
     fn first(
         &mut self,
         capsule: &WorldCapsule,
-        way: DVec3,
+        ways: [DVec3; 2],
         mut ask: impl FnMut(ObstacleId, &dyn Obstacle) -> Option<SweepContact>,
     ) -> Option<Hit> {
+        // A ball that goes by the mean of both holds the capsule, if it is larger by how far they are from the mean.
         let (middle, reach) = capsule.bounding_ball();
-        let half = way * 0.5;
-        let (middle, reach) = (middle + half, reach + half.length());
+        let half = (ways[0] + ways[1]) * 0.25;
+        let turn = (ways[1] - ways[0]).length() * 0.5;
+        let (middle, reach) = (middle + half, reach + half.length() + turn);
         let near = self.memory.surroundings.near(self.obstacles, middle, reach);
         let mut first: Option<Hit> = None;
         for (id, obstacle) in near {

@@ -12,6 +12,7 @@
 //! together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those ask for planes near the start,
 //! with a margin, of obstacles that stand still.)
 
+use clamber_world::WorldCapsule;
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, Projection, project_within};
@@ -42,6 +43,9 @@ pub struct Path {
     pub body: MoverBody,
     /// Position a tick ago, in world space.
     pub start: DVec3,
+    /// The body's axis a tick ago, if it turns over the tick: the body's own is that at the tick's end. It ends as it is
+    /// said to, however it is pushed.
+    pub start_axis: [DVec3; 2],
     /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
     pub target: DVec3,
     /// The way of the body's support, or of the frame that it is in, over the tick, metres. A push that would lead the
@@ -104,6 +108,7 @@ impl Path {
         Self {
             body,
             start,
+            start_axis: body.axis,
             target,
             frame: DVec3::ZERO,
             walking: None,
@@ -120,8 +125,33 @@ impl Path {
         }
     }
 
+    /// The core at the start.
+    fn core(&self) -> WorldCapsule {
+        let core = self.body.core_at(self.start);
+        WorldCapsule {
+            ends: self.start_axis.map(|end| self.start + end),
+            ..core
+        }
+    }
+
+    /// How far the core's ends go if the position goes by `way`.
+    fn ways(&self, way: DVec3) -> [DVec3; 2] {
+        let turn = |k: usize| self.body.axis[k] - self.start_axis[k];
+        [way + turn(0), way + turn(1)]
+    }
+
+    /// Where the point of the axis that is nearest to a place at a time, on the way there, ends; from the position.
+    fn end_of(&self, way: DVec3, time: f64, place: DVec3) -> DVec3 {
+        let then = self
+            .core()
+            .with_ends_moved(self.ways(way).map(|way| way * time));
+        let [a, b] = self.body.axis;
+        a + (b - a) * then.share_of_axis(place)
+    }
+
     fn is_finite(&self) -> bool {
-        let vectors = [self.start, self.target, self.frame];
+        let [a, b] = self.start_axis;
+        let vectors = [self.start, self.target, self.frame, a, b];
         vectors.iter().all(|v| v.is_finite()) && self.body.validate().is_ok()
     }
 }
@@ -229,11 +259,10 @@ impl Mover<'_> {
         let Some(Hit { touch, time, .. }) = hit else {
             return false;
         };
-        let at = path.start + way * time;
         let end = self
             .motion(touch.obstacle, &touch.contact.material)
             .map_or(touch.contact.point, |motion| motion.position);
-        let on_axis = path.body.core_at(at).nearest_on_axis(touch.contact.point) - at;
+        let on_axis = path.end_of(way, time, touch.contact.point);
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
         self.add_half_space(path, touch, offset, moved.position);
         self.solve(path, moved);
@@ -242,10 +271,10 @@ impl Mover<'_> {
 
     /// The first contact on a way. What the core begins inside of does not count, and is noted.
     fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
-        let core = path.body.core_at(path.start);
+        let core = path.core();
         let mut inside = std::mem::take(&mut self.memory.inside);
         inside.clear();
-        let hit = self.sweep_where(&core, way, |hit| {
+        let hit = self.sweep_where(&core, path.ways(way), |hit| {
             if hit.started_inside && hit.touch.is_finite() {
                 inside.push(hit.touch);
             }
@@ -257,11 +286,11 @@ impl Mover<'_> {
 
     /// The first contact on a way past what the core began inside of.
     fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
-        let core = path.body.core_at(path.start);
+        let core = path.core();
         let inside = std::mem::take(&mut self.memory.inside);
         let margin = path.body.margin;
         let (obstacles, dt) = (self.obstacles, self.dt());
-        let hit = self.sweep_where(&core, way, |hit| {
+        let hit = self.sweep_where(&core, path.ways(way), |hit| {
             let touch = &hit.touch;
             if hit.started_inside {
                 return false;

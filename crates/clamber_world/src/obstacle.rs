@@ -82,8 +82,14 @@ impl WorldCapsule {
     /// The same, somewhere else.
     #[must_use]
     pub fn moved(&self, by: DVec3) -> Self {
+        self.with_ends_moved([by; 2])
+    }
+
+    /// With each end somewhere else.
+    #[must_use]
+    pub fn with_ends_moved(&self, by: [DVec3; 2]) -> Self {
         Self {
-            ends: self.ends.map(|end| end + by),
+            ends: [self.ends[0] + by[0], self.ends[1] + by[1]],
             ..*self
         }
     }
@@ -103,13 +109,19 @@ impl WorldCapsule {
     /// The point of the segment nearest to a point.
     pub fn nearest_on_axis(&self, point: DVec3) -> DVec3 {
         let [a, b] = self.ends;
+        a + (b - a) * self.share_of_axis(point)
+    }
+
+    /// Where the point of the segment nearest to a point lies, as a share of the way from the first end to the second.
+    pub fn share_of_axis(&self, point: DVec3) -> f64 {
+        let [a, b] = self.ends;
         let axis = b - a;
         let along = (point - a).dot(axis);
         let length_sq = axis.length_squared();
         if along > 0.0 && length_sq > 0.0 {
-            a + axis * (along / length_sq).min(1.0)
+            (along / length_sq).min(1.0)
         } else {
-            a
+            0.0
         }
     }
 
@@ -123,7 +135,7 @@ impl WorldCapsule {
 /// Where a capsule on its way first touches an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepContact {
-    /// Share of the displacement made when they touch, 0..=1.
+    /// Share of the tick, and so of each displacement, when they touch, 0..=1.
     pub time: f64,
     /// What is touched, where and how it is at that time; its distance is from the capsule's segment.
     pub contact: Contact,
@@ -199,9 +211,14 @@ pub trait Obstacle {
     /// the radius.
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
 
-    /// The first contact of a capsule that moves by `displacement` over the tick that ends now, while the obstacle moves
-    /// from where it stood a tick ago to where it stands now.
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
+    /// The first contact of a capsule over the tick that ends now, while the obstacle moves from where it stood a tick
+    /// ago to where it stands now. `capsule` is the capsule at the tick's start; each of its ends goes straight by its own
+    /// displacement, so that it may turn, as the legs of one who swings.
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact>;
 
     /// [`Obstacle::sweep_capsule`] among the contacts that count: of each triangle and solid that may be the first to be
     /// touched its contact is shown to `counts`, in no order. A body that is pressed into one thing still meets the others.
@@ -210,10 +227,10 @@ pub trait Obstacle {
     fn sweep_capsule_where(
         &self,
         capsule: &WorldCapsule,
-        displacement: DVec3,
+        displacements: [DVec3; 2],
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
-        self.sweep_capsule(capsule, displacement)
+        self.sweep_capsule(capsule, displacements)
             .filter(|contact| counts(contact))
     }
 

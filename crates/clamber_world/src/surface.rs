@@ -38,18 +38,31 @@ fn capsule_in_model(surface: &SkinnedSurface, capsule: &WorldCapsule) -> Capsule
     }
 }
 
-/// With the way and the tolerance, both in model units.
+fn ball_of(capsule: &Capsule) -> Sphere {
+    Sphere {
+        center: capsule.a,
+        radius: capsule.radius,
+    }
+}
+
+fn stays_ball(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> bool {
+    capsule.is_ball() && displacements[0] == displacements[1]
+}
+
+/// With the displacements and the tolerance, all in model units.
 fn sweep_in_model(
     surface: &SkinnedSurface,
     capsule: &WorldCapsule,
-    displacement: DVec3,
-) -> (Capsule, Vec3, f32) {
+    displacements: [DVec3; 2],
+) -> (Capsule, [Vec3; 2], f32) {
     let world_from_model = surface.world_from_model();
     (
         capsule_in_model(surface, capsule),
-        world_from_model
-            .inverse_transform_vector(displacement)
-            .as_vec3(),
+        displacements.map(|displacement| {
+            world_from_model
+                .inverse_transform_vector(displacement)
+                .as_vec3()
+        }),
         length_in_model(surface, capsule.sweep_tolerance()),
     )
 }
@@ -126,11 +139,7 @@ impl Obstacle for SkinnedSurface {
             contacts.push(contact);
         };
         let visited = if capsule.is_ball() {
-            let sphere = Sphere {
-                center: local.a,
-                radius: local.radius,
-            };
-            self.visit_overlap_sphere(&sphere, found)
+            self.visit_overlap_sphere(&ball_of(&local), found)
         } else {
             self.visit_overlap_capsule(&local, &mut found)
         };
@@ -141,29 +150,25 @@ impl Obstacle for SkinnedSurface {
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
+        let (local, motions, tolerance) = sweep_in_model(self, capsule, [displacement; 2]);
         let hit = if capsule.is_ball() {
-            let sphere = Sphere {
-                center: local.a,
-                radius: local.radius,
-            };
-            self.cast_sphere(&sphere, motion, tolerance)
+            self.cast_sphere(&ball_of(&local), motions[0], tolerance)
         } else {
-            self.cast_capsule(&local, [motion; 2], tolerance)
+            self.cast_capsule(&local, motions, tolerance)
         };
         Some(sweep_contact(self, &hit.ok()??))
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
-        let hit = if capsule.is_ball() {
-            let sphere = Sphere {
-                center: local.a,
-                radius: local.radius,
-            };
-            self.sweep_sphere(&sphere, motion, tolerance)
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        let (local, motions, tolerance) = sweep_in_model(self, capsule, displacements);
+        let hit = if stays_ball(capsule, displacements) {
+            self.sweep_sphere(&ball_of(&local), motions[0], tolerance)
         } else {
-            self.sweep_capsule(&local, [motion; 2], tolerance)
+            self.sweep_capsule(&local, motions, tolerance)
         };
         Some(sweep_contact(self, &hit.ok()??))
     }
@@ -171,19 +176,14 @@ impl Obstacle for SkinnedSurface {
     fn sweep_capsule_where(
         &self,
         capsule: &WorldCapsule,
-        displacement: DVec3,
+        displacements: [DVec3; 2],
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
-        let (local, motion, tolerance) = sweep_in_model(self, capsule, displacement);
+        let (local, motions, tolerance) = sweep_in_model(self, capsule, displacements);
         let mut counts = |hit: &SweepHit| counts(&sweep_contact(self, hit));
-        let hit = if capsule.is_ball() {
-            let sphere = Sphere {
-                center: local.a,
-                radius: local.radius,
-            };
-            self.sweep_sphere_where(&sphere, motion, tolerance, &mut counts)
+        let hit = if stays_ball(capsule, displacements) {
+            self.sweep_sphere_where(&ball_of(&local), motions[0], tolerance, &mut counts)
         } else {
-            let motions = [motion; 2];
             SkinnedSurface::sweep_capsule_where(self, &local, motions, tolerance, &mut counts)
         };
         Some(sweep_contact(self, &hit.ok()??))

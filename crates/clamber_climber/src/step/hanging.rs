@@ -85,6 +85,8 @@ impl Tick<'_> {
             arm: carried.start - carried.motion.previous_position,
             velocity: relative,
         };
+        let legs = |arm: DVec3| arm.normalize_or(-self.config.up()) * hang.leg_length;
+        let legs_were = legs(pendulum.arm);
         pendulum.step(&PendulumTick {
             length,
             gravity: self.config.gravity,
@@ -92,12 +94,12 @@ impl Tick<'_> {
             damping: hang.damping,
             dt: self.dt(),
         });
-        let legs = pendulum.arm.normalize_or(-self.config.up()) * hang.leg_length;
         let mut path = Path {
             arm: Some(Arm { pivot, length }),
+            start_axis: [DVec3::ZERO, legs_were],
             ..self.path(pivot + pendulum.arm)
         };
-        path.body.axis = [DVec3::ZERO, legs];
+        path.body.axis = [DVec3::ZERO, legs(pendulum.arm)];
         let moved = self.slide(&path, Intent::Go);
         let velocity = carried.velocity() + pendulum.velocity;
         self.keep_support(carried, moved.position);

@@ -104,8 +104,12 @@ impl Obstacle for Mute<'_> {
         self.inner.cast_capsule(capsule, displacement)
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.inner.sweep_capsule(capsule, displacement)
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        self.inner.sweep_capsule(capsule, displacements)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -215,10 +215,6 @@ fn hung(hz: f64, beam: &SkinnedSurface) -> Climber {
 /// A plate that only the legs can meet, at the lowest point of their way.
 #[test]
 fn legs_that_swing_go_through_no_plate() {
-    crate::open("4c: 2 of 8 at 30 Hz and 25 m/s", legs_that_swing);
-}
-
-fn legs_that_swing() {
     let mut all = String::new();
     let mut wrong = 0;
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
@@ -229,7 +225,7 @@ fn legs_that_swing() {
         for half in [0.03, 0.15, 0.5] {
             let size = Vec3::new(half as f32, 1.0, 2.0);
             let plate = at(cuboid(size, STONE), v(half, top - 1.0, 0.0));
-            for speed in [4.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0] {
+            for speed in [4.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0, 40.0] {
                 let mut through = 0;
                 for start in 0..8 {
                     let clear = 0.41 + 0.05 * f64::from(start);

@@ -82,8 +82,12 @@ impl Obstacle for Running<'_> {
         Some(self.met(self.shape.cast_capsule(capsule, displacement)?))
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        Some(self.met(self.shape.sweep_capsule(capsule, displacement)?))
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        Some(self.met(self.shape.sweep_capsule(capsule, displacements)?))
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -39,8 +39,12 @@ impl Obstacle for Broken<'_> {
         })
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let hit = self.inner.sweep_capsule(capsule, displacement)?;
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        let hit = self.inner.sweep_capsule(capsule, displacements)?;
         Some(SweepContact {
             time: self.bad.x,
             ..hit

@@ -265,7 +265,7 @@ pub(crate) fn motions_too_small_to_be_any_end() {
                 let hits = ask(&stage, |obstacle| {
                     [
                         obstacle.cast_capsule(&ball, direction * size),
-                        obstacle.sweep_capsule(&ball, direction * size),
+                        obstacle.sweep_capsule(&ball, [direction * size; 2]),
                     ]
                 });
                 assert_eq!(hits, [None; 2], "{played:?}: {size}");
@@ -283,12 +283,12 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
         let ball = WorldCapsule::ball(DVec3::Y * 1.6, 0.5);
         for way in [1.0, 1.5, 30.0] {
             let hit = ask(&stage, |obstacle| {
-                obstacle.sweep_capsule(&ball, DVec3::Y * way)
+                obstacle.sweep_capsule(&ball, [DVec3::Y * way; 2])
             });
             assert_eq!(hit, None, "{played:?}: {way}");
         }
         let hit = ask(&stage, |obstacle| {
-            obstacle.sweep_capsule(&ball, DVec3::ZERO)
+            obstacle.sweep_capsule(&ball, [DVec3::ZERO; 2])
         });
         assert!(hit.is_some(), "{played:?}: nothing where the box comes");
         let hit = hit.unwrap();
@@ -300,7 +300,7 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
             let hits = ask(&stage, |obstacle| {
                 [
                     obstacle.cast_capsule(&ball, way),
-                    obstacle.sweep_capsule(&ball, way),
+                    obstacle.sweep_capsule(&ball, [way; 2]),
                 ]
             });
             assert_eq!(hits, [None; 2], "{played:?}: {way}");

@@ -7,13 +7,14 @@ use rapier3d::geometry::{BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, R
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{Shape, TypedShape};
+use rapier3d::parry::shape::Shape;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 
 use super::BodyPoses;
 use super::push::push_response;
 use crate::shapes::{
-    FirstContact, Moved, Reach, RigidPose, Tick, closest_by_overlap, overlap_shape, sort_contacts,
+    FirstContact, Moved, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape,
+    sort_contacts,
 };
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 
@@ -21,10 +22,6 @@ static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
 /// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
 const LOOSE: f32 = 1e-4;
-
-/// A material point is gone if the collider's shape is farther than this from it, metres: its shape was exchanged.
-/// Above the rounding of f32 poses a kilometre out, below any change of shape that a player would see.
-const GONE: f64 = 1e-3;
 
 /// Whether a collider is seen. Terrain is asked from many threads at once, so this is too; `QueryFilter` need not be.
 type Filter<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync);
@@ -359,15 +356,19 @@ impl Obstacle for RapierTerrain<'_> {
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), [displacement; 2])?;
         self.meet_near(&mut first, |_| true, &mut |first, met| {
             first.meet(met.shape, &met.tick, met.key);
         });
         Some(self.tagged(first.contact(self.origin)?))
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
         let mut meet = |first: &mut FirstContact, met: &Met<'_>| {
             first.meet(met.shape, &met.tick, met.key);
         };
@@ -379,10 +380,10 @@ impl Obstacle for RapierTerrain<'_> {
     fn sweep_capsule_where(
         &self,
         capsule: &WorldCapsule,
-        displacement: DVec3,
+        displacements: [DVec3; 2],
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
         let mut counts = |sweep: &SweepContact| {
             let mut sweep = *sweep;
             sweep.contact.point += self.origin;
@@ -408,7 +409,7 @@ impl Obstacle for RapierTerrain<'_> {
         let handle = Self::collider_of(point);
         let collider = self.colliders.get(handle)?;
         let local = DVec3::from_array(point.coordinates);
-        if !self.sees(handle, collider) || !is_on(collider, local) {
+        if !self.sees(handle, collider) || !holds(collider.shape(), local) {
             return None;
         }
         let now = pose_of(collider.position());
@@ -428,31 +429,6 @@ type Meet<'a> = dyn FnMut(&mut FirstContact, &Met<'_>) + 'a;
 
 fn is_still<'a>(terrain: &'a RapierTerrain<'_>) -> impl Fn(&Collider) -> bool + 'a {
     |collider| terrain.previous_pose(collider).is_none()
-}
-
-/// Whether a point in a collider's space is still part of its shape.
-fn is_on(collider: &Collider, local: DVec3) -> bool {
-    match collider.shape().as_typed_shape() {
-        // Of the most common shapes one sees it at once.
-        TypedShape::Ball(ball) => local.length() <= f64::from(ball.radius) + GONE,
-        TypedShape::Cuboid(cuboid) => {
-            let beyond = local.abs() - cuboid.half_extents.as_dvec3();
-            beyond.max_element() <= GONE
-        }
-        TypedShape::Capsule(capsule) => {
-            let ends = [capsule.segment.a, capsule.segment.b].map(|end| end.as_dvec3());
-            let radius = f64::from(capsule.radius);
-            let capsule = WorldCapsule { ends, radius };
-            capsule.nearest_on_axis(local).distance(local) <= radius + GONE
-        }
-        _ => overlaps(collider.shape(), local),
-    }
-}
-
-fn overlaps(shape: &dyn Shape, local: DVec3) -> bool {
-    let mut overlaps = false;
-    overlap_shape(shape, [local; 2], GONE, &mut |_| overlaps = true);
-    overlaps
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use crate::{Contact, SweepContact, WorldCapsule};
 /// use glam::{DQuat, DVec3};
 ///
 /// let falling = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
-/// let mut first = FirstContact::new(&falling, DVec3::NEG_Y * 4.0).unwrap();
+/// let mut first = FirstContact::new(&falling, [DVec3::NEG_Y * 4.0; 2]).unwrap();
 /// let pose = RigidPose { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
 /// first.meet(&Ball::new(0.5), &Tick::still(pose), 7);
 /// let contact = first.contact(DVec3::ZERO).unwrap();
@@ -30,28 +30,29 @@ use crate::{Contact, SweepContact, WorldCapsule};
 #[derive(Clone, Copy, Debug)]
 pub struct FirstContact {
     capsule: WorldCapsule,
-    displacement: DVec3,
+    displacements: [DVec3; 2],
     reach: Reach,
     first: Option<SweepContact>,
 }
 
 impl FirstContact {
-    /// Of none so far. `None` if anything is not finite or beyond 2^100, or the radius negative.
-    pub fn new(capsule: &WorldCapsule, displacement: DVec3) -> Option<Self> {
+    /// Of none so far; each end of the capsule goes by its own displacement. `None` if anything is not finite or beyond
+    /// 2^100, or the radius negative.
+    pub fn new(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> Option<Self> {
         let radius = capsule.radius;
-        let ends = capsule.ends.into_iter();
-        let mut ends = ends.chain(capsule.moved(displacement).ends);
-        if !ends.all(is_usable) || !is_usable(displacement) || !is_usable_radius(radius) {
+        let end = capsule.with_ends_moved(displacements).ends;
+        let mut places = capsule.ends.into_iter().chain(end).chain(displacements);
+        if !places.all(is_usable) || !is_usable_radius(radius) {
             return None;
         }
         let path = clamber_surface::geometry::MovingCapsule {
             start: capsule.ends,
-            end: capsule.moved(displacement).ends,
+            end,
             radius,
         };
         Some(Self {
             capsule: *capsule,
-            displacement,
+            displacements,
             reach: Reach::new(&path, radius + 2.0 * capsule.sweep_tolerance()),
             first: None,
         })
@@ -69,7 +70,7 @@ impl FirstContact {
 
     /// Tries a shape on a body.
     pub fn meet(&mut self, shape: &dyn Shape, tick: &Tick, key: u64) {
-        let sweep = tick.sweep(&self.capsule, self.displacement);
+        let sweep = tick.sweep(&self.capsule, self.displacements);
         if let Some(touch) = sweep_shape(shape, &sweep, self.limit()) {
             self.offer(tick.contact(&touch, key));
         }
@@ -83,7 +84,7 @@ impl FirstContact {
         key: u64,
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) {
-        let sweep = tick.sweep(&self.capsule, self.displacement);
+        let sweep = tick.sweep(&self.capsule, self.displacements);
         let mut counts = |touch: &ShapeTouch| counts(&tick.contact(touch, key));
         if let Some(touch) = sweep_shape_where(shape, &sweep, self.limit(), &mut counts) {
             self.offer(tick.contact(&touch, key));

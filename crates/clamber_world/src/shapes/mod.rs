@@ -6,6 +6,7 @@
 
 mod convex;
 mod first;
+mod holds;
 mod moved;
 mod overlap;
 mod parts;
@@ -15,6 +16,7 @@ mod sweep;
 mod tick;
 
 pub use first::FirstContact;
+pub use holds::holds;
 pub use moved::Moved;
 pub use overlap::{ShapeContact, overlap_shape};
 pub use pose::RigidPose;

@@ -24,14 +24,14 @@ impl Tick {
         Self { before: None, now }
     }
 
-    /// A capsule that moves by `displacement`, as seen from where the body is now. Both are in the space that the
+    /// A capsule whose ends go by a displacement each, as seen from where the body is now. All are in the space that the
     /// poses place the body in.
-    pub fn sweep(&self, capsule: &WorldCapsule, displacement: DVec3) -> ShapeSweep {
-        let end = |end: DVec3| self.now.inverse_transform(end + displacement);
+    pub fn sweep(&self, capsule: &WorldCapsule, displacements: [DVec3; 2]) -> ShapeSweep {
+        let local = |ends: [DVec3; 2]| ends.map(|end| self.now.inverse_transform(end));
         ShapeSweep {
             path: MovingCapsule {
-                start: capsule.ends.map(|end| self.now.inverse_transform(end)),
-                end: capsule.ends.map(end),
+                start: local(capsule.ends),
+                end: local(capsule.with_ends_moved(displacements).ends),
                 radius: capsule.radius,
             },
             before: self.before.map(|before| self.now.inverse().then(&before)),

@@ -211,16 +211,16 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     };
     let palette = Palette::from_matrices([Affine::IDENTITY]);
     surface.advance(&palette, moved).unwrap();
-    let met = Obstacle::sweep_capsule(&surface, &ball, DVec3::Z * -4.0).unwrap();
+    let met = Obstacle::sweep_capsule(&surface, &ball, [DVec3::Z * -4.0; 2]).unwrap();
     assert!((met.time - 0.5).abs() < 3e-5, "{met:?}");
     assert!(
         (met.contact.point - at(1.0, 1.0)).length() < 2e-4,
         "{met:?}"
     );
-    let met = Obstacle::sweep_capsule(&surface, &ball, DVec3::ZERO);
+    let met = Obstacle::sweep_capsule(&surface, &ball, [DVec3::ZERO; 2]);
     assert_eq!(met, None, "a metre is left");
     let inside = WorldCapsule::ball(at(1.0, 0.5), 1.0);
-    let met = Obstacle::sweep_capsule(&surface, &inside, DVec3::ZERO).unwrap();
+    let met = Obstacle::sweep_capsule(&surface, &inside, [DVec3::ZERO; 2]).unwrap();
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
     assert!((met.contact.distance - 0.5).abs() < 1e-5, "{met:?}");
 }
@@ -239,12 +239,19 @@ fn capsules_that_are_not_finite_meet_nothing() {
         };
         for capsule in [place, WorldCapsule::ball(place.ends[1], 1.0)] {
             assert_eq!(Obstacle::cast_capsule(&surface, &capsule, DVec3::X), None);
-            assert_eq!(Obstacle::sweep_capsule(&surface, &capsule, DVec3::X), None);
+            assert_eq!(
+                Obstacle::sweep_capsule(&surface, &capsule, [DVec3::X; 2]),
+                None
+            );
             Obstacle::overlap_capsule(&surface, &capsule, &mut contacts);
         }
         let by = DVec3::X * bad;
         assert_eq!(Obstacle::cast_capsule(&surface, &good, by), None, "{bad}");
-        assert_eq!(Obstacle::sweep_capsule(&surface, &good, by), None, "{bad}");
+        assert_eq!(
+            Obstacle::sweep_capsule(&surface, &good, [by; 2]),
+            None,
+            "{bad}"
+        );
         let endless = good.with_radius(bad);
         assert_eq!(Obstacle::cast_capsule(&surface, &endless, DVec3::X), None);
     }

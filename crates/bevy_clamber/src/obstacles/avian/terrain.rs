@@ -6,7 +6,7 @@ use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_world::shapes::{
-    FirstContact, Reach, RigidPose, Tick, closest_by_overlap, overlap_shape, sort_contacts,
+    FirstContact, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
 use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
 use glam::DVec3;
@@ -107,14 +107,14 @@ impl<'a> AvianTerrain<'a> {
     fn first_contact(
         &self,
         capsule: &WorldCapsule,
-        displacement: DVec3,
+        displacements: [DVec3; 2],
         moving: impl Fn(&Moving) -> (Aabb, Tick),
+        mut meet: impl FnMut(&mut FirstContact, &Collider, &Tick, u64),
     ) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacement)?;
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
         self.near_still(&first.bounds(), &mut |entity| {
             if let Some((collider, pose)) = self.solid(entity) {
-                let shape = &**collider.shape_scaled();
-                first.meet(shape, &Tick::still(pose), entity.to_bits());
+                meet(&mut first, collider, &Tick::still(pose), entity.to_bits());
             }
         });
         for body in self.world.moving.iter() {
@@ -122,7 +122,7 @@ impl<'a> AvianTerrain<'a> {
             if first.may_meet(&bounds)
                 && let Some((collider, _)) = self.solid(body.entity)
             {
-                first.meet(&**collider.shape_scaled(), &tick, body.entity.to_bits());
+                meet(&mut first, collider, &tick, body.entity.to_bits());
             }
         }
         first.contact(self.origin)
@@ -248,26 +248,59 @@ impl Obstacle for AvianTerrain<'_> {
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.first_contact(capsule, displacement, |moving| {
-            (moving.bounds, Tick::still(moving.pose))
-        })
+        let still = |moving: &Moving| (moving.bounds, Tick::still(moving.pose));
+        self.first_contact(capsule, [displacement; 2], still, meet)
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.first_contact(capsule, displacement, |moving| {
-            let tick = Tick {
-                before: moving.before,
-                now: moving.pose,
-            };
-            (moving.swept, tick)
-        })
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        self.first_contact(capsule, displacements, over_tick, meet)
+    }
+
+    fn sweep_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        let mut counts = |sweep: &SweepContact| {
+            let mut sweep = *sweep;
+            sweep.contact.point += self.origin;
+            counts(&sweep)
+        };
+        let meet = |first: &mut FirstContact, collider: &Collider, tick: &Tick, key| {
+            first.meet_where(&**collider.shape_scaled(), tick, key, &mut counts);
+        };
+        self.first_contact(capsule, displacements, over_tick, meet)
+    }
+
+    fn body_of(&self, point: &MaterialPoint) -> u64 {
+        point.key
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
         let entity = Entity::try_from_bits(point.key)?;
-        let (_, now) = self.solid(entity)?;
-        let before = self.world.moving.previous_pose(entity);
+        let (collider, now) = self.solid(entity)?;
         let local = DVec3::from_array(point.coordinates);
+        if !holds(&**collider.shape_scaled(), local) {
+            return None;
+        }
+        let before = self.world.moving.previous_pose(entity);
         now.motion_since(&before.unwrap_or(now), local, self.origin, dt)
     }
+}
+
+fn over_tick(moving: &Moving) -> (Aabb, Tick) {
+    let tick = Tick {
+        before: moving.before,
+        now: moving.pose,
+    };
+    (moving.swept, tick)
+}
+
+fn meet(first: &mut FirstContact, collider: &Collider, tick: &Tick, key: u64) {
+    first.meet(&**collider.shape_scaled(), tick, key);
 }

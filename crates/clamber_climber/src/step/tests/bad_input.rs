@@ -28,7 +28,7 @@ impl Obstacle for Broken {
         Some(self.met())
     }
 
-    fn sweep_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
+    fn sweep_capsule(&self, _: &WorldCapsule, _: [DVec3; 2]) -> Option<SweepContact> {
         Some(self.met())
     }
 

@@ -32,7 +32,7 @@ impl Obstacle for Elsewhere {
         panic!("asked for a cast at {}", self.0)
     }
 
-    fn sweep_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
+    fn sweep_capsule(&self, _: &WorldCapsule, _: [DVec3; 2]) -> Option<SweepContact> {
         panic!("asked for a sweep at {}", self.0)
     }
 

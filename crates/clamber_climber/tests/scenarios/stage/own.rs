@@ -155,10 +155,10 @@ fn stretches([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
     [half + apart, half - apart].map(|square| libm::sqrt(square.max(0.0)))
 }
 
-fn path(capsule: &WorldCapsule, displacement: DVec3) -> MovingCapsule {
+fn path(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> MovingCapsule {
     MovingCapsule {
         start: capsule.ends,
-        end: capsule.ends.map(|end| end + displacement),
+        end: capsule.with_ends_moved(displacements).ends,
         radius: capsule.radius,
     }
 }
@@ -219,7 +219,7 @@ impl Obstacle for Own {
     }
 
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        let path = path(capsule, DVec3::ZERO);
+        let path = path(capsule, [DVec3::ZERO; 2]);
         for triangle in self.near(&capsule.ends, capsule.radius) {
             let touch = path.nearest_of_triangle(self.of(triangle, &self.now));
             if let Some(touch) = touch.filter(|touch| touch.distance <= capsule.radius) {
@@ -229,11 +229,15 @@ impl Obstacle for Own {
     }
 
     fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.first(&path(capsule, displacement), &self.now, DVec3::ZERO)
+        self.first(&path(capsule, [displacement; 2]), &self.now, DVec3::ZERO)
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.first(&path(capsule, displacement), &self.before, self.went)
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
+        self.first(&path(capsule, displacements), &self.before, self.went)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -242,14 +242,18 @@ impl Obstacle for Elsewhere<'_> {
         Some(self.hit(hit, &there.inverse()))
     }
 
-    fn sweep_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
+    fn sweep_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+    ) -> Option<SweepContact> {
         let there = &self.there;
         let start = WorldCapsule {
             ends: capsule.ends.map(|end| there.point_before(end)),
             radius: capsule.radius * there.scale,
         };
-        let way = displacement * there.scale + (there.now - there.before);
-        let hit = self.inner.sweep_capsule(&start, way)?;
+        let ways = displacements.map(|way| way * there.scale + (there.now - there.before));
+        let hit = self.inner.sweep_capsule(&start, ways)?;
         // Back from where the other space is when they touch.
         let then = Place {
             now: there.before + (there.now - there.before) * hit.time,

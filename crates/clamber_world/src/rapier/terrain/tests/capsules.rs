@@ -79,7 +79,7 @@ fn falling_ball_meets_every_kind_of_shape() {
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
         let by = DVec3::NEG_Y * 4.0;
         let cast = terrain.cast_capsule(&ball, by).unwrap();
-        let swept = terrain.sweep_capsule(&ball, by).unwrap();
+        let swept = terrain.sweep_capsule(&ball, [by; 2]).unwrap();
         assert_eq!(cast, swept, "{name}");
         assert!((cast.time - 0.375).abs() < 3e-5, "{name}: {cast:?}");
         assert!((cast.away - DVec3::Y).length() < 1e-6, "{name}: {cast:?}");
@@ -119,7 +119,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
     // Its side goes from -0.95 to -0.45.
     let met = moving
         .terrain()
-        .sweep_capsule(&at(-0.4), DVec3::ZERO)
+        .sweep_capsule(&at(-0.4), [DVec3::ZERO; 2])
         .unwrap();
     assert!((met.time - 0.5).abs() < 2e-4, "{met:?}");
     assert!(!met.started_inside && (met.away - DVec3::X).length() < 1e-6);
@@ -131,12 +131,19 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
         "{motion:?}"
     );
     // With it, it never catches up; against it, it does so sooner.
-    let with = moving.terrain().sweep_capsule(&at(-0.4), DVec3::X * 0.5);
+    let with = moving
+        .terrain()
+        .sweep_capsule(&at(-0.4), [DVec3::X * 0.5; 2]);
     assert_eq!(with, None);
-    let against = moving.terrain().sweep_capsule(&at(-0.4), DVec3::X * -0.5);
+    let against = moving
+        .terrain()
+        .sweep_capsule(&at(-0.4), [DVec3::X * -0.5; 2]);
     assert!((against.unwrap().time - 0.25).abs() < 2e-4, "{against:?}");
     // Not there yet, and as it stands now a cast sees it.
-    assert_eq!(moving.terrain().sweep_capsule(&at(0.0), DVec3::ZERO), None);
+    assert_eq!(
+        moving.terrain().sweep_capsule(&at(0.0), [DVec3::ZERO; 2]),
+        None
+    );
     let cast = moving.terrain().cast_capsule(&at(-0.4), DVec3::ZERO);
     assert!(cast.unwrap().started_inside);
 }
@@ -159,7 +166,7 @@ fn what_rests_is_met_alike_however_it_hangs_on_its_body() {
         let middle = middle.position().translation.as_dvec3();
         let ball = WorldCapsule::ball(middle + vector(4.0).as_dvec3(), 0.2);
         let by = middle - ball.ends[0];
-        let swept = terrain.sweep_capsule(&ball, by);
+        let swept = terrain.sweep_capsule(&ball, [by; 2]);
         assert_eq!(swept, terrain.cast_capsule(&ball, by));
         let swept = swept.unwrap();
         let motion = terrain.motion(&swept.contact.material, 0.1).unwrap();
@@ -174,14 +181,20 @@ fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
     let moving = Moving::new([(plate, slide([-0.8, 0.0, 0.0], [0.8667, 0.0, 0.0]))]);
     for radius in [0.0, 0.001, 0.2] {
         let ball = WorldCapsule::ball(DVec3::new(0.1, 0.3, -0.2), radius);
-        let met = moving.terrain().sweep_capsule(&ball, DVec3::ZERO).unwrap();
+        let met = moving
+            .terrain()
+            .sweep_capsule(&ball, [DVec3::ZERO; 2])
+            .unwrap();
         let expected = (0.9 - radius - 0.0005) / 1.6667;
         assert!((met.time - expected).abs() < 1e-4, "{radius}: {met:?}");
         assert!((met.away - DVec3::X).length() < 1e-6, "{radius}: {met:?}");
         assert_eq!(moving.terrain().cast_capsule(&ball, DVec3::ZERO), None);
     }
     let aside = WorldCapsule::ball(DVec3::new(0.1, 1.3, 0.0), 0.29);
-    assert_eq!(moving.terrain().sweep_capsule(&aside, DVec3::ZERO), None);
+    assert_eq!(
+        moving.terrain().sweep_capsule(&aside, [DVec3::ZERO; 2]),
+        None
+    );
 }
 
 #[test]
@@ -197,7 +210,10 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
     };
     for share in [0.25, 0.5, 0.75] {
         let ball = at(share, 0.1);
-        let met = moving.terrain().sweep_capsule(&ball, DVec3::ZERO).unwrap();
+        let met = moving
+            .terrain()
+            .sweep_capsule(&ball, [DVec3::ZERO; 2])
+            .unwrap();
         // Its near side comes about 0.2 m before its middle, of some 2.1 m of way; and points go straight, not round:
         // up to 2 (1 - cos(30 degrees)) = 0.27 m off.
         let expected = share - 0.2 / 2.1;
@@ -208,7 +224,9 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
         assert!(contacts.is_empty(), "{contacts:?}");
     }
     assert_eq!(
-        moving.terrain().sweep_capsule(&at(1.5, 0.1), DVec3::ZERO),
+        moving
+            .terrain()
+            .sweep_capsule(&at(1.5, 0.1), [DVec3::ZERO; 2]),
         None
     );
 }
@@ -223,7 +241,10 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
         ends: [DVec3::new(0.0, 0.8, 0.0), DVec3::new(0.0, 2.0, 0.0)],
         radius: 0.1,
     };
-    let met = moving.terrain().sweep_capsule(&rod, DVec3::ZERO).unwrap();
+    let met = moving
+        .terrain()
+        .sweep_capsule(&rod, [DVec3::ZERO; 2])
+        .unwrap();
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
     // Where the box was, not where it is.
     assert!((met.contact.distance + 0.2).abs() < 1e-6, "{met:?}");
@@ -258,7 +279,7 @@ fn what_is_not_finite_is_met_nowhere() {
         let mut contacts = Vec::new();
         terrain.overlap_capsule(capsule, &mut contacts);
         let overlaps = !contacts.is_empty();
-        let swept = terrain.sweep_capsule(capsule, by);
+        let swept = terrain.sweep_capsule(capsule, [by; 2]);
         assert_eq!(terrain.cast_capsule(capsule, by), swept);
         assert!(
             !overlaps || swept.is_some_and(|met| met.started_inside),
@@ -283,7 +304,7 @@ fn what_is_not_finite_is_met_nowhere() {
             "{bad}"
         );
         assert_eq!(
-            terrain.sweep_capsule(&good.with_radius(bad), by),
+            terrain.sweep_capsule(&good.with_radius(bad), [by; 2]),
             None,
             "{bad}"
         );
@@ -325,7 +346,7 @@ fn the_order_in_which_bodies_were_made_does_not_matter() {
         };
         let [first, last] = [&one, &other].map(|moving| {
             let terrain = moving.terrain();
-            let swept = terrain.sweep_capsule(&capsule, by);
+            let swept = terrain.sweep_capsule(&capsule, [by; 2]);
             let cast = terrain.cast_capsule(&capsule, by);
             let mut contacts = Vec::new();
             terrain.overlap_capsule(&capsule, &mut contacts);
