@@ -6,10 +6,11 @@
 //! one whose point satisfies all four planes is the next basis. Testing every subset needs no sign of a multiplier, so
 //! normals that are parallel to rounding do no harm.
 //!
-//! If the intersection is empty, or too far away, all planes are relaxed by the same amount, the least that helps. Planes
-//! that are opposite to within a hundredth of a degree intersect thousands of times as far away as they overlap. Such an
-//! intersection is of no use, and counts as empty. The distance of the nearest point is a convex function of the relief, so
-//! that each attempt that fails tells how much more is needed at least.
+//! If the intersection is empty, or hardly nearer for much relief, all planes are relaxed by the same amount, the least
+//! that helps. Planes that are opposite to within a hundredth of a degree intersect thousands of times as far away as they
+//! overlap. Such an intersection is of no use, and counts as empty. The distance of the nearest point is a convex function
+//! of the relief, so that each attempt that fails tells how much more is needed at least, and that how fast the point comes
+//! nearer only falls with more of it.
 
 use glam::DVec3;
 
@@ -73,13 +74,20 @@ pub struct Projection {
 /// Where the intersection is empty, what is missed is exact to 1e-12 of that gap, and the point to 1e-8 of it.
 /// The same bits in whatever order the planes come. Planes that are not finite are ignored.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
-    project_within(target, planes, f64::INFINITY)
+    project_where_it_pays(target, planes, 0.0, STEEPEST)
 }
 
-/// [`project_onto_half_spaces`] onto a point no farther from the target than `reach`: planes are also relaxed until there is
-/// one.
-pub(crate) fn project_within(target: DVec3, planes: &[HalfSpace], reach: f64) -> Projection {
-    match Search::new(target, planes, reach) {
+/// [`project_onto_half_spaces`] where it pays: beyond a distance `free` from the target, planes are also relaxed wherever
+/// this brings the point nearer by more than `steepest` times as much. So the point minimises
+/// `max(free, |point - target|) + steepest * missed`, changes continuously with the planes, and is no farther away than
+/// `free` and `steepest` times the largest gap. `steepest` is at least 1.
+pub(crate) fn project_where_it_pays(
+    target: DVec3,
+    planes: &[HalfSpace],
+    free: f64,
+    steepest: f64,
+) -> Projection {
+    match Search::new(target, planes, free, steepest) {
         Some(search) => search.above(search.least_relieved()),
         None => Projection {
             point: target,
@@ -94,7 +102,11 @@ struct Search<'a> {
     planes: &'a [HalfSpace],
     /// The largest gap: by how much the target misses the worst plane.
     size: f64,
-    /// Farthest that a point may be, in largest gaps.
+    /// As far as this a point may be, though little is gained, in largest gaps.
+    free: f64,
+    /// Beyond, how much nearer it may come for each metre of relief at most.
+    steepest: f64,
+    /// Farthest that a point may be, in largest gaps: what follows from both.
     reach: f64,
 }
 
@@ -131,7 +143,7 @@ struct Corner {
 
 impl<'a> Search<'a> {
     /// None if the target is above all planes.
-    fn new(target: DVec3, planes: &'a [HalfSpace], reach: f64) -> Option<Self> {
+    fn new(target: DVec3, planes: &'a [HalfSpace], free: f64, steepest: f64) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
         // Below, reciprocals overflow.
@@ -139,7 +151,9 @@ impl<'a> Search<'a> {
             target,
             planes,
             size,
-            reach: (reach / size).min(STEEPEST),
+            free: free / size,
+            steepest,
+            reach: (free / size + steepest).min(STEEPEST),
         })
     }
 
@@ -195,7 +209,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The nearest point above all planes lowered by `relief`, if it is within reach and in no wedge that is all but closed.
+    /// The nearest point above all planes lowered by `relief`, if it is within reach and more relief does not pay.
     fn sound(&self, relief: f64) -> Result<DVec3, TooLittle> {
         let at = |relief: f64| {
             let least = |least| TooLittle { least, turn: least };
@@ -204,20 +218,28 @@ impl<'a> Search<'a> {
         let corner = at(relief)?;
         let too_steep = || TooLittle {
             least: relief,
-            turn: relief + corner.carries_for(),
+            turn: relief
+                + corner
+                    .carries_for()
+                    .min(corner.lacks_itself(self.free).max(0.0)),
         };
         // In most cases the planes that carry tell at once. Where more than three meet they may not
         // be the only ones; then the distance itself has the last word, unless it is all rounding.
-        if corner.carries && corner.steepness <= STEEPEST {
+        let distance = corner.point.length();
+        let steepest = if distance <= self.free {
+            STEEPEST
+        } else {
+            self.steepest
+        };
+        if corner.carries && corner.steepness <= steepest {
             return Ok(corner.point);
         }
-        if corner.steepness > STEEPEST * 1e3 {
+        if corner.steepness > steepest * 1e3 {
             return Err(too_steep());
         }
-        let distance = corner.point.length();
         let probe = PROBE * (1.0 + distance);
         let nearer = distance - at(relief + probe)?.point.length();
-        if nearer <= STEEPEST * probe {
+        if nearer <= steepest * probe {
             Ok(corner.point)
         } else {
             Err(too_steep())

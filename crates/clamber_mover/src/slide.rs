@@ -15,7 +15,7 @@
 use clamber_world::WorldCapsule;
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, Projection, project_within};
+use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
 use crate::mover::motion_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
@@ -58,6 +58,10 @@ pub struct Path {
     pub arm: Option<Arm>,
     /// What is between start and target.
     pub begin: Begin,
+    /// Its last movement left it too little room ([`Moved::missing_room`] above the margin): it comes out of what it is
+    /// inside of by no more than half its radius in a tick, beside what it meets on its way. Pressed through something, it
+    /// does not jump to the other side.
+    pub crushed: bool,
 }
 
 /// Where a movement begins.
@@ -114,6 +118,7 @@ impl Path {
             walking: None,
             arm: None,
             begin: Begin::Start,
+            crushed: false,
         }
     }
 
@@ -162,9 +167,33 @@ impl Mover<'_> {
     /// A path that is not finite, or of a body that is none, leads nowhere: the body stays at its start, and the way
     /// is not clear.
     pub fn slide(&mut self, path: &Path) -> Moved {
-        let moved = self.find_way(path);
+        let mut moved = self.find_way(path);
+        if path.crushed && path.begin == Begin::Start {
+            self.come_out_slowly(path, &mut moved);
+        }
         self.know_velocities();
         moved
+    }
+
+    /// Lets a crushed body go no farther than it may in one tick.
+    fn come_out_slowly(&mut self, path: &Path, moved: &mut Moved) {
+        let wanted = path.target - path.start;
+        let memory = &*self.memory;
+        let met = memory.touched.iter().zip(&memory.half_spaces);
+        let met = met.filter(|(touch, _)| touch.swept);
+        let gaps = met.map(|(_, wall)| wall.offset - wall.normal.dot(wanted));
+        let swept = gaps.fold(0.0, f64::max);
+        let most = STEEPEST_PUSH * swept + OUT * path.body.radius;
+        let push = moved.position - path.target;
+        if push.length() <= most {
+            return;
+        }
+        moved.position = path.target + push.normalize() * most;
+        let overlaps = self.overlap(&path.body, moved.position, 0.0).iter();
+        let depths = overlaps.map(|touch| path.body.radius - touch.contact.distance);
+        let depth = depths.fold(0.0, f64::max);
+        moved.missing_room = moved.missing_room.max(depth);
+        moved.penetration = (depth - path.body.margin).max(0.0);
     }
 
     fn find_way(&mut self, path: &Path) -> Moved {
@@ -192,12 +221,17 @@ impl Mover<'_> {
             moved.rounds += 1;
             if clear_to.is_none_or(|clear_to| moved.position.distance(clear_to) > near) {
                 clear_to = None;
+                let before = moved.position;
                 if path.begin == Begin::Start && self.meet(path, &mut moved) {
-                    if moved.rounds < ROUNDS {
-                        continue;
+                    // What crushes the body is met again by every sweep.
+                    let is_crushed = moved.missing_room > path.body.margin;
+                    if !(is_crushed && moved.position == before) {
+                        if moved.rounds < ROUNDS {
+                            continue;
+                        }
+                        moved.is_clear = false;
+                        self.stop(path, &mut moved);
                     }
-                    moved.is_clear = false;
-                    self.stop(path, &mut moved);
                 }
             }
             let before = moved.position;
@@ -413,34 +447,31 @@ impl Mover<'_> {
         let memory = &mut *self.memory;
         let count = memory.half_spaces.len();
         memory.half_spaces.extend_from_slice(&memory.walls);
-        let mut nearest = self.nearest_displacement(wanted, path.frame);
+        let free = wanted.distance(path.frame);
+        let mut nearest = self.nearest_displacement(wanted, free);
         self.memory.half_spaces.truncate(count);
         if nearest.missed > TOUCH * path.body.radius && !self.memory.walls.is_empty() {
             // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
-            nearest = self.nearest_displacement(wanted, path.frame);
+            nearest = self.nearest_displacement(wanted, free);
         }
-        if nearest.missed > path.body.margin && wanted != path.frame {
+        if nearest.missed > path.body.margin {
             // It is crushed where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
-            nearest = self.nearest_displacement(path.frame, path.frame);
+            let excess = nearest.missed - path.body.margin;
+            let slip = SLIP * self.dt() * libm::sqrt(excess * path.body.margin);
+            nearest = self.nearest_displacement(path.frame, slip);
         }
         moved.position = path.start + nearest.point;
         moved.missing_room = nearest.missed;
         self.keep_arm(path, moved);
     }
 
-    /// The displacement inside all half-spaces that is nearest to the wanted one, if it is not far off; otherwise the
-    /// nearest inside all half-spaces after they are relaxed by as little as it takes.
+    /// The displacement inside all half-spaces that is nearest to the wanted one, where that pays: `free` metres the body goes
+    /// back for any gain of room; beyond, each metre has to gain a quarter of a metre.
     ///
     /// Walls that are all but opposite meet somewhere, many times as far away as they overlap: no body slips out there
     /// within a tick. They crush it.
-    fn nearest_displacement(&self, wanted: DVec3, frame: DVec3) -> Projection {
-        let half_spaces = &self.memory.half_spaces;
-        let gaps = half_spaces
-            .iter()
-            .map(|half_space| half_space.offset - half_space.normal.dot(wanted));
-        let gap = gaps.fold(0.0, f64::max);
-        let farthest = wanted.distance(frame) + FARTHEST * gap;
-        project_within(wanted, half_spaces, farthest)
+    fn nearest_displacement(&self, wanted: DVec3, free: f64) -> Projection {
+        project_where_it_pays(wanted, &self.memory.half_spaces, free, STEEPEST_PUSH)
     }
 
     /// A body at the end of a taut arm stays there: half-spaces that touch the ball of its reach where the body is.
@@ -461,7 +492,8 @@ impl Mover<'_> {
                 normal: inward,
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
-            let nearest = self.nearest_displacement(path.target - path.start, path.frame);
+            let wanted = path.target - path.start;
+            let nearest = self.nearest_displacement(wanted, wanted.distance(path.frame));
             if nearest.missed > without.missing_room + TOUCH * path.body.radius {
                 *moved = without;
                 break;
@@ -473,10 +505,17 @@ impl Mover<'_> {
     }
 }
 
-/// A push that leads farther than the wanted displacement and this many times the deepest overlap is refused: walls that
-/// differ by less than 29 degrees from opposite are no wedge to slip out of. A larger value throws a body that is
-/// crushed by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
-const FARTHEST: f64 = 4.0;
+/// How many metres a body is pushed at most for each metre of room that this gains: walls that differ by less than 29
+/// degrees from opposite are no wedge to slip out of, as if by friction of 0.26. A larger value throws a body that is crushed
+/// by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
+pub(crate) const STEEPEST_PUSH: f64 = 4.0;
+
+/// How fast a crushed body slips to where there is more room, however slowly the walls part there: by the mean of its margin
+/// and of what it lacks beyond, so often a second. It begins with nothing, and comes to an end.
+const SLIP: f64 = 60.0;
+
+/// How far a crushed body comes out in one tick, as a share of its radius.
+const OUT: f64 = 0.5;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

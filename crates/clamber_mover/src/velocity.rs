@@ -1,6 +1,7 @@
 use glam::DVec3;
 
-use crate::half_spaces::{HalfSpace, project_within};
+use crate::half_spaces::{HalfSpace, project_where_it_pays};
+use crate::slide::STEEPEST_PUSH;
 use crate::{Mover, Touch};
 
 /// Most half-spaces that stop a velocity together.
@@ -63,7 +64,9 @@ impl Mover<'_> {
         }
         let own = velocity.distance(frame);
         let limit = own + fastest;
-        let clipped = project_within(velocity, &half_spaces[..count], own + limit).point;
+        let half_spaces = &half_spaces[..count];
+        let clipped =
+            project_where_it_pays(velocity, half_spaces, own + limit, STEEPEST_PUSH).point;
         let relative = clipped - frame;
         if relative.length() > limit {
             frame + relative.clamp_length_max(limit)

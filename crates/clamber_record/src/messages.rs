@@ -164,6 +164,11 @@ pub(crate) struct State {
     /// For how long it has lain still, seconds.
     #[prost(double, tag = "21")]
     pub(crate) still: f64,
+    /// Where its legs ended as it hung, from its position.
+    #[prost(message, required, tag = "22")]
+    pub(crate) legs: Vector,
+    #[prost(bool, tag = "23")]
+    pub(crate) crushed: bool,
 }
 
 /// How the tick went.
@@ -273,6 +278,7 @@ impl State {
             self.base_velocity,
             self.heading,
             self.shake,
+            self.legs,
         ];
         let memory: [f64; MEMORY] = self.memory.into();
         let numbers = [
@@ -436,6 +442,8 @@ impl From<&ClimberState> for State {
             arm: state.hanging.arm,
             pull_up: state.ledge_hanging.pull_up,
             calm: state.hanging.calm,
+            legs: state.hanging.legs.into(),
+            crushed: state.crushed,
             still: state.tumbling.still,
             coyote: state.coyote,
             jump_buffer: state.jump_buffer,
@@ -517,6 +525,7 @@ impl State {
             hanging: HangingMemory {
                 arm: self.arm,
                 calm: self.calm,
+                legs: self.legs.into(),
             },
             ledge_hanging: LedgeHangingMemory {
                 pull_up: self.pull_up,
@@ -526,6 +535,7 @@ impl State {
             jump_buffer: self.jump_buffer,
             open_handed: self.open_handed,
             crouched: self.crouched,
+            crushed: self.crushed,
             base_velocity: self.base_velocity.into(),
             flying: FlyingMemory {
                 jumping: self.jumping,

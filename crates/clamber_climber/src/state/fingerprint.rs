@@ -33,7 +33,12 @@ impl ClimberState {
         for x in self.memory {
             hash.word(x.to_bits());
         }
-        let flags = [self.crouched, self.flying.jumping, self.standing.shoved];
+        let flags = [
+            self.crouched,
+            self.flying.jumping,
+            self.standing.shoved,
+            self.crushed,
+        ];
         let flags = flags.iter().rev();
         hash.word(flags.fold(0, |word, flag| word << 1 | u64::from(*flag)));
         hash.0

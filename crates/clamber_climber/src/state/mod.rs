@@ -46,6 +46,8 @@ pub struct ClimberState {
     pub open_handed: f64,
     /// Only its ball stands in the way: there is no room to stand up.
     pub crouched: bool,
+    /// What closed in on it left it too little room in the last tick.
+    pub crushed: bool,
     /// What it remembers while it stands.
     pub standing: StandingMemory,
     /// What it remembers while it falls or slides.
@@ -83,6 +85,7 @@ impl ClimberState {
             jump_buffer: 0.0,
             open_handed: 0.0,
             crouched: false,
+            crushed: false,
             standing: StandingMemory::default(),
             flying: FlyingMemory::default(),
             tumbling: TumblingMemory::default(),
@@ -123,13 +126,14 @@ impl ClimberState {
         Ok(())
     }
 
-    fn vectors(&self) -> [DVec3; 5] {
+    fn vectors(&self) -> [DVec3; 6] {
         [
             self.position,
             self.velocity,
             self.base_velocity,
             self.heading,
             self.shake,
+            self.hanging.legs,
         ]
     }
 

@@ -97,7 +97,7 @@ impl Tick<'_> {
 
     /// Stands on what it came down on, or slides down it. What crushes it is no place to stand.
     fn land(&mut self, falling: DVec3) -> NextMode {
-        if self.is_crushed {
+        if self.state.crushed {
             return NextMode::Stay;
         }
         let slope = self.config.ground.max_slope;
@@ -148,7 +148,9 @@ impl Tick<'_> {
         };
         let falling = self.fall();
         let slope = self.config.ground.max_slope;
-        let Some(ground) = self.held_up(self.state.position, slope) else {
+        let held_up = self.held_up(self.state.position, slope);
+        // What crushes it is no place to get up.
+        let Some(ground) = held_up.filter(|_| !self.state.crushed) else {
             self.state.tumbling.still = 0.0;
             return NextMode::Stay;
         };

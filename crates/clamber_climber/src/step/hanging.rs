@@ -1,6 +1,6 @@
 //! By its hands: a pendulum that can only hold on.
 
-use clamber_mover::{Arm, HalfSpace, Path};
+use clamber_mover::{Arm, HalfSpace, Moved, Path};
 use glam::DVec3;
 
 use super::carrying::Carried;
@@ -17,6 +17,9 @@ const PULL: f64 = 4.0 / 3.0;
 /// Below this share of what made it hang, shake is calm.
 const CALM: f64 = 0.7;
 
+/// How fast arms that something has stretched get short again once it lets them, as a share of the climbing speed.
+const SHORTEN: f64 = 3.0;
+
 /// Arms that something stretches beyond their length by this factor let go.
 const STRETCH: f64 = 1.5;
 
@@ -31,6 +34,9 @@ pub struct HangingMemory {
     pub arm: f64,
     /// For how long its hold has been calm enough to climb on, seconds.
     pub calm: f64,
+    /// Where its legs ended after the last tick, from its position, metres; zero while they are
+    /// drawn in.
+    pub legs: DVec3,
 }
 
 impl Tick<'_> {
@@ -80,13 +86,15 @@ impl Tick<'_> {
         let hang = &self.config.hang;
         let pivot = carried.motion.position;
         let radius = self.config.body.radius;
+        let arm = carried.start - carried.motion.previous_position;
+        let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
+        let pulled = SHORTEN * climb_speed * self.dt();
         let length = self.state.hanging.arm.max(radius);
+        let length = length.max(arm.length() - pulled);
         let mut pendulum = Pendulum {
-            arm: carried.start - carried.motion.previous_position,
+            arm,
             velocity: relative,
         };
-        let legs = |arm: DVec3| arm.normalize_or(-self.config.up()) * hang.leg_length;
-        let legs_were = legs(pendulum.arm);
         pendulum.step(&PendulumTick {
             length,
             gravity: self.config.gravity,
@@ -94,13 +102,11 @@ impl Tick<'_> {
             damping: hang.damping,
             dt: self.dt(),
         });
-        let mut path = Path {
+        let path = Path {
             arm: Some(Arm { pivot, length }),
-            start_axis: [DVec3::ZERO, legs_were],
             ..self.path(pivot + pendulum.arm)
         };
-        path.body.axis = [DVec3::ZERO, legs(pendulum.arm)];
-        let moved = self.slide(&path, Intent::Go);
+        let moved = self.slide_with_legs(&path, self.legs(pendulum.arm));
         let velocity = carried.velocity() + pendulum.velocity;
         self.keep_support(carried, moved.position);
         self.state.velocity = if moved.position == path.target {
@@ -121,6 +127,39 @@ impl Tick<'_> {
             return NextMode::Change(ClimberMode::Holding);
         }
         NextMode::Stay
+    }
+
+    /// Where its legs want to end, from its position: below it where its arms are bent, and on along them at full stretch.
+    fn legs(&self, arm: DVec3) -> DVec3 {
+        let hang = &self.config.hang;
+        let radius = self.config.body.radius;
+        let down = -self.config.up();
+        let stretch = (arm.length() - radius) / (hang.arm_length - radius).max(f64::MIN_POSITIVE);
+        let along = arm.normalize_or(down);
+        let way = down.lerp(along, stretch.clamp(0.0, 1.0));
+        way.normalize_or(down) * hang.leg_length
+    }
+
+    /// Moves a body whose legs are to end there. What they meet on their way stops it; where they leave it no room they are
+    /// drawn in, and come down again where there is room.
+    fn slide_with_legs(&mut self, path: &Path, legs: DVec3) -> Moved {
+        let were = self.state.hanging.legs;
+        if were != DVec3::ZERO {
+            let mut with_legs = Path {
+                start_axis: [DVec3::ZERO, were],
+                ..*path
+            };
+            with_legs.body.axis = [DVec3::ZERO, legs];
+            if let Some(moved) = self.slide_if_there_is_room(&with_legs) {
+                self.state.hanging.legs = legs;
+                return moved;
+            }
+        }
+        let moved = self.slide(path, Intent::Go);
+        let ball = path.body.core_at(moved.position);
+        let is_free = were == DVec3::ZERO && self.mover.is_free(&ball, legs);
+        self.state.hanging.legs = if is_free { legs } else { DVec3::ZERO };
+        moved
     }
 
     /// A velocity without its parts into what it touches and beyond its arms.

@@ -81,8 +81,6 @@ pub(crate) struct Tick<'a> {
     carried: Option<Carried>,
     /// It was to go where no number leads.
     is_lost: bool,
-    /// Its last movement ended where there is no room for it.
-    is_crushed: bool,
     /// It has made its movement.
     has_moved: bool,
     /// It has moved through the air.
@@ -132,7 +130,6 @@ impl<'a> Tick<'a> {
             struck: DVec3::ZERO,
             carried: None,
             is_lost: false,
-            is_crushed: false,
             has_moved: false,
             has_flown: false,
             has_entered: false,

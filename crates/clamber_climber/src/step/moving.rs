@@ -20,8 +20,10 @@ impl Tick<'_> {
     /// The path of the body as it stands from where it was to a target. Its frame is the support.
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
+        let crushed = self.state.crushed;
         match &self.carried {
             Some(carried) => Path {
+                crushed,
                 begin: if carried.swept {
                     Begin::Start
                 } else {
@@ -31,6 +33,7 @@ impl Tick<'_> {
                 ..Path::new(body, carried.start, target)
             },
             None => Path {
+                crushed,
                 frame: self.state.base_velocity * self.dt(),
                 ..Path::new(body, self.state.position, target)
             },
@@ -46,14 +49,27 @@ impl Tick<'_> {
     /// [`Tick::slide`] with a velocity that contacts feel, where that is not the mean over the tick.
     pub(super) fn slide_at(&mut self, path: &Path, intent: Intent, wanted: DVec3) -> Moved {
         let moved = self.mover.slide(path);
+        self.note(path, intent, wanted, moved)
+    }
+
+    /// [`Tick::slide`], unless it would crush the body: then nothing has happened.
+    pub(super) fn slide_if_there_is_room(&mut self, path: &Path) -> Option<Moved> {
+        let wanted = (path.target - path.start) / self.dt();
+        let moved = self.mover.slide(path);
+        let has_room = moved.missing_room <= path.body.margin;
+        has_room.then(|| self.note(path, Intent::Go, wanted, moved))
+    }
+
+    /// Notes what a movement met.
+    fn note(&mut self, path: &Path, intent: Intent, wanted: DVec3, moved: Moved) -> Moved {
         self.has_moved = true;
         self.is_lost |= !path.target.is_finite();
         self.report.pushed_out += moved.position - path.target;
         self.report.penetration = moved.penetration;
         self.report.rounds += moved.rounds;
         self.report.is_clear &= moved.is_clear;
-        self.is_crushed = moved.missing_room > path.body.margin;
-        if self.is_crushed {
+        self.state.crushed = moved.missing_room > path.body.margin;
+        if self.state.crushed {
             // Down to its ball, which needs least room.
             self.state.crouched = true;
             self.event(ClimberEvent::Crushed {
@@ -69,7 +85,7 @@ impl Tick<'_> {
     /// crushed has none of its own: between what closes in on it there is no velocity that does not lead into something.
     pub(super) fn clipped(&self, velocity: DVec3) -> DVec3 {
         let base = self.state.base_velocity;
-        if self.is_crushed {
+        if self.state.crushed {
             return base;
         }
         self.mover.clip_velocity(velocity, base, None)

@@ -236,7 +236,7 @@ fn a_ledge_that_crushes_it_lets_go() {
         DVec3::new(0.0, 3.0, edge.z + 1.15),
         DQuat::IDENTITY,
     );
-    let mut climber = climber(edge + DVec3::new(0.0, -0.25, 0.5));
+    let mut climber = climber(edge + DVec3::new(0.0, -0.55, 0.24));
     run(&mut climber, &[&ground, &block, &behind], &HOLD, 30);
     let pull = ClimberInput {
         climb: DVec3::Y,

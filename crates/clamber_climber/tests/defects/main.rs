@@ -25,10 +25,3 @@ mod stage;
 mod supports;
 mod sweeps;
 mod twice;
-
-/// Runs the test of a defect that is not mended yet: it has to fail, so that the mend takes this call along.
-fn open(what: &str, test: fn()) {
-    let holds = std::panic::catch_unwind(test).is_ok();
-    assert!(!holds, "{what}: holds, and is open no more");
-    println!("OPEN {what}");
-}

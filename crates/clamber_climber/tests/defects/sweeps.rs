@@ -3,14 +3,14 @@
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::Obstacle;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3, FloatExt, Vec3};
 
 use crate::common::{at, list, put, tick, v};
 use crate::scene::{FUR, HOLD, STONE, cuboid, moved, placed};
 use crate::stage::{IDLE, Played, Run, Shape, Stage, shifted, walk};
 
 fn floor() -> SkinnedSurface {
-    at(cuboid(Vec3::new(6.0, 1.0, 6.0), STONE), v(0.0, -1.0, 0.0))
+    at(cuboid(Vec3::new(9.0, 1.0, 6.0), STONE), v(0.0, -1.0, 0.0))
 }
 
 /// A plate at 60 m/s passes over a climber that begins inside the floor.
@@ -41,7 +41,7 @@ struct Fold {
 
 impl Fold {
     fn new(short: f64) -> Self {
-        let wall = || cuboid(Vec3::new(3.0, 3.0, 0.5), STONE);
+        let wall = || cuboid(Vec3::new(9.0, 3.0, 0.5), STONE);
         Self {
             floor: floor(),
             walls: [wall(), wall()],
@@ -94,20 +94,13 @@ fn a_fold_does_not_let_a_plate_through() {
 
 #[test]
 fn a_fold_does_not_let_a_limb_through() {
-    crate::open(
-        "4a: limbs at 30 to 60 m/s, 24 mm short of room",
-        limbs_in_folds,
-    );
-}
-
-fn limbs_in_folds() {
     let mut all = String::new();
     let mut wrong = 0;
-    for hz in [60.0, 30.0] {
+    for hz in [30.0, 60.0, 120.0] {
         let dt = 1.0 / hz;
         for thick in [0.1, 0.3, 0.6] {
             let mut limb = cuboid(Vec3::new(thick as f32 * 0.5, 3.0, 3.0), STONE);
-            for short in [0.0, 0.024] {
+            for short in [0.0, 0.024, 0.05] {
                 let mut fold = Fold::new(short);
                 for speed in [10.0, 20.0, 30.0, 40.0, 60.0] {
                     let mut behind = 0;
@@ -212,6 +205,11 @@ fn hung(hz: f64, beam: &SkinnedSurface) -> Climber {
     climber
 }
 
+/// Where its legs end.
+fn tip(climber: &Climber) -> DVec3 {
+    climber.state().position + climber.state().hanging.legs
+}
+
 /// A plate that only the legs can meet, at the lowest point of their way.
 #[test]
 fn legs_that_swing_go_through_no_plate() {
@@ -234,10 +232,9 @@ fn legs_that_swing_go_through_no_plate() {
                     let mut climber = base.clone();
                     let arm = v(sine, -cosine, 0.0) * 0.9;
                     put(&mut climber, pivot + arm, v(cosine, sine, 0.0) * speed);
-                    let tip = |climber: &Climber| {
-                        let arm = climber.state().position - pivot;
-                        pivot + arm.normalize() * 1.5
-                    };
+                    let mut state = *climber.state();
+                    state.hanging.legs = arm.normalize() * 0.6;
+                    climber.restore(state).unwrap();
                     for _ in 0..(0.2 * hz) as u32 {
                         let before = tip(&climber);
                         climber
@@ -246,7 +243,9 @@ fn legs_that_swing_go_through_no_plate() {
                         if climber.state().mode != ClimberMode::Hanging {
                             break;
                         }
-                        if before.x < 0.0 && tip(&climber).x > 0.0 {
+                        let after = tip(&climber);
+                        let height = before.y.lerp(after.y, before.x / (before.x - after.x));
+                        if before.x < 0.0 && after.x > 0.0 && height < top {
                             through += 1;
                             break;
                         }
@@ -284,10 +283,6 @@ fn legs_that_are_thrown_ahead_go_through_no_plate() {
                 );
                 let mut climber = base.clone();
                 put(&mut climber, base.state().position, v(speed, 0.0, 0.0));
-                let tip = |climber: &Climber| {
-                    let place = climber.state().position;
-                    place + (place - pivot).normalize() * 0.6
-                };
                 for _ in 0..(0.12 * hz).max(2.0) as u32 {
                     let before = tip(&climber);
                     climber

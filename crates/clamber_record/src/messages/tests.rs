@@ -17,7 +17,7 @@ fn everything() -> (ClimberState, ClimberInput) {
     let [contact, offset, normal, face] = [vector(), vector(), vector(), vector()];
     let coordinates = vector();
     let [support_velocity, walk, climb, struck] = [vector(), vector(), vector(), vector()];
-    let [base_velocity, aim] = [vector(), vector()];
+    let [base_velocity, aim, legs] = [vector(), vector(), vector()];
     let state = ClimberState {
         position,
         velocity,
@@ -48,6 +48,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         hanging: HangingMemory {
             arm: next(),
             calm: next(),
+            legs,
         },
         ledge_hanging: LedgeHangingMemory { pull_up: next() },
         tumbling: TumblingMemory { still: next() },
@@ -55,6 +56,7 @@ fn everything() -> (ClimberState, ClimberInput) {
         jump_buffer: next(),
         open_handed: next(),
         crouched: true,
+        crushed: true,
         flying: FlyingMemory { jumping: true },
         standing: StandingMemory { shoved: true },
         memory: core::array::from_fn(|_| next()),
@@ -106,6 +108,7 @@ fn every_field_comes_back_in_every_mode() {
         support: None,
         support_velocity: None,
         crouched: false,
+        crushed: false,
         ..state
     };
     let input = ClimberInput::default();
@@ -124,6 +127,7 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         &mut state.base_velocity,
         &mut state.heading,
         &mut state.shake,
+        &mut state.hanging.legs,
         &mut input.walk,
         &mut input.climb,
         &mut input.aim,
@@ -167,8 +171,8 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 fn every_bit_of_every_number_survives_a_negative_zero_and_the_smallest_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Fourteen vectors and the coordinates, a rotation, the damage, nine numbers, eight of the game's modes.
-    assert_eq!(count, 3 * 15 + 4 + 1 + 9 + 8);
+    // Fifteen vectors and the coordinates, a rotation, the damage, nine numbers, eight of the game's modes.
+    assert_eq!(count, 3 * 16 + 4 + 1 + 9 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
             let (mut state, mut input) = everything();
