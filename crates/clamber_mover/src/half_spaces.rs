@@ -37,15 +37,16 @@ const DOUBLINGS: usize = 44;
 /// Smaller sines are rounding: two such planes cannot both support the point.
 const PARALLEL: f64 = 1e-13;
 
-/// The least relief is found to this share of the largest gap.
-const NARROW: f64 = 1e-12;
+/// The least relief is found so well that the point is exact to this share of the largest gap, however much nearer it comes
+/// for each metre of relief.
+const NARROW: f64 = 1e-8;
 
-/// How far beyond where the least relief seems to be one looks first, and by which factor farther each time that this is
-/// not enough.
-const FIRST_STEP: f64 = 0.25 * NARROW;
+/// How far beyond where the least relief seems to be one looks first, as a share of how well it is sought, and by which factor
+/// farther each time that this is not enough.
+const FIRST_STEP: f64 = 0.25;
 const LONGER: f64 = 8.0;
 
-/// Most attempts to find it. Three or four are the rule; every third halves what is left, down to [`NARROW`].
+/// Most attempts to find it. Three or four are the rule; every third halves what is left.
 const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
@@ -165,9 +166,10 @@ impl<'a> Search<'a> {
         };
         // Relieved of the largest gap, the target itself is above all.
         let (mut high, mut point) = (1.0, DVec3::ZERO);
-        let mut step = FIRST_STEP;
+        let narrow = NARROW / self.steepest;
+        let mut step = FIRST_STEP * narrow;
         for attempt in 1..=ATTEMPTS {
-            if high - low.least <= NARROW {
+            if high - low.least <= narrow {
                 break;
             }
             let halves = attempt % 3 == 0;
@@ -223,8 +225,8 @@ impl<'a> Search<'a> {
                     .carries_for()
                     .min(corner.lacks_itself(self.free).max(0.0)),
         };
-        // In most cases the planes that carry tell at once. Where more than three meet they may not
-        // be the only ones; then the distance itself has the last word, unless it is all rounding.
+        // In most cases the planes that carry tell at once. Where others meet them these may carry from here on; then the
+        // distance itself has the last word, unless it is all rounding.
         let distance = corner.point.length();
         let steepest = if distance <= self.free {
             STEEPEST
@@ -234,7 +236,8 @@ impl<'a> Search<'a> {
         if corner.carries && corner.steepness <= steepest {
             return Ok(corner.point);
         }
-        if corner.steepness > steepest * 1e3 {
+        let is_known = corner.carries && self.met(corner.point, relief) == corner.count;
+        if is_known || corner.steepness > steepest * 1e3 {
             return Err(too_steep());
         }
         let probe = PROBE * (1.0 + distance);
@@ -268,6 +271,16 @@ impl<'a> Search<'a> {
             }
         }
         Err(relief)
+    }
+
+    /// How many planes lowered by `relief` a point is on, or all but on.
+    fn met(&self, point: DVec3, relief: f64) -> usize {
+        let near = 100.0 * HELD * (1.0 + point.length());
+        let gaps = self.planes.iter().filter_map(|plane| {
+            let wall = gap(plane, self.target)? / self.size - relief;
+            Some(wall - plane.normal.dot(point))
+        });
+        gaps.filter(|missed| *missed >= -near).count()
     }
 
     /// The plane that a point misses most, if by more than `slack`.

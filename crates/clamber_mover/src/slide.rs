@@ -443,26 +443,35 @@ impl Mover<'_> {
     }
 
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
+        let margin = path.body.margin;
+        // What is crushed stays so, however many half-spaces are added.
+        if moved.missing_room <= margin {
+            let nearest = self.nearest_to_wanted(path);
+            (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
+        }
+        if moved.missing_room > margin {
+            // It stays where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
+            let excess = moved.missing_room - margin;
+            let slip = SLIP * self.dt() * libm::sqrt(excess * margin);
+            let nearest = self.nearest_displacement(path.frame, slip);
+            (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
+        }
+        self.keep_arm(path, moved);
+    }
+
+    fn nearest_to_wanted(&mut self, path: &Path) -> Projection {
         let wanted = path.target - path.start;
+        let free = wanted.distance(path.frame);
         let memory = &mut *self.memory;
         let count = memory.half_spaces.len();
         memory.half_spaces.extend_from_slice(&memory.walls);
-        let free = wanted.distance(path.frame);
-        let mut nearest = self.nearest_displacement(wanted, free);
+        let nearest = self.nearest_displacement(wanted, free);
         self.memory.half_spaces.truncate(count);
         if nearest.missed > TOUCH * path.body.radius && !self.memory.walls.is_empty() {
             // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
-            nearest = self.nearest_displacement(wanted, free);
+            return self.nearest_displacement(wanted, free);
         }
-        if nearest.missed > path.body.margin {
-            // It is crushed where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
-            let excess = nearest.missed - path.body.margin;
-            let slip = SLIP * self.dt() * libm::sqrt(excess * path.body.margin);
-            nearest = self.nearest_displacement(path.frame, slip);
-        }
-        moved.position = path.start + nearest.point;
-        moved.missing_room = nearest.missed;
-        self.keep_arm(path, moved);
+        nearest
     }
 
     /// The displacement inside all half-spaces that is nearest to the wanted one, where that pays: `free` metres the body goes

@@ -23,8 +23,9 @@ const SHORTEN: f64 = 3.0;
 /// Arms that something stretches beyond their length by this factor let go.
 const STRETCH: f64 = 1.5;
 
-/// As close to its hands as this share of its radius, it climbs again.
-const CLOSE: f64 = 1.25;
+/// As close to its hands as this share of its radius, it climbs again. Not five quarters: the arms of the default
+/// configuration get exactly that short in a whole number of ticks, and rounding would decide.
+const CLOSE: f64 = 1.27;
 
 /// What a climber remembers while it hangs by its hands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
