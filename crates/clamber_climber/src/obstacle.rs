@@ -89,10 +89,22 @@ impl ClimberObstacle {
             let moved = capsule.with_ends_moved(ways.map(|way| way * time));
             let apart = between(&self.now, &moved);
             let gap = apart.distance - sum;
-            // At the last step it is said to touch rather than missed: no contact is late.
-            let is_near = gap <= capsule.sweep_tolerance() || step == STEPS;
             let there = ways[0].lerp(ways[1], apart.on_other);
-            if is_near && (gap <= 0.0 || apart.away.dot(there) < 0.0) {
+            let is_near = gap <= capsule.sweep_tolerance();
+            let touches = gap <= 0.0 || is_near && apart.away.dot(there) < 0.0;
+            // Both stay on their sides of the plane between them until one of the ends gets there.
+            let gets_there = |(end, way): (DVec3, DVec3)| {
+                let closing = -apart.away.dot(way);
+                let left = apart.away.dot(end - apart.on_axis) - sum;
+                (closing > 0.0).then(|| left.max(gap) / closing)
+            };
+            let ends = moved.ends.into_iter().zip(ways).filter_map(gets_there);
+            let next = time + ends.fold(f64::INFINITY, f64::min);
+            if !touches && next > 1.0 {
+                return None;
+            }
+            // At the last step it is said to touch rather than missed: no contact is late.
+            if touches || step == STEPS {
                 return Some(SweepContact {
                     time,
                     contact: self.contact(&apart),
@@ -100,13 +112,7 @@ impl ClimberObstacle {
                     started_inside: step == 0 && gap <= 0.0,
                 });
             }
-            // Both stay on their sides of the plane between them until then, whichever end comes first.
-            let [a, b] = ways.map(|way| -apart.away.dot(way));
-            let closing = a.max(b);
-            if closing <= 0.0 || time + gap / closing > 1.0 {
-                return None;
-            }
-            time += gap / closing;
+            time = next;
         }
         None
     }

@@ -6,11 +6,11 @@
 //! one whose point satisfies all four planes is the next basis. Testing every subset needs no sign of a multiplier, so
 //! normals that are parallel to rounding do no harm.
 //!
-//! If the intersection is empty, or hardly nearer for much relief, all planes are relaxed by the same amount, the least
+//! If the intersection is empty, or much nearer for a little relief, all planes are relaxed by the same amount, the least
 //! that helps. Planes that are opposite to within a hundredth of a degree intersect thousands of times as far away as they
 //! overlap. Such an intersection is of no use, and counts as empty. The distance of the nearest point is a convex function
-//! of the relief, so that each attempt that fails tells how much more is needed at least, and that how fast the point comes
-//! nearer only falls with more of it.
+//! of the relief, so that each attempt that fails tells how much more is needed at least. With more relief the point comes
+//! nearer ever more slowly.
 
 use glam::DVec3;
 
@@ -80,8 +80,8 @@ pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projecti
 
 /// [`project_onto_half_spaces`] where it pays: beyond a distance `free` from the target, planes are also relaxed wherever
 /// this brings the point nearer by more than `steepest` times as much. So the point minimises
-/// `max(free, |point - target|) + steepest * missed`, changes continuously with the planes, and is no farther away than
-/// `free` and `steepest` times the largest gap. `steepest` is at least 1.
+/// `max(free, |point - target|) + steepest * missed`, changes continuously with the offsets, and is no farther away
+/// than `free` and `steepest` times the largest gap together. `steepest` is at least 1.
 pub(crate) fn project_where_it_pays(
     target: DVec3,
     planes: &[HalfSpace],

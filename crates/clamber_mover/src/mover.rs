@@ -14,8 +14,10 @@ use crate::{Hit, MoverBody, MoverError, Touch};
 #[derive(Clone, Debug, Default)]
 pub struct MoverMemory {
     contacts: Vec<Contact>,
-    /// What the core began inside of.
-    pub(crate) inside: Vec<Touch>,
+    /// What the core began inside of, or is crushed by: sweeps look past it. Each as it was when the tick began.
+    pub(crate) passed: Vec<Touch>,
+    /// By how much the half-spaces leave too little room for what the body wants; no more once it is crushed.
+    pub(crate) lacking: f64,
     pub(crate) overlaps: Vec<Touch>,
     pub(crate) half_spaces: Vec<HalfSpace>,
     /// Steep slopes once more, as vertical walls.
@@ -36,7 +38,7 @@ impl MoverMemory {
         self.surroundings.forget();
         self.contacts.clear();
         self.contacts.reserve(CONTACTS);
-        for touches in [&mut self.overlaps, &mut self.touched, &mut self.inside] {
+        for touches in [&mut self.overlaps, &mut self.touched, &mut self.passed] {
             touches.clear();
             touches.reserve(CONTACTS);
         }

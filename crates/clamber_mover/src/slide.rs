@@ -48,9 +48,9 @@ pub struct Path {
     pub start_axis: [DVec3; 2],
     /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
     pub target: DVec3,
-    /// The way of the body's support, or of the frame that it is in, over the tick, metres. A push that would lead the
-    /// body much farther from there than it wanted to go is refused, and a crushed body stays there; so results are the
-    /// same in every frame that moves steadily.
+    /// The way of the body's support, or of the frame that it is in, over the tick, metres. The body goes back
+    /// that far for any gain of room, and beyond only where it pays; a crushed one stays there. So results are the same in
+    /// every frame that moves steadily.
     pub frame: DVec3,
     /// Treats slopes that are too steep as vertical walls, so that walking does not climb them.
     pub walking: Option<Walking>,
@@ -59,8 +59,8 @@ pub struct Path {
     /// What is between start and target.
     pub begin: Begin,
     /// Its last movement left it too little room ([`Moved::missing_room`] above the margin): it comes out of what it is
-    /// inside of by no more than half its radius in a tick, beside what it meets on its way. Pressed through something, it
-    /// does not jump to the other side.
+    /// inside of by no more than 30 radii a second, beside what it meets on its way. Pressed through something, it does not
+    /// jump to the other side.
     pub crushed: bool,
 }
 
@@ -102,7 +102,7 @@ pub struct Moved {
     pub penetration: f64,
     /// Rounds that it took.
     pub rounds: u32,
-    /// Nothing is on the way from start to position. Says nothing of a body that began inside something.
+    /// Nothing is on the way from start to position, beside what the body began inside of, or is crushed by.
     pub is_clear: bool,
 }
 
@@ -168,7 +168,7 @@ impl Mover<'_> {
     /// is not clear.
     pub fn slide(&mut self, path: &Path) -> Moved {
         let mut moved = self.find_way(path);
-        if path.crushed && path.begin == Begin::Start {
+        if path.crushed && moved.rounds > 0 && path.begin == Begin::Start {
             self.come_out_slowly(path, &mut moved);
         }
         self.know_velocities();
@@ -177,18 +177,32 @@ impl Mover<'_> {
 
     /// Lets a crushed body go no farther than it may in one tick.
     fn come_out_slowly(&mut self, path: &Path, moved: &mut Moved) {
-        let wanted = path.target - path.start;
-        let memory = &*self.memory;
-        let met = memory.touched.iter().zip(&memory.half_spaces);
-        let met = met.filter(|(touch, _)| touch.swept);
-        let gaps = met.map(|(_, wall)| wall.offset - wall.normal.dot(wanted));
-        let swept = gaps.fold(0.0, f64::max);
-        let most = STEEPEST_PUSH * swept + OUT * path.body.radius;
-        let push = moved.position - path.target;
+        let is_crushed = moved.missing_room > path.body.margin;
+        let aim = if is_crushed {
+            path.frame
+        } else {
+            path.target - path.start
+        };
+        let touched = self.memory.touched.iter().zip(&self.memory.half_spaces);
+        let gaps = touched.map(|(touch, wall)| {
+            // An overlap says how deep the body was, and its material where it went.
+            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            let offset = match motion.filter(|_| !touch.swept) {
+                Some(motion) => {
+                    let way = motion.position - motion.previous_position;
+                    wall.offset.min(wall.normal.dot(way))
+                }
+                None => wall.offset,
+            };
+            offset - wall.normal.dot(aim)
+        });
+        let met = gaps.fold(0.0, f64::max);
+        let most = STEEPEST_PUSH * met + OUT * self.dt() * path.body.radius;
+        let push = moved.position - path.start - aim;
         if push.length() <= most {
             return;
         }
-        moved.position = path.target + push.normalize() * most;
+        moved.position = path.start + aim + push.normalize() * most;
         let overlaps = self.overlap(&path.body, moved.position, 0.0).iter();
         let depths = overlaps.map(|touch| path.body.radius - touch.contact.distance);
         let depth = depths.fold(0.0, f64::max);
@@ -197,6 +211,8 @@ impl Mover<'_> {
     }
 
     fn find_way(&mut self, path: &Path) -> Moved {
+        self.memory.lacking = 0.0;
+        self.memory.passed.clear();
         self.memory.half_spaces.clear();
         self.memory.walls.clear();
         self.memory.touched.clear();
@@ -221,17 +237,12 @@ impl Mover<'_> {
             moved.rounds += 1;
             if clear_to.is_none_or(|clear_to| moved.position.distance(clear_to) > near) {
                 clear_to = None;
-                let before = moved.position;
                 if path.begin == Begin::Start && self.meet(path, &mut moved) {
-                    // What crushes the body is met again by every sweep.
-                    let is_crushed = moved.missing_room > path.body.margin;
-                    if !(is_crushed && moved.position == before) {
-                        if moved.rounds < ROUNDS {
-                            continue;
-                        }
-                        moved.is_clear = false;
-                        self.stop(path, &mut moved);
+                    if moved.rounds < ROUNDS {
+                        continue;
                     }
+                    moved.is_clear = false;
+                    self.stop(path, &mut moved);
                 }
             }
             let before = moved.position;
@@ -255,7 +266,7 @@ impl Mover<'_> {
 
     /// What overlaps the core at the start carries the body along over the tick: it comes no deeper.
     fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
-        let mut inside = std::mem::take(&mut self.memory.inside);
+        let mut inside = std::mem::take(&mut self.memory.passed);
         inside.sort_unstable_by(Touch::order);
         inside.truncate(PUSHES);
         for (index, touch) in inside.iter().enumerate() {
@@ -272,7 +283,7 @@ impl Mover<'_> {
             });
             self.add_half_space(path, *touch, touch.normal.dot(way), moved.position);
         }
-        self.memory.inside = inside;
+        self.memory.passed = inside;
         self.solve(path, moved);
     }
 
@@ -282,7 +293,7 @@ impl Mover<'_> {
         let way = moved.position - path.start;
         let hit = if moved.rounds == 1 {
             let hit = self.sweep_at_first(path, way);
-            if !self.memory.inside.is_empty() {
+            if !self.memory.passed.is_empty() {
                 self.go_with_overlaps(path, moved);
                 return true;
             }
@@ -293,20 +304,25 @@ impl Mover<'_> {
         let Some(Hit { touch, time, .. }) = hit else {
             return false;
         };
-        let end = self
-            .motion(touch.obstacle, &touch.contact.material)
-            .map_or(touch.contact.point, |motion| motion.position);
+        let motion = self.motion(touch.obstacle, &touch.contact.material);
+        let end = motion.map_or(touch.contact.point, |motion| motion.position);
         let on_axis = path.end_of(way, time, touch.contact.point);
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
         self.add_half_space(path, touch, offset, moved.position);
         self.solve(path, moved);
+        if moved.missing_room > path.body.margin {
+            // What crushes the body is met by every sweep: later ones look past it.
+            let mut passed = touch;
+            passed.contact.point = motion.map_or(end, |motion| motion.previous_position);
+            self.memory.passed.push(passed);
+        }
         true
     }
 
     /// The first contact on a way. What the core begins inside of does not count, and is noted.
     fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
-        let mut inside = std::mem::take(&mut self.memory.inside);
+        let mut inside = std::mem::take(&mut self.memory.passed);
         inside.clear();
         let hit = self.sweep_where(&core, path.ways(way), |hit| {
             if hit.started_inside && hit.touch.is_finite() {
@@ -314,14 +330,14 @@ impl Mover<'_> {
             }
             !hit.started_inside
         });
-        self.memory.inside = inside;
+        self.memory.passed = inside;
         hit
     }
 
     /// The first contact on a way past what the core began inside of.
     fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
-        let inside = std::mem::take(&mut self.memory.inside);
+        let inside = std::mem::take(&mut self.memory.passed);
         let margin = path.body.margin;
         let (obstacles, dt) = (self.obstacles, self.dt());
         let hit = self.sweep_where(&core, path.ways(way), |hit| {
@@ -340,7 +356,7 @@ impl Mover<'_> {
             let start = motion.map_or(touch.contact.point, |motion| motion.previous_position);
             !of_its_face.any(|other| touch.continues(start, other, margin))
         });
-        self.memory.inside = inside;
+        self.memory.passed = inside;
         hit
     }
 
@@ -445,13 +461,14 @@ impl Mover<'_> {
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
         let margin = path.body.margin;
         // What is crushed stays so, however many half-spaces are added.
-        if moved.missing_room <= margin {
+        if self.memory.lacking <= margin {
             let nearest = self.nearest_to_wanted(path);
             (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
+            self.memory.lacking = nearest.missed;
         }
-        if moved.missing_room > margin {
+        if self.memory.lacking > margin {
             // It stays where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
-            let excess = moved.missing_room - margin;
+            let excess = self.memory.lacking - margin;
             let slip = SLIP * self.dt() * libm::sqrt(excess * margin);
             let nearest = self.nearest_displacement(path.frame, slip);
             (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
@@ -501,8 +518,12 @@ impl Mover<'_> {
                 normal: inward,
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
-            let wanted = path.target - path.start;
-            let nearest = self.nearest_displacement(wanted, wanted.distance(path.frame));
+            let aim = if moved.missing_room > path.body.margin {
+                path.frame
+            } else {
+                path.target - path.start
+            };
+            let nearest = self.nearest_displacement(aim, aim.distance(path.frame));
             if nearest.missed > without.missing_room + TOUCH * path.body.radius {
                 *moved = without;
                 break;
@@ -519,12 +540,13 @@ impl Mover<'_> {
 /// by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
 pub(crate) const STEEPEST_PUSH: f64 = 4.0;
 
-/// How fast a crushed body slips to where there is more room, however slowly the walls part there: by the mean of its margin
-/// and of what it lacks beyond, so often a second. It begins with nothing, and comes to an end.
+/// How fast a crushed body slips to where there is more room, however slowly the walls part there: so often a second by the
+/// geometric mean of its margin and of what it lacks beyond. Just crushed it does not slip, so that no threshold is felt;
+/// and the last of a lack is made up in a few ticks.
 const SLIP: f64 = 60.0;
 
-/// How far a crushed body comes out in one tick, as a share of its radius.
-const OUT: f64 = 0.5;
+/// How fast a crushed body comes out of what it is inside of, radii a second: half a radius in a tick of 60 Hz.
+const OUT: f64 = 30.0;
 
 /// Slopes steeper than this are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

@@ -7,7 +7,8 @@ use crate::ClimberError;
 pub struct HangConfig {
     /// From the hands to the centre of its ball at full stretch, metres, positive. 0.9.
     pub arm_length: f64,
-    /// From there to the end of the legs, which collide as well, metres, not negative. 0.6.
+    /// From there to the end of the legs, which collide as well, metres, not negative. They are drawn in where there is
+    /// no room for them, and come down in the tick after it begins to hang. 0.6.
     pub leg_length: f64,
     /// Of the swing, per second, not negative. 0.4: a third is left after three seconds.
     pub damping: f64,

@@ -50,13 +50,20 @@ fn axes_are_as_far_apart_as_a_search_finds() {
 #[test]
 fn sweeps_stop_where_small_steps_first_touch() {
     let mut rng = fastrand::Rng::with_seed(2);
-    let mut met = 0;
-    for case in 0..1_000 {
-        let (now, other) = (capsule(&mut rng), capsule(&mut rng));
+    let (mut met, mut early) = (0, 0);
+    for case in 0..3_000 {
+        let (now, mut other) = (capsule(&mut rng), capsule(&mut rng));
+        let near = libm::exp(-12.0 * rng.f64());
         let mut random = || DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 8.0 - 4.0;
         let (way, mut displacements) = (random(), [random(); 2]);
         if case % 2 == 1 {
             displacements[1] = random();
+        }
+        if case % 3 == 0 {
+            // All but touching as the tick begins.
+            let apart = between(&now.moved(-way), &other);
+            let gap = apart.distance - now.radius - other.radius;
+            other = other.moved(-apart.away * (gap - 0.01 * near));
         }
         let displacement = |time: f64| displacements.map(|end| end * time);
         let body = ClimberObstacle { now, way };
@@ -73,11 +80,9 @@ fn sweeps_stop_where_small_steps_first_touch() {
         if let Some(touch) = touch {
             let hit = hit.unwrap();
             assert!(hit.time <= touch, "{}", told());
-            assert!(
-                gap(hit.time) <= other.sweep_tolerance() + 1e-9,
-                "{}",
-                told()
-            );
+            let is_near = gap(hit.time) <= other.sweep_tolerance() + 1e-9;
+            assert!(is_near || case % 2 == 1, "{}", told());
+            early += u32::from(!is_near);
             let away = other
                 .with_ends_moved(displacement(hit.time))
                 .nearest_on_axis(hit.contact.point);
@@ -89,14 +94,13 @@ fn sweeps_stop_where_small_steps_first_touch() {
             );
             met += 1;
         } else if let Some(hit) = hit {
-            assert!(
-                gap(hit.time) <= other.sweep_tolerance() + 1e-9,
-                "{}",
-                told()
-            );
+            let is_near = gap(hit.time) <= other.sweep_tolerance() + 1e-9;
+            assert!(is_near || case % 2 == 1, "{}", told());
+            early += u32::from(!is_near);
         }
     }
-    assert!(met > 100, "{met}");
+    // What turns beside the other, all but touching, may be said to touch when the steps are over.
+    assert!(met > 800 && early < met / 100, "{met} {early}");
 }
 
 /// Climbers without weight that are pushed at each other, in an order.

@@ -17,8 +17,8 @@ const PULL: f64 = 4.0 / 3.0;
 /// Below this share of what made it hang, shake is calm.
 const CALM: f64 = 0.7;
 
-/// How fast arms that something has stretched get short again once it lets them, as a share of the climbing speed.
-const SHORTEN: f64 = 3.0;
+/// How fast arms that something has stretched get short again once it lets them, of their lengths a second: 4.5 m/s.
+const SHORTEN: f64 = 5.0;
 
 /// Arms that something stretches beyond their length by this factor let go.
 const STRETCH: f64 = 1.5;
@@ -88,8 +88,7 @@ impl Tick<'_> {
         let pivot = carried.motion.position;
         let radius = self.config.body.radius;
         let arm = carried.start - carried.motion.previous_position;
-        let climb_speed = self.config.grip.map_or(0.0, |grip| grip.climb_speed);
-        let pulled = SHORTEN * climb_speed * self.dt();
+        let pulled = SHORTEN * hang.arm_length * self.dt();
         let length = self.state.hanging.arm.max(radius);
         let length = length.max(arm.length() - pulled);
         let mut pendulum = Pendulum {
@@ -107,7 +106,8 @@ impl Tick<'_> {
             arm: Some(Arm { pivot, length }),
             ..self.path(pivot + pendulum.arm)
         };
-        let moved = self.slide_with_legs(&path, self.legs(pendulum.arm));
+        let legs = pendulum.arm.normalize_or(-self.config.up()) * hang.leg_length;
+        let moved = self.slide_with_legs(&path, legs);
         let velocity = carried.velocity() + pendulum.velocity;
         self.keep_support(carried, moved.position);
         self.state.velocity = if moved.position == path.target {
@@ -128,17 +128,6 @@ impl Tick<'_> {
             return NextMode::Change(ClimberMode::Holding);
         }
         NextMode::Stay
-    }
-
-    /// Where its legs want to end, from its position: below it where its arms are bent, and on along them at full stretch.
-    fn legs(&self, arm: DVec3) -> DVec3 {
-        let hang = &self.config.hang;
-        let radius = self.config.body.radius;
-        let down = -self.config.up();
-        let stretch = (arm.length() - radius) / (hang.arm_length - radius).max(f64::MIN_POSITIVE);
-        let along = arm.normalize_or(down);
-        let way = down.lerp(along, stretch.clamp(0.0, 1.0));
-        way.normalize_or(down) * hang.leg_length
     }
 
     /// Moves a body whose legs are to end there. What they meet on their way stops it; where they leave it no room they are
@@ -165,6 +154,9 @@ impl Tick<'_> {
 
     /// A velocity without its parts into what it touches and beyond its arms.
     fn clipped_by_arm(&self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
+        if self.state.crushed {
+            return self.state.base_velocity;
+        }
         let inward = -arm.normalize_or(DVec3::Y);
         let is_taut = arm.length() >= self.state.hanging.arm * (1.0 - 1e-6);
         let taut = is_taut.then(|| HalfSpace {

@@ -73,6 +73,8 @@ pub(crate) struct Tick<'a> {
     began: DVec3,
     /// Velocity at the tick's beginning, a blow included.
     was: DVec3,
+    /// It was crushed in the last tick.
+    was_crushed: bool,
     /// Velocity of its support, or of the last that it had, at the tick's beginning.
     base_was: DVec3,
     /// Velocity of a blow that the climber takes on its feet or its hold.
@@ -127,6 +129,7 @@ impl<'a> Tick<'a> {
             began: state.position,
             was: state.velocity,
             base_was: state.base_velocity,
+            was_crushed: state.crushed,
             struck: DVec3::ZERO,
             carried: None,
             is_lost: false,

@@ -20,7 +20,7 @@ impl Tick<'_> {
     /// The path of the body as it stands from where it was to a target. Its frame is the support.
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
-        let crushed = self.state.crushed;
+        let crushed = self.was_crushed;
         match &self.carried {
             Some(carried) => Path {
                 crushed,
@@ -52,11 +52,11 @@ impl Tick<'_> {
         self.note(path, intent, wanted, moved)
     }
 
-    /// [`Tick::slide`], unless it would crush the body: then nothing has happened.
+    /// [`Tick::slide`], unless there is no room for the body, or its way is not clear: then nothing has happened.
     pub(super) fn slide_if_there_is_room(&mut self, path: &Path) -> Option<Moved> {
         let wanted = (path.target - path.start) / self.dt();
         let moved = self.mover.slide(path);
-        let has_room = moved.missing_room <= path.body.margin;
+        let has_room = moved.is_clear && moved.missing_room <= path.body.margin;
         has_room.then(|| self.note(path, Intent::Go, wanted, moved))
     }
 

@@ -16,7 +16,7 @@ mod run;
 use clamber_surface::SimdLevel;
 
 /// Of what queries and anchors gave, and of the climbers.
-const RUN: [u64; 2] = [0x1d72_8a0c_df1c_39c6, 0xd6ca_1635_4839_88ab];
+const RUN: [u64; 2] = [0x1d72_8a0c_df1c_39c6, 0x54e8_3fc8_8d78_f9ad];
 
 /// Runs in a build with `threads` and at a level; fails with the hashes in the form of [`RUN`].
 fn assert_golden(level: SimdLevel, threads: usize) {

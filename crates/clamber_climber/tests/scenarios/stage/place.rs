@@ -66,6 +66,7 @@ impl Place {
             shake: state.shake * self.scale,
             hanging: HangingMemory {
                 arm: state.hanging.arm * self.scale,
+                legs: state.hanging.legs * self.scale,
                 ..state.hanging
             },
             ..*state
