@@ -24,7 +24,7 @@ pub struct MoverMemory {
     pub(crate) walls: Vec<HalfSpace>,
     pub(crate) touched: Vec<Touch>,
     /// Of what is touched, each at the same index.
-    pub(crate) velocities: Vec<DVec3>,
+    pub(crate) velocities: Vec<Option<DVec3>>,
     surroundings: Surroundings,
 }
 

@@ -183,6 +183,11 @@ impl Mover<'_> {
         } else {
             path.target - path.start
         };
+        let push = moved.position - path.start - aim;
+        let least = OUT * self.dt() * path.body.radius;
+        if push.length() <= least {
+            return;
+        }
         let touched = self.memory.touched.iter().zip(&self.memory.half_spaces);
         let gaps = touched.map(|(touch, wall)| {
             // An overlap says how deep the body was, and its material where it went.
@@ -197,8 +202,7 @@ impl Mover<'_> {
             offset - wall.normal.dot(aim)
         });
         let met = gaps.fold(0.0, f64::max);
-        let most = STEEPEST_PUSH * met + OUT * self.dt() * path.body.radius;
-        let push = moved.position - path.start - aim;
+        let most = STEEPEST_PUSH * met + least;
         if push.length() <= most {
             return;
         }
@@ -216,6 +220,7 @@ impl Mover<'_> {
         self.memory.half_spaces.clear();
         self.memory.walls.clear();
         self.memory.touched.clear();
+        self.memory.velocities.clear();
         let mut moved = Moved {
             position: path.target,
             missing_room: 0.0,
@@ -282,6 +287,7 @@ impl Mover<'_> {
                 motion.position - motion.previous_position
             });
             self.add_half_space(path, *touch, touch.normal.dot(way), moved.position);
+            self.know_velocity(motion.as_ref());
         }
         self.memory.passed = inside;
         self.solve(path, moved);
@@ -309,6 +315,7 @@ impl Mover<'_> {
         let on_axis = path.end_of(way, time, touch.contact.point);
         let offset = touch.normal.dot(end - path.start - on_axis) + path.body.radius;
         self.add_half_space(path, touch, offset, moved.position);
+        self.know_velocity(motion.as_ref());
         self.solve(path, moved);
         if moved.missing_room > path.body.margin {
             // What crushes the body is met by every sweep: later ones look past it.

@@ -1,3 +1,4 @@
+use clamber_world::PointMotion;
 use glam::DVec3;
 
 use crate::half_spaces::{HalfSpace, project_where_it_pays};
@@ -7,31 +8,39 @@ use crate::{Mover, Touch};
 /// Most half-spaces that stop a velocity together.
 const STOPS: usize = 24;
 
+fn velocity_in(motion: Option<&PointMotion>) -> DVec3 {
+    motion.map_or(DVec3::ZERO, |motion| motion.velocity)
+}
+
 impl Mover<'_> {
     /// Velocity of the material at a contact, metres a second; zero where it has no motion.
     pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
         let known = self.touched().iter().zip(&self.memory.velocities);
-        let mut same = known.filter(|(other, _)| {
-            other.obstacle == touch.obstacle && other.contact.material == touch.contact.material
+        let mut same = known.filter(|(other, velocity)| {
+            let is_same = other.contact.material == touch.contact.material;
+            other.obstacle == touch.obstacle && is_same && velocity.is_some()
         });
-        same.next()
-            .map_or_else(|| self.ask_for_velocity(touch), |(_, velocity)| *velocity)
+        let known = same.next().and_then(|(_, velocity)| *velocity);
+        known.unwrap_or_else(|| {
+            let motion = self.motion(touch.obstacle, &touch.contact.material);
+            velocity_in(motion.as_ref())
+        })
     }
 
-    fn ask_for_velocity(&self, touch: &Touch) -> DVec3 {
-        let motion = self.motion(touch.obstacle, &touch.contact.material);
-        motion.map_or(DVec3::ZERO, |motion| motion.velocity)
+    /// Notes the velocity of what was touched last.
+    pub(crate) fn know_velocity(&mut self, motion: Option<&PointMotion>) {
+        let before = self.touched().len().saturating_sub(1);
+        self.memory.velocities.resize(before, None);
+        self.memory.velocities.push(Some(velocity_in(motion)));
     }
 
     /// Asks once for the velocities of what a movement has touched: they are needed several times.
     pub(crate) fn know_velocities(&mut self) {
         let mut velocities = std::mem::take(&mut self.memory.velocities);
-        velocities.clear();
-        velocities.extend(
-            self.touched()
-                .iter()
-                .map(|touch| self.ask_for_velocity(touch)),
-        );
+        velocities.resize(self.touched().len(), None);
+        for (velocity, touch) in velocities.iter_mut().zip(self.touched()) {
+            velocity.get_or_insert_with(|| self.velocity_of(touch));
+        }
         self.memory.velocities = velocities;
     }
 
