@@ -11,10 +11,10 @@ use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 
 /// Changes whenever a result does, if only by one bit, or rapier: then see that it should have, and put the new one in.
-const BATTLE: u64 = 0x847c_dfb8_2d67_475f;
+const BATTLE: u64 = 0xf693_9554_6661_67f7;
 
 /// The same of a climb.
-const CLIMB: u64 = 0x5067_1b95_b790_e122;
+const CLIMB: u64 = 0xb919_164a_dcd1_3dbd;
 
 #[test]
 fn a_climb_has_the_same_bits_in_every_build() {
