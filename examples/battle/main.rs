@@ -14,7 +14,8 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
 use clap::Parser;
 
-/// What `--help` says is that of the battle.
+/// A climber climbs a giant of stone and fur from the ground to its head, or rides on a creature, while it stomps,
+/// shakes and is struck by rocks. Prints what came of it, checks it, and writes a summary and a timeline.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 struct Options {
