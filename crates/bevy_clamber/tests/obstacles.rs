@@ -270,7 +270,7 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
         let turning = [by, vector(2.0)];
         let cast = obstacle.cast_capsule(&capsule, by);
         let swept = obstacle.sweep_capsule(&capsule, turning);
-        // Past what it begins inside of.
+        // The first contact beyond those that it begins inside of.
         let past = obstacle.sweep_capsule_where(&capsule, turning, &mut |met| !met.started_inside);
         assert!(past.is_none_or(|past| !past.started_inside), "{past:?}");
         for (what, met) in [("cast", cast), ("swept", swept), ("swept past", past)] {

@@ -79,7 +79,7 @@ pub enum ClimberEvent {
         /// Which obstacle dealt the blow, if one did.
         by: Option<ObstacleId>,
     },
-    /// Caught between obstacles that leave no room, or not out yet of what it was pressed into.
+    /// Obstacles leave it too little room, or it is still inside what it was pressed into.
     Crushed {
         /// How deep they overlap beyond the margin, metres.
         depth: f64,
@@ -145,8 +145,8 @@ pub struct StepReport {
     pub mode_changes: u32,
     /// More changes were wanted than a tick allows (4): the rest follows in the next.
     pub changes_left: bool,
-    /// The rounds sufficed: there is nothing on the way from where it was to where it is. Says nothing of what the
-    /// body began inside of or is crushed by, nor of one whose support was put elsewhere: these are pushed out of what is
-    /// there.
+    /// The rounds sufficed: there is nothing on the way from where it was to where it is. What the body began inside of,
+    /// or is crushed by, does not count. Of a body whose support was put elsewhere it says nothing: it is pushed out of what
+    /// is there.
     pub is_clear: bool,
 }

@@ -46,7 +46,7 @@ const NARROW: f64 = 1e-8;
 const FIRST_STEP: f64 = 0.25;
 const LONGER: f64 = 8.0;
 
-/// Most attempts to find it. Three or four are the rule; every third halves what is left.
+/// Most attempts to find it. Three or four are the rule; every third attempt halves what is left.
 const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
@@ -107,7 +107,7 @@ struct Search<'a> {
     free: f64,
     /// Beyond, how much nearer it may come for each metre of relief at most.
     steepest: f64,
-    /// Farthest that a point may be, in largest gaps: what follows from both.
+    /// Farthest that a point can be, in largest gaps; follows from the two above.
     reach: f64,
 }
 

@@ -139,6 +139,15 @@ impl Path {
         }
     }
 
+    /// The displacement that a body is to come nearest to: the one it wants, or, crushed, that of its frame.
+    fn aim(&self, moved: &Moved) -> DVec3 {
+        if moved.missing_room > self.body.margin {
+            self.frame
+        } else {
+            self.target - self.start
+        }
+    }
+
     /// How far the core's ends go if the position goes by `way`.
     fn ways(&self, way: DVec3) -> [DVec3; 2] {
         let turn = |k: usize| self.body.axis[k] - self.start_axis[k];
@@ -177,12 +186,7 @@ impl Mover<'_> {
 
     /// Lets a crushed body go no farther than it may in one tick.
     fn come_out_slowly(&mut self, path: &Path, moved: &mut Moved) {
-        let is_crushed = moved.missing_room > path.body.margin;
-        let aim = if is_crushed {
-            path.frame
-        } else {
-            path.target - path.start
-        };
+        let aim = path.aim(moved);
         let push = moved.position - path.start - aim;
         let least = OUT * self.dt() * path.body.radius;
         if push.length() <= least {
@@ -341,7 +345,7 @@ impl Mover<'_> {
         hit
     }
 
-    /// The first contact on a way past what the core began inside of.
+    /// The first contact on a way, past what the core began inside of or is crushed by.
     fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
         let inside = std::mem::take(&mut self.memory.passed);
@@ -525,11 +529,7 @@ impl Mover<'_> {
                 normal: inward,
                 offset: inward.dot(arm.pivot - path.start) - arm.length,
             });
-            let aim = if moved.missing_room > path.body.margin {
-                path.frame
-            } else {
-                path.target - path.start
-            };
+            let aim = path.aim(moved);
             let nearest = self.nearest_displacement(aim, aim.distance(path.frame));
             if nearest.missed > without.missing_room + TOUCH * path.body.radius {
                 *moved = without;

@@ -130,8 +130,8 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Moves a body whose legs are to end there. What they meet on their way stops it; where they leave it no room they are
-    /// drawn in, and come down again where there is room.
+    /// Moves a body whose legs end at `legs`, seen from its position. Obstacles stop legs as they stop the body. Legs
+    /// without room are drawn in, and come down again in a later tick, where there is room.
     fn slide_with_legs(&mut self, path: &Path, legs: DVec3) -> Moved {
         let were = self.state.hanging.legs;
         if were != DVec3::ZERO {

@@ -490,7 +490,7 @@ impl Worth<'_> {
         point.distance(self.target).max(self.free) + self.steepest * missed.fold(0.0, f64::max)
     }
 
-    /// The least cost, by thirds: it is convex over the relief, of which the slow twin finds the nearest point.
+    /// The least cost, by ternary search over the relief: the cost is convex over it. The slow twin finds each point.
     fn least(&self, gap: f64) -> f64 {
         let cost = |relief: f64| {
             let lowered = self.planes.iter().map(|plane| HalfSpace {
