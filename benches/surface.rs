@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clamber::geometry::Capsule;
+use clamber::geometry::{Capsule, Ray};
 use clamber::mesh::VertexId;
 use clamber::prelude::*;
 use clamber_scenes::Creature;
@@ -113,49 +113,47 @@ fn operations(surface: &SkinnedSurface) -> Result<Vec<Operation<'static>>, Box<d
         .reduce(|top, p| if p.y > top.y { p } else { top });
     let top = top.ok_or("no vertices")?;
     let ray = Ray::new(top + Vec3::Y * 5.0, -Vec3::Y).ok_or("no direction")?;
-    let near = surface
-        .closest_point(top, f32::INFINITY)?
-        .ok_or("no skin")?;
-    let anchor = surface.anchor_at(&near);
+    let near = surface.in_model().closest_point(top, f32::INFINITY);
+    let anchor = surface.anchor_at(&near.ok_or("no skin")?)?;
     let (mut few, mut many, mut along, mut in_capsule) = (vec![], vec![], vec![], vec![]);
     let mut positions = Vec::new();
-    let sphere = move |radius: f32| Sphere {
-        center: top,
-        radius,
-    };
-    let capsule = Capsule {
-        a: top,
-        b: top + Vec3::X * edge * 4.0,
-        radius: edge,
-    };
+    let small = Capsule::ball(top, edge).ok_or("no ball")?;
+    let large = Capsule::ball(top, 10.0 * edge).ok_or("no ball")?;
+    let capsule = Capsule::new(top, top + Vec3::X * edge * 4.0, edge).ok_or("no capsule")?;
     Ok(vec![
         (
             "ray",
-            Box::new(move |s| drop(black_box(s.cast_ray(&ray, 10.0)))),
+            Box::new(move |s| {
+                black_box(s.in_model().cast_ray(&ray, 10.0));
+            }),
         ),
         (
             "any ray",
-            Box::new(move |s| drop(black_box(s.intersects_ray(&ray, 10.0)))),
+            Box::new(move |s| {
+                black_box(s.in_model().intersects_ray(&ray, 10.0));
+            }),
         ),
         (
             "all along a ray",
-            Box::new(move |s| drop(s.cast_ray_all(&ray, 10.0, &mut along))),
+            Box::new(move |s| s.in_model().cast_ray_all(&ray, 10.0, &mut along)),
         ),
         (
             "closest point",
-            Box::new(move |s| drop(black_box(s.closest_point(top, 10.0)))),
+            Box::new(move |s| {
+                black_box(s.in_model().closest_point(top, 10.0));
+            }),
         ),
         (
             "sphere of an edge",
-            Box::new(move |s| drop(s.overlap_sphere(&sphere(edge), &mut few))),
+            Box::new(move |s| s.in_model().overlap_capsule(&small, &mut few)),
         ),
         (
             "sphere of ten edges",
-            Box::new(move |s| drop(s.overlap_sphere(&sphere(10.0 * edge), &mut many))),
+            Box::new(move |s| s.in_model().overlap_capsule(&large, &mut many)),
         ),
         (
             "capsule",
-            Box::new(move |s| drop(s.overlap_capsule(&capsule, &mut in_capsule))),
+            Box::new(move |s| s.in_model().overlap_capsule(&capsule, &mut in_capsule)),
         ),
         (
             "motion",

@@ -1,5 +1,6 @@
 //! An arrow sticks in a shaking creature and follows the skin: place, heading, velocity, stretch.
 
+use clamber::geometry::Ray;
 use clamber::prelude::*;
 use glam::{DVec3, Vec3};
 
@@ -12,8 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Shot from the left into the shoulder, in the rest pose.
     let shot = Ray::new(Vec3::new(30.0, 14.0, 5.0), Vec3::NEG_X).ok_or("no ray")?;
-    let hit = surface.cast_ray(&shot, 100.0)?.ok_or("missed")?;
-    let mut arrow = surface.anchor_at(&hit);
+    let hit = surface.in_model().cast_ray(&shot, 100.0).ok_or("missed")?;
+    let mut arrow = surface.anchor_at(&hit)?;
 
     let mut fastest = 0.0f32;
     for tick in 0..120 {
@@ -27,9 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let motion = surface.motion(&arrow, dt)?;
         arrow.frame = motion.frame;
-        let skin = surface
-            .closest_point(motion.position, 1.0)?
-            .ok_or("no skin")?;
+        let skin = surface.in_model().closest_point(motion.position, 1.0);
+        let skin = skin.ok_or("no skin")?;
         assert!(skin.distance < 1e-5, "the arrow left the skin");
         fastest = fastest.max(motion.velocity.length());
     }

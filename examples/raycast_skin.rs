@@ -1,29 +1,30 @@
 //! A ray from above against a creature in mid-stride: it meets the posed skin, not the bind pose.
 
 use clamber::prelude::*;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let creature = clamber_scenes::beast::beast(6_000);
     let walk = creature.clip_like(&["walk"]).ok_or("no walk")?;
     let mut surface = SkinnedSurface::new(creature.collider.clone());
-    let down = Ray::new(Vec3::new(0.3, 60.0, 15.0), Vec3::NEG_Y).ok_or("no ray")?;
+    let above = DVec3::new(0.3, 60.0, 15.0);
 
     let mut heights = Vec::new();
     for tick in 0..12 {
         let time = f64::from(tick) * 0.25;
         let pose = walk.sample(&creature.skeleton.rest_pose(), time, Playback::Loop)?;
         let palette = creature.skeleton.palette(&pose)?;
-        surface.advance(&palette, Similarity::from_translation(DVec3::ZERO))?;
-        let hit = surface.cast_ray(&down, f32::INFINITY)?.ok_or("a miss")?;
+        surface.advance(&palette, Similarity::IDENTITY)?;
+        let hit = surface.in_world().cast_ray(above, DVec3::NEG_Y, 100.0);
+        let hit = hit.ok_or("a miss")?;
         println!(
             "{time:4.2} s  the head is {:.3} m up, {:?}",
             hit.point.y, hit.tag
         );
         heights.push(hit.point.y);
     }
-    let highest = heights.iter().copied().fold(f32::MIN, f32::max);
-    let lowest = heights.iter().copied().fold(f32::MAX, f32::min);
+    let highest = heights.iter().copied().fold(f64::MIN, f64::max);
+    let lowest = heights.iter().copied().fold(f64::MAX, f64::min);
     assert!(highest - lowest > 0.1, "the head does not nod: {heights:?}");
     Ok(())
 }

@@ -5,7 +5,7 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::gltf::{Rig, load};
+use clamber::gltf::{LoadOptions, Rig, load, load_with};
 use clamber::mesh::VertexId;
 use clamber::prelude::*;
 use clamber_scenes::closed::{Flaws, flaws, volume};
@@ -186,7 +186,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
         let lowest =
             (0..positions.len()).min_by(|a, b| positions[*a].y.total_cmp(&positions[*b].y));
         let vertex = VertexId(lowest.unwrap() as u32);
-        let before = surface.previous_position(vertex).unwrap();
+        let before = surface.in_model().previous_position(vertex).unwrap();
         let moved = positions[vertex.index()] - before;
         slides.push(moved.with_y(0.0).length() / dt as f32);
     }
@@ -216,5 +216,41 @@ fn it_can_be_had_at_any_size() {
             change.abs() < 0.02,
             "{vertices}: volume changes by {change}"
         );
+    }
+}
+
+/// Skinned vertices of the giant at rest, and in the middle of its walk.
+fn skinned(rig: &Rig) -> [Vec<Vec3>; 2] {
+    let rest = rig.skeleton.rest_pose();
+    let walk = rig.clip("walk").unwrap();
+    let stride = walk.sample(&rest, 0.4 * walk.duration(), Playback::Loop);
+    [rest, stride.unwrap()].map(|pose| {
+        let palette = rig.skeleton.palette(&pose).unwrap();
+        clamber::skin::skin(&rig.collider, palette.matrices()).unwrap()
+    })
+}
+
+#[test]
+fn it_can_be_loaded_at_any_height() {
+    let own = rig();
+    for wanted in [1.8, 250.0f32] {
+        let options = LoadOptions::default().with_height(wanted);
+        let scaled = load_with(giant::path(), &options).unwrap();
+        let factor = scaled.report.scale.unwrap();
+        let (low, high) = heights(&skinned(&scaled)[0]);
+        let off = ((high - low) / wanted - 1.0).abs();
+        assert!(off < 1e-4, "{} m in place of {wanted} m", high - low);
+        for (own, scaled) in skinned(&own).iter().zip(skinned(&scaled)) {
+            assert_eq!(own.len(), scaled.len());
+            for (own, scaled) in own.iter().zip(scaled) {
+                let off = (own.as_dvec3() * factor - scaled.as_dvec3()).length();
+                assert!(off < 2e-6 * f64::from(wanted), "{own} became {scaled}");
+            }
+        }
+        for (own, scaled) in own.weak_points.iter().zip(&scaled.weak_points) {
+            let radius = f64::from(own.radius) * factor;
+            assert!((radius - f64::from(scaled.radius)).abs() < 1e-6 * radius);
+        }
+        assert_eq!(scaled.report.build.welded, own.report.build.welded);
     }
 }

@@ -6,9 +6,8 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::mesh::PartId;
+use clamber::geometry::{Capsule, Ray};
 use clamber::prelude::*;
-use clamber::surface::{JointMaps, PartBounds};
 use clamber_scenes::giant;
 use glam::Vec3;
 
@@ -23,9 +22,8 @@ fn check(poses: u32, stride: usize) -> usize {
         }
     }
     let rest = creature.skeleton.rest_pose();
-    let bounds = PartBounds::new(mesh);
     let mut surface = SkinnedSurface::new(mesh.clone());
-    let (mut positions, mut hits, mut maps) = (Vec::new(), Vec::new(), JointMaps::default());
+    let (mut positions, mut hits) = (Vec::new(), Vec::new());
     let mut checked = 0;
     for clip in &creature.clips {
         for k in 0..poses {
@@ -37,9 +35,8 @@ fn check(poses: u32, stride: usize) -> usize {
                 surface.skin_ahead();
             }
             surface.skin_all(&mut positions);
-            maps.update(mesh, &palette).unwrap();
-            for (index, part) in mesh.parts().iter().enumerate() {
-                let volume = bounds.volume(PartId(index as u32), &maps).unwrap();
+            for (part, volume) in surface.in_model().part_spheres() {
+                let part = &mesh.parts()[part.index()];
                 for vertex in &part.vertices {
                     let p = positions[vertex.index()];
                     assert!(volume.contains(p), "{}, {time} s: {p}", clip.name);
@@ -48,19 +45,17 @@ fn check(poses: u32, stride: usize) -> usize {
             }
             let first = k as usize % stride;
             for (vertex, p) in positions.iter().enumerate().skip(first).step_by(stride) {
-                let touching = Sphere {
-                    center: *p,
-                    radius: 0.0,
-                };
-                surface.overlap_sphere(&touching, &mut hits).unwrap();
+                let touching = Capsule::ball(*p, 0.0).unwrap();
+                let space = surface.in_model();
+                space.overlap_capsule(&touching, &mut hits);
                 for triangle in &around[vertex] {
                     let found = hits.iter().any(|hit| hit.triangle == *triangle);
                     assert!(found, "{}, {time} s: {vertex}, {triangle}", clip.name);
                 }
-                let nearest = surface.closest_point(*p, 0.0).unwrap();
+                let nearest = space.closest_point(*p, 0.0);
                 assert!(nearest.is_some(), "{}, {time} s: {vertex}", clip.name);
                 let above = Ray::new(*p + Vec3::Y * 100.0, -Vec3::Y).unwrap();
-                let met = surface.intersects_ray(&above, 100.5).unwrap();
+                let met = surface.in_model().intersects_ray(&above, 100.5);
                 assert!(met, "{}, {time} s: {vertex}", clip.name);
                 checked += 1;
             }

@@ -6,11 +6,14 @@
 )]
 
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
+use clamber::geometry::Ray;
 use clamber::gltf::{GltfErrorKind, LoadOptions, Rig, load, load_slice, load_with};
 use clamber::prelude::*;
 use clamber_scenes::inspect::{InspectOptions, inspect};
 use clamber_scenes::test_data;
+use glam::{DVec3, Vec3};
 
 /// Files of the test data that the importer refuses: where, and why.
 #[rustfmt::skip]
@@ -187,17 +190,19 @@ fn materials_are_tagged_by_the_callers_function() {
         return;
     };
     let fur = SurfaceTag::new(SurfaceKind::Fur);
-    let names = std::cell::RefCell::new(Vec::new());
-    let tag = |name: &str| {
-        names.borrow_mut().push(name.to_owned());
-        Some(fur)
-    };
-    let options = LoadOptions {
-        tag_of_material: Some(&tag),
-        ..LoadOptions::default()
-    };
+    let names = Arc::new(Mutex::new(Vec::new()));
+    let seen = names.clone();
+    let options = LoadOptions::default().with_tags(move |name, _| {
+        seen.lock().unwrap().push(name.map(str::to_owned));
+        fur
+    });
     let rig = load_with(&path, &options).unwrap();
-    assert!(!names.borrow().is_empty());
+    // Its materials, then none.
+    let names = names.lock().unwrap();
+    let mut expected: Vec<_> = rig.materials.iter().map(|m| m.name.clone()).collect();
+    assert!(!expected.is_empty());
+    expected.push(None);
+    assert_eq!(*names, expected);
     assert!(rig.collider.tags().iter().all(|tag| *tag == fur));
 }
 
@@ -209,26 +214,25 @@ fn bad_files_say_what_is_wrong() {
         "{missing}"
     );
     let options = LoadOptions::default();
-    assert!(matches!(
-        load_slice(b"hello", &options).map_err(|error| error.kind),
-        Err(GltfErrorKind::Format(_))
-    ));
-    assert!(matches!(
-        load_slice(b"", &options).map_err(|error| error.kind),
-        Err(GltfErrorKind::Format(_))
-    ));
+    for (bytes, text) in [
+        (&b"hello"[..], "neither GLB nor glTF"),
+        (b"", "the file is empty"),
+        (b"glTF\x02\0\0\0", "ends after 8 of 12 bytes"),
+    ] {
+        let error = load_slice(bytes, &options).unwrap_err();
+        assert_eq!(error.to_string(), text);
+    }
     let Some(path) = test_data::file("truncated files", "models/RiggedSimple.glb") else {
         return;
     };
     let bytes = std::fs::read(&path).unwrap();
-    for cut in (0..bytes.len()).step_by(61) {
-        assert!(load_slice(&bytes[..cut], &options).is_err(), "cut at {cut}");
+    for cut in (12..bytes.len()).step_by(61) {
+        let error = load_slice(&bytes[..cut], &options).unwrap_err();
+        let text = format!("ends after {cut} of {} bytes", bytes.len());
+        assert_eq!(error.to_string(), text);
     }
     assert!(load_slice(&bytes, &options).is_ok());
-    let second = LoadOptions {
-        skin: Some(1),
-        ..options
-    };
+    let second = options.with_skin(1);
     let error = load_slice(&bytes, &second).unwrap_err();
     assert!(
         matches!(
@@ -240,4 +244,56 @@ fn bad_files_say_what_is_wrong() {
         ),
         "{error}"
     );
+}
+
+/// A document of two triangles, one above the other, the upper one of a material whose extras give the number 7.
+fn two_triangles() -> String {
+    let corners = |y: f32| [[0.0, y, 0.0], [0.0, y, 1.0], [1.0, y, 0.0]];
+    let floats = corners(1.0).into_iter().chain(corners(0.0)).flatten();
+    let data: String = floats
+        .flat_map(f32::to_le_bytes)
+        .map(|byte| format!("%{byte:02x}"))
+        .collect();
+    let triangle = |offset: usize| {
+        format!(
+            r#"{{"bufferView": 0, "byteOffset": {offset}, "componentType": 5126, "count": 3, "type": "VEC3"}}"#
+        )
+    };
+    let (upper, lower) = (triangle(0), triangle(36));
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "nodes": [{{"mesh": 0}}],
+        "materials": [{{"name": "pelt", "extras": {{"clamber": {{"surface": "fur", "user": 7}}}}}}],
+        "meshes": [{{"primitives": [
+            {{"attributes": {{"POSITION": 0}}, "material": 0}}, {{"attributes": {{"POSITION": 1}}}}]}}],
+        "accessors": [{upper}, {lower}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 72}}],
+        "buffers": [{{"byteLength": 72, "uri": "data:,{data}"}}]}}"#
+    )
+}
+
+/// The numbers found from above and from below, by the surface and by the world.
+fn users_found(options: &LoadOptions) -> [u32; 2] {
+    let rig = load_slice(two_triangles().as_bytes(), options).unwrap();
+    let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();
+    let mut surface = SkinnedSurface::new(rig.collider.clone());
+    surface.advance(&palette, Similarity::IDENTITY).unwrap();
+    [(2.0, -1.0), (-1.0, 1.0)].map(|(y, down)| {
+        let origin = Vec3::new(0.25, y, 0.25);
+        let ray = Ray::new(origin, Vec3::Y * down).unwrap();
+        let hit = surface.in_model().cast_ray(&ray, 10.0).unwrap();
+        let (origin, direction) = (origin.as_dvec3(), DVec3::Y * f64::from(down));
+        let contact = Obstacle::cast_ray(&surface, origin, direction, 10.0).unwrap();
+        assert_eq!(contact.tag, hit.tag);
+        hit.tag.user
+    })
+}
+
+#[test]
+fn the_games_own_number_reaches_hits_and_contacts() {
+    assert_eq!(users_found(&LoadOptions::default()), [7, 0]);
+    let tagged = LoadOptions::default().with_tags(|name, of_file| match name {
+        Some("pelt") => of_file.with_user(of_file.user << 24),
+        _ => of_file.with_user(9),
+    });
+    assert_eq!(users_found(&tagged), [7 << 24, 9]);
 }

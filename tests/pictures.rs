@@ -10,7 +10,7 @@
 mod common;
 
 use clamber::prelude::*;
-use clamber::render::{Camera, Drawn, Frame, Image, Light, MeshSource, Overlay, Renderer};
+use clamber::render::{Camera, Drawn, Frame, Image, Light, Look, Overlay, RenderMesh, Renderer};
 use clamber_scenes::giant::giant;
 use clamber_scenes::picture::add_collider;
 use clamber_scenes::{Creature, test_data};
@@ -99,11 +99,11 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     ];
     let halves = |[a, b, c, d]: [u32; 4]| [[a, c, b], [a, d, c]];
     let triangles: Vec<[u32; 3]> = sides.into_iter().flat_map(halves).collect();
-    let figure = renderer.add_mesh(&MeshSource {
+    let figure = renderer.add_mesh(&RenderMesh {
         positions: &corners,
         colors: &[[1.0, 0.0, 0.0]; 8],
         triangles: &triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     let figure = figure.unwrap();
     let mut surface = SkinnedSurface::new(giant.collider.clone());
@@ -131,7 +131,8 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
             overlay: Overlay::default(),
         };
         let corners = surface.mesh().triangles()[hit.material.key as usize];
-        let corners = corners.map(|v| root.transform_point_f32(surface.position(v).unwrap()));
+        let corners =
+            corners.map(|v| root.transform_point_f32(surface.in_model().position(v).unwrap()));
         frame.overlay.triangle(corners, [0.0, 1.0, 0.0, 1.0]);
         let is_green = |[r, g, b]: [u8; 3]| g > 120 && r < 80 && b < 80;
         let green = find(&renderer.draw(&frame).unwrap(), is_green);
@@ -164,4 +165,33 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
             .filter(|p| (p[0] - middle[0]).abs() < 3.0 && p[1] > foot);
         assert!(below.count() > 3, "no skin under it");
     }
+}
+
+#[test]
+fn a_rigs_meshes_are_ready_for_the_renderer() {
+    let mut rig = clamber::gltf::load(clamber_scenes::giant::path()).unwrap();
+    let tinted = rig.visual[0].positions.len();
+    rig.visual[0].colors = vec![[0.5, 1.0, 0.0, 1.0]; tinted];
+    let sources: Vec<_> = clamber::visual_meshes(&rig).collect();
+    assert_eq!(sources.len(), rig.visual.len());
+    for (source, mesh) in sources.iter().zip(&rig.visual) {
+        let source = source.source();
+        assert_eq!(source.positions, mesh.positions);
+        assert_eq!(source.skin.unwrap().ends, mesh.influence_ends);
+        let mut triangles = source.triangles.iter();
+        for primitive in &mesh.primitives {
+            let base = rig.materials[primitive.material.unwrap()].base_color;
+            for corners in &primitive.triangles {
+                assert_eq!(triangles.next(), Some(corners));
+                let vertex = corners[0] as usize;
+                let own = mesh.colors.get(vertex).unwrap_or(&[1.0; 4]);
+                let expected = [base[0] * own[0], base[1] * own[1], base[2] * own[2]];
+                assert_eq!(source.colors[vertex], expected);
+                let look = Look::from(primitive.tag.kind);
+                assert_eq!(source.looks[vertex], look);
+            }
+        }
+        assert_eq!(triangles.next(), None);
+    }
+    assert!(sources[0].source().looks.contains(&Look::Fur));
 }

@@ -6,9 +6,9 @@
 )]
 
 use allocation_counter::measure;
-use clamber::geometry::Capsule;
+use clamber::geometry::{Capsule, Ray};
 use clamber::prelude::*;
-use clamber::surface::TOLERANCE;
+use clamber::surface::CastOptions;
 use clamber_scenes::giant;
 use glam::{DQuat, DVec3, Vec3};
 
@@ -82,44 +82,35 @@ impl Scene {
             let motion = self.surface.motion(anchor, 1.0 / 60.0).unwrap();
             let origin = motion.position + motion.normal * 0.5;
             let ray = Ray::new(origin, -motion.normal).unwrap();
-            let hit = self.surface.cast_ray(&ray, 2.0).unwrap();
+            let space = self.surface.in_model();
+            let hit = space.cast_ray(&ray, 2.0);
             self.found += usize::from(hit.is_some());
-            self.found += usize::from(self.surface.intersects_ray(&ray, 2.0).unwrap());
+            self.found += usize::from(space.intersects_ray(&ray, 2.0));
             let hits = &mut self.hits;
-            self.surface.cast_ray_all(&ray, 50.0, hits).unwrap();
+            space.cast_ray_all(&ray, 50.0, hits);
             self.found += hits.len();
-            let near = self.surface.closest_point(origin, 2.0).unwrap();
+            let near = space.closest_point(origin, 2.0);
             self.found += usize::from(near.is_some());
-            let body = Sphere {
-                center: origin,
-                radius: 1.0,
-            };
-            self.surface.overlap_sphere(&body, hits).unwrap();
-            self.found += hits.len();
-            let limb = Capsule {
-                a: origin,
-                b: motion.position,
-                radius: 0.5,
-            };
-            self.surface.overlap_capsule(&limb, hits).unwrap();
-            self.found += hits.len();
-            let near = self.surface.closest_to_capsule(&limb, 1.0).unwrap();
-            self.found += usize::from(near.is_some());
+            let body = Capsule::ball(origin, 1.0).unwrap();
+            let limb = Capsule::new(origin, motion.position, 0.5).unwrap();
             let (way, swept) = (-motion.normal * 3.0, &mut self.swept);
-            let hit = self.surface.sweep_sphere(&body, way, TOLERANCE).unwrap();
-            self.found += usize::from(hit.is_some());
-            self.surface
-                .sweep_capsule_all(&limb, [way, Vec3::ZERO], TOLERANCE, swept)
-                .unwrap();
-            self.found += swept.len();
+            for capsule in [&body, &limb] {
+                space.overlap_capsule(capsule, hits);
+                self.found += hits.len();
+                let near = space.closest_to_capsule(capsule, 1.0);
+                self.found += usize::from(near.is_some());
+                for options in [CastOptions::STILL, CastOptions::MOVING] {
+                    let hit = space.cast_capsule(capsule, [way; 2], &options);
+                    self.found += usize::from(hit.is_some());
+                    space.cast_capsule_all(capsule, [way, Vec3::ZERO], &options, swept);
+                    self.found += swept.len();
+                }
+            }
         }
         if touch == Touch::Everything {
-            let everything = Sphere {
-                center: Vec3::ZERO,
-                radius: f32::INFINITY,
-            };
+            let everything = Capsule::ball(Vec3::ZERO, f32::MAX).unwrap();
             let hits = &mut self.hits;
-            self.surface.overlap_sphere(&everything, hits).unwrap();
+            self.surface.in_model().overlap_capsule(&everything, hits);
         }
         self.surface.skin_all(&mut self.positions);
     }

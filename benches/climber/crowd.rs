@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber::prelude::*;
+use clamber::rig::Pose;
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::measure::{Bound, Cells, quantile};
 use clamber_scenes::tour::{self, RATE};

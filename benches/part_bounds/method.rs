@@ -3,11 +3,11 @@
 use std::fmt;
 
 use clamber::SimdLevel;
-use clamber::geometry::{BoundingVolume, Capsule, Sphere};
+use clamber::geometry::Sphere;
 use clamber::mesh::PartId;
 use clamber::rig::Palette;
 use clamber::skin::skin_into;
-use clamber::surface::{JointMaps, NodeBounds, refit_part_spheres};
+use clamber_scenes::part_bounds::{BoundingCapsule, BoundingVolume, JointMaps, NodeBounds};
 use glam::Vec3;
 
 use crate::poses::Subject;
@@ -59,7 +59,6 @@ pub(crate) const METHODS: [Method; 9] = [
 pub(crate) struct Workspace {
     maps: JointMaps,
     positions: Vec<Vec3>,
-    spheres: Vec<Option<Sphere>>,
     /// The result, by part.
     pub(crate) volumes: Vec<Option<BoundingVolume>>,
 }
@@ -100,21 +99,21 @@ impl Method {
         assert_eq!(skinned, Ok(()), "{}", subject.label());
         let positions = &workspace.positions;
         if self.shape == Shape::Sphere {
-            refit_part_spheres(mesh, positions, &mut workspace.spheres);
-            let spheres = workspace.spheres.iter();
-            let spheres = spheres.map(|sphere| sphere.map(BoundingVolume::Sphere));
-            workspace.volumes.extend(spheres);
+            // The thesis's way (5.2.4).
+            workspace.volumes.extend(mesh.parts().iter().map(|part| {
+                let vertices = part.vertices.iter().map(|v| positions[v.index()]);
+                Sphere::around_mean(vertices).map(BoundingVolume::Sphere)
+            }));
         } else {
             workspace.volumes.extend(mesh.parts().iter().map(|part| {
                 let vertices = part.vertices.iter().map(|v| positions[v.index()]);
-                Capsule::around_principal_axis(vertices).map(BoundingVolume::Capsule)
+                BoundingCapsule::around_principal_axis(vertices).map(BoundingVolume::Capsule)
             }));
         }
     }
 
     fn derive(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
-        let read = workspace.maps.update(&subject.creature.collider, palette);
-        assert_eq!(read, Ok(()), "{}", subject.label());
+        workspace.maps.update(palette);
         let maps = &workspace.maps;
         let volume = |node: &NodeBounds| match (self.source, self.shape) {
             (Source::PaletteHull, _) => BoundingVolume::Sphere(node.hull(maps)),

@@ -1,8 +1,8 @@
 //! A creature with the poses that it is measured in.
 
 use clamber::rig::{Clip, Palette, Playback, Pose, RigError};
-use clamber::surface::PartBounds;
 use clamber_scenes::Creature;
+use clamber_scenes::part_bounds::PartBounds;
 
 use crate::precomputed::Precomputed;
 

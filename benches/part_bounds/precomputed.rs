@@ -2,10 +2,11 @@
 //! its vertices in every sampled pose. A tick only moves them with the joint. Nothing holds the
 //! vertices in poses that were not sampled.
 
-use clamber::geometry::{BoundingVolume, Capsule, Sphere};
+use clamber::geometry::Sphere;
 use clamber::mesh::{ColliderMesh, Part};
 use clamber::rig::Palette;
 use clamber::skin::skin;
+use clamber_scenes::part_bounds::{BoundingCapsule, BoundingVolume};
 use glam::{DAffine3, Vec3};
 
 /// Relative; what rounding may move a vertex of a sampled pose on its way into the joint's space
@@ -15,7 +16,7 @@ const MARGIN: f32 = 1e-4;
 /// One sphere and capsule per part, in joint space.
 #[derive(Default)]
 pub(crate) struct Precomputed {
-    shapes: Vec<Option<(Sphere, Capsule)>>,
+    shapes: Vec<Option<(Sphere, BoundingCapsule)>>,
 }
 
 impl Precomputed {
@@ -37,7 +38,7 @@ impl Precomputed {
         }
         let shapes = points.iter().map(|points| {
             let mut sphere = Sphere::nearly_smallest(points.iter().copied())?;
-            let mut capsule = Capsule::around_principal_axis(points.iter().copied())?;
+            let mut capsule = BoundingCapsule::around_principal_axis(points.iter().copied())?;
             sphere.radius *= 1.0 + MARGIN;
             capsule.radius += capsule.radius.max(capsule.a.distance(capsule.b)) * MARGIN;
             Some((sphere, capsule))
@@ -57,7 +58,7 @@ impl Precomputed {
 
     pub(crate) fn capsule(&self, part: usize, moved: &DAffine3) -> Option<BoundingVolume> {
         let (_, capsule) = self.shapes[part]?;
-        Some(BoundingVolume::Capsule(Capsule {
+        Some(BoundingVolume::Capsule(BoundingCapsule {
             a: place(moved, capsule.a),
             b: place(moved, capsule.b),
             radius: capsule.radius * scale(moved),

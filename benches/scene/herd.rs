@@ -4,7 +4,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 use clamber::prelude::*;
-use clamber::rig::Clip;
+use clamber::rig::{Clip, Pose};
 use clamber_scenes::{Creature, valley};
 use glam::DVec3;
 use rayon::prelude::*;

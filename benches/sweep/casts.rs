@@ -4,12 +4,14 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
+use clamber::geometry::{Capsule, Sphere};
 use clamber::prelude::*;
-use clamber::surface::TOLERANCE;
+
 use clamber_scenes::giant::giant_of;
 use clamber_scenes::measure::{Bound, Cells, quantile};
 use glam::Vec3;
 
+use crate::TOLERANCE;
 use crate::parry::Parry;
 
 /// One moving sphere, in model space.
@@ -111,17 +113,18 @@ impl Field {
     }
 
     fn cast(&self, cast: &Cast) -> Option<SweepHit> {
-        let found = self
-            .surface
-            .cast_sphere(&cast.sphere, cast.motion, TOLERANCE);
-        found.ok().flatten()
+        self.answer(cast, CastOptions::STILL)
     }
 
     fn sweep(&self, cast: &Cast) -> Option<SweepHit> {
-        let found = self
-            .surface
-            .sweep_sphere(&cast.sphere, cast.motion, TOLERANCE);
-        found.ok().flatten()
+        self.answer(cast, CastOptions::MOVING)
+    }
+
+    fn answer(&self, cast: &Cast, options: CastOptions) -> Option<SweepHit> {
+        let ball = Capsule::ball(cast.sphere.center, cast.sphere.radius)?;
+        let options = options.with_tolerance(TOLERANCE);
+        let space = self.surface.in_model();
+        space.cast_capsule(&ball, [cast.motion; 2], &options)
     }
 
     /// Seeded: from above random points of the skin, where nothing is in the way yet, down to it at
@@ -140,7 +143,8 @@ impl Field {
             let coordinate = |rng: &mut fastrand::Rng| rng.f32() * 2.0 - 1.0;
             let aside = Vec3::from([(); 3].map(|()| coordinate(&mut rng))).normalize_or(Vec3::X);
             let motion = (aside - skin.normal).normalize_or(-skin.normal) * (WAY * radius);
-            let nearest = self.surface.closest_point(sphere.center, radius * 1.01)?;
+            let space = self.surface.in_model();
+            let nearest = space.closest_point(sphere.center, radius * 1.01);
             if nearest.is_none() {
                 casts.push(Cast { sphere, motion });
             }

@@ -13,6 +13,9 @@ mod casts;
 mod pairs;
 mod parry;
 
+/// How near a cast comes before it counts as a contact, metres.
+pub(crate) const TOLERANCE: f32 = 1e-4;
+
 use std::error::Error;
 use std::process::ExitCode;
 

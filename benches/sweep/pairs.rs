@@ -4,11 +4,13 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Duration;
 
+use clamber::geometry::Capsule;
 use clamber::prelude::*;
-use clamber::surface::TOLERANCE;
+use clamber::surface::CastOptions;
 use clamber_scenes::measure::{Bound, Cells, median_us};
 use glam::{DVec3, Vec3};
 
+use crate::TOLERANCE;
 use crate::additive::{End, MOST_STEPS, additive};
 
 /// Of the sphere, which stands still at the origin while sheets pass by that it would hide.
@@ -59,23 +61,21 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
 /// Microseconds for all sheets, each a surface of its own.
 fn ours(name: &str, sheets: &[Sheet]) -> Result<f64, Box<dyn Error>> {
     let surfaces = sheets.iter().map(posed).collect::<Result<Vec<_>, _>>()?;
-    let sphere = Sphere {
-        center: Vec3::ZERO,
-        radius: RADIUS,
-    };
+    let ball = Capsule::ball(Vec3::ZERO, RADIUS).ok_or("no ball")?;
+    let options = CastOptions::MOVING.with_tolerance(TOLERANCE);
     let mut hits = Vec::new();
     let mut found = 0;
     let time = median_us(Duration::from_millis(300), || {
         found = 0;
         for surface in &surfaces {
-            let swept = surface.sweep_sphere_all(&sphere, Vec3::ZERO, TOLERANCE, &mut hits);
-            assert_eq!(swept, Ok(()));
+            let space = surface.in_model();
+            space.cast_capsule_all(&ball, [Vec3::ZERO; 2], &options, &mut hits);
             found += hits.len();
         }
     });
     let steps = surfaces
         .iter()
-        .map(|s| s.diagnostics().most_sweep_steps)
+        .map(|s| s.diagnostics().most_cast_steps)
         .max();
     println!("{name}: ours: {found} contacts, at most {steps:?} steps");
     Ok(time)

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use clamber::SimdLevel;
+use clamber::geometry::{Capsule, Sphere};
 use clamber::prelude::*;
 use clamber::skin::skin_into;
 use clamber::world::rapier3d::parry::bounding_volume::Aabb;
@@ -44,14 +45,16 @@ impl Lazy {
 
     fn answer(&mut self, tick: &Tick) -> usize {
         let mut found = 0;
+        let space = self.surface.in_model();
         for rider in &tick.riders {
             for sphere in [&rider.body, &rider.foot] {
-                let answered = self.surface.overlap_sphere(sphere, &mut self.hits);
-                assert_eq!(answered, Ok(()));
-                found += self.hits.len();
+                if let Some(ball) = Capsule::ball(sphere.center, sphere.radius) {
+                    space.overlap_capsule(&ball, &mut self.hits);
+                    found += self.hits.len();
+                }
             }
-            let hit = self.surface.cast_ray(&rider.ray, rider.reach);
-            found += usize::from(hit.is_ok_and(|hit| hit.is_some()));
+            let hit = space.cast_ray(&rider.ray, rider.reach);
+            found += usize::from(hit.is_some());
             let motion = self.surface.motion(&rider.anchor, 1.0 / 60.0);
             found += usize::from(motion.is_ok());
         }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clamber::SimdLevel;
+use clamber::measure::skin_clusters;
 use clamber::prelude::*;
-use clamber::skin::skin_clusters;
 use clamber_scenes::measure::median_us;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 

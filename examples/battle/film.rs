@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clamber::gltf::load;
 use clamber::prelude::*;
-use clamber::render::{Camera, Drawn, Frame, Gif, Gpu, Look, MeshId, MeshSource, Renderer};
+use clamber::render::{Camera, Drawn, Frame, Gif, Gpu, Look, RenderMesh, RenderMeshId, Renderer};
 use clamber::world::rapier3d::prelude::*;
 use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::picture::{Stage, add_visual, light, orbit, sharp};
@@ -30,7 +30,7 @@ const FUR: f64 = 1.2;
 pub(crate) struct Film {
     renderer: Renderer,
     stage: Stage,
-    rocks: Vec<(RigidBodyHandle, MeshId)>,
+    rocks: Vec<(RigidBodyHandle, RenderMeshId)>,
     camera: CameraKind,
     overlays: Overlays,
     height: f64,
@@ -197,7 +197,7 @@ fn add_rock(
     renderer: &mut Renderer,
     shape: &SharedShape,
     color: [f32; 3],
-) -> Result<MeshId, Failure> {
+) -> Result<RenderMeshId, Failure> {
     let (positions, triangles) = match shape.as_typed_shape() {
         TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
         TypedShape::Cuboid(cuboid) => cuboid.to_trimesh(),
@@ -211,11 +211,11 @@ fn add_rock(
     };
     let colors = vec![color; positions.len()];
     let looks = vec![Look::Stone; positions.len()];
-    Ok(renderer.add_mesh(&MeshSource {
+    Ok(renderer.add_mesh(&RenderMesh {
         positions: &positions,
         colors: &colors,
         looks: &looks,
         triangles: &triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })?)
 }

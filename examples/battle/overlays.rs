@@ -10,9 +10,9 @@ use clamber::mesh::{Part, PartId, VertexId};
 use clamber::prelude::*;
 use clamber::render::{Camera, Color, Image, Overlay, TextSize};
 use clamber::rig::JointId;
-use clamber::surface::{JointMaps, PartBounds};
 use clamber::world::rapier3d::prelude::*;
 use clamber_scenes::battle::{Battle, CREATURE, TICK};
+use clamber_scenes::part_bounds::{JointMaps, PartBounds};
 use glam::{DVec3, Vec3};
 
 use crate::OverlayKind;
@@ -258,7 +258,7 @@ fn anchors(mesh: &Arc<ColliderMesh>) -> Vec<MaterialPoint> {
         let away = (part.middle - middle) / mesh.radius();
         let outward = (part.normal / part.area + away).normalize_or(Vec3::Y);
         let ray = Ray::new(part.middle + outward * far, -outward)?;
-        let hit = surface.cast_ray(&ray, 2.0 * far).ok()??;
+        let hit = surface.in_model().cast_ray(&ray, 2.0 * far)?;
         Some(MaterialPoint::on_triangle(hit.triangle, hit.barycentric))
     });
     found.collect()
@@ -313,19 +313,17 @@ fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
     let mesh = battle.surface().mesh();
     let root = battle.surface().world_from_model();
     let bounds = PartBounds::new(mesh);
-    let Ok(maps) = JointMaps::new(mesh, battle.palette()) else {
-        return;
-    };
-    for part in (0..bounds.part_count() as u32).map(PartId) {
-        if kind == OverlayKind::Spheres
-            && let Some(sphere) = bounds.sphere(part, &maps)
-        {
+    let mut maps = JointMaps::default();
+    maps.update(battle.palette());
+    let parts = (0..bounds.part_count() as u32).map(PartId);
+    for node in parts.filter_map(|part| bounds.node(part)) {
+        if kind == OverlayKind::Spheres {
+            let sphere = node.sphere(&maps);
             let center = root.transform_point_f32(sphere.center);
             over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
         }
-        if kind == OverlayKind::Capsules
-            && let Some(capsule) = bounds.capsule(part, &maps)
-        {
+        if kind == OverlayKind::Capsules {
+            let capsule = node.capsule(&maps);
             let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
             over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);
         }
@@ -372,7 +370,7 @@ fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
 /// The corners of a triangle, in the world.
 fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
     let corners = surface.mesh().triangles().get(triangle.index())?;
-    let [a, b, c] = corners.map(|vertex| surface.position(vertex));
+    let [a, b, c] = corners.map(|vertex| surface.in_model().position(vertex));
     let root = surface.world_from_model();
     Some([a?, b?, c?].map(|corner| root.transform_point_f32(corner)))
 }

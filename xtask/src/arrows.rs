@@ -68,7 +68,7 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 8] = [
 const KEPT_TO: [(&str, &str); 9] = [
     ("avian3d", "bevy_clamber"),
     ("rapier3d", "clamber_world"),
-    ("parry3d", "clamber_surface"),
+    ("parry3d", "clamber_world"),
     ("gltf", "clamber_gltf"),
     ("wgpu", "clamber_render"),
     ("embedded-graphics", "clamber_render"),
@@ -87,7 +87,6 @@ const CORE: (&str, &[&str]) = (
         "fearless_simd",
         "glam",
         "libm",
-        "parry3d",
         "rayon",
         "serde",
         "thiserror",

@@ -6,8 +6,10 @@ mod arrows;
 mod benches;
 mod build;
 mod examples;
+mod face;
 mod features;
 mod golden;
+mod modules;
 mod packages;
 mod peers;
 mod run;
@@ -37,6 +39,8 @@ enum Task {
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
     },
+    /// Stores the public items of each crate, with which `ci` compares those that it finds.
+    Face,
     /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
     /// checks by itself, off-screen. A job of its own: a cold build of Bevy takes many minutes.
     App,
@@ -61,7 +65,7 @@ enum Task {
 /// A step of `ci`: what it is called and what it does.
 type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     ("tests", |_| {
         peers::check()?;
         cargo(&[&["test"][..], &build::selection()].concat())
@@ -96,13 +100,20 @@ const STEPS: [Step; 10] = [
         ];
         run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
     }),
+    ("face", face::check),
     ("examples", examples::run),
     ("benches", benches::run),
-    ("arrows", arrows::check),
+    ("arrows", |metadata| {
+        arrows::check(metadata)?;
+        modules::check()
+    }),
     ("packages", packages::check),
 ];
 
 fn main() -> ExitCode {
+    if let Some(ended) = face::as_rustdoc() {
+        return ended;
+    }
     let task = Arguments::parse().task;
     let metadata = match MetadataCommand::new().exec() {
         Ok(metadata) => metadata,
@@ -120,6 +131,7 @@ fn main() -> ExitCode {
     let only = match task {
         Task::Ci { only } => only,
         Task::App => return ended(app::check()),
+        Task::Face => return ended(face::store(&metadata)),
         Task::Soak {
             minutes,
             seed,

@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
+use clamber_surface::mesh::MeshId;
 use clamber_surface::rig;
 use clamber_surface::surface::{Anchor, SkinnedSurface};
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
@@ -19,7 +20,7 @@ const MAX_DEPTH: usize = 4096;
 /// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, position
 /// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is left alone. When the
 /// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered. Of skin that is only
-/// disabled it is not, nor where a collider is built anew that has a triangle of that number. An entity that is
+/// disabled it is not, nor where a collider is built anew from the same mesh. An entity that is
 /// `Disabled` is gone, as for all of Bevy's queries.
 ///
 /// Under a parent that is scaled unevenly no rotation is exact: the position is, and where +Y points.
@@ -31,6 +32,8 @@ pub struct SurfaceAnchor {
     /// The entity with the [`PosedSurface`].
     #[entities]
     pub surface: Entity,
+    /// The collider mesh that the point belongs to: on another one it is gone.
+    pub mesh: MeshId,
     /// The point of skin, where it was last drawn, how the skin around it was turned, and how far off it the entity is.
     /// Its obstacle is [`SurfaceAnchor::obstacle_of`] the surface.
     pub attachment: Attachment,
@@ -47,6 +50,7 @@ impl SurfaceAnchor {
         let here = here.map(|motion| world_from_model.transform_point_f32(motion.position));
         Self {
             surface: entity,
+            mesh: anchor.mesh,
             attachment: Attachment {
                 obstacle: Self::obstacle_of(entity),
                 point: MaterialPoint::on_triangle(anchor.triangle, anchor.barycentric),
@@ -69,6 +73,7 @@ impl SurfaceAnchor {
     pub fn anchor(&self) -> Option<Anchor> {
         let point = &self.attachment.point;
         Some(Anchor {
+            mesh: self.mesh,
             triangle: point.triangle()?,
             barycentric: point.coordinates.map(|weight| weight as f32),
             frame: Quat::IDENTITY,

@@ -12,7 +12,7 @@ use bevy_reflect::prelude::*;
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
 
-use crate::query::{local_ray, world_hit};
+use crate::query::{in_f64, world_hit};
 use crate::{ClamberSystems, PosedSurface, SurfaceAnchor, WorldHit};
 
 /// Where a pointer meets skin: the extra data of its `HitData`, whose position and outward unit normal are in world
@@ -145,9 +145,11 @@ fn cast(
     surface.pose_as_drawn()?;
     let surface = &*surface;
     let drawn = surface.as_drawn()?;
-    let (ray, max_distance) = local_ray(drawn, ray, max_distance)?;
-    let hit = drawn.cast_ray(&ray, max_distance).ok()??;
-    let world = world_hit(entity, drawn, &hit);
+    let (origin, along) = in_f64(ray);
+    let hit = drawn
+        .in_world()
+        .cast_ray(origin, along, max_distance.into())?;
+    let world = world_hit(entity, &hit);
     let normal = world.normal.try_normalize().unwrap_or(Vec3::Y);
     let outward = Quat::from_rotation_arc(Vec3::Y, normal);
     let pick = SurfacePick {
@@ -156,7 +158,7 @@ fn cast(
         barycentric: hit.barycentric,
         part: hit.part,
         tag: hit.tag,
-        anchor: SurfaceAnchor::new(entity, drawn, drawn.anchor_at(&hit), outward),
+        anchor: SurfaceAnchor::new(entity, drawn, drawn.anchor_at(&hit).ok()?, outward),
     };
     Some((world, pick))
 }

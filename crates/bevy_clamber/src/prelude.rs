@@ -14,3 +14,4 @@ pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]
 pub use crate::{SurfacePick, SurfacePickingPlugin};
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+pub use clamber_surface::surface::TargetMotion;

@@ -2,15 +2,16 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_math::{Quat, Vec3};
 use bevy_shape::Ray3d;
-use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
+use clamber_surface::geometry::{Similarity, WorldCapsule};
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
-use clamber_surface::surface::{Motion, SkinnedSurface, SurfaceHit, SweepHit, TOLERANCE};
+use clamber_surface::surface::{self, Motion, TargetMotion};
+use glam::DVec3;
 
 use crate::{PosedSurface, SurfaceAnchor};
 
 /// How far, as a factor, to look for what is no farther, in the units of another surface: each way rounds to f32
 /// once or twice.
-const EQUAL: f32 = 1.0 + 8.0 * f32::EPSILON;
+const EQUAL: f64 = 1.0 + 8.0 * f32::EPSILON as f64;
 
 /// All surfaces of the world, in world space, as posed in the last tick.
 ///
@@ -108,9 +109,9 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldHit> {
+        let (origin, along) = in_f64(ray);
         self.nearest(filter, max_distance, |surface, max_distance| {
-            let (local, length) = local_ray(surface, ray, max_distance)?;
-            surface.cast_ray(&local, length).ok()?
+            surface.in_world().cast_ray(origin, along, max_distance)
         })
     }
 
@@ -121,10 +122,10 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> bool {
+        let (origin, along) = in_f64(ray);
         self.seen(filter).any(|(_, surface)| {
-            let met = local_ray(surface, ray, max_distance)
-                .and_then(|(local, length)| surface.intersects_ray(&local, length).ok());
-            met.unwrap_or(false)
+            let space = surface.in_world();
+            space.intersects_ray(origin, along, max_distance.into())
         })
     }
 
@@ -136,13 +137,14 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         hits: &mut Vec<WorldHit>,
     ) {
+        let (origin, along) = in_f64(ray);
         let mut found = Vec::new();
-        self.all(filter, hits, |surface, visit| {
-            let (local, length) = local_ray(surface, ray, max_distance)?;
-            surface.cast_ray_all(&local, length, &mut found).ok()?;
-            found.iter().for_each(visit);
-            Some(())
-        });
+        hits.clear();
+        for (entity, surface) in self.seen(filter) {
+            let space = surface.in_world();
+            space.cast_ray_all(origin, along, max_distance.into(), &mut found);
+            hits.extend(found.drain(..).map(|hit| world_hit(entity, &hit)));
+        }
         // Stable: within a surface the core's order stands.
         hits.sort_by(by_distance);
     }
@@ -155,9 +157,9 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldHit> {
         self.nearest(filter, max_distance, |surface, max_distance| {
-            let local = local_point(surface, point);
-            let length = local_length(surface, max_distance);
-            surface.closest_point(local, length).ok()?
+            surface
+                .in_world()
+                .closest_point(point.as_dvec3(), max_distance)
         })
     }
 
@@ -170,13 +172,7 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         hits: &mut Vec<WorldHit>,
     ) {
-        self.all(filter, hits, |surface, visit| {
-            let sphere = local_sphere(surface, center, radius);
-            surface
-                .visit_overlap_sphere(&sphere, |hit| visit(&hit))
-                .ok()
-        });
-        hits.sort_unstable_by(by_distance_and_triangle);
+        self.overlap_capsule([center; 2], radius, filter, hits);
     }
 
     /// Every triangle within a capsule around a segment, each with its own point nearest to the segment. `hits` is
@@ -188,83 +184,49 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         hits: &mut Vec<WorldHit>,
     ) {
-        self.all(filter, hits, |surface, visit| {
-            let capsule = local_capsule(surface, ends, radius);
-            surface
-                .visit_overlap_capsule(&capsule, |hit| visit(&hit))
-                .ok()
-        });
+        let capsule = capsule(ends, radius);
+        hits.clear();
+        for (entity, surface) in self.seen(filter) {
+            let space = surface.in_world();
+            space.visit_overlap_capsule(&capsule, |hit| hits.push(world_hit(entity, &hit)));
+        }
         hits.sort_unstable_by(by_distance_and_triangle);
     }
 
-    /// The first contact of a sphere that moves by `motion`, with all skin standing still.
+    /// The first contact of a sphere that moves by `motion` with all skin, which stands still, or moves over the last
+    /// tick meanwhile.
     pub fn cast_sphere(
         &self,
         center: Vec3,
         radius: f32,
         motion: Vec3,
+        target: TargetMotion,
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldSweepHit> {
-        self.first(filter, |surface| {
-            let sphere = local_sphere(surface, center, radius);
-            let motion = local_vector(surface, motion);
-            surface
-                .cast_sphere(&sphere, motion, tolerance(surface))
-                .ok()?
-        })
+        self.cast_capsule([center; 2], radius, [motion; 2], target, filter)
     }
 
-    /// The first contact of a capsule whose ends each move by one of `motions`, with all skin standing still.
+    /// The first contact of a capsule whose ends each move by one of `motions` with all skin, which stands still, or moves
+    /// over the last tick meanwhile.
     pub fn cast_capsule(
         &self,
         ends: [Vec3; 2],
         radius: f32,
         motions: [Vec3; 2],
+        target: TargetMotion,
         filter: &SurfaceFilter<'_>,
     ) -> Option<WorldSweepHit> {
-        self.first(filter, |surface| {
-            let capsule = local_capsule(surface, ends, radius);
-            let motions = motions.map(|motion| local_vector(surface, motion));
-            surface
-                .cast_capsule(&capsule, motions, tolerance(surface))
-                .ok()?
-        })
-    }
-
-    /// The first contact of a sphere that moves by `motion` over the last tick, with skin that moves over the same
-    /// tick.
-    pub fn sweep_sphere(
-        &self,
-        center: Vec3,
-        radius: f32,
-        motion: Vec3,
-        filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldSweepHit> {
-        self.first(filter, |surface| {
-            let sphere = local_sphere(surface, center, radius);
-            let motion = local_vector(surface, motion);
-            surface
-                .sweep_sphere(&sphere, motion, tolerance(surface))
-                .ok()?
-        })
-    }
-
-    /// The first contact of a capsule whose ends each move by one of `motions` over the last tick, with skin that
-    /// moves over the same tick.
-    pub fn sweep_capsule(
-        &self,
-        ends: [Vec3; 2],
-        radius: f32,
-        motions: [Vec3; 2],
-        filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldSweepHit> {
-        self.first(filter, |surface| {
-            let capsule = local_capsule(surface, ends, radius);
-            let motions = motions.map(|motion| local_vector(surface, motion));
-            surface
-                .sweep_capsule(&capsule, motions, tolerance(surface))
-                .ok()?
-        })
+        let capsule = capsule(ends, radius);
+        let motions = motions.map(|motion| motion.as_dvec3());
+        let hits = self.seen(filter).filter_map(|(entity, surface)| {
+            let hit = surface.in_world().cast_capsule(&capsule, motions, target)?;
+            Some((hit.time, world_sweep_hit(entity, &hit)))
+        });
+        let earlier = hits.min_by(|(time, a), (other, b)| {
+            let by_time = time.total_cmp(other);
+            by_time.then_with(|| by_distance(&a.hit, &b.hit))
+        });
+        earlier.map(|(_, hit)| hit)
     }
 
     /// What sticks an entity to a hit's point, its +Y along the skin's outward normal. `None` if that surface or
@@ -310,52 +272,26 @@ impl SurfaceQuery<'_, '_> {
     fn nearest(
         &self,
         filter: &SurfaceFilter<'_>,
-        mut max_distance: f32,
-        find: impl Fn(&PosedSurface, f32) -> Option<SurfaceHit>,
+        max_distance: f32,
+        find: impl Fn(&PosedSurface, f64) -> Option<surface::WorldHit>,
     ) -> Option<WorldHit> {
-        let mut nearest: Option<WorldHit> = None;
+        let mut max_distance = f64::from(max_distance);
+        let mut nearest: Option<(f64, WorldHit)> = None;
         for (entity, surface) in self.seen(filter) {
             let Some(hit) = find(surface, max_distance) else {
                 continue;
             };
-            let hit = world_hit(entity, surface, &hit);
-            if nearest.is_none_or(|nearest| by_distance(&hit, &nearest).is_lt()) {
-                max_distance = max_distance.min(hit.distance * EQUAL + f32::MIN_POSITIVE);
-                nearest = Some(hit);
+            let nearer = nearest.is_none_or(|(distance, nearest)| {
+                let by_distance = hit.distance.total_cmp(&distance);
+                by_distance.then(entity.cmp(&nearest.entity)).is_lt()
+            });
+            if nearer {
+                let least = f64::from(f32::MIN_POSITIVE);
+                max_distance = max_distance.min(hit.distance * EQUAL + least);
+                nearest = Some((hit.distance, world_hit(entity, &hit)));
             }
         }
-        nearest
-    }
-
-    /// What `visit` finds in each surface; where it gives `None`, that is nothing.
-    fn all(
-        &self,
-        filter: &SurfaceFilter<'_>,
-        hits: &mut Vec<WorldHit>,
-        mut visit: impl FnMut(&PosedSurface, &mut dyn FnMut(&SurfaceHit)) -> Option<()>,
-    ) {
-        hits.clear();
-        for (entity, surface) in self.seen(filter) {
-            let _ = visit(surface, &mut |hit| {
-                hits.push(world_hit(entity, surface, hit));
-            });
-        }
-    }
-
-    fn first(
-        &self,
-        filter: &SurfaceFilter<'_>,
-        find: impl Fn(&PosedSurface) -> Option<SweepHit>,
-    ) -> Option<WorldSweepHit> {
-        let hits = self.seen(filter).filter_map(|(entity, surface)| {
-            let hit = find(surface)?;
-            Some((hit.time, world_sweep_hit(entity, surface, &hit)))
-        });
-        let earlier = hits.min_by(|(time, a), (other, b)| {
-            let by_time = time.total_cmp(other);
-            by_time.then_with(|| by_distance(&a.hit, &b.hit))
-        });
-        earlier.map(|(_, hit)| hit)
+        nearest.map(|(_, hit)| hit)
     }
 }
 
@@ -368,13 +304,24 @@ fn by_distance_and_triangle(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
     by_distance(a, b).then_with(|| a.triangle.cmp(&b.triangle))
 }
 
-pub(crate) fn world_hit(entity: Entity, surface: &SkinnedSurface, hit: &SurfaceHit) -> WorldHit {
-    let world_from_model = surface.world_from_model();
+/// Origin and direction.
+pub(crate) fn in_f64(ray: Ray3d) -> (DVec3, DVec3) {
+    (ray.origin.as_dvec3(), ray.direction.as_vec3().as_dvec3())
+}
+
+fn capsule(ends: [Vec3; 2], radius: f32) -> WorldCapsule {
+    WorldCapsule {
+        ends: ends.map(|end| end.as_dvec3()),
+        radius: radius.into(),
+    }
+}
+
+pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> WorldHit {
     WorldHit {
         entity,
-        point: world_from_model.transform_point_f32(hit.point).as_vec3(),
-        normal: direction(world_from_model, hit.normal),
-        distance: (f64::from(hit.distance) * world_from_model.scale) as f32,
+        point: hit.point.as_vec3(),
+        normal: hit.normal.as_vec3(),
+        distance: hit.distance as f32,
         triangle: hit.triangle,
         barycentric: hit.barycentric,
         part: hit.part,
@@ -382,75 +329,14 @@ pub(crate) fn world_hit(entity: Entity, surface: &SkinnedSurface, hit: &SurfaceH
     }
 }
 
-fn world_sweep_hit(entity: Entity, surface: &PosedSurface, hit: &SweepHit) -> WorldSweepHit {
-    let world_from_model = surface.world_from_model();
+fn world_sweep_hit(entity: Entity, hit: &surface::WorldSweepHit) -> WorldSweepHit {
     WorldSweepHit {
         hit: WorldHit {
-            entity,
-            point: world_from_model.transform_point_f32(hit.point).as_vec3(),
-            normal: direction(world_from_model, hit.normal),
-            distance: (hit.distance * world_from_model.scale) as f32,
-            triangle: hit.triangle,
-            barycentric: hit.barycentric,
-            part: hit.part,
-            tag: hit.tag,
+            normal: hit.away.as_vec3(),
+            ..world_hit(entity, &hit.hit)
         },
         time: hit.time as f32,
         started_inside: hit.started_inside,
         undecided: hit.undecided,
     }
-}
-
-fn direction(world_from_model: &Similarity, v: Vec3) -> Vec3 {
-    (world_from_model.rotation * v.as_dvec3()).as_vec3()
-}
-
-fn local_point(surface: &SkinnedSurface, point: Vec3) -> Vec3 {
-    surface
-        .world_from_model()
-        .inverse_transform_point_f32(point.as_dvec3())
-}
-
-fn local_vector(surface: &PosedSurface, vector: Vec3) -> Vec3 {
-    surface
-        .world_from_model()
-        .inverse_transform_vector(vector.as_dvec3())
-        .as_vec3()
-}
-
-fn local_length(surface: &SkinnedSurface, length: f32) -> f32 {
-    (f64::from(length) / surface.world_from_model().scale) as f32
-}
-
-pub(crate) fn local_ray(
-    surface: &SkinnedSurface,
-    ray: Ray3d,
-    max_distance: f32,
-) -> Option<(Ray, f32)> {
-    let along = surface
-        .world_from_model()
-        .inverse_transform_vector(ray.direction.as_dvec3())
-        .try_normalize()?;
-    let local = Ray::new(local_point(surface, ray.origin), along.as_vec3())?;
-    Some((local, local_length(surface, max_distance)))
-}
-
-fn local_sphere(surface: &PosedSurface, center: Vec3, radius: f32) -> Sphere {
-    Sphere {
-        center: local_point(surface, center),
-        radius: local_length(surface, radius),
-    }
-}
-
-fn local_capsule(surface: &PosedSurface, [a, b]: [Vec3; 2], radius: f32) -> Capsule {
-    Capsule {
-        a: local_point(surface, a),
-        b: local_point(surface, b),
-        radius: local_length(surface, radius),
-    }
-}
-
-/// A tenth of a millimetre of the world.
-fn tolerance(surface: &PosedSurface) -> f32 {
-    local_length(surface, TOLERANCE)
 }

@@ -211,7 +211,7 @@ fn inverse_bind_poses_that_change_are_taken() {
         let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
         let top = surface.mesh().positions().len() as u32 - 1;
         let top = bevy_clamber::core::mesh::VertexId(top);
-        surface.position(top).unwrap().y - surface.mesh().positions()[top.index()].y
+        surface.in_model().position(top).unwrap().y - surface.mesh().positions()[top.index()].y
     };
     assert_eq!(lifted(&app), 0.0);
     // Modified, then removed and put there anew.

@@ -53,7 +53,7 @@ fn in_model(app: &App, entity: Entity) -> Vec<Vec3> {
     let surface = surface(app, entity);
     let vertices = 0..surface.mesh().positions().len() as u32;
     vertices
-        .map(|v| surface.position(VertexId(v)).unwrap())
+        .map(|v| surface.in_model().position(VertexId(v)).unwrap())
         .collect()
 }
 
@@ -119,8 +119,8 @@ fn a_skeleton_without_a_parent_is_as_exact_far_away() {
         for _ in 0..5 {
             app.update();
             let surface = surface(&app, limb.mesh);
-            let now = surface.position(VertexId(3)).unwrap();
-            let before = surface.previous_position(VertexId(3)).unwrap();
+            let now = surface.in_model().position(VertexId(3)).unwrap();
+            let before = surface.in_model().previous_position(VertexId(3)).unwrap();
             travelled += (now - before).length();
         }
         assert!((travelled - 0.5).abs() < 1e-5, "{travelled}");
@@ -225,8 +225,8 @@ fn what_never_had_a_place_is_nowhere() {
         assert!(seen(&mut app, 5.0), "{timing:?}");
         let surface = surface(&app, limb.mesh);
         assert_eq!(
-            surface.position(VertexId(0)),
-            surface.previous_position(VertexId(0)),
+            surface.in_model().position(VertexId(0)),
+            surface.in_model().previous_position(VertexId(0)),
             "it came without motion"
         );
     }
@@ -276,7 +276,10 @@ fn what_is_found_again_elsewhere_has_not_flown_there() {
             app.update();
             let surface = surface(&app, limb.mesh);
             for v in (0..surface.mesh().positions().len() as u32).map(VertexId) {
-                let (now, before) = (surface.position(v), surface.previous_position(v));
+                let (now, before) = (
+                    surface.in_model().position(v),
+                    surface.in_model().previous_position(v),
+                );
                 let moved = now.unwrap().distance(before.unwrap());
                 assert!(moved < 5.0, "{timing:?} frame {frame}: {moved}");
             }

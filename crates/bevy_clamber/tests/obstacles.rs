@@ -13,7 +13,7 @@ use bevy_rapier3d::prelude::{NoUserData, PhysicsSet, RapierPhysicsPlugin};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
 use bevy_transform::components::Transform;
-use clamber_world::{Contact, Obstacle, PointMotion, SweepContact, WorldCapsule};
+use clamber_world::{Contact, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule};
 use glam::{DQuat, DVec3};
 
 /// Ticks a second.
@@ -268,10 +268,13 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
         };
         let by = vector(2.0);
         let turning = [by, vector(2.0)];
-        let cast = obstacle.cast_capsule(&capsule, by);
-        let swept = obstacle.sweep_capsule(&capsule, turning);
+        let cast = obstacle.cast_capsule(&capsule, [by; 2], TargetMotion::Still);
+        let swept = obstacle.cast_capsule(&capsule, turning, TargetMotion::Moving);
         // The first contact beyond those that it begins inside of.
-        let past = obstacle.sweep_capsule_where(&capsule, turning, &mut |met| !met.started_inside);
+        let past =
+            obstacle.cast_capsule_where(&capsule, turning, TargetMotion::Moving, &mut |met| {
+                !met.started_inside
+            });
         assert!(past.is_none_or(|past| !past.started_inside), "{past:?}");
         for (what, met) in [("cast", cast), ("swept", swept), ("swept past", past)] {
             let motion = met.and_then(|met| obstacle.motion(&met.contact.material, 1.0 / RATE));
@@ -402,12 +405,12 @@ fn check_limits(obstacle: &dyn Obstacle) {
         };
         for (capsule, by) in [(good, bad), (one_end, -DVec3::Y)] {
             assert_eq!(
-                obstacle.cast_capsule(&capsule, by),
+                obstacle.cast_capsule(&capsule, [by; 2], TargetMotion::Still),
                 None,
                 "{capsule:?} {by}"
             );
             assert_eq!(
-                obstacle.sweep_capsule(&capsule, [by; 2]),
+                obstacle.cast_capsule(&capsule, [by; 2], TargetMotion::Moving),
                 None,
                 "{capsule:?} {by}"
             );
@@ -416,9 +419,13 @@ fn check_limits(obstacle: &dyn Obstacle) {
     }
     for bad in [f64::NAN, -1.0, f64::INFINITY] {
         let capsule = good.with_radius(bad);
-        assert_eq!(obstacle.cast_capsule(&capsule, -DVec3::Y), None, "{bad}");
         assert_eq!(
-            obstacle.sweep_capsule(&capsule, [-DVec3::Y; 2]),
+            obstacle.cast_capsule(&capsule, [-DVec3::Y; 2], TargetMotion::Still),
+            None,
+            "{bad}"
+        );
+        assert_eq!(
+            obstacle.cast_capsule(&capsule, [-DVec3::Y; 2], TargetMotion::Moving),
             None,
             "{bad}"
         );

@@ -273,8 +273,8 @@ fn moving(app: &App, limbs: &[Limb]) -> Vec<[Corners; 2]> {
         let world = |p: Vec3| surface.world_from_model().transform_point_f32(p);
         for corners in surface.mesh().triangles() {
             all.push([
-                corners.map(|v| world(surface.previous_position(v).unwrap())),
-                corners.map(|v| world(surface.position(v).unwrap())),
+                corners.map(|v| world(surface.in_model().previous_position(v).unwrap())),
+                corners.map(|v| world(surface.in_model().position(v).unwrap())),
             ]);
         }
     }
@@ -340,10 +340,10 @@ fn casts_and_sweeps() {
         let radius = (0.02 + 0.3 * random.next()) as f32;
         let hits = ask(&mut app, move |s| {
             [
-                s.cast_sphere(a, radius, motions[0], &all()),
-                s.sweep_sphere(a, radius, motions[0], &all()),
-                s.cast_capsule([a, b], radius, motions, &all()),
-                s.sweep_capsule([a, b], radius, motions, &all()),
+                s.cast_sphere(a, radius, motions[0], TargetMotion::Still, &all()),
+                s.cast_sphere(a, radius, motions[0], TargetMotion::Moving, &all()),
+                s.cast_capsule([a, b], radius, motions, TargetMotion::Still, &all()),
+                s.cast_capsule([a, b], radius, motions, TargetMotion::Moving, &all()),
             ]
         });
         let sphere = |time: f64| a.as_dvec3() + motions[0].as_dvec3() * time;
@@ -413,11 +413,11 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
             every(|hits| s.cast_ray_all(ray, 20.0, &all(), hits))[0].entity,
             s.closest_point(at, 9.0, &all()).unwrap().entity,
             every(|hits| s.overlap_sphere(at, 0.9, &all(), hits))[0].entity,
-            s.cast_sphere(at, 0.1, Vec3::NEG_X, &all())
+            s.cast_sphere(at, 0.1, Vec3::NEG_X, TargetMotion::Still, &all())
                 .unwrap()
                 .hit
                 .entity,
-            s.sweep_sphere(at, 0.1, Vec3::NEG_X, &all())
+            s.cast_sphere(at, 0.1, Vec3::NEG_X, TargetMotion::Moving, &all())
                 .unwrap()
                 .hit
                 .entity,
@@ -465,19 +465,37 @@ fn what_is_not_finite_finds_nothing() {
             assert_eq!(s.closest_point(p, 9.0, &all()), None);
             assert!(every(|hits| s.overlap_sphere(p, 9.0, &all(), hits)).is_empty());
             assert!(every(|hits| s.overlap_capsule([o, p], 9.0, &all(), hits)).is_empty());
-            assert_eq!(s.cast_sphere(p, 9.0, Vec3::Y, &all()), None);
-            assert_eq!(s.cast_sphere(o, 9.0, p, &all()), None);
-            assert_eq!(s.cast_capsule([p, o], 9.0, [o, o], &all()), None);
-            assert_eq!(s.sweep_sphere(p, 9.0, Vec3::Y, &all()), None);
-            assert_eq!(s.sweep_capsule([o, o], 9.0, [o, p], &all()), None);
+            assert_eq!(
+                s.cast_sphere(p, 9.0, Vec3::Y, TargetMotion::Still, &all()),
+                None
+            );
+            assert_eq!(s.cast_sphere(o, 9.0, p, TargetMotion::Still, &all()), None);
+            assert_eq!(
+                s.cast_capsule([p, o], 9.0, [o, o], TargetMotion::Still, &all()),
+                None
+            );
+            assert_eq!(
+                s.cast_sphere(p, 9.0, Vec3::Y, TargetMotion::Moving, &all()),
+                None
+            );
+            assert_eq!(
+                s.cast_capsule([o, o], 9.0, [o, p], TargetMotion::Moving, &all()),
+                None
+            );
         }
         for bad in [nan, -1.0, -inf] {
             assert_eq!(ray(o, bad), None);
             assert_eq!(s.closest_point(o, bad, &all()), None);
             assert!(every(|hits| s.overlap_sphere(o, bad, &all(), hits)).is_empty());
             assert!(every(|hits| s.overlap_capsule([o, o], bad, &all(), hits)).is_empty());
-            assert_eq!(s.cast_sphere(o, bad, Vec3::Y, &all()), None);
-            assert_eq!(s.sweep_capsule([o, o], bad, [o, o], &all()), None);
+            assert_eq!(
+                s.cast_sphere(o, bad, Vec3::Y, TargetMotion::Still, &all()),
+                None
+            );
+            assert_eq!(
+                s.cast_capsule([o, o], bad, [o, o], TargetMotion::Moving, &all()),
+                None
+            );
         }
     });
 }

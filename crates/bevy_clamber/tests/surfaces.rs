@@ -71,8 +71,8 @@ fn check_ticks(rate: f64, timing: PoseTiming) {
             let at = |p: Vec3| surface.world_from_model().transform_point_f32(p);
             ticks.0.push((
                 time.elapsed().as_secs_f64(),
-                at(surface.position(*vertex).unwrap()),
-                at(surface.previous_position(*vertex).unwrap()),
+                at(surface.in_model().position(*vertex).unwrap()),
+                at(surface.in_model().previous_position(*vertex).unwrap()),
             ));
         };
     let collider = SkinnedCollider {

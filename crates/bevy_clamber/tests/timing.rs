@@ -50,8 +50,8 @@ fn note(
         let world = |p: Option<Vec3>| surface.world_from_model().transform_point_f32(p.unwrap()).x;
         ticks.0.push([
             time.elapsed().as_secs_f64(),
-            world(surface.position(VertexId(0))) - 0.2,
-            world(surface.previous_position(VertexId(0))) - 0.2,
+            world(surface.in_model().position(VertexId(0))) - 0.2,
+            world(surface.in_model().previous_position(VertexId(0))) - 0.2,
         ]);
     }
 }
@@ -192,8 +192,8 @@ fn a_surface_that_appears_between_ticks_has_not_moved() {
             frame(&mut app, 16);
             let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
             let (now, before) = (
-                surface.position(VertexId(0)),
-                surface.previous_position(VertexId(0)),
+                surface.in_model().position(VertexId(0)),
+                surface.in_model().previous_position(VertexId(0)),
             );
             assert_eq!(now, before);
             app.world_mut().entity_mut(limb.root).despawn();
@@ -269,7 +269,7 @@ fn joints_and_root_may_be_of_different_clocks() {
             "{foot} {time}"
         );
         let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
-        let tip = surface.position(VertexId(80)).unwrap();
+        let tip = surface.in_model().position(VertexId(80)).unwrap();
         let angle = bend(time - lag(joints)) * Vec3::new(0.2, 1.0, 0.2) + Vec3::Y;
         assert!((tip - angle).length() < 1e-4, "{tip} {angle}");
     }
@@ -315,8 +315,8 @@ fn only_what_moves_is_changed() {
         assert!(app.world().resource::<Seen>().0.is_empty(), "{collider:?}");
         let surface = app.world().get::<PosedSurface>(moving.mesh).unwrap();
         let (now, before) = (
-            surface.position(VertexId(80)),
-            surface.previous_position(VertexId(80)),
+            surface.in_model().position(VertexId(80)),
+            surface.in_model().previous_position(VertexId(80)),
         );
         assert_eq!(now, before);
     }

@@ -7,6 +7,9 @@
     doc = "clamber without some of its features; its front page is that of all features."
 )]
 
+#[cfg(all(feature = "gltf", feature = "render"))]
+mod visual;
+
 #[doc(inline)]
 pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
@@ -20,31 +23,35 @@ pub use clamber_record as record;
 #[cfg(feature = "render")]
 #[doc(inline)]
 pub use clamber_render as render;
-#[cfg(feature = "parry")]
-#[doc(inline)]
-pub use clamber_surface::parry;
+#[doc(hidden)]
+pub use clamber_surface::measure;
 #[doc(inline)]
 pub use clamber_surface::{SimdLevel, geometry, mesh, rig, skin, surface};
 #[doc(inline)]
 pub use clamber_world as world;
 pub use glam;
+#[cfg(all(feature = "gltf", feature = "render"))]
+pub use visual::{VisualSource, visual_meshes};
 
-/// What most programs need: `use clamber::prelude::*;`.
+/// What most programs need: `use clamber::prelude::*;`. No name in it is one of rapier's prelude: both can be imported
+/// whole. [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose) and
+/// [`Contact`](crate::world::Contact) are left out for that.
 pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberContact, ClimberEvent, ClimberInput, ClimberMode,
         ClimberState, ContactPhase, CustomMode, GripConfig, ModeContext, NextMode, StepReport,
         StepRules, Support,
     };
-    pub use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, Sphere};
+    pub use clamber_surface::geometry::{Affine, Similarity};
     pub use clamber_surface::mesh::{
         BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
     };
-    pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton, Transform};
-    pub use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceHit, SweepHit};
-    pub use clamber_world::{
-        Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion,
+    pub use clamber_surface::rig::{Clip, JointId, Palette, Playback, Skeleton, Transform};
+    pub use clamber_surface::surface::{
+        Anchor, CastOptions, Motion, SkinnedSurface, SurfaceHit, SurfacePoint, SweepHit,
+        TargetMotion,
     };
+    pub use clamber_world::{Attachment, MaterialPoint, Obstacle, ObstacleId, PointMotion};
     #[cfg(feature = "rapier")]
     pub use clamber_world::{BodyPoses, Debris, DebrisConfig, RapierTerrain};
 }

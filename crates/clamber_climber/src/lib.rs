@@ -5,7 +5,6 @@
 mod climber;
 mod config;
 mod contact;
-mod discrete;
 mod error;
 mod event;
 pub mod guide;
@@ -22,7 +21,6 @@ pub use config::{
     StaminaConfig, TumbleConfig,
 };
 pub use contact::{ClimberContact, ContactPhase};
-pub use discrete::{PushOut, average_push_out};
 pub use error::ClimberError;
 pub use event::{ClimberEvent, Push, StepReport};
 pub use input::{Blow, ClimberInput};

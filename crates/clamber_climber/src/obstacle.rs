@@ -1,9 +1,10 @@
 //! A climber as an obstacle to others.
 
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, PointMotion, SurfaceTag, SweepContact, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, PointMotion, SurfaceTag, SweepContact, TargetMotion,
+    WorldCapsule,
 };
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::Climber;
 
@@ -170,7 +171,8 @@ impl Obstacle for ClimberObstacle {
         // As far as it can be met, so that an endless ray has a length.
         let length = max_distance.min(origin.distance(middle) + radius);
         let way = direction.try_normalize()? * length;
-        let hit = self.cast_capsule(&WorldCapsule::ball(origin, 0.0), way)?;
+        let ball = WorldCapsule::ball(origin, 0.0);
+        let hit = self.cast_capsule(&ball, [way; 2], TargetMotion::Still)?;
         Some(Contact {
             distance: hit.time * length,
             ..hit.contact
@@ -190,15 +192,15 @@ impl Obstacle for ClimberObstacle {
         }
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.meet(capsule, [displacement; 2])
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
+        if target == TargetMotion::Still {
+            return self.meet(capsule, displacements);
+        }
         // As seen from this body, which then stands where it ends.
         let ways = displacements.map(|way| way - self.way);
         let mut hit = self.meet(&capsule.moved(self.way), ways)?;
@@ -210,15 +212,10 @@ impl Obstacle for ClimberObstacle {
         let position = self.now.ends[0] + DVec3::from_array(point.coordinates);
         let usable = dt > 0.0 && position.is_finite();
         usable.then(|| PointMotion {
-            position,
-            previous_position: position - self.way,
-            // Or two that run into each other would swap their speeds, as balls do.
+            // Otherwise two climbers that run into each other would swap their speeds, as balls do.
             velocity: DVec3::ZERO,
             placed: self.way == DVec3::ZERO,
-            frame: Some(DQuat::IDENTITY),
-            turn: DQuat::IDENTITY,
-            area_ratio: 1.0,
-            stretches: [1.0, 1.0],
+            ..PointMotion::translated(position - self.way, position, dt)
         })
     }
 }

@@ -62,7 +62,7 @@ pub(crate) struct PendulumTick {
 
 /// Whether an arm pulls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Arm {
+pub(crate) enum ArmTension {
     /// The body flies.
     #[default]
     Slack,
@@ -74,7 +74,7 @@ pub(crate) enum Arm {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PendulumReport {
     /// At the end of the tick.
-    pub arm: Arm,
+    pub arm: ArmTension,
     /// Of the arm at the end of the tick, per mass, with the mean of the pivot's pull over the tick:
     /// metres a second squared; 0 if slack.
     pub tension: f64,
@@ -90,7 +90,7 @@ impl Pendulum {
     /// argument or the result is not finite, or `dt` not positive.
     pub(crate) fn step(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut next = *self;
-        let report = next.advance(tick);
+        let report = next.integrate(tick);
         let finite =
             next.arm.is_finite() && next.velocity.is_finite() && report.tension.is_finite();
         if !(finite && tick.dt > 0.0 && tick.dt.is_finite() && tick.length.is_finite()) {
@@ -100,13 +100,13 @@ impl Pendulum {
         report
     }
 
-    fn advance(&mut self, tick: &PendulumTick) -> PendulumReport {
+    fn integrate(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut report = PendulumReport::default();
         self.velocity -= tick.pivot_change;
         if tick.length <= SHORTEST {
             let held = self.velocity + tick.gravity * tick.dt;
             *self = Self::default();
-            report.arm = Arm::Taut;
+            report.arm = ArmTension::Taut;
             report.tension = held.length() / tick.dt;
             return report;
         }
@@ -118,24 +118,24 @@ impl Pendulum {
                 break;
             }
             match report.arm {
-                Arm::Taut => {
+                ArmTension::Taut => {
                     // The last may not let go any more: the tick has to end.
                     left = self.swing(tick, left, pull, event + 1 == EVENTS);
                     if left > 0.0 {
-                        report.arm = Arm::Slack;
+                        report.arm = ArmTension::Slack;
                         pull = 0.0;
                     }
                 }
-                Arm::Slack => {
+                ArmTension::Slack => {
                     left = self.fly(tick, left);
                     if left > 0.0 {
                         report.caught += self.catch(tick.length);
-                        report.arm = Arm::Taut;
+                        report.arm = ArmTension::Taut;
                     }
                 }
             }
         }
-        if report.arm == Arm::Taut {
+        if report.arm == ArmTension::Taut {
             report.tension = (self.tension(tick) + pull).max(0.0);
         }
         report
@@ -143,9 +143,9 @@ impl Pendulum {
 
     /// Whether the arm is taut after the pivot's jerk. Then it takes what of the jerk is along it:
     /// `pull` becomes its mean over the tick, which is negative where the pivot follows the body.
-    fn take_hold(&mut self, tick: &PendulumTick, pull: &mut f64) -> Arm {
+    fn take_hold(&mut self, tick: &PendulumTick, pull: &mut f64) -> ArmTension {
         if self.arm.length() < tick.length * (1.0 - TAUT) {
-            return Arm::Slack;
+            return ArmTension::Slack;
         }
         self.arm = self.arm.normalize_or_zero() * tick.length;
         let along = self.arm / tick.length;
@@ -158,11 +158,11 @@ impl Pendulum {
             if outward > 0.0 {
                 self.velocity = swing;
             }
-            return Arm::Slack;
+            return ArmTension::Slack;
         }
         self.velocity = swing;
         *pull = outward / tick.dt;
-        Arm::Taut
+        ArmTension::Taut
     }
 
     /// Per mass, of a taut arm, without the pivot's pull.

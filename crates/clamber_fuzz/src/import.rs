@@ -1,11 +1,13 @@
 //! Any file: refused with a reason, or a rig that can be used.
 
 use clamber_gltf::{LoadOptions, Rig, load_slice};
-use clamber_surface::geometry::{Similarity, Sphere};
+use clamber_surface::geometry::{Capsule, Similarity};
+use clamber_surface::measure::BruteForce;
 use clamber_surface::rig::Playback;
-use clamber_surface::surface::{BruteForce, SkinnedSurface};
+use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
+use crate::same::same_hits;
 use crate::seed::glb;
 
 /// Loads any bytes as a file; true if it loads. What is neither glTF nor GLB is taken for the two chunks
@@ -52,23 +54,26 @@ fn use_rig(rig: &Rig) {
     }
     // Brute force takes long where a file is large.
     if rig.collider.triangles().len() < 1_000 {
-        let sphere = Sphere {
-            center: surface
-                .mesh()
-                .positions()
-                .first()
-                .copied()
-                .unwrap_or(Vec3::ZERO),
-            radius: surface.mesh().radius() * 0.5,
-        };
-        let (mut found, mut wanted) = (Vec::new(), Vec::new());
-        let brute_force = BruteForce::new(&surface);
-        let a = surface.overlap_sphere(&sphere, &mut found);
-        let b = brute_force.overlap_sphere(&sphere, &mut wanted);
-        assert_eq!((a, found), (b, wanted), "{sphere:?}");
+        compare(&surface);
     }
     for weak_point in &rig.weak_points {
         assert!((weak_point.joint.0 as usize) < rig.skeleton.joints().len());
     }
     let _ = rig.visual_collider();
+}
+
+/// What lies about a vertex, against brute force.
+fn compare(surface: &SkinnedSurface) {
+    let mesh = surface.mesh();
+    let center = mesh.positions().first().copied().unwrap_or(Vec3::ZERO);
+    let radius = mesh.radius() * 0.5;
+    let Some(ball) = Capsule::ball(center, radius) else {
+        panic!("no ball of {radius} about {center}");
+    };
+    let space = surface.in_model();
+    let (mut found, mut wanted) = (Vec::new(), Vec::new());
+    space.overlap_capsule(&ball, &mut found);
+    BruteForce::new(space).overlap_capsule(&ball, &mut wanted);
+    let same = same_hits(&found, &wanted);
+    assert!(same, "{ball:?}:\n{found:?}\n{wanted:?}");
 }

@@ -81,8 +81,9 @@ struct State {
 impl State {
     fn of(surface: &SkinnedSurface) -> Self {
         let all = || (0..surface.mesh().positions().len() as u32).map(VertexId);
-        let current = all().filter_map(|v| surface.position(v));
-        let previous = all().filter_map(|v| surface.previous_position(v));
+        let space = surface.in_model();
+        let current = all().filter_map(|v| space.position(v));
+        let previous = all().filter_map(|v| space.previous_position(v));
         Self {
             current: current.map(bits).collect(),
             previous: previous.map(bits).collect(),
@@ -115,7 +116,7 @@ fn previous_palette(
 
 /// Every vertex as the contract has it, by all ways to ask.
 fn check_positions(surface: &SkinnedSurface, palette: &Palette, previous: &[Affine]) {
-    let mesh = surface.mesh();
+    let (mesh, space) = (surface.mesh(), surface.in_model());
     let mut all = Vec::new();
     surface.skin_all(&mut all);
     assert_eq!(all.len(), mesh.positions().len());
@@ -128,16 +129,16 @@ fn check_positions(surface: &SkinnedSurface, palette: &Palette, previous: &[Affi
             bits(wanted),
             "vertex {v}, all: {found} {wanted}"
         );
-        let found = surface.position(v).map(bits);
+        let found = space.position(v).map(bits);
         assert_eq!(found, Some(bits(wanted)), "vertex {v}: {wanted}");
         let wanted = skinned(mesh, previous, v);
         assert!(wanted.is_finite(), "vertex {v}, before: {wanted}");
-        let found = surface.previous_position(v).map(bits);
+        let found = space.previous_position(v).map(bits);
         assert_eq!(found, Some(bits(wanted)), "vertex {v}, before: {wanted}");
     }
     let beyond = VertexId(mesh.positions().len() as u32);
-    assert_eq!(surface.position(beyond), None);
-    assert_eq!(surface.previous_position(beyond), None);
+    assert_eq!(space.position(beyond), None);
+    assert_eq!(space.previous_position(beyond), None);
 }
 
 /// The skinning contract, in its own words.

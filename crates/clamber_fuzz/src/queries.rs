@@ -1,21 +1,20 @@
-//! Any query of any surface, edited at will: the answer of brute force, bit for bit, or its refusal.
+//! Any query of any surface, edited at will: the answer of brute force, bit for bit, and nothing of what is no length.
 
 use std::sync::Arc;
 
 use clamber_surface::SimdLevel;
-use clamber_surface::geometry::{Capsule, Ray, Sphere};
+use clamber_surface::geometry::{Capsule, Ray};
+use clamber_surface::measure::BruteForce;
 use clamber_surface::mesh::{ColliderMesh, Influence, PartId, TriangleId, VertexId};
 use clamber_surface::rig::JointId;
-use clamber_surface::surface::{
-    BruteForce, CapsuleHit, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit,
-};
+use clamber_surface::surface::{ModelSpace, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit};
 use glam::Vec3;
 
 use crate::bytes::Bytes;
 use crate::mesh::{built, tag};
 use crate::poses::{palette, similarity};
-use crate::same::{bits, same_errors, same_hits};
-use crate::sweeps;
+use crate::same::{bits, same_hits};
+use crate::sweeps::{self, Moves};
 
 /// What there was to check.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +23,7 @@ pub struct Queries {
     pub hits: usize,
     /// Queries answered, with or without hits.
     pub answered: usize,
-    /// Queries refused.
+    /// Queries of lengths, points or shapes that are none, which found nothing.
     pub refused: usize,
     /// Edits made.
     pub edits: usize,
@@ -140,17 +139,23 @@ fn shown(surface: &SkinnedSurface) -> Vec<bool> {
     ids.map(|id| surface.is_enabled(TriangleId(id))).collect()
 }
 
+/// A surface as it is posed, and what its answers are compared with.
+pub(crate) struct Both<'a> {
+    pub(crate) space: ModelSpace<'a>,
+    pub(crate) brute_force: BruteForce<'a>,
+}
+
 fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) {
-    let brute_force = BruteForce::new(surface);
-    let positions = brute_force.positions();
+    let space = surface.in_model();
+    let brute_force = BruteForce::new(space);
+    let both = Both { space, brute_force };
+    let positions = both.brute_force.positions();
+    for (v, p) in (0..).map(VertexId).zip(positions) {
+        let wanted = surface.mesh().has_vertex(v).then(|| bits(*p));
+        assert_eq!(space.position(v).map(bits), wanted, "vertex {v}");
+    }
     let largest = |p: &Vec3| p.abs().max_element();
     let size = positions.iter().map(largest).fold(0.0, f32::max);
-    let all = (0..).map(VertexId).zip(positions);
-    for (v, p) in all {
-        let wanted = surface.mesh().has_vertex(v).then(|| bits(*p));
-        assert_eq!(surface.position(v).map(bits), wanted, "vertex {v}");
-    }
-    let (mut found, mut wanted) = (Vec::new(), Vec::new());
     for _ in 0..4 {
         let origin = place(bytes, positions, size);
         let to = place(bytes, positions, size);
@@ -161,54 +166,36 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
             to - origin
         };
         if let Some(ray) = ray(origin, aim) {
-            let hit = surface.cast_ray(&ray, reach);
-            let one = brute_force.cast_ray(&ray, reach);
-            let met = surface.intersects_ray(&ray, reach);
-            let any = one.as_ref().map(Option::is_some);
-            let agree = met.as_ref().ok().copied() == any.ok();
-            assert!(agree, "{ray:?}, {reach}: {met:?}, {any:?}");
-            seen.same(listed(hit), listed(one), || {
-                format!("cast {ray:?}, {reach}")
-            });
-            let all = surface.cast_ray_all(&ray, reach, &mut found);
-            let wanted_all = brute_force.cast_ray_all(&ray, reach, &mut wanted);
-            let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
-            seen.same(all, wanted_all, || format!("all along {ray:?}, {reach}"));
+            seen.ask_along(&both, &ray, reach);
         }
-        let hit = surface.closest_point(origin, reach);
-        let one = brute_force.closest_point(origin, reach);
-        seen.same(listed(hit), listed(one), || {
-            format!("closest to {origin}, {reach}")
-        });
-        let sphere = Sphere {
-            center: origin,
-            radius: reach,
+        seen.ask_nearest(&both, origin, reach);
+        // An infinite radius is no shape.
+        let radius = if reach == f32::INFINITY {
+            f32::MAX
+        } else {
+            reach
         };
-        let all = surface.overlap_sphere(&sphere, &mut found);
-        let wanted_all = brute_force.overlap_sphere(&sphere, &mut wanted);
-        let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
-        seen.same(all, wanted_all, || format!("{sphere:?}"));
-        let capsule = Capsule {
-            a: origin,
-            b: to,
-            radius: reach,
-        };
-        let all = surface.overlap_capsule(&capsule, &mut found);
-        let wanted_all = brute_force.overlap_capsule(&capsule, &mut wanted);
-        let (all, wanted_all) = (all.map(|()| &found[..]), wanted_all.map(|()| &wanted[..]));
-        seen.same(all, wanted_all, || format!("{capsule:?}"));
-        let closest = surface.closest_to_capsule(&capsule, reach);
-        let wanted = brute_force.closest_to_capsule(&capsule, reach);
-        let part = |hit: CapsuleHit| hit.surface;
-        let (closest, wanted) = (closest.map(|h| h.map(part)), wanted.map(|h| h.map(part)));
-        seen.same(listed(closest), listed(wanted), || {
-            format!("closest to {capsule:?}, {reach}")
-        });
-        let swept = sweeps::compare(surface, &brute_force, &capsule, bytes);
-        seen.answered += swept.answered;
-        seen.refused += swept.refused;
-        seen.hits += swept.hits;
+        let moves = Moves::any(bytes, to - origin, radius);
+        for (end, ways) in [(origin, moves.of_ball()), (to, moves.of_capsule())] {
+            let Some(capsule) = capsule(origin, end, radius) else {
+                seen.refused += 1;
+                continue;
+            };
+            seen.ask_about(&both, &capsule, reach);
+            let swept = sweeps::compare(&both, &capsule, ways, moves.tolerance);
+            seen.answered += swept.answered;
+            seen.refused += swept.refused;
+            seen.hits += swept.hits;
+        }
     }
+}
+
+/// A capsule of anything that may be one; `None`, rightly, of anything else.
+fn capsule(a: Vec3, b: Vec3, radius: f32) -> Option<Capsule> {
+    let capsule = Capsule::new(a, b, radius);
+    let usable = a.is_finite() && b.is_finite() && radius >= 0.0 && radius.is_finite();
+    assert_eq!(capsule.is_some(), usable, "{a}, {b}, {radius}");
+    capsule
 }
 
 /// A ray of anything that may be one; `None`, rightly, of anything else.
@@ -248,40 +235,64 @@ fn length(bytes: &mut Bytes<'_>, size: f32) -> f32 {
     }
 }
 
-fn listed(hit: Result<Option<SurfaceHit>, SurfaceError>) -> Result<Vec<SurfaceHit>, SurfaceError> {
-    hit.map(|hit| hit.into_iter().collect())
-}
-
 impl Queries {
-    /// Compares two answers to one question, and sees that they are sound.
-    fn same<H: AsRef<[SurfaceHit]>>(
+    fn ask_along(&mut self, both: &Both<'_>, ray: &Ray, reach: f32) {
+        let Both { space, brute_force } = both;
+        let may_find = reach >= 0.0;
+        let one = space.cast_ray(ray, reach);
+        let wanted = brute_force.cast_ray(ray, reach);
+        let met = space.intersects_ray(ray, reach);
+        assert_eq!(met, wanted.is_some(), "{ray:?}, {reach}");
+        let question = || format!("cast {ray:?}, {reach}");
+        self.same(may_find, one.as_slice(), wanted.as_slice(), question);
+        let (mut all, mut wanted) = (Vec::new(), Vec::new());
+        space.cast_ray_all(ray, reach, &mut all);
+        brute_force.cast_ray_all(ray, reach, &mut wanted);
+        let question = || format!("all along {ray:?}, {reach}");
+        self.same(may_find, &all, &wanted, question);
+    }
+
+    fn ask_nearest(&mut self, both: &Both<'_>, point: Vec3, reach: f32) {
+        let may_find = point.is_finite() && reach >= 0.0;
+        let one = both.space.closest_point(point, reach);
+        let wanted = both.brute_force.closest_point(point, reach);
+        let question = || format!("closest to {point}, {reach}");
+        self.same(may_find, one.as_slice(), wanted.as_slice(), question);
+    }
+
+    fn ask_about(&mut self, both: &Both<'_>, capsule: &Capsule, reach: f32) {
+        let Both { space, brute_force } = both;
+        let (mut all, mut wanted) = (Vec::new(), Vec::new());
+        space.overlap_capsule(capsule, &mut all);
+        brute_force.overlap_capsule(capsule, &mut wanted);
+        self.same(true, &all, &wanted, || format!("{capsule:?}"));
+        let one = space.closest_to_capsule(capsule, reach);
+        let wanted = brute_force.closest_to_capsule(capsule, reach);
+        let (one, wanted) = (one.map(|hit| hit.surface), wanted.map(|hit| hit.surface));
+        let question = || format!("closest to {capsule:?}, {reach}");
+        self.same(reach >= 0.0, one.as_slice(), wanted.as_slice(), question);
+    }
+
+    /// Compares two answers to one question, and sees that they are sound; nothing, unless it `may_find` something.
+    fn same(
         &mut self,
-        found: Result<H, SurfaceError>,
-        wanted: Result<H, SurfaceError>,
+        may_find: bool,
+        found: &[SurfaceHit],
+        wanted: &[SurfaceHit],
         question: impl Fn() -> String,
     ) {
-        match (found, wanted) {
-            (Ok(found), Ok(wanted)) => {
-                let (found, wanted) = (found.as_ref(), wanted.as_ref());
-                let same = same_hits(found, wanted);
-                assert!(same, "{}:\n{found:?}\n{wanted:?}", question());
-                for hit in found {
-                    check(hit, &question);
-                }
-                self.hits += found.len();
-                self.answered += 1;
-            }
-            (Err(found), Err(wanted)) => {
-                let same = same_errors(&found, &wanted);
-                assert!(same, "{}: {found:?} {wanted:?}", question());
-                self.refused += 1;
-            }
-            (found, wanted) => {
-                let found = found.map(|hits| hits.as_ref().len());
-                let wanted = wanted.map(|hits| hits.as_ref().len());
-                panic!("{}: {found:?} {wanted:?}", question());
-            }
+        let same = same_hits(found, wanted);
+        assert!(same, "{}:\n{found:?}\n{wanted:?}", question());
+        for hit in found {
+            check(hit, &question);
         }
+        if may_find {
+            self.answered += 1;
+        } else {
+            assert!(found.is_empty(), "{}: {found:?}", question());
+            self.refused += 1;
+        }
+        self.hits += found.len();
     }
 }
 

@@ -1,6 +1,6 @@
 //! Equal in every bit: where `==` would take -0 for 0, and NaN for nothing.
 
-use clamber_surface::surface::{SurfaceError, SurfaceHit};
+use clamber_surface::surface::{SurfaceHit, SweepHit};
 use glam::Vec3;
 
 /// Coordinates as bits.
@@ -9,21 +9,31 @@ pub(crate) fn bits(p: Vec3) -> [u32; 3] {
 }
 
 /// A hit as bits, with its tag and part.
-fn hit_bits(hit: &SurfaceHit) -> impl PartialEq {
+fn hit_bits(hit: &SurfaceHit) -> impl PartialEq + use<> {
     (
-        (hit.triangle, hit.part, hit.tag),
+        (hit.mesh, hit.triangle, hit.part, hit.tag),
         hit.barycentric.map(f32::to_bits),
         (bits(hit.point), bits(hit.normal), hit.distance.to_bits()),
     )
 }
 
-/// True for hits of equal bits in equal order.
-pub(crate) fn same_hits(a: &[SurfaceHit], b: &[SurfaceHit]) -> bool {
-    let equal = |(a, b)| hit_bits(a) == hit_bits(b);
-    a.len() == b.len() && a.iter().zip(b).all(equal)
+/// A contact as bits, with its tag and part.
+fn sweep_bits(hit: &SweepHit) -> impl PartialEq + use<> {
+    (
+        (hit.mesh, hit.triangle, hit.part, hit.tag),
+        (hit.barycentric.map(f32::to_bits), bits(hit.point)),
+        (bits(hit.normal), bits(hit.surface_normal)),
+        (hit.time.to_bits(), hit.distance.to_bits()),
+        (hit.started_inside, hit.undecided),
+    )
 }
 
-/// True for errors that say the same: compared as text, since one may hold NaN.
-pub(crate) fn same_errors(a: &SurfaceError, b: &SurfaceError) -> bool {
-    format!("{a:?}") == format!("{b:?}")
+/// True for hits of equal bits in equal order.
+pub(crate) fn same_hits(a: &[SurfaceHit], b: &[SurfaceHit]) -> bool {
+    a.iter().map(hit_bits).eq(b.iter().map(hit_bits))
+}
+
+/// True for contacts of equal bits in equal order.
+pub(crate) fn same_sweeps(a: &[SweepHit], b: &[SweepHit]) -> bool {
+    a.iter().map(sweep_bits).eq(b.iter().map(sweep_bits))
 }

@@ -1,129 +1,130 @@
 //! Casts and sweeps of hostile shapes against brute force.
 
-use clamber_surface::geometry::{Capsule, Sphere};
-use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError, SweepHit};
+use clamber_surface::geometry::Capsule;
+use clamber_surface::surface::{CastOptions, SweepHit};
 use glam::Vec3;
 
 use crate::bytes::Bytes;
+use crate::queries::Both;
+use crate::same::same_sweeps;
 
 /// What came of the questions.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Swept {
     pub(crate) answered: usize,
+    /// Of displacements and tolerances that are none, which found nothing.
     pub(crate) refused: usize,
     pub(crate) hits: usize,
 }
 
-/// One capsule, and the sphere about its first end, on one way each.
-pub(crate) fn compare(
-    surface: &SkinnedSurface,
-    brute_force: &BruteForce<'_>,
-    capsule: &Capsule,
-    bytes: &mut Bytes<'_>,
-) -> Swept {
-    let way = capsule.b - capsule.a;
-    let motion = match bytes.byte() % 4 {
-        0 => Vec3::ZERO,
-        1 => way,
-        2 => way * bytes.share() * 3.0,
-        _ if bytes.one_in(6) => bytes.hostile_point(),
-        _ => bytes.point() * way.length(),
-    };
-    let tolerance = match bytes.byte() % 4 {
-        0 => 0.0,
-        1 => capsule.radius * 0.01,
-        2 if bytes.one_in(4) => bytes.hostile(),
-        _ => 1e-4,
-    };
-    let sphere = Sphere {
-        center: capsule.a,
-        radius: capsule.radius,
-    };
-    let motions = [motion, if bytes.one_in(2) { motion } else { way }];
-    let mut swept = Swept::default();
-    let (mut found, mut wanted) = (Vec::new(), Vec::new());
-    let question = format!("{capsule:?}, {motions:?}, {tolerance}");
-    // Where coordinates differ by some 2^50 in size, bounds may rule out what the exact test cannot decide.
-    let decided = |hits: &[SweepHit]| hits.iter().all(|hit| !hit.undecided);
-    // What is refused leaves nothing here.
-    let _ = brute_force.sweep_sphere_all(&sphere, motion, tolerance, &mut found);
-    let _ = brute_force.sweep_capsule_all(capsule, motions, tolerance, &mut wanted);
-    if !(decided(&found) && decided(&wanted)) {
-        return swept;
+/// Where shapes go, and how near counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moves {
+    motion: Vec3,
+    /// Of a capsule's second end.
+    other: Vec3,
+    pub(crate) tolerance: f32,
+}
+
+impl Moves {
+    /// For a capsule from whose first end to its second the way is `way`.
+    pub(crate) fn any(bytes: &mut Bytes<'_>, way: Vec3, radius: f32) -> Self {
+        let motion = match bytes.byte() % 4 {
+            0 => Vec3::ZERO,
+            1 => way,
+            2 => way * bytes.share() * 3.0,
+            _ if bytes.one_in(6) => bytes.hostile_point(),
+            _ => bytes.point() * way.length(),
+        };
+        let tolerance = match bytes.byte() % 4 {
+            0 => 0.0,
+            1 => radius * 0.01,
+            2 if bytes.one_in(4) => bytes.hostile(),
+            _ => 1e-4,
+        };
+        let other = if bytes.one_in(2) { motion } else { way };
+        Self {
+            motion,
+            other,
+            tolerance,
+        }
     }
 
-    let one = surface.sweep_sphere(&sphere, motion, tolerance);
-    let plain = brute_force.sweep_sphere(&sphere, motion, tolerance);
-    swept.same(listed(one), listed(plain), &question);
-    let one = surface.sweep_capsule(capsule, motions, tolerance);
-    let plain = brute_force.sweep_capsule(capsule, motions, tolerance);
-    swept.same(listed(one), listed(plain), &question);
-    let all = surface.sweep_sphere_all(&sphere, motion, tolerance, &mut found);
-    let plain = brute_force.sweep_sphere_all(&sphere, motion, tolerance, &mut wanted);
-    swept.same(
-        all.map(|()| found.clone()),
-        plain.map(|()| wanted.clone()),
-        &question,
-    );
-    let all = surface.sweep_capsule_all(capsule, motions, tolerance, &mut found);
-    let plain = brute_force.sweep_capsule_all(capsule, motions, tolerance, &mut wanted);
-    swept.same(
-        all.map(|()| found.clone()),
-        plain.map(|()| wanted.clone()),
-        &question,
-    );
-    let one = surface.cast_sphere(&sphere, motion, tolerance);
-    let plain = brute_force.cast_sphere(&sphere, motion, tolerance);
-    swept.same_if_decided(listed(one), listed(plain), &question);
-    let one = surface.cast_capsule(capsule, motions, tolerance);
-    let plain = brute_force.cast_capsule(capsule, motions, tolerance);
-    swept.same_if_decided(listed(one), listed(plain), &question);
+    pub(crate) fn of_ball(&self) -> [Vec3; 2] {
+        [self.motion; 2]
+    }
+
+    pub(crate) fn of_capsule(&self) -> [Vec3; 2] {
+        [self.motion, self.other]
+    }
+}
+
+/// One capsule on its way, at skin that moves and at skin that stands still.
+pub(crate) fn compare(
+    both: &Both<'_>,
+    capsule: &Capsule,
+    motions: [Vec3; 2],
+    tolerance: f32,
+) -> Swept {
+    let mut swept = Swept::default();
+    let usable = tolerance >= 0.0 && tolerance.is_finite() && motions.iter().all(|m| m.is_finite());
+    for options in [CastOptions::MOVING, CastOptions::STILL] {
+        let options = options.with_tolerance(tolerance);
+        let found = swept.cast(both, capsule, motions, &options);
+        assert!(
+            usable || found == 0,
+            "{capsule:?}, {motions:?}, {options:?}: {found} hits"
+        );
+    }
+    if !usable {
+        swept.refused = std::mem::take(&mut swept.answered);
+    }
     swept
 }
 
-fn listed(hit: Result<Option<SweepHit>, SurfaceError>) -> Result<Vec<SweepHit>, SurfaceError> {
-    hit.map(|hit| hit.into_iter().collect())
+impl Swept {
+    /// The first contact and all contacts; gives how many there were.
+    ///
+    /// Where coordinates differ by some 2^50 in size, bounds may rule out what the exact test cannot decide: then only
+    /// a first contact is compared that both ways have decided.
+    fn cast(
+        &mut self,
+        both: &Both<'_>,
+        capsule: &Capsule,
+        motions: [Vec3; 2],
+        options: &CastOptions,
+    ) -> usize {
+        let Both { space, brute_force } = both;
+        let question = format!("{capsule:?}, {motions:?}, {options:?}");
+        let (mut all, mut wanted) = (Vec::new(), Vec::new());
+        space.cast_capsule_all(capsule, motions, options, &mut all);
+        brute_force.cast_capsule_all(capsule, motions, options, &mut wanted);
+        let all_decided = decided(&wanted);
+        if all_decided {
+            self.same(&all, &wanted, &question);
+        }
+        let one = space.cast_capsule(capsule, motions, options);
+        let wanted = brute_force.cast_capsule(capsule, motions, options);
+        let (one, wanted) = (one.as_slice(), wanted.as_slice());
+        if all_decided || (decided(one) && decided(wanted)) {
+            self.same(one, wanted, &question);
+        }
+        all.len() + one.len()
+    }
+
+    fn same(&mut self, found: &[SweepHit], wanted: &[SweepHit], question: &str) {
+        let same = same_sweeps(found, wanted);
+        assert!(same, "{question}:\n{found:?}\n{wanted:?}");
+        for hit in found {
+            check(hit, question);
+        }
+        self.answered += 1;
+        self.hits += found.len();
+    }
 }
 
-impl Swept {
-    fn same_if_decided(
-        &mut self,
-        found: Result<Vec<SweepHit>, SurfaceError>,
-        wanted: Result<Vec<SweepHit>, SurfaceError>,
-        question: &str,
-    ) {
-        let undecided = |hits: &Result<Vec<SweepHit>, _>| {
-            hits.as_ref()
-                .is_ok_and(|hits| hits.iter().any(|hit| hit.undecided))
-        };
-        if !(undecided(&found) || undecided(&wanted)) {
-            self.same(found, wanted, question);
-        }
-    }
-
-    fn same(
-        &mut self,
-        found: Result<Vec<SweepHit>, SurfaceError>,
-        wanted: Result<Vec<SweepHit>, SurfaceError>,
-        question: &str,
-    ) {
-        match (found, wanted) {
-            (Ok(found), Ok(wanted)) => {
-                assert_eq!(found, wanted, "{question}");
-                for hit in &found {
-                    check(hit, question);
-                }
-                self.answered += 1;
-                self.hits += found.len();
-            }
-            (Err(found), Err(wanted)) => {
-                // By their text: the number refused may be none.
-                assert_eq!(found.to_string(), wanted.to_string(), "{question}");
-                self.refused += 1;
-            }
-            (found, wanted) => panic!("{question}: {found:?} {wanted:?}"),
-        }
-    }
+fn decided(hits: &[SweepHit]) -> bool {
+    hits.iter().all(|hit| !hit.undecided)
 }
 
 fn check(hit: &SweepHit, question: &str) {

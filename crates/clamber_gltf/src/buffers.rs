@@ -1,15 +1,14 @@
-//! The bytes behind a file's buffers: the GLB's own chunk, data URIs, files beside it.
+//! The bytes behind a file's buffers: the GLB's own chunk, data URIs, files beside it or from a resolver.
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use base64::Engine;
 use gltf::Document;
 use gltf::buffer::Source;
 
-use crate::GltfErrorKind;
+use crate::{GltfErrorKind, uri};
 
 /// The bytes of every buffer; a file that several buffers name is held once.
 pub(crate) struct Buffers {
@@ -31,50 +30,43 @@ impl Buffers {
         lengths.fold(0, usize::saturating_add)
     }
 
-    /// Reads all buffers. `base` is the folder that relative URIs start from; without one they are
-    /// refused.
+    /// Reads all buffers, each file once.
     pub(crate) fn load(
         document: &Document,
         mut blob: Option<Vec<u8>>,
-        base: Option<&Path>,
+        mut files: Files<'_>,
     ) -> Result<Self, GltfErrorKind> {
         let mut buffers = Self {
             held: Vec::new(),
             of_buffer: Vec::new(),
         };
-        let mut files: BTreeMap<PathBuf, usize> = BTreeMap::new();
-        for buffer in document.buffers() {
+        let claims = claims(document)?;
+        let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+        for (buffer, path) in document.buffers().zip(&claims.path_of_buffer) {
             let object = format!("buffer {}", buffer.index());
             let invalid = |reason: String| GltfErrorKind::invalid(&object, reason);
-            let next = buffers.held.len();
-            let place = match buffer.source() {
-                Source::Bin => {
-                    let bytes = blob.take();
-                    let missing = || invalid("has no URI, and the file no chunk".into());
-                    buffers.held.push(bytes.ok_or_else(missing)?);
-                    next
+            let known = path.as_ref().and_then(|path| places.get(path.as_str()));
+            let place = match known {
+                Some(place) => *place,
+                None => {
+                    let bytes = match (buffer.source(), path) {
+                        (Source::Bin, _) => {
+                            let missing = || invalid("has no URI, and the file no chunk".into());
+                            blob.take().ok_or_else(missing)?
+                        }
+                        (Source::Uri(_), Some(path)) => {
+                            places.insert(path, buffers.held.len());
+                            let length = claims.length_of_file.get(path.as_str());
+                            files.read(path, length.copied().unwrap_or(0), &object)?
+                        }
+                        (Source::Uri(uri), None) => {
+                            let data = uri.strip_prefix(DATA).unwrap_or(uri);
+                            uri::decode_data(data).map_err(invalid)?
+                        }
+                    };
+                    buffers.held.push(bytes);
+                    buffers.held.len() - 1
                 }
-                Source::Uri(uri) => match uri.strip_prefix("data:") {
-                    Some(data) => {
-                        buffers.held.push(decode_data_uri(data).map_err(invalid)?);
-                        next
-                    }
-                    None => {
-                        let path = path_beside(base, uri).map_err(invalid)?;
-                        let place = *files.entry(path.clone()).or_insert(next);
-                        if place == next {
-                            buffers.held.push(Vec::new());
-                        }
-                        let held = &mut buffers.held[place];
-                        if held.len() < buffer.length() {
-                            let folder = base.unwrap_or(Path::new(""));
-                            let target = target_in(folder, &path, &object)?;
-                            *held = read_plain(&target, buffer.length() as u64)
-                                .map_err(|source| GltfErrorKind::Read { path, source })?;
-                        }
-                        place
-                    }
-                },
             };
             buffers.of_buffer.push(place);
             let (claimed, found) = (buffer.length(), buffers.held[place].len());
@@ -88,49 +80,86 @@ impl Buffers {
     }
 }
 
-/// Decodes what follows `data:`.
-fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
-    let (kind, payload) = data
-        .split_once(',')
-        .ok_or("its data URI has no comma between type and data")?;
-    if kind.ends_with(";base64") {
-        base64::engine::general_purpose::STANDARD
-            .decode(payload)
-            .map_err(|e| format!("its data URI is no base64: {e}"))
-    } else {
-        Ok(percent_encoding::percent_decode_str(payload).collect())
-    }
+/// What a URI with the data themselves begins with.
+const DATA: &str = "data:";
+
+/// Which files buffers are in.
+#[derive(Default)]
+struct Claims {
+    /// `None` for a buffer inside the document.
+    path_of_buffer: Vec<Option<String>>,
+    /// The most bytes that a buffer claims of each file.
+    length_of_file: BTreeMap<String, usize>,
 }
 
-/// Where a URI leads: only to relative paths that stay within the folder, since a document from
-/// elsewhere must not name devices or files of the system.
-fn path_beside(base: Option<&Path>, uri: &str) -> Result<PathBuf, String> {
-    let base = base.ok_or_else(|| {
-        format!("its data is in the file {uri:?}: load from a path, not from bytes")
-    })?;
-    let name = percent_encoding::percent_decode_str(uri)
-        .decode_utf8()
-        .map_err(|e| format!("its URI {uri:?} is no UTF-8: {e}"))?;
-    let relative = Path::new(name.as_ref());
-    let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-    if !relative.components().all(inside) || name.contains(':') {
-        return Err(format!(
-            "its URI {uri:?} does not lead to a file in the document's folder or below"
-        ));
+fn claims(document: &Document) -> Result<Claims, GltfErrorKind> {
+    let mut claims = Claims::default();
+    for buffer in document.buffers() {
+        let path = match buffer.source() {
+            Source::Uri(uri) if !uri.starts_with(DATA) => {
+                let object = format!("buffer {}", buffer.index());
+                let path = uri::relative_path(uri);
+                let path = path.map_err(|reason| GltfErrorKind::invalid(object, reason))?;
+                let length = claims.length_of_file.entry(path.clone()).or_default();
+                *length = buffer.length().max(*length);
+                Some(path)
+            }
+            _ => None,
+        };
+        claims.path_of_buffer.push(path);
     }
-    let parts = relative
-        .components()
-        .filter(|part| *part != Component::CurDir);
-    Ok(parts.fold(base.to_owned(), |path, part| path.join(part)))
+    Ok(claims)
+}
+
+/// What a caller gives the files beside a document with.
+pub(crate) type Resolve<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
+
+/// Where the files beside a document are.
+pub(crate) enum Files<'a> {
+    /// There are none.
+    None,
+    /// In this folder and below.
+    Folder(&'a Path),
+    /// The caller has them.
+    Resolver(&'a mut Resolve<'a>),
+}
+
+impl Files<'_> {
+    /// The first `length` bytes of a file, or fewer if it has fewer.
+    fn read(&mut self, path: &str, length: usize, object: &str) -> Result<Vec<u8>, GltfErrorKind> {
+        match self {
+            Self::None => Err(GltfErrorKind::invalid(
+                object,
+                format!("its data is in the file {path:?}: load from a path, or with a resolver"),
+            )),
+            Self::Folder(folder) => {
+                let path = path
+                    .split('/')
+                    .fold(folder.to_owned(), |at, part| at.join(part));
+                let target = target_in(folder, &path, object)?;
+                read_plain(&target, length as u64)
+                    .map_err(|error| GltfErrorKind::Read { path, error })
+            }
+            Self::Resolver(resolve) => {
+                let mut bytes = resolve(path).map_err(|error| GltfErrorKind::Read {
+                    path: PathBuf::from(path),
+                    error,
+                })?;
+                // What no buffer claims must not count for the memory that the file may take.
+                bytes.truncate(length);
+                Ok(bytes)
+            }
+        }
+    }
 }
 
 /// Which file a path in a folder really is, with all symbolic links resolved: one that leads out of the folder is
 /// refused, as a path out of it is.
 fn target_in(folder: &Path, path: &Path, object: &str) -> Result<PathBuf, GltfErrorKind> {
     let resolve = |path: &Path| {
-        path.canonicalize().map_err(|source| GltfErrorKind::Read {
+        path.canonicalize().map_err(|error| GltfErrorKind::Read {
             path: path.to_owned(),
-            source,
+            error,
         })
     };
     // The folder of a path without folders is empty, which no system resolves.

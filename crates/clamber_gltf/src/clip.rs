@@ -6,15 +6,15 @@ use clamber_surface::rig::{Channel, Clip, Interpolation, JointId, Keyframes};
 use glam::{Quat, Vec3};
 use gltf::animation::{self, Property};
 
-use crate::GltfErrorKind;
 use crate::accessor::Reader;
 use crate::contents::Contents;
+use crate::{GltfErrorKind, ImportWarning};
 
 /// All animations that move the skeleton, each with the channels that do.
 pub(crate) fn load(
     contents: &Contents<'_>,
     of_node: &BTreeMap<usize, Vec<JointId>>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<Clip>, GltfErrorKind> {
     let mut clips = Vec::new();
     let reader = &contents.reader;
@@ -39,16 +39,14 @@ pub(crate) fn load(
             }
         }
         if channels.is_empty() {
-            warnings.push(format!(
-                "animation {name:?} moves nothing of the skeleton; passed over"
-            ));
+            warnings.push(ImportWarning::IdleAnimation { animation: name });
             continue;
         }
         if passed_over > 0 {
-            warnings.push(format!(
-                "animation {name:?}: passed over channels that move nothing of the skeleton, or \
-                 morph targets: {passed_over}"
-            ));
+            warnings.push(ImportWarning::IdleChannels {
+                animation: name.clone(),
+                channels: passed_over,
+            });
         }
         clips.push(Clip::new(name, channels));
     }

@@ -1,6 +1,8 @@
 //! The collider mesh under construction.
 
-use clamber_surface::mesh::{Influence, MeshSource, SurfaceTag};
+use clamber_surface::mesh::{
+    BuildOptions, BuildReport, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag,
+};
 use glam::Vec3;
 
 use crate::GltfErrorKind;
@@ -41,8 +43,12 @@ impl Collision {
         Ok(base)
     }
 
-    pub(crate) fn source(&self, joint_count: usize) -> MeshSource<'_> {
-        MeshSource {
+    pub(crate) fn build(
+        &self,
+        joint_count: usize,
+        options: &BuildOptions,
+    ) -> Result<(ColliderMesh, BuildReport), MeshError> {
+        let source = MeshSource {
             positions: &self.positions,
             triangles: &self.triangles,
             influences: &self.influences,
@@ -50,6 +56,7 @@ impl Collision {
             tags: &self.tags,
             rest_spaces: &self.spaces,
             joint_count,
-        }
+        };
+        ColliderMesh::build(&source, options)
     }
 }

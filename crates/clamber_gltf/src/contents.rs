@@ -1,5 +1,6 @@
 //! What a file holds, read and checked as far as all its creatures share it.
 
+use clamber_surface::mesh::SurfaceTag;
 use clamber_surface::rig::Transform;
 use gltf::Document;
 
@@ -7,7 +8,7 @@ use crate::accessor::Reader;
 use crate::extras::{self, NodeExtras};
 use crate::tree::Tree;
 use crate::visual::{self, Material};
-use crate::{GltfErrorKind, LoadOptions, transforms};
+use crate::{GltfErrorKind, ImportWarning, LoadOptions, transforms};
 
 /// A parsed file.
 pub(crate) struct Contents<'a> {
@@ -18,16 +19,18 @@ pub(crate) struct Contents<'a> {
     /// Of every node, from its own space to its parent's, at rest.
     pub(crate) transforms: Vec<Transform>,
     pub(crate) materials: Vec<Material>,
+    /// Of surfaces without a material.
+    pub(crate) bare_tag: SurfaceTag,
     pub(crate) reader: Reader<'a>,
-    pub(crate) options: &'a LoadOptions<'a>,
+    pub(crate) options: &'a LoadOptions,
 }
 
 impl<'a> Contents<'a> {
     pub(crate) fn new(
         document: &'a Document,
         reader: Reader<'a>,
-        options: &'a LoadOptions<'a>,
-        warnings: &mut Vec<String>,
+        options: &'a LoadOptions,
+        warnings: &mut Vec<ImportWarning>,
     ) -> Result<Self, GltfErrorKind> {
         let tree = Tree::new(document)?;
         Ok(Self {
@@ -35,9 +38,16 @@ impl<'a> Contents<'a> {
             extras: extras::of_nodes(&tree.nodes, warnings)?,
             transforms: transforms::of_nodes(&tree.nodes, warnings),
             materials: visual::materials(document, options, warnings)?,
+            bare_tag: options.tag(None, SurfaceTag::default()),
             tree,
             reader,
             options,
         })
+    }
+
+    /// The tag of a primitive of a material.
+    pub(crate) fn tag(&self, material: Option<usize>) -> SurfaceTag {
+        let material = material.and_then(|index| self.materials.get(index));
+        material.map_or(self.bare_tag, |material| material.tag)
     }
 }

@@ -7,10 +7,16 @@ use gltf::Document;
 use gltf::json::validation::{Checked, Error, Validate};
 use gltf::json::{Root, Value};
 
-use crate::GltfErrorKind;
+use crate::{GltfErrorKind, ImportWarning};
 
-/// Length of a GLB's header and of its first chunk's.
-const GLB_HEADERS: u32 = 20;
+/// What a GLB begins with.
+const MAGIC: &[u8] = b"glTF";
+
+/// Bytes of a GLB's header.
+const GLB_HEADER: usize = 12;
+
+/// Bytes of a GLB's header and of its first chunk's.
+const GLB_HEADERS: usize = 20;
 
 /// Extensions that a file may require although nothing here reads them: they change how it looks,
 /// allow integers where this importer takes them anyway, or animate what has no node; what such a
@@ -27,17 +33,16 @@ const HARMLESS: [&str; 6] = [
 /// The document, and the bytes of a GLB's binary chunk.
 pub(crate) fn parse(
     bytes: &[u8],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<(Document, Option<Vec<u8>>), GltfErrorKind> {
-    let (mut root, blob) = if bytes.starts_with(b"glTF") {
-        check_glb_length(bytes)?;
-        let glb = gltf::Glb::from_slice(bytes)?;
-        (
-            parse_json(&glb.json, warnings)?,
-            glb.bin.map(|bin| bin.into_owned()),
-        )
-    } else {
-        (parse_json(bytes, warnings)?, None)
+    let (mut root, blob) = match kind(bytes)? {
+        Kind::Glb => {
+            check_glb_length(bytes)?;
+            let glb = gltf::Glb::from_slice(bytes).map_err(GltfErrorKind::format)?;
+            let root = parse_json(&glb.json, warnings)?;
+            (root, glb.bin.map(|bin| bin.into_owned()))
+        }
+        Kind::Json => (parse_json(bytes, warnings)?, None),
     };
     root.extensions_required
         .retain(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
@@ -47,11 +52,37 @@ pub(crate) fn parse(
     Ok((Document::from_json_without_validation(root), blob))
 }
 
-/// The parser subtracts the headers' length from what the file claims.
+/// The two formats.
+enum Kind {
+    Glb,
+    Json,
+}
+
+/// Which format a file begins like.
+fn kind(bytes: &[u8]) -> Result<Kind, GltfErrorKind> {
+    if bytes.is_empty() {
+        return Err(GltfErrorKind::Empty);
+    }
+    let magic = &bytes[..bytes.len().min(MAGIC.len())];
+    if MAGIC.starts_with(magic) {
+        return Ok(Kind::Glb);
+    }
+    match bytes.trim_ascii_start().first() {
+        Some(b'{') => Ok(Kind::Json),
+        _ => Err(GltfErrorKind::NotGltf),
+    }
+}
+
+/// A GLB is as long as its header claims, and claims at least its headers: the parser subtracts their length from it.
 fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
-    let claimed = bytes
-        .get(8..12)
-        .map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let found = bytes.len();
+    let claimed = bytes.get(8..GLB_HEADER).map_or(GLB_HEADER, |b| {
+        u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize
+    });
+    if found < claimed.max(GLB_HEADER) {
+        let claimed = claimed.max(GLB_HEADER);
+        return Err(GltfErrorKind::CutShort { found, claimed });
+    }
     if claimed < GLB_HEADERS {
         let reason = format!("claims to be {claimed} bytes long, less than its own headers");
         return Err(GltfErrorKind::invalid("GLB header", reason));
@@ -59,14 +90,14 @@ fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfErrorKind> {
+fn parse_json(json: &[u8], warnings: &mut Vec<ImportWarning>) -> Result<Root, GltfErrorKind> {
     let refused = match Root::from_slice(json) {
         Ok(root) => return Ok(root),
-        Err(error) => gltf::Error::Deserialize(error),
+        Err(error) => GltfErrorKind::format(error),
     };
     // Channels without a node are legal and to be passed over, but the parser requires one.
     let Ok(mut value) = gltf::json::deserialize::from_slice::<Value>(json) else {
-        return Err(refused.into());
+        return Err(refused);
     };
     let mut dropped = 0;
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
@@ -78,13 +109,11 @@ fn parse_json(json: &[u8], warnings: &mut Vec<String>) -> Result<Root, GltfError
         }
     }
     if dropped == 0 {
-        return Err(refused.into());
+        return Err(refused);
     }
-    warnings.push(format!(
-        "passed over animation channels without a node: {dropped}"
-    ));
-    let patched = gltf::json::serialize::to_vec(&value).map_err(gltf::Error::Deserialize)?;
-    Ok(Root::from_slice(&patched).map_err(gltf::Error::Deserialize)?)
+    warnings.push(ImportWarning::ChannelsWithoutNode { channels: dropped });
+    let patched = gltf::json::serialize::to_vec(&value).map_err(GltfErrorKind::format)?;
+    Root::from_slice(&patched).map_err(GltfErrorKind::format)
 }
 
 /// Every attribute names an accessor.
@@ -118,12 +147,16 @@ fn validate(root: &Root) -> Result<(), GltfErrorKind> {
     if errors.is_empty() {
         Ok(())
     } else {
-        Err(gltf::Error::Validation(errors).into())
+        let list = errors
+            .iter()
+            .map(|(path, error)| format!("{path}: {error}"));
+        let list: Vec<String> = list.collect();
+        Err(GltfErrorKind::format(list.join("; ")))
     }
 }
 
 /// Every channel names a node; those that move something unknown are dropped.
-fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), GltfErrorKind> {
+fn check_channels(root: &mut Root, warnings: &mut Vec<ImportWarning>) -> Result<(), GltfErrorKind> {
     let nodes = root.nodes.len();
     for (animation, object) in root.animations.iter_mut().enumerate() {
         if let Some(bad) = object
@@ -147,9 +180,10 @@ fn check_channels(root: &mut Root, warnings: &mut Vec<String>) -> Result<(), Glt
             .retain(|channel| known(&channel.target.path));
         let dropped = before - object.channels.len();
         if dropped > 0 {
-            warnings.push(format!(
-                "animation {animation}: passed over channels that move something unknown: {dropped}"
-            ));
+            warnings.push(ImportWarning::UnknownChannels {
+                animation,
+                channels: dropped,
+            });
         }
     }
     Ok(())

@@ -6,7 +6,11 @@ use clamber_surface::rig::RigError;
 use thiserror::Error;
 
 /// Which file could not be loaded, and why.
+///
+/// Its text says all, causes included; [`source`](std::error::Error::source) is always `None`, so that a chain of
+/// errors prints nothing twice. The causes themselves are fields of [`GltfErrorKind`].
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct GltfError {
     /// The document; `None` if it came as bytes.
     pub path: Option<PathBuf>,
@@ -24,23 +28,19 @@ impl fmt::Display for GltfError {
     }
 }
 
-impl std::error::Error for GltfError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.kind.source()
-    }
-}
+impl std::error::Error for GltfError {}
 
 /// Why a file could not be loaded.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GltfErrorKind {
     /// The file, or one it names, cannot be read.
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {path}: {error}")]
     Read {
-        /// Which file.
+        /// Which file: a path, or what a resolver was asked for.
         path: PathBuf,
         /// Why.
-        source: io::Error,
+        error: io::Error,
     },
     /// A symbolic link leads out of the document's folder.
     #[error("{object}: its file {file} is a link out of the document's folder, to {target}")]
@@ -52,9 +52,26 @@ pub enum GltfErrorKind {
         /// Where it really is.
         target: PathBuf,
     },
-    /// Not glTF 2.0: no JSON, a broken container, or an index that points nowhere.
-    #[error("not a valid glTF 2.0 file: {0}")]
-    Format(#[from] gltf::Error),
+    /// The file has no bytes.
+    #[error("the file is empty")]
+    Empty,
+    /// The file begins like neither of the two formats.
+    #[error("neither GLB nor glTF")]
+    NotGltf,
+    /// A GLB ends early.
+    #[error("ends after {found} of {claimed} bytes")]
+    CutShort {
+        /// Bytes that there are.
+        found: usize,
+        /// Bytes that the header claims; the header's own 12 where it is cut itself.
+        claimed: usize,
+    },
+    /// Not glTF 2.0: broken JSON, a broken container, or an index that points nowhere.
+    #[error("not a valid glTF 2.0 file: {reason}")]
+    Format {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// An object of the file breaks the specification.
     #[error("{object}: {reason}")]
     Invalid {
@@ -78,20 +95,34 @@ pub enum GltfErrorKind {
         object: String,
     },
     /// The joints do not make a skeleton.
-    #[error("the joints of {object} make no skeleton: {source}")]
+    #[error("the joints of {object} make no skeleton: {error}")]
     Skeleton {
         /// Which skins, or the file.
         object: String,
         /// Why.
-        source: RigError,
+        error: RigError,
     },
     /// The primitives do not make a collider mesh.
-    #[error("the meshes of {object} make no collider: {source}")]
+    #[error("the meshes of {object} make no collider: {error}")]
     Collider {
         /// Which skins, or the file.
         object: String,
         /// Why.
-        source: MeshError,
+        error: MeshError,
+    },
+    /// The height asked for is not finite, or not greater than 0.
+    #[error("a height of {wanted} m was asked for, which no creature can have")]
+    BadHeight {
+        /// Metres asked for.
+        wanted: f32,
+    },
+    /// A creature cannot be scaled to a height: its collider has none in the rest pose.
+    #[error("the collider of {object} is {found} m tall, and cannot be scaled to a height")]
+    NoHeight {
+        /// Which skins, or the file.
+        object: String,
+        /// Its height in the rest pose: 0, or not finite.
+        found: f64,
     },
 }
 
@@ -99,6 +130,12 @@ impl GltfErrorKind {
     pub(crate) fn invalid(object: impl Into<String>, reason: impl ToString) -> Self {
         Self::Invalid {
             object: object.into(),
+            reason: reason.to_string(),
+        }
+    }
+
+    pub(crate) fn format(reason: impl ToString) -> Self {
+        Self::Format {
             reason: reason.to_string(),
         }
     }

@@ -2,14 +2,14 @@
 //!
 //! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
 //! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
-//! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "major": true}}}`.
+//! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "radius": 0.4, "major": true}}}`.
 
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use gltf::{Material, Node};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use crate::{GltfError, GltfErrorKind, LoadOptions};
+use crate::{GltfError, GltfErrorKind, ImportWarning};
 
 /// Extras of any tool's; only the key that is ours is read.
 #[derive(Deserialize)]
@@ -82,8 +82,27 @@ pub(crate) enum Role {
 )]
 pub(crate) struct WeakPointExtras {
     pub(crate) hit_points: f64,
+    /// In model units; without it the node's scale says.
+    pub(crate) radius: Option<f32>,
     #[serde(default)]
     pub(crate) major: Flag,
+}
+
+impl WeakPointExtras {
+    fn check(&self) -> Result<(), String> {
+        let hit_points = self.hit_points;
+        if !(hit_points > 0.0 && hit_points.is_finite()) {
+            return Err(format!(
+                "a weak point has {hit_points} hit points, where more than 0 are needed"
+            ));
+        }
+        match self.radius {
+            Some(radius) if !(radius >= 0.0 && radius.is_finite()) => Err(format!(
+                "a weak point has a radius of {radius}, where at least 0 is needed"
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// True or false. Also as 1 or 0, which is how some tools write what they have no checkbox for.
@@ -105,16 +124,8 @@ impl TryFrom<serde_json::Value> for Flag {
     }
 }
 
-/// The tag of a primitive's material: what the caller says of its name, else what its extras say,
-/// else the default.
-pub(crate) fn tag_of(
-    material: &Material<'_>,
-    options: &LoadOptions<'_>,
-) -> Result<SurfaceTag, GltfErrorKind> {
-    let by_name = options.tag_of_material.zip(material.name());
-    if let Some(tag) = by_name.and_then(|(tag_of, name)| tag_of(name)) {
-        return Ok(tag);
-    }
+/// The tag that a material's extras give, the default if they give none.
+pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKind> {
     let object = || {
         let name = material.name().unwrap_or("without a name");
         format!("extras of material {name:?}")
@@ -150,7 +161,7 @@ pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
 /// its node does not.
 pub(crate) fn of_nodes(
     nodes: &[Node<'_>],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<NodeExtras>, GltfErrorKind> {
     let mut roles_of_nothing = 0;
     let mut all = Vec::with_capacity(nodes.len());
@@ -168,9 +179,9 @@ pub(crate) fn of_nodes(
         all.push(extras);
     }
     if roles_of_nothing > 0 {
-        warnings.push(format!(
-            "nodes with a role, but without a mesh: {roles_of_nothing}"
-        ));
+        warnings.push(ImportWarning::RolesWithoutMesh {
+            nodes: roles_of_nothing,
+        });
     }
     Ok(all)
 }
@@ -181,16 +192,10 @@ fn of_node(node: &Node<'_>) -> Result<NodeExtras, GltfErrorKind> {
         None => format!("extras of node {}", node.index()),
     };
     let extras: NodeExtras = ours(node.extras(), object)?;
-    if let Some(weak_point) = &extras.weak_point
-        && !(weak_point.hit_points > 0.0 && weak_point.hit_points.is_finite())
-    {
-        let reason = format!(
-            "a weak point has {} hit points, where more than 0 are needed",
-            weak_point.hit_points
-        );
-        return Err(GltfErrorKind::invalid(object(), reason));
+    match extras.weak_point.as_ref().map(WeakPointExtras::check) {
+        Some(Err(reason)) => Err(GltfErrorKind::invalid(object(), reason)),
+        _ => Ok(extras),
     }
-    Ok(extras)
 }
 
 fn ours<T: DeserializeOwned + Default>(

@@ -12,17 +12,23 @@ mod load;
 mod looks;
 mod members;
 mod mesh;
+mod options;
+mod rig;
+mod scale;
 mod skeleton;
 mod transforms;
 mod tree;
+mod uri;
 mod vertices;
 mod visual;
+mod warning;
 mod weak_point;
 
+pub use clamber_surface::rig::WeakPoint;
 pub use error::{GltfError, GltfErrorKind};
 pub use extras::tag_in_extras;
-pub use load::{
-    ImportReport, LoadOptions, Rig, TagOfMaterial, load, load_all, load_slice, load_with,
-};
+pub use load::{load, load_all, load_slice, load_slice_with, load_with};
+pub use options::{LoadOptions, Tagger};
+pub use rig::{ImportReport, Rig};
 pub use visual::{Alpha, Material, VisualMesh, VisualPrimitive};
-pub use weak_point::WeakPoint;
+pub use warning::ImportWarning;

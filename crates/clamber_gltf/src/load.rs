@@ -1,89 +1,20 @@
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildOptions, BuildReport, ColliderMesh, MeshError, SurfaceTag};
-use clamber_surface::rig::{Clip, Skeleton};
+use clamber_surface::mesh::{BuildReport, ColliderMesh};
+use clamber_surface::rig::Skeleton;
 
 use crate::accessor::Reader;
-use crate::buffers::Buffers;
+use crate::buffers::{Buffers, Files};
+use crate::collision::Collision;
 use crate::contents::Contents;
 use crate::members::{self, Members};
-use crate::visual;
+use crate::mesh::{self, Meshes};
 use crate::{
-    GltfError, GltfErrorKind, Material, VisualMesh, WeakPoint, clip, document, mesh, skeleton,
-    weak_point,
+    GltfError, GltfErrorKind, ImportReport, ImportWarning, LoadOptions, Rig, clip, document, scale,
+    skeleton, weak_point,
 };
-
-/// A creature as a file describes it.
-#[derive(Clone, Debug)]
-pub struct Rig {
-    /// The joints of the skins first, in the skins' order, then the nodes of rigid meshes, then the
-    /// other nodes that all these hang under.
-    pub skeleton: Skeleton,
-    /// Those that move the skeleton, in the order of the file.
-    pub clips: Vec<Clip>,
-    /// What a climber touches: all meshes that are for collision, as one.
-    pub collider: Arc<ColliderMesh>,
-    /// What is to be seen, each mesh by itself.
-    pub visual: Vec<VisualMesh>,
-    /// All materials of the file, in its order.
-    pub materials: Vec<Material>,
-    /// Where the creature can be wounded, in the order of the file's nodes.
-    pub weak_points: Vec<WeakPoint>,
-    /// What the import found.
-    pub report: ImportReport,
-}
-
-impl Rig {
-    /// The first clip of this name.
-    pub fn clip(&self, name: &str) -> Option<&Clip> {
-        self.clips.iter().find(|clip| clip.name == name)
-    }
-
-    /// What is to be seen, as one mesh that can be queried like the collider.
-    ///
-    /// # Errors
-    /// [`MeshError`] if nothing is to be seen.
-    pub fn visual_collider(&self) -> Result<ColliderMesh, MeshError> {
-        let joints = self.skeleton.joints().len();
-        visual::merged(&self.visual, &self.materials, joints)
-    }
-}
-
-/// What an import found, changed and passed over.
-#[derive(Clone, Debug, Default)]
-pub struct ImportReport {
-    /// About the collider mesh.
-    pub build: BuildReport,
-    /// What was passed over or mended, a sentence each.
-    pub warnings: Vec<String>,
-}
-
-/// The tag for a material's name; `None` for what the file itself says.
-pub type TagOfMaterial<'a> = dyn Fn(&str) -> Option<SurfaceTag> + 'a;
-
-/// Choices of an import.
-#[derive(Clone, Copy, Default)]
-pub struct LoadOptions<'a> {
-    /// Index of a skin of the creature to load; `None` for the creature with the most triangles.
-    /// [`load_all`] does not ask.
-    pub skin: Option<usize>,
-    /// Passed on to [`ColliderMesh::build`].
-    pub build: BuildOptions,
-    /// The tag of a material by its name, for files whose extras do not say. Where it gives one it
-    /// wins over the extras.
-    pub tag_of_material: Option<&'a TagOfMaterial<'a>>,
-}
-
-impl std::fmt::Debug for LoadOptions<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("LoadOptions")
-            .field("skin", &self.skin)
-            .field("build", &self.build)
-            .field("tag_of_material", &self.tag_of_material.is_some())
-            .finish()
-    }
-}
 
 /// Loads the creature with the most triangles of a `.glb` or `.gltf` file: all skins that move the
 /// same joints or hang under each other's, and the meshes without a skin under these joints. A file
@@ -99,39 +30,74 @@ pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions<'_>) -> Result<Rig, GltfError> {
-    from_path(path.as_ref(), |bytes, base| one(bytes, base, options))
+pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
+    from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
 
-/// Loads every creature of a file, in the order of their first skins.
+/// Loads every creature of a file, in the order of their first skins. A height is given to each of them.
 ///
 /// # Errors
 /// As [`load`], for the first that cannot be loaded.
-pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions<'_>) -> Result<Vec<Rig>, GltfError> {
-    let all = |creatures: Vec<Members>, _: &Contents<'_>, _: &mut Vec<String>| Ok(creatures);
-    from_path(path.as_ref(), |bytes, base| {
-        from_bytes(bytes, base, options, all)
+pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig>, GltfError> {
+    let all = |creatures: Vec<Members>, _: &Contents<'_>, _: &mut Vec<ImportWarning>| Ok(creatures);
+    from_path(path.as_ref(), |bytes, files| {
+        from_bytes(bytes, files, options, all)
     })
 }
 
 /// Loads from the bytes of a `.glb` or `.gltf` file that has its buffers inside.
 ///
 /// # Errors
-/// As [`load`].
-pub fn load_slice(bytes: &[u8], options: &LoadOptions<'_>) -> Result<Rig, GltfError> {
-    one(bytes, None, options).map_err(|kind| GltfError { path: None, kind })
+/// As [`load`]; for a file whose buffers are elsewhere, [`GltfErrorKind::Invalid`].
+pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError> {
+    let rig = one(bytes, Files::None, options);
+    rig.map_err(|kind| GltfError { path: None, kind })
+}
+
+/// Loads from the bytes of a `.glb` or `.gltf` file, and asks `resolve` for the files that its buffers are in: from
+/// an archive, from the web, or embedded in the program.
+///
+/// `resolve` gets the path relative to the document, percent-decoded, with `/` between its parts, and gives the
+/// whole file. It is asked once for each file, in the order of the buffers. Paths that are absolute or
+/// lead out of the document's folder are refused before. It is not asked for images.
+///
+/// ```
+/// use std::io;
+///
+/// use clamber_gltf::{LoadOptions, load_slice_with};
+///
+/// let document = br#"{"asset": {"version": "2.0"},
+///     "buffers": [{"byteLength": 4, "uri": "my%20data.bin"}]}"#;
+/// let error = load_slice_with(document, &LoadOptions::default(), |path| match path {
+///     "my data.bin" => Ok(vec![1, 2, 3]),
+///     _ => Err(io::ErrorKind::NotFound.into()),
+/// });
+/// let error = error.map(|_| ()).unwrap_err();
+/// assert_eq!(error.to_string(), "buffer 0: claims 4 bytes, but holds 3");
+/// ```
+///
+/// # Errors
+/// As [`load`]. What `resolve` gives as an error is [`GltfErrorKind::Read`].
+pub fn load_slice_with(
+    bytes: &[u8],
+    options: &LoadOptions,
+    mut resolve: impl FnMut(&str) -> io::Result<Vec<u8>>,
+) -> Result<Rig, GltfError> {
+    let rig = one(bytes, Files::Resolver(&mut resolve), options);
+    rig.map_err(|kind| GltfError { path: None, kind })
 }
 
 /// Hands the bytes of a file and its folder on, and names it in errors.
 fn from_path<T>(
     path: &Path,
-    load: impl Fn(&[u8], Option<&Path>) -> Result<T, GltfErrorKind>,
+    load: impl FnOnce(&[u8], Files<'_>) -> Result<T, GltfErrorKind>,
 ) -> Result<T, GltfError> {
-    let read = std::fs::read(path).map_err(|source| GltfErrorKind::Read {
+    let read = std::fs::read(path).map_err(|error| GltfErrorKind::Read {
         path: path.to_owned(),
-        source,
+        error,
     });
-    read.and_then(|bytes| load(&bytes, path.parent()))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    read.and_then(|bytes| load(&bytes, Files::Folder(folder)))
         .map_err(|kind| GltfError {
             path: Some(path.to_owned()),
             kind,
@@ -139,12 +105,13 @@ fn from_path<T>(
 }
 
 /// The creature that the options ask for.
-fn one(bytes: &[u8], base: Option<&Path>, options: &LoadOptions<'_>) -> Result<Rig, GltfErrorKind> {
-    let choose = |creatures: Vec<Members>, contents: &Contents<'_>, warnings: &mut Vec<String>| {
-        let chosen = members::choose(&contents.tree, &creatures, options.skin, warnings)?;
-        Ok(vec![chosen])
-    };
-    let mut rigs = from_bytes(bytes, base, options, choose)?;
+fn one(bytes: &[u8], files: Files<'_>, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
+    let choose =
+        |creatures: Vec<Members>, contents: &Contents<'_>, warnings: &mut Vec<ImportWarning>| {
+            let chosen = members::choose(&contents.tree, &creatures, options.skin, warnings)?;
+            Ok(vec![chosen])
+        };
+    let mut rigs = from_bytes(bytes, files, options, choose)?;
     let object = "the file".to_owned();
     rigs.pop().ok_or(GltfErrorKind::NoTriangles { object })
 }
@@ -152,17 +119,18 @@ fn one(bytes: &[u8], base: Option<&Path>, options: &LoadOptions<'_>) -> Result<R
 /// Those of a file's creatures that `choose` picks; at least one.
 fn from_bytes(
     bytes: &[u8],
-    base: Option<&Path>,
-    options: &LoadOptions<'_>,
+    files: Files<'_>,
+    options: &LoadOptions,
     choose: impl Fn(
         Vec<Members>,
         &Contents<'_>,
-        &mut Vec<String>,
+        &mut Vec<ImportWarning>,
     ) -> Result<Vec<Members>, GltfErrorKind>,
 ) -> Result<Vec<Rig>, GltfErrorKind> {
+    scale::check(options.height)?;
     let mut warnings = Vec::new();
     let (document, blob) = document::parse(bytes, &mut warnings)?;
-    let buffers = Buffers::load(&document, blob, base)?;
+    let buffers = Buffers::load(&document, blob, files)?;
     let reader = Reader::new(&buffers, bytes.len());
     let contents = Contents::new(&document, reader, options, &mut warnings)?;
     let creatures = members::all(&contents.tree, &contents.extras, &mut warnings);
@@ -180,26 +148,77 @@ fn from_bytes(
 fn rig(
     contents: &Contents<'_>,
     members: &Members,
-    mut warnings: Vec<String>,
+    mut warnings: Vec<ImportWarning>,
 ) -> Result<Rig, GltfErrorKind> {
+    let object = members.object();
     // Every creature has these to itself.
-    let lines: usize = warnings.iter().map(String::len).sum();
+    let lines: usize = warnings.iter().map(ImportWarning::bytes).sum();
     let bytes = size_of_val(contents.materials.as_slice()) + lines;
-    contents.reader.charge(&members.object(), bytes)?;
+    contents.reader.charge(&object, bytes)?;
     let joints = skeleton::load(contents, members, &mut warnings)?;
-    let meshes = mesh::load(contents, members, &joints, &mut warnings)?;
+    let Meshes { collision, visual } = mesh::load(contents, members, &joints, &mut warnings)?;
+    let collider = collider(collision, &joints.skeleton, contents.options, &object)?;
     let clips = clip::load(contents, &joints.of_node, &mut warnings)?;
     let weak_points = weak_point::load(contents, members, &joints, &mut warnings)?;
-    Ok(Rig {
+    let mut rig = Rig {
         skeleton: joints.skeleton,
         clips,
-        collider: meshes.collider,
-        visual: meshes.visual,
+        collider: Arc::new(collider.mesh),
+        visual,
         materials: contents.materials.clone(),
         weak_points,
         report: ImportReport {
-            build: meshes.build,
+            build: collider.report,
+            scale: collider.scale,
             warnings,
         },
+    };
+    if let Some(factor) = collider.scale {
+        scale::all_but_collider(&mut rig, factor, &object)?;
+    }
+    Ok(rig)
+}
+
+/// A collider mesh of the height asked for.
+struct Collider {
+    mesh: ColliderMesh,
+    report: BuildReport,
+    /// The factor that led to the height.
+    scale: Option<f64>,
+}
+
+/// Builds the collider. To be scaled, it is built twice: only the first mesh says which vertices count for the height,
+/// and only the second has bounds and welds of its own size.
+fn collider(
+    mut collision: Collision,
+    skeleton: &Skeleton,
+    options: &LoadOptions,
+    object: &str,
+) -> Result<Collider, GltfErrorKind> {
+    let build = |collision: &Collision| {
+        let built = collision.build(skeleton.joints().len(), &options.build);
+        built.map_err(|error| GltfErrorKind::Collider {
+            object: object.to_owned(),
+            error,
+        })
+    };
+    let (mesh, report) = build(&collision)?;
+    let Some(height) = options.height else {
+        let scale = None;
+        return Ok(Collider {
+            mesh,
+            report,
+            scale,
+        });
+    };
+    let factor = scale::factor(height, skeleton, &mesh, object)?;
+    // Before the second one takes as much memory.
+    drop((mesh, report));
+    scale::points(&mut collision.positions, factor);
+    let (mesh, report) = build(&collision)?;
+    Ok(Collider {
+        mesh,
+        report,
+        scale: Some(factor),
     })
 }

@@ -8,10 +8,10 @@
 use gltf::Mesh;
 use gltf::mesh::Semantic;
 
-use crate::GltfErrorKind;
 use crate::extras::NodeExtras;
 use crate::tree::Tree;
 use crate::vertices::has_surface;
+use crate::{GltfErrorKind, ImportWarning, warning};
 
 /// The pieces of one creature.
 #[derive(Clone, Debug, Default)]
@@ -29,14 +29,7 @@ pub(crate) struct Members {
 impl Members {
     /// For messages.
     pub(crate) fn object(&self) -> String {
-        match self.skins.as_slice() {
-            [] => "a file without skins".into(),
-            [one] => format!("skin {one}"),
-            many => {
-                let list: Vec<String> = many.iter().map(usize::to_string).collect();
-                format!("skins {}", list.join(", "))
-            }
-        }
+        warning::creature(&self.skins)
     }
 }
 
@@ -44,7 +37,7 @@ impl Members {
 pub(crate) fn all(
     tree: &Tree<'_>,
     extras: &[NodeExtras],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Vec<Members> {
     let of_skin = creature_of_skin(tree);
     let mut creatures = vec![Members::default(); of_skin.len().max(1)];
@@ -73,22 +66,21 @@ pub(crate) fn all(
         if extras[index].weak_point.is_some() {
             match of_node[index] {
                 Some(creature) => creatures[creature].weak_points.push(index),
-                None => warnings.push(format!(
-                    "node {:?} is a weak point, but hangs under no joint; passed over",
-                    tree.name(index)
-                )),
+                None => warnings.push(ImportWarning::WeakPointWithoutJoint {
+                    node: tree.name(index),
+                }),
             }
         }
     }
     if static_meshes > 0 {
-        warnings.push(format!(
-            "passed over meshes without a skin that hang under no joint: {static_meshes}"
-        ));
+        warnings.push(ImportWarning::MeshesWithoutJoint {
+            meshes: static_meshes,
+        });
     }
     let bare = creatures.iter().filter(|c| c.meshes.is_empty());
     let idle_skins: usize = bare.map(|creature| creature.skins.len()).sum();
     if idle_skins > 0 {
-        warnings.push(format!("skins that deform no mesh: {idle_skins}"));
+        warnings.push(ImportWarning::IdleSkins { skins: idle_skins });
     }
     creatures.retain(|creature| !creature.meshes.is_empty());
     creatures
@@ -99,7 +91,7 @@ pub(crate) fn choose(
     tree: &Tree<'_>,
     creatures: &[Members],
     wanted: Option<usize>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Members, GltfErrorKind> {
     let found = tree.skins.len();
     let chosen = match wanted {
@@ -110,11 +102,10 @@ pub(crate) fn choose(
     let object = || wanted.map_or_else(|| "the file".into(), |skin| format!("skin {skin}"));
     let chosen = chosen.ok_or_else(|| GltfErrorKind::NoTriangles { object: object() })?;
     if creatures.len() > 1 {
-        warnings.push(format!(
-            "took the creature of {}; other creatures passed over: {}",
-            chosen.object(),
-            creatures.len() - 1
-        ));
+        warnings.push(ImportWarning::OtherCreatures {
+            skins: chosen.skins.clone(),
+            others: creatures.len() - 1,
+        });
     }
     Ok(chosen.clone())
 }

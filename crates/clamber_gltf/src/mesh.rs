@@ -2,13 +2,10 @@
 //! they are.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
-use clamber_surface::mesh::{BuildReport, ColliderMesh};
 use gltf::mesh::Semantic;
 use gltf::{Mesh, Node, Primitive};
 
-use crate::GltfErrorKind;
 use crate::accessor::Reader;
 use crate::collision::Collision;
 use crate::contents::Contents;
@@ -16,13 +13,13 @@ use crate::extras::Role;
 use crate::looks;
 use crate::members::Members;
 use crate::skeleton::Joints;
-use crate::vertices::{self, Binding};
+use crate::vertices::{self, Binding, PassedOver};
 use crate::visual::VisualMesh;
+use crate::{GltfErrorKind, ImportWarning};
 
 /// What all meshes of a creature add up to.
 pub(crate) struct Meshes {
-    pub(crate) collider: Arc<ColliderMesh>,
-    pub(crate) build: BuildReport,
+    pub(crate) collision: Collision,
     pub(crate) visual: Vec<VisualMesh>,
 }
 
@@ -37,7 +34,7 @@ struct Gathered {
     unweighted: usize,
     morphed: usize,
     /// Primitives without a surface, by what they are.
-    passed_over: BTreeMap<&'static str, usize>,
+    passed_over: BTreeMap<PassedOver, usize>,
     /// Attributes that were not read.
     ignored: BTreeSet<String>,
 }
@@ -66,7 +63,7 @@ pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,
     joints: &Joints,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Meshes, GltfErrorKind> {
     let mut gathered = Gathered::default();
     // A mesh that several nodes show with one skin is one mesh: the skin says where it stands. Each
@@ -98,18 +95,8 @@ pub(crate) fn load(
         let object = members.object();
         return Err(GltfErrorKind::NoTriangles { object });
     }
-    let joint_count = joints.skeleton.joints().len();
-    let source = gathered.collision.source(joint_count);
-    let (collider, build) =
-        ColliderMesh::build(&source, &contents.options.build).map_err(|source| {
-            GltfErrorKind::Collider {
-                object: members.object(),
-                source,
-            }
-        })?;
     Ok(Meshes {
-        collider: Arc::new(collider),
-        build,
+        collision: gathered.collision,
         visual: gathered.visual,
     })
 }
@@ -157,29 +144,25 @@ fn instances<'a>(
 
 impl Gathered {
     /// Says what was passed over or mended.
-    fn report(&self, warnings: &mut Vec<String>) {
-        let mut count = |what: &str, count: usize| {
-            if count > 0 {
-                warnings.push(format!("{what}: {count}"));
-            }
-        };
-        for (kind, primitives) in &self.passed_over {
-            count(&format!("passed over primitives {kind}"), *primitives);
+    fn report(&self, warnings: &mut Vec<ImportWarning>) {
+        for (reason, &primitives) in &self.passed_over {
+            warnings.push(match reason {
+                PassedOver::NoWeights => ImportWarning::PrimitivesWithoutWeights { primitives },
+                PassedOver::PointsOrLines => ImportWarning::PointsOrLines { primitives },
+                PassedOver::NoPositions => ImportWarning::PrimitivesWithoutPositions { primitives },
+            });
         }
-        count(
-            "vertices without weights, which follow the first joint that they name",
-            self.unweighted,
-        );
-        count(
-            "primitives with morph targets, which stay at their rest weights",
-            self.morphed,
-        );
+        if self.unweighted > 0 {
+            let vertices = self.unweighted;
+            warnings.push(ImportWarning::UnweightedVertices { vertices });
+        }
+        if self.morphed > 0 {
+            let primitives = self.morphed;
+            warnings.push(ImportWarning::MorphTargets { primitives });
+        }
         if !self.ignored.is_empty() {
-            let names: Vec<&str> = self.ignored.iter().map(String::as_str).collect();
-            warnings.push(format!(
-                "attributes that were not read: {}",
-                names.join(", ")
-            ));
+            let names = self.ignored.iter().cloned().collect();
+            warnings.push(ImportWarning::UnreadAttributes { names });
         }
     }
 
@@ -193,18 +176,17 @@ impl Gathered {
         let reader = &contents.reader;
         let place = self.place(instance, primitive, object, reader)?;
         let triangles = vertices::triangles(primitive, place.vertices, object, reader)?;
+        let tag = contents.tag(primitive.material().index());
         if let Some(base) = place.collision {
-            let material = primitive.material().index();
-            let tag = material.and_then(|index| Some(contents.materials.get(index)?.tag));
             let collision = &mut self.collision;
             collision
                 .triangles
                 .extend(triangles.iter().map(|t| t.map(|v| v + base)));
             let count = collision.triangles.len();
-            collision.tags.resize(count, tag.unwrap_or_default());
+            collision.tags.resize(count, tag);
         }
         if let Some(visual) = place.visual {
-            self.visual[visual].push(primitive, triangles);
+            self.visual[visual].push(primitive, tag, triangles);
         }
         Ok(())
     }

@@ -6,10 +6,10 @@ use clamber_surface::geometry::Affine;
 use clamber_surface::rig::{Joint, JointId, Skeleton};
 use gltf::Skin;
 
-use crate::GltfErrorKind;
 use crate::accessor::Reader;
 use crate::contents::Contents;
 use crate::members::Members;
+use crate::{GltfErrorKind, ImportWarning};
 
 /// A skeleton, and which of its joints stands for what.
 pub(crate) struct Joints {
@@ -52,7 +52,7 @@ impl Gathering {
 pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Joints, GltfErrorKind> {
     let tree = &contents.tree;
     let mut gathering = Gathering::default();
@@ -97,9 +97,9 @@ pub(crate) fn load(
             inverse_bind,
         }
     });
-    let skeleton = Skeleton::new(joints.collect()).map_err(|source| GltfErrorKind::Skeleton {
+    let skeleton = Skeleton::new(joints.collect()).map_err(|error| GltfErrorKind::Skeleton {
         object: members.object(),
-        source,
+        error,
     })?;
     Ok(Joints {
         skeleton,
@@ -112,7 +112,7 @@ pub(crate) fn load(
 fn inverse_binds(
     skin: &Skin<'_>,
     reader: &Reader<'_>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<Affine>, GltfErrorKind> {
     let joints = skin.joints().len();
     let Some(accessor) = skin.inverse_bind_matrices() else {
@@ -133,11 +133,10 @@ fn inverse_binds(
     let last_row = |m: &[f32; 16]| [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0];
     let projective = matrices.iter().filter(|m| !last_row(m)).count();
     if projective > 0 {
-        warnings.push(format!(
-            "skin {}: inverse bind matrices whose last row is not (0, 0, 0, 1), and was taken as if \
-             it were: {projective}",
-            skin.index()
-        ));
+        warnings.push(ImportWarning::ProjectiveInverseBinds {
+            skin: skin.index(),
+            matrices: projective,
+        });
     }
     Ok(matrices.iter().map(Affine::from_cols_array).collect())
 }

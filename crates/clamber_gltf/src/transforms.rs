@@ -4,12 +4,14 @@ use clamber_surface::rig::Transform;
 use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
 use gltf::Node;
 
+use crate::ImportWarning;
+
 /// The largest share of a column's length by which a decomposed matrix may be off before it is worth
 /// telling: a millimetre in a metre.
 const SHEAR_WORTH_TELLING: f64 = 1e-3;
 
 /// The transforms of nodes as translation, rotation, scale.
-pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<String>) -> Vec<Transform> {
+pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) -> Vec<Transform> {
     let mut sheared = 0;
     let mut worst = 0.0f64;
     let transforms = nodes.iter().map(|node| match node.transform() {
@@ -31,10 +33,10 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<String>) -> Vec<Tr
     });
     let transforms = transforms.collect();
     if sheared > 0 {
-        warnings.push(format!(
-            "nodes whose matrix shears, which a translation, rotation and scale cannot: {sheared}; \
-             columns are off by up to {worst:.1e} of their length"
-        ));
+        warnings.push(ImportWarning::ShearedNodes {
+            nodes: sheared,
+            worst_error: worst,
+        });
     }
     transforms
 }

@@ -37,21 +37,26 @@ pub(crate) fn has_surface(primitive: &Primitive<'_>) -> bool {
     )
 }
 
+/// Why a primitive is no part of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum PassedOver {
+    /// Of a skinned mesh, without joints and weights.
+    NoWeights,
+    PointsOrLines,
+    NoPositions,
+}
+
 /// Why a primitive is no part of a surface; `None` if it is.
-pub(crate) fn passed_over(
-    primitive: &Primitive<'_>,
-    binding: &Binding<'_>,
-) -> Option<&'static str> {
+pub(crate) fn passed_over(primitive: &Primitive<'_>, binding: &Binding<'_>) -> Option<PassedOver> {
     if !has_surface(primitive) {
-        return Some("of points or lines");
+        return Some(PassedOver::PointsOrLines);
     }
     if primitive.get(&Semantic::Positions).is_none() {
-        return Some("without positions");
+        return Some(PassedOver::NoPositions);
     }
     let sets = [Semantic::Joints(0), Semantic::Weights(0)];
     let unskinned = sets.iter().all(|set| primitive.get(set).is_none());
-    (unskinned && matches!(binding, Binding::Skin(_)))
-        .then_some("of a skinned mesh, without joints and weights")
+    (unskinned && matches!(binding, Binding::Skin(_))).then_some(PassedOver::NoWeights)
 }
 
 /// Reads positions, with morph targets at their rest weights, and influences.

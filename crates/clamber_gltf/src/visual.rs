@@ -10,11 +10,12 @@ use gltf::{Document, Primitive};
 use crate::extras::tag_of;
 use crate::looks::Looks;
 use crate::vertices::Vertices;
-use crate::{GltfErrorKind, LoadOptions};
+use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 
 /// A mesh to be drawn: vertices as the file has them, split where normals or texture coordinates
 /// are, and their triangles by material.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct VisualMesh {
     /// Of the node that shows it, or of its mesh.
     pub name: String,
@@ -38,15 +39,19 @@ pub struct VisualMesh {
 
 /// The triangles of one material.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct VisualPrimitive {
     /// Index into [`Rig::materials`](crate::Rig::materials); `None` for glTF's default material.
     pub material: Option<usize>,
+    /// What a climber finds there: the material's tag, or without a material the tagger's.
+    pub tag: SurfaceTag,
     /// Corners, counter-clockwise seen from outside, as indices into the mesh's vertices.
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// How a surface looks: the factors of glTF's metallic-roughness model.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// As the file names it.
     pub name: Option<String>,
@@ -62,12 +67,13 @@ pub struct Material {
     pub alpha: Alpha,
     /// True if its back is to be seen.
     pub double_sided: bool,
-    /// What a climber finds there.
+    /// What a climber finds there: from the file's extras and the tagger.
     pub tag: SurfaceTag,
 }
 
 /// What a material's opacity means.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Alpha {
     /// Nothing.
     #[default]
@@ -116,20 +122,22 @@ impl VisualMesh {
         })
     }
 
-    pub(crate) fn push(&mut self, primitive: &Primitive<'_>, triangles: Vec<[u32; 3]>) {
+    pub(crate) fn push(
+        &mut self,
+        primitive: &Primitive<'_>,
+        tag: SurfaceTag,
+        triangles: Vec<[u32; 3]>,
+    ) {
         self.primitives.push(VisualPrimitive {
             material: primitive.material().index(),
+            tag,
             triangles,
         });
     }
 }
 
 /// All that is to be seen as one collider mesh, tagged by its materials.
-pub(crate) fn merged(
-    visual: &[VisualMesh],
-    materials: &[Material],
-    joint_count: usize,
-) -> Result<ColliderMesh, MeshError> {
+pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<ColliderMesh, MeshError> {
     let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
     let (mut triangles, mut tags) = (vec![], vec![]);
     for seen in visual {
@@ -140,9 +148,7 @@ pub(crate) fn merged(
         for primitive in &seen.primitives {
             let corners = primitive.triangles.iter();
             triangles.extend(corners.map(|t| t.map(|v| v + vertices)));
-            let material = primitive.material.and_then(|index| materials.get(index));
-            let tag = material.map(|material| material.tag).unwrap_or_default();
-            tags.resize(triangles.len(), tag);
+            tags.resize(triangles.len(), primitive.tag);
         }
     }
     let source = MeshSource {
@@ -160,8 +166,8 @@ pub(crate) fn merged(
 /// All materials of a file, in its order.
 pub(crate) fn materials(
     document: &Document,
-    options: &LoadOptions<'_>,
-    warnings: &mut Vec<String>,
+    options: &LoadOptions,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<Material>, GltfErrorKind> {
     let mut textured = 0;
     let mut materials = Vec::new();
@@ -188,13 +194,13 @@ pub(crate) fn materials(
                 AlphaMode::Blend => Alpha::Blend,
             },
             double_sided: material.double_sided(),
-            tag: tag_of(&material, options)?,
+            tag: options.tag(material.name(), tag_of(&material)?),
         });
     }
     if textured > 0 {
-        warnings.push(format!(
-            "materials with textures, of which only the factors were taken: {textured}"
-        ));
+        warnings.push(ImportWarning::Textures {
+            materials: textured,
+        });
     }
     Ok(materials)
 }

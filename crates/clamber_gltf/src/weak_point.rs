@@ -1,34 +1,19 @@
 //! Where a creature can be wounded.
 
-use clamber_surface::rig::JointId;
-use glam::{DAffine3, Vec3};
+use clamber_surface::rig::{JointId, WeakPoint};
+use glam::DAffine3;
 
-use crate::GltfErrorKind;
 use crate::contents::Contents;
 use crate::members::Members;
 use crate::skeleton::Joints;
-
-/// A place where a creature can be wounded, as a node of the file marks it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WeakPoint {
-    /// Of the node.
-    pub name: String,
-    /// The joint that it hangs under.
-    pub joint: JointId,
-    /// Where it is, in the joint's space.
-    pub position: Vec3,
-    /// What it takes before it is used up, greater than 0.
-    pub hit_points: f64,
-    /// True if the creature dies of it.
-    pub major: bool,
-}
+use crate::{GltfErrorKind, ImportWarning};
 
 /// The weak points of a creature, each on the nearest joint at or above its node.
 pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,
     joints: &Joints,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<ImportWarning>,
 ) -> Result<Vec<WeakPoint>, GltfErrorKind> {
     if members.weak_points.is_empty() {
         return Ok(Vec::new());
@@ -40,43 +25,63 @@ pub(crate) fn load(
         let Some(says) = &contents.extras[node].weak_point else {
             continue;
         };
-        let Some((joint, joint_from_node)) = places[node] else {
-            warnings.push(format!(
-                "node {name:?} is a weak point, but hangs under no joint; passed over"
-            ));
+        let Place {
+            joint: Some((joint, joint_from_node)),
+            model_from_node,
+        } = &places[node]
+        else {
+            warnings.push(ImportWarning::WeakPointWithoutJoint { node: name });
             continue;
         };
         let position = joint_from_node.translation.as_vec3();
-        if !position.is_finite() {
-            let reason = "is a weak point at a position that is not finite";
+        let radius = says.radius.unwrap_or_else(|| radius_of(model_from_node));
+        if !position.is_finite() || !radius.is_finite() {
+            let reason = "is a weak point whose position or radius is not finite";
             return Err(GltfErrorKind::invalid(format!("node {name:?}"), reason));
         }
-        weak_points.push(WeakPoint {
-            name,
-            joint,
-            position,
-            hit_points: says.hit_points,
-            major: says.major.0,
-        });
+        let mut weak_point = WeakPoint::new(name, *joint, position);
+        weak_point.radius = radius;
+        weak_point.hit_points = says.hit_points;
+        weak_point.major = says.major.0;
+        weak_points.push(weak_point);
     }
     Ok(weak_points)
 }
 
-/// For every node, the nearest joint at or above it, and the way to its space, at rest.
-fn places(contents: &Contents<'_>, joints: &Joints) -> Vec<Option<(JointId, DAffine3)>> {
+/// The radius of the ball whose volume is that of a node's unit ball at rest.
+fn radius_of(model_from_node: &DAffine3) -> f32 {
+    libm::cbrt(model_from_node.matrix3.determinant().abs()) as f32
+}
+
+/// Where a node is at rest.
+struct Place {
+    /// The nearest joint at or above it, and the way to its space; `None` under no joint.
+    joint: Option<(JointId, DAffine3)>,
+    model_from_node: DAffine3,
+}
+
+/// The place of every node.
+fn places(contents: &Contents<'_>, joints: &Joints) -> Vec<Place> {
     let tree = &contents.tree;
-    let mut places = vec![None; tree.nodes.len()];
+    let nowhere = || Place {
+        joint: None,
+        model_from_node: DAffine3::IDENTITY,
+    };
+    let mut places: Vec<Place> = tree.nodes.iter().map(|_| nowhere()).collect();
     for &node in &tree.order {
         let own = joints.of_node.get(&node).and_then(|joints| joints.first());
-        places[node] = match (own, tree.parent_of[node]) {
-            (Some(joint), _) => Some((*joint, DAffine3::IDENTITY)),
-            (None, Some(parent)) => places[parent].map(|(joint, joint_from_parent)| {
-                (
-                    joint,
-                    joint_from_parent * contents.transforms[node].to_affine(),
-                )
-            }),
-            (None, None) => None,
+        let parent_from_node = contents.transforms[node].to_affine();
+        let parent = tree.parent_of[node].map(|parent| &places[parent]);
+        let inherited = parent.and_then(|parent| parent.joint);
+        let model_from_parent = parent.map_or(DAffine3::IDENTITY, |parent| parent.model_from_node);
+        places[node] = Place {
+            joint: match own {
+                Some(joint) => Some((*joint, DAffine3::IDENTITY)),
+                None => inherited.map(|(joint, joint_from_parent)| {
+                    (joint, joint_from_parent * parent_from_node)
+                }),
+            },
+            model_from_node: model_from_parent * parent_from_node,
         };
     }
     places

@@ -61,6 +61,7 @@ pub struct HalfSpace {
 
 /// The projection of a point onto half-spaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Projection {
     /// The nearest point.
     pub point: DVec3,

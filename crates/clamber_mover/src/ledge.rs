@@ -35,6 +35,7 @@ impl LedgeProbe {
 
 /// A ledge that a body can hang from.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ledge {
     /// The contact of a hand with the ledge's top, a hand beyond the edge.
     pub touch: Touch,

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use clamber_world::{
     Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
-    WorldCapsule,
+    TargetMotion, WorldCapsule,
 };
 use glam::DVec3;
 
@@ -176,7 +176,7 @@ impl<'a> Mover<'a> {
     /// The first contact of a capsule whose ends move by `ways` over the tick, with every obstacle on its own way.
     pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
         self.first(capsule, ways, |_, obstacle| {
-            obstacle.sweep_capsule(capsule, ways)
+            obstacle.cast_capsule(capsule, ways, TargetMotion::Moving)
         })
     }
 
@@ -188,7 +188,8 @@ impl<'a> Mover<'a> {
         mut counts: impl FnMut(&Hit) -> bool,
     ) -> Option<Hit> {
         self.first(capsule, ways, |id, obstacle| {
-            obstacle.sweep_capsule_where(capsule, ways, &mut |sweep| counts(&Hit::new(id, sweep)))
+            let mut counts = |sweep: &SweepContact| counts(&Hit::new(id, sweep));
+            obstacle.cast_capsule_where(capsule, ways, TargetMotion::Moving, &mut counts)
         })
     }
 
@@ -209,7 +210,7 @@ impl<'a> Mover<'a> {
     /// The first contact of a capsule that moves by `way`, with every obstacle as it stands now.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         self.first(capsule, [way; 2], |_, obstacle| {
-            obstacle.cast_capsule(capsule, way)
+            obstacle.cast_capsule(capsule, [way; 2], TargetMotion::Still)
         })
     }
 

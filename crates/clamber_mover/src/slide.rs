@@ -93,6 +93,7 @@ pub struct Arm {
 
 /// Where a body went.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Moved {
     /// In world space.
     pub position: DVec3,

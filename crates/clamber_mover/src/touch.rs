@@ -5,6 +5,7 @@ use glam::DVec3;
 
 /// A contact between the body and an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Touch {
     /// The obstacle.
     pub obstacle: ObstacleId,
@@ -77,6 +78,7 @@ impl Touch {
 
 /// The first contact of a body on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Hit {
     /// The contact, as it is at that time.
     pub touch: Touch,

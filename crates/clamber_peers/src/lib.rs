@@ -13,12 +13,14 @@ mod parry;
 mod peer;
 #[cfg(feature = "physx")]
 mod physx;
+mod push_out;
 mod skin;
 mod thesis;
 mod triangle;
 
 pub use heap::taken_from_heap;
 pub use peer::{Answer, Entry, Make, Nearest, Peer, RayHit, Unsupported};
+pub use push_out::mean_push_out;
 
 /// All peers that are compiled in; ours first.
 pub fn all() -> Vec<Entry> {

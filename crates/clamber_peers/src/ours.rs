@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_surface::geometry::{Ray, Similarity, Sphere};
+use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{SkinnedSurface, SurfaceHit, TOLERANCE};
+use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceHit};
 use glam::{DVec3, Vec3};
 
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit};
@@ -21,6 +21,9 @@ pub(crate) const ENTRIES: &[Entry] = &[
         make: |mesh| Ok(Box::new(Ours::new(mesh, true))),
     },
 ];
+
+/// A tenth of a millimetre from touching is a contact, for spheres of any size.
+const CAST: CastOptions = CastOptions::STILL.with_tolerance(1e-4);
 
 /// Its creature's place is kept in f64 and queries are brought there, as clamber's users do.
 struct Ours {
@@ -42,6 +45,11 @@ impl Ours {
         let placed = self.surface.world_from_model();
         placed.inverse_transform_point_f32(point.as_dvec3())
     }
+
+    /// `None` if it is not finite: nothing is within such a sphere, and it meets nothing.
+    fn local_ball(&self, sphere: &Sphere) -> Option<Capsule> {
+        Capsule::ball(self.local(sphere.center), sphere.radius)
+    }
 }
 
 impl Peer for Ours {
@@ -59,40 +67,37 @@ impl Peer for Ours {
 
     fn cast_ray(&mut self, ray: &Ray, max_distance: f32) -> Answer<Option<RayHit>> {
         let local = Ray::new(self.local(ray.origin()), ray.direction());
-        let hit = local.and_then(|ray| self.surface.cast_ray(&ray, max_distance).ok()?);
+        let hit = local.and_then(|ray| self.surface.in_model().cast_ray(&ray, max_distance));
         Ok(hit.map(|hit| RayHit {
-            distance: hit.distance,
+            distance: hit.distance as f32,
             triangle: hit.triangle,
         }))
     }
 
     fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
-        let local = Sphere {
-            center: self.local(sphere.center),
-            ..*sphere
+        let Some(ball) = self.local_ball(sphere) else {
+            return Ok(0);
         };
-        // Refused only if not finite, and then nothing is within.
-        self.hits.clear();
-        let _ = self.surface.overlap_sphere(&local, &mut self.hits);
+        let space = self.surface.in_model();
+        space.overlap_capsule(&ball, &mut self.hits);
         Ok(self.hits.len())
     }
 
     fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>> {
-        let hit = self.surface.closest_point(self.local(point), max_distance);
+        let space = self.surface.in_model();
+        let hit = space.closest_point(self.local(point), max_distance);
         let placed = self.surface.world_from_model();
-        Ok(hit.ok().flatten().map(|hit| Nearest {
+        Ok(hit.map(|hit| Nearest {
             point: placed.transform_point_f32(hit.point).as_vec3(),
-            distance: hit.distance,
+            distance: hit.distance as f32,
         }))
     }
 
     fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
-        let local = Sphere {
-            center: self.local(sphere.center),
-            ..*sphere
-        };
-        let hit = self.surface.cast_sphere(&local, motion, TOLERANCE);
-        Ok(hit.ok().flatten().map(|hit| hit.time as f32))
+        let space = self.surface.in_model();
+        let ball = self.local_ball(sphere);
+        let hit = ball.and_then(|ball| space.cast_capsule(&ball, [motion; 2], &CAST));
+        Ok(hit.map(|hit| hit.time as f32))
     }
 
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {

@@ -572,7 +572,7 @@ impl From<Diagnostics> for Touched {
             vertices_skinned: touched.vertices_skinned as u64,
             vertices: touched.vertices as u64,
             triangles_tested: touched.triangles_tested,
-            most_sweep_steps: touched.most_sweep_steps,
+            most_sweep_steps: touched.most_cast_steps,
         }
     }
 }

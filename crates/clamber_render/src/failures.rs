@@ -8,7 +8,7 @@ use wgpu::{InstanceDescriptor, Limits};
 
 use crate::target::Target;
 use crate::{
-    Camera, Drawn, Frame, Gpu, Light, MeshId, MeshSource, Overlay, RenderError, Renderer,
+    Camera, Drawn, Frame, Gpu, Light, Overlay, RenderError, RenderMesh, RenderMeshId, Renderer,
     SkinSource,
 };
 
@@ -16,14 +16,14 @@ use crate::{
 mod common;
 
 /// A mesh of so many vertices on one joint.
-fn add(renderer: &mut Renderer, vertices: usize) -> Result<MeshId, RenderError> {
+fn add(renderer: &mut Renderer, vertices: usize) -> Result<RenderMeshId, RenderError> {
     let influence = Influence {
         joint: JointId(0),
         weight: 1.0,
     };
     let corner = |index: usize| Vec3::new((index % 2) as f32, (index / 2 % 2) as f32, 0.0);
     let ends: Vec<u32> = (1..=vertices as u32).collect();
-    renderer.add_mesh(&MeshSource {
+    renderer.add_mesh(&RenderMesh {
         positions: &(0..vertices).map(corner).collect::<Vec<_>>(),
         triangles: &[[0, 1, 2]],
         skin: Some(SkinSource {
@@ -31,11 +31,11 @@ fn add(renderer: &mut Renderer, vertices: usize) -> Result<MeshId, RenderError> 
             ends: &ends,
             joint_count: 1,
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })
 }
 
-fn frame(mesh: MeshId, palette: &Palette) -> Frame<'_> {
+fn frame(mesh: RenderMeshId, palette: &Palette) -> Frame<'_> {
     let drawn = Drawn {
         mesh,
         world_from_model: Similarity::IDENTITY,
@@ -157,17 +157,17 @@ fn what_is_too_large_for_the_device_is_an_error_that_says_what_to_do() {
     let before = renderer.draw(&good).unwrap();
 
     let triangles = vec![[0; 3]; 4_000];
-    let result = renderer.add_mesh(&MeshSource {
+    let result = renderer.add_mesh(&RenderMesh {
         positions: &[Vec3::ZERO],
         triangles: &triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
-    let joints = renderer.add_mesh(&MeshSource {
+    let joints = renderer.add_mesh(&RenderMesh {
         skin: Some(SkinSource {
             joint_count: 67,
             ..SkinSource::default()
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     for result in [add(&mut renderer, 101), result, joints] {
         let text = format!("{result:?}");

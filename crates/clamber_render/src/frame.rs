@@ -2,7 +2,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 
-use crate::{Camera, MeshId, Overlay};
+use crate::{Camera, Overlay, RenderMeshId};
 
 /// A picture to be.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub struct Frame<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
     /// Which one.
-    pub mesh: MeshId,
+    pub mesh: RenderMeshId,
     /// Where it stands.
     pub world_from_model: Similarity,
     /// How it is posed; `None` draws it at rest.

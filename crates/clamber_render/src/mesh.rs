@@ -1,5 +1,5 @@
 use bytemuck::cast_slice;
-use clamber_surface::mesh::Influence;
+use clamber_surface::mesh::{Influence, SurfaceKind};
 use glam::Vec3;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
@@ -7,11 +7,11 @@ use crate::{Gpu, RenderError};
 
 /// A mesh that a [`Renderer`](crate::Renderer) has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MeshId(pub(crate) u32);
+pub struct RenderMeshId(pub(crate) u32);
 
 /// A mesh to be drawn.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct MeshSource<'a> {
+pub struct RenderMesh<'a> {
     /// Rest positions.
     pub positions: &'a [Vec3],
     /// One a vertex; none takes those of the triangles around each vertex.
@@ -51,6 +51,17 @@ pub enum Look {
     Ground,
 }
 
+/// Skin is plain.
+impl From<SurfaceKind> for Look {
+    fn from(kind: SurfaceKind) -> Self {
+        match kind {
+            SurfaceKind::Skin => Self::Plain,
+            SurfaceKind::Fur => Self::Fur,
+            SurfaceKind::Stone => Self::Stone,
+        }
+    }
+}
+
 /// Bytes of a vertex that never change: position at rest, colour with look.
 pub(crate) const STILL_BYTES: u64 = 32;
 
@@ -80,7 +91,7 @@ pub(crate) struct Skin {
 }
 
 impl Mesh {
-    pub(crate) fn new(gpu: &Gpu, source: &MeshSource<'_>) -> Result<Self, RenderError> {
+    pub(crate) fn new(gpu: &Gpu, source: &RenderMesh<'_>) -> Result<Self, RenderError> {
         check(source)?;
         check_size(gpu, source)?;
         let normals = match source.normals {
@@ -160,7 +171,7 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsage
 }
 
 /// Nothing that is larger than what the device allows.
-fn check_size(gpu: &Gpu, source: &MeshSource<'_>) -> Result<(), RenderError> {
+fn check_size(gpu: &Gpu, source: &RenderMesh<'_>) -> Result<(), RenderError> {
     let limits = gpu.device.limits();
     let skin = source.skin.unwrap_or_default();
     let bound = limits
@@ -187,7 +198,7 @@ fn check_size(gpu: &Gpu, source: &MeshSource<'_>) -> Result<(), RenderError> {
     Ok(())
 }
 
-fn check(source: &MeshSource<'_>) -> Result<(), RenderError> {
+fn check(source: &RenderMesh<'_>) -> Result<(), RenderError> {
     let count = source.positions.len();
     let wrong = |what: String| Err(RenderError::Mesh(what));
     for (what, found) in [
@@ -231,7 +242,7 @@ fn check(source: &MeshSource<'_>) -> Result<(), RenderError> {
 }
 
 /// Of each vertex the sum of the scaled normals of its triangles.
-fn normals(source: &MeshSource<'_>) -> Vec<Vec3> {
+fn normals(source: &RenderMesh<'_>) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; source.positions.len()];
     for corners in source.triangles {
         let [a, b, c] = corners.map(|corner| source.positions[corner as usize]);

@@ -14,7 +14,7 @@ use crate::mesh::{Mesh, POSED_BYTES, buffer};
 use crate::pipelines::Pipelines;
 use crate::skinning::{Posed, Skinning};
 use crate::target::{SHADOW, Target, read, readback_bytes};
-use crate::{Drawn, Frame, Gpu, Image, MeshId, MeshSource, RenderError};
+use crate::{Drawn, Frame, Gpu, Image, RenderError, RenderMesh, RenderMeshId};
 
 /// Opacity of what of an overlay is behind something.
 const BEHIND: f32 = 0.22;
@@ -70,9 +70,9 @@ impl Renderer {
     ///
     /// # Errors
     /// [`RenderError::Mesh`] for one that is not whole; else as [`Renderer::draw`].
-    pub fn add_mesh(&mut self, source: &MeshSource<'_>) -> Result<MeshId, RenderError> {
+    pub fn add_mesh(&mut self, source: &RenderMesh<'_>) -> Result<RenderMeshId, RenderError> {
         let mesh = self.gpu.checked(|| Mesh::new(&self.gpu, source))??;
-        let id = MeshId(self.meshes.len() as u32);
+        let id = RenderMeshId(self.meshes.len() as u32);
         self.meshes.push(mesh);
         self.posed.push(Vec::new());
         Ok(id)
@@ -116,7 +116,7 @@ impl Renderer {
     /// As [`Renderer::draw`].
     pub fn posed_positions(
         &mut self,
-        mesh: MeshId,
+        mesh: RenderMeshId,
         palette: &Palette,
     ) -> Result<Vec<Vec3>, RenderError> {
         self.make_room(mesh, 0)?;
@@ -153,7 +153,11 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
-    pub fn pose_unread(&mut self, mesh: MeshId, palette: &Palette) -> Result<(), RenderError> {
+    pub fn pose_unread(
+        &mut self,
+        mesh: RenderMeshId,
+        palette: &Palette,
+    ) -> Result<(), RenderError> {
         self.make_room(mesh, 0)?;
         let (found, posed) = self.posed_mesh(mesh, 0);
         let encoder = self.gpu.checked(|| self.posing(found, posed, palette))?;
@@ -198,7 +202,7 @@ impl Renderer {
     }
 
     /// Room for one more instance of a skinned mesh than `number`.
-    fn make_room(&mut self, mesh: MeshId, number: usize) -> Result<(), RenderError> {
+    fn make_room(&mut self, mesh: RenderMeshId, number: usize) -> Result<(), RenderError> {
         let index = mesh.0 as usize;
         let unknown = || RenderError::Frame("it shows a mesh of another renderer".into());
         let found = self.meshes.get(index).ok_or_else(unknown)?;
@@ -228,7 +232,7 @@ impl Renderer {
         Ok(places)
     }
 
-    fn posed_mesh(&self, mesh: MeshId, number: usize) -> (&Mesh, &Posed) {
+    fn posed_mesh(&self, mesh: RenderMeshId, number: usize) -> (&Mesh, &Posed) {
         let index = mesh.0 as usize;
         (&self.meshes[index], &self.posed[index][number])
     }

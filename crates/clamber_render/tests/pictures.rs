@@ -9,7 +9,7 @@
 mod common;
 
 use clamber_render::{
-    Camera, Drawn, Frame, Image, Light, MeshId, MeshSource, Overlay, RenderError, Renderer,
+    Camera, Drawn, Frame, Image, Light, Overlay, RenderError, RenderMesh, RenderMeshId, Renderer,
     SkinSource,
 };
 use clamber_surface::geometry::{Affine, Similarity};
@@ -28,12 +28,12 @@ const SQUARE: [Vec3; 4] = [
 ];
 
 /// A red square of 2 m around the origin, across Z, on one joint.
-fn square(renderer: &mut Renderer) -> MeshId {
+fn square(renderer: &mut Renderer) -> RenderMeshId {
     let influence = Influence {
         joint: JointId(0),
         weight: 1.0,
     };
-    let mesh = renderer.add_mesh(&MeshSource {
+    let mesh = renderer.add_mesh(&RenderMesh {
         positions: &SQUARE,
         colors: &[[1.0, 0.0, 0.0]; 4],
         triangles: &[[0, 1, 2], [0, 2, 3]],
@@ -42,7 +42,7 @@ fn square(renderer: &mut Renderer) -> MeshId {
             ends: &[1, 2, 3, 4],
             joint_count: 1,
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     mesh.unwrap()
 }
@@ -60,7 +60,7 @@ fn frame<'a>(origin: DVec3, drawn: Vec<Drawn<'a>>) -> Frame<'a> {
     }
 }
 
-fn at(mesh: MeshId, place: DVec3) -> Drawn<'static> {
+fn at(mesh: RenderMeshId, place: DVec3) -> Drawn<'static> {
     Drawn {
         mesh,
         world_from_model: Similarity::from_translation(place),
@@ -159,10 +159,10 @@ fn what_is_nearer_hides_what_is_behind_and_casts_a_shadow_on_it() {
         return;
     };
     let mesh = square(&mut renderer);
-    let wall = renderer.add_mesh(&MeshSource {
+    let wall = renderer.add_mesh(&RenderMesh {
         positions: &SQUARE.map(|p| p * 6.0),
         triangles: &[[0, 1, 2], [0, 2, 3]],
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     let wall = at(wall.unwrap(), DVec3::new(0.0, 0.0, -1.5));
     let draw = |renderer: &mut Renderer, drawn| renderer.draw(&frame(DVec3::ZERO, drawn)).unwrap();
@@ -236,12 +236,12 @@ fn an_empty_frame_is_sky_and_an_empty_mesh_is_nothing() {
     };
     let sky = renderer.draw(&frame(DVec3::ZERO, Vec::new())).unwrap();
     assert!(sky.pixels.chunks_exact(4).all(|pixel| pixel[2] > 20));
-    let nothing = MeshSource {
+    let nothing = RenderMesh {
         skin: Some(SkinSource {
             joint_count: 1,
             ..SkinSource::default()
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     };
     let mesh = renderer.add_mesh(&nothing).unwrap();
     let palette = Palette::from_matrices([Affine::IDENTITY]);
@@ -313,21 +313,21 @@ fn what_cannot_be_drawn_is_an_error() {
         );
     }
     for source in [
-        MeshSource {
+        RenderMesh {
             positions: &SQUARE,
             triangles: &[[0, 1, 4]],
-            ..MeshSource::default()
+            ..RenderMesh::default()
         },
-        MeshSource {
+        RenderMesh {
             positions: &[Vec3::NAN],
-            ..MeshSource::default()
+            ..RenderMesh::default()
         },
-        MeshSource {
+        RenderMesh {
             positions: &SQUARE,
             colors: &[[1.0; 3]; 3],
-            ..MeshSource::default()
+            ..RenderMesh::default()
         },
-        MeshSource {
+        RenderMesh {
             positions: &SQUARE,
             skin: Some(SkinSource {
                 influences: &[Influence {
@@ -337,7 +337,7 @@ fn what_cannot_be_drawn_is_an_error() {
                 ends: &[1, 1, 1, 1],
                 joint_count: 3,
             }),
-            ..MeshSource::default()
+            ..RenderMesh::default()
         },
     ] {
         let result = renderer.add_mesh(&source);

@@ -8,7 +8,7 @@
 
 mod common;
 
-use clamber_render::{Camera, Drawn, Frame, Light, MeshSource, Overlay, Renderer};
+use clamber_render::{Camera, Drawn, Frame, Light, Overlay, RenderMesh, Renderer};
 use clamber_surface::geometry::Similarity;
 use glam::{DVec3, Vec3};
 
@@ -28,12 +28,12 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let corners = corners.map(|[x, y]: [f32; 2]| Vec3::new(20.0 * x, 20.0 * y, 0.0));
     let normal = (Vec3::Z + to_sun * lean).normalize();
-    let ground = renderer.add_mesh(&MeshSource {
+    let ground = renderer.add_mesh(&RenderMesh {
         positions: &corners,
         normals: &[normal; 4],
         colors: &[[0.2; 3]; 4],
         triangles: &[[0, 1, 2], [0, 2, 3]],
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     // A wall across the sun's way.
     let wall = [
@@ -42,10 +42,10 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
         [3.0, 20.0, 9.0],
         [3.0, -20.0, 9.0],
     ];
-    let wall = renderer.add_mesh(&MeshSource {
+    let wall = renderer.add_mesh(&RenderMesh {
         positions: &wall.map(Vec3::from_array),
         triangles: &[[0, 1, 2], [0, 2, 3]],
-        ..MeshSource::default()
+        ..RenderMesh::default()
     });
     let drawn = |mesh| Drawn {
         mesh,

@@ -4,7 +4,7 @@
 
 mod common;
 
-use clamber_render::{MeshSource, RenderError, Renderer, SkinSource};
+use clamber_render::{RenderError, RenderMesh, Renderer, SkinSource};
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
 use clamber_surface::mesh::Influence;
 use clamber_surface::rig::{JointId, Palette};
@@ -44,8 +44,8 @@ fn body(count: usize) -> Body {
     body
 }
 
-fn source(body: &Body) -> MeshSource<'_> {
-    MeshSource {
+fn source(body: &Body) -> RenderMesh<'_> {
+    RenderMesh {
         positions: &body.positions,
         triangles: &[[0, 1, 2]],
         skin: Some(SkinSource {
@@ -53,7 +53,7 @@ fn source(body: &Body) -> MeshSource<'_> {
             ends: &body.ends,
             joint_count: JOINTS,
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     }
 }
 

@@ -101,9 +101,9 @@ fn a_battle_looks_as_stored_and_no_mistake_does() {
     let rig = giant::rig().unwrap();
     let mut stage = |plain: &[SurfaceKind]| {
         let mut rig = rig.clone();
-        for material in &mut rig.materials {
-            if plain.contains(&material.tag.kind) {
-                material.tag.kind = SurfaceKind::Skin;
+        for primitive in rig.visual.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+            if plain.contains(&primitive.tag.kind) {
+                primitive.tag.kind = SurfaceKind::Skin;
             }
         }
         let seen = add_visual(&mut renderer, &rig).unwrap();

@@ -2,7 +2,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clamber_gltf::{GltfError, LoadOptions};
-use clamber_surface::mesh::{ColliderMesh, MeshError};
+use clamber_surface::mesh::{ColliderMesh, MeshError, PaletteError};
 use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::SurfaceError;
@@ -40,6 +40,9 @@ pub enum CreatureError {
     /// Its skin cannot be posed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
+    /// Its palette does not fit its mesh.
+    #[error(transparent)]
+    Palette(#[from] PaletteError),
 }
 
 impl Creature {

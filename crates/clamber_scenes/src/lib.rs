@@ -12,6 +12,7 @@
 //! - `picture`, with the feature `render`: what of a battle is to be seen.
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`measure`]: tables, quantiles and yardsticks for benches.
+//! - [`part_bounds`]: spheres and capsules about parts in any pose, in f64.
 //! - [`ccd`]: continuous collision queries with exact answers, and proofs of what sweeps claim.
 //! - [`tour`]: a bot climbs from a creature's foot to its head.
 //! - [`closed`]: is a mesh closed, and which side of it is inside?
@@ -27,6 +28,7 @@ mod creature;
 pub mod giant;
 pub mod inspect;
 pub mod measure;
+pub mod part_bounds;
 #[cfg(feature = "render")]
 pub mod picture;
 pub mod resample;

@@ -3,10 +3,10 @@
 use clamber_climber::{Climber, ClimberMode};
 use clamber_gltf::Rig;
 use clamber_render::{
-    Camera, Drawn, Light, Look, MeshId, MeshSource, RenderError, Renderer, SkinSource,
+    Camera, Drawn, Light, Look, Paint, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
 };
 use clamber_surface::geometry::Similarity;
-use clamber_surface::mesh::{ColliderMesh, Influence, SurfaceKind, SurfaceTag, VertexId};
+use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
 use clamber_surface::rig::Palette;
 use clamber_world::rapier3d::prelude::*;
 use glam::{DQuat, DVec3, Vec3};
@@ -20,11 +20,11 @@ const GROUND_CELL: f64 = 2.0;
 /// The meshes of a battle.
 #[derive(Clone, Debug)]
 pub struct Stage {
-    creature: Vec<MeshId>,
-    ground: MeshId,
-    outcrop: MeshId,
+    creature: Vec<RenderMeshId>,
+    ground: RenderMeshId,
+    outcrop: RenderMeshId,
     /// Body, head, and an arm.
-    climber: [MeshId; 3],
+    climber: [RenderMeshId; 3],
 }
 
 /// Radii of body, head and arms, metres, and half the lengths of the first and last without their ends.
@@ -42,7 +42,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`RenderError`].
-    pub fn new(renderer: &mut Renderer, creature: Vec<MeshId>) -> Result<Self, RenderError> {
+    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, RenderError> {
         let capsule = |[half, radius]: [f32; 2]| {
             let shape = SharedShape::capsule_y(half, radius);
             let capsule = shape.as_capsule().map(|capsule| capsule.to_trimesh(24, 12));
@@ -201,30 +201,22 @@ pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
 ///
 /// # Errors
 /// [`RenderError`].
-pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<MeshId>, RenderError> {
+pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<RenderMeshId>, RenderError> {
     let mut meshes = Vec::new();
     for visual in &rig.visual {
-        let mut colors = vec![[1.0; 3]; visual.positions.len()];
-        let mut looks = vec![Look::Plain; visual.positions.len()];
-        let mut triangles = Vec::new();
+        let mut paint = Paint::new(visual.positions.len());
         for primitive in &visual.primitives {
             let material = primitive.material.map(|index| &rig.materials[index]);
-            let base = material.map_or([1.0; 4], |material| material.base_color);
-            let look = material.map_or(Look::Plain, |material| look_of(material.tag));
-            for corner in primitive.triangles.iter().flatten() {
-                let vertex = *corner as usize;
-                let own = visual.colors.get(vertex).copied().unwrap_or([1.0; 4]);
-                colors[vertex] = [0, 1, 2].map(|channel| base[channel] * own[channel]);
-                looks[vertex] = look;
-            }
-            triangles.extend_from_slice(&primitive.triangles);
+            let [r, g, b, _] = material.map_or([1.0; 4], |material| material.base_color);
+            let look = primitive.tag.kind.into();
+            paint.add(&primitive.triangles, [r, g, b], &visual.colors, look);
         }
-        meshes.push(renderer.add_mesh(&MeshSource {
+        meshes.push(renderer.add_mesh(&RenderMesh {
             positions: &visual.positions,
             normals: &visual.normals,
-            colors: &colors,
-            looks: &looks,
-            triangles: &triangles,
+            colors: &paint.colors,
+            looks: &paint.looks,
+            triangles: &paint.triangles,
             skin: Some(SkinSource {
                 influences: &visual.influences,
                 ends: &visual.influence_ends,
@@ -243,7 +235,7 @@ pub fn add_collider(
     renderer: &mut Renderer,
     mesh: &ColliderMesh,
     color: [f32; 3],
-) -> Result<MeshId, RenderError> {
+) -> Result<RenderMeshId, RenderError> {
     let count = mesh.positions().len() as u32;
     let (mut influences, mut ends) = (Vec::new(), Vec::new());
     for vertex in 0..count {
@@ -252,7 +244,7 @@ pub fn add_collider(
         ends.push(influences.len() as u32);
     }
     let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|t| t.map(|v| v.0)).collect();
-    renderer.add_mesh(&MeshSource {
+    renderer.add_mesh(&RenderMesh {
         positions: mesh.positions(),
         colors: &vec![color; count as usize],
         triangles: &triangles,
@@ -261,19 +253,11 @@ pub fn add_collider(
             ends: &ends,
             joint_count: mesh.joint_count(),
         }),
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })
 }
 
-fn look_of(tag: SurfaceTag) -> Look {
-    match tag.kind {
-        SurfaceKind::Fur => Look::Fur,
-        SurfaceKind::Stone => Look::Stone,
-        _ => Look::Plain,
-    }
-}
-
-fn add_ground(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
+fn add_ground(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
     let cells = (valley::SIZE / GROUND_CELL) as u32;
     let place = |index: u32| f64::from(index) * GROUND_CELL - valley::SIZE / 2.0;
     let mut positions = Vec::new();
@@ -288,11 +272,11 @@ fn add_ground(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
             }
         }
     }
-    renderer.add_mesh(&MeshSource {
+    renderer.add_mesh(&RenderMesh {
         positions: &positions,
         looks: &vec![Look::Ground; positions.len()],
         triangles: &triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })
 }
 
@@ -304,15 +288,15 @@ pub fn sharp(corners: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 
     (own, triangles.collect())
 }
 
-fn add_outcrop(renderer: &mut Renderer) -> Result<MeshId, RenderError> {
+fn add_outcrop(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
     let (corners, triangles) = crate::battle::outcrop();
     let (positions, triangles) = sharp(&corners, &triangles);
-    renderer.add_mesh(&MeshSource {
+    renderer.add_mesh(&RenderMesh {
         positions: &positions,
         colors: &vec![[0.3, 0.28, 0.25]; positions.len()],
         looks: &vec![Look::Stone; positions.len()],
         triangles: &triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })
 }
 
@@ -320,11 +304,11 @@ fn add_plain(
     renderer: &mut Renderer,
     (positions, triangles): &(Vec<Vec3>, Vec<[u32; 3]>),
     color: [f32; 3],
-) -> Result<MeshId, RenderError> {
-    renderer.add_mesh(&MeshSource {
+) -> Result<RenderMeshId, RenderError> {
+    renderer.add_mesh(&RenderMesh {
         positions,
         colors: &vec![color; positions.len()],
         triangles,
-        ..MeshSource::default()
+        ..RenderMesh::default()
     })
 }

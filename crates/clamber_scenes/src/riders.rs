@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_surface::geometry::{Ray, Similarity, Sphere};
+use clamber_surface::geometry::{Capsule, Ray, Similarity, Sphere};
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use clamber_surface::rig::{Palette, Playback};
 use clamber_surface::surface::{Anchor, SkinnedSurface};
@@ -75,7 +75,7 @@ impl Workload {
         while seats.len() < wanted {
             let triangle = TriangleId(rng.u32(0..mesh.triangles().len() as u32));
             let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-            if fits(&surface, &rider(&surface, &seat, edge)?.body)? {
+            if fits(&surface, &rider(&surface, &seat, edge)?.body) {
                 seats.push(seat);
             }
         }
@@ -89,7 +89,9 @@ impl Workload {
             for part in 0..LOOKS {
                 surface.advance(&palette(part * ticks / LOOKS)?, Similarity::IDENTITY)?;
                 for (seat, touched) in seats.iter().zip(&mut touched) {
-                    surface.overlap_sphere(&rider(&surface, seat, edge)?.body, &mut hits)?;
+                    let body = rider(&surface, seat, edge)?.body;
+                    let body = Capsule::ball(body.center, body.radius).ok_or("no body")?;
+                    surface.in_model().overlap_capsule(&body, &mut hits);
                     *touched += hits.len();
                 }
             }
@@ -112,9 +114,9 @@ impl Workload {
 }
 
 /// True if a rider's sphere is nowhere deeper in the skin than it stands in it: not in a crease.
-fn fits(surface: &SkinnedSurface, body: &Sphere) -> Result<bool, Box<dyn Error>> {
-    let nearest = surface.closest_point(body.center, body.radius)?;
-    Ok(nearest.is_none_or(|hit| hit.distance > body.radius * (1.0 - 1.5 * DEPTH)))
+fn fits(surface: &SkinnedSurface, body: &Sphere) -> bool {
+    let nearest = surface.in_model().closest_point(body.center, body.radius);
+    nearest.is_none_or(|hit| hit.distance as f32 > body.radius * (1.0 - 1.5 * DEPTH))
 }
 
 fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Box<dyn Error>> {

@@ -1,8 +1,8 @@
 //! Is a point inside a mesh? By the solid angle that the mesh covers as seen from it. Over all triangles, with none of
 //! the library's own queries, so that it can judge them.
 
+pub use clamber_surface::measure::winding_number;
 use clamber_surface::mesh::ColliderMesh;
-pub use clamber_surface::surface::winding_number;
 use glam::{DVec3, Vec3};
 
 /// True if the mesh winds around `p` more than half.

@@ -1,9 +1,12 @@
 #![doc = include_str!("../README.md")]
 
+mod bounds;
 pub mod geometry;
+#[doc(hidden)]
+pub mod measure;
 pub mod mesh;
-#[cfg(feature = "parry")]
-pub mod parry;
+mod pose;
+mod query;
 pub mod rig;
 mod simd;
 pub mod skin;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
-use crate::geometry::{Affine, rotation_from_axis_angle};
+use crate::geometry::{Affine, Capsule, rotation_from_axis_angle};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
 
@@ -96,4 +96,14 @@ pub(crate) fn direction(rng: &mut fastrand::Rng) -> Vec3 {
 pub(crate) fn point(rng: &mut fastrand::Rng, size: f32) -> Vec3 {
     let mut coordinate = || (rng.f32() * 2.0 - 1.0) * size;
     Vec3::new(coordinate(), coordinate(), coordinate())
+}
+
+/// A ball that is one.
+pub(crate) fn ball(center: Vec3, radius: f32) -> Capsule {
+    Capsule::ball(center, radius).unwrap()
+}
+
+/// A capsule that is one.
+pub(crate) fn capsule(a: Vec3, b: Vec3, radius: f32) -> Capsule {
+    Capsule::new(a, b, radius).unwrap()
 }

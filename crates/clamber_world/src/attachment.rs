@@ -62,6 +62,8 @@ pub struct Attachment {
 
 /// How the material came to where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Continuity {
     /// It moved there from where it was last followed.
     Moved,
@@ -74,6 +76,8 @@ pub enum Continuity {
 
 /// Where an [`Attachment`] was carried.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Followed {
     /// Of the material point, from where it was last followed to where it is now.
     pub motion: PointMotion,

@@ -11,13 +11,18 @@ pub mod shapes;
 mod surface;
 
 pub use attachment::{Attachment, Continuity, Followed};
+/// What a character is to the world.
+pub use clamber_surface::geometry::WorldCapsule;
 /// What a contact's material is made of.
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+/// Whether an obstacle moves while something is cast at it.
+pub use clamber_surface::surface::TargetMotion;
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
-pub use obstacle::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
-};
+pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
+/// The parry whose shapes [`shapes`] speaks of.
+#[cfg(feature = "parry")]
+pub use parry3d;
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, RapierTerrain, apply_push};
 /// The rapier that [`RapierTerrain`] speaks to.

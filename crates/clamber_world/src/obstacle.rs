@@ -1,5 +1,15 @@
+use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::SurfaceTag;
+use clamber_surface::surface::TargetMotion;
 use glam::{DQuat, DVec3};
+
+/// How far queries look where nothing says how large an obstacle is, metres. Along it f64 still tells 0.2 nm apart.
+const FARTHEST: f64 = 1e6;
+
+/// How far from a point an obstacle of these bounds reaches.
+fn farthest(bounds: Option<(DVec3, f64)>, from: DVec3) -> f64 {
+    bounds.map_or(FARTHEST, |(center, radius)| from.distance(center) + radius)
+}
 
 /// Which obstacle of a scene; chosen by the caller, the same from tick to tick.
 ///
@@ -50,88 +60,6 @@ impl Contact {
     }
 }
 
-/// All points within a radius of a segment, in world space: what a character is to the world. A ball where both ends are
-/// one point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorldCapsule {
-    /// Ends of the segment.
-    pub ends: [DVec3; 2],
-    /// Metres, not negative.
-    pub radius: f64,
-}
-
-/// [`WorldCapsule::sweep_tolerance`].
-pub(crate) fn sweep_tolerance(radius: f64) -> f64 {
-    (radius * 2.5e-4).max(1e-6)
-}
-
-impl WorldCapsule {
-    /// A ball.
-    pub const fn ball(center: DVec3, radius: f64) -> Self {
-        Self {
-            ends: [center, center],
-            radius,
-        }
-    }
-
-    /// Both ends are one point.
-    pub fn is_ball(&self) -> bool {
-        self.ends[0] == self.ends[1]
-    }
-
-    /// The same, somewhere else.
-    #[must_use]
-    pub fn moved(&self, by: DVec3) -> Self {
-        self.with_ends_moved([by; 2])
-    }
-
-    /// With each end somewhere else.
-    #[must_use]
-    pub fn with_ends_moved(&self, by: [DVec3; 2]) -> Self {
-        Self {
-            ends: [self.ends[0] + by[0], self.ends[1] + by[1]],
-            ..*self
-        }
-    }
-
-    /// How far from touching a sweep or cast of it may stop, metres: a share of its radius below what one sees, 0.1 mm
-    /// for a ball of 0.4 m. For thin capsules no less than the steps of f32 some metres out.
-    pub fn sweep_tolerance(&self) -> f64 {
-        sweep_tolerance(self.radius)
-    }
-
-    /// With another radius.
-    #[must_use]
-    pub const fn with_radius(&self, radius: f64) -> Self {
-        Self { radius, ..*self }
-    }
-
-    /// The point of the segment nearest to a point.
-    pub fn nearest_on_axis(&self, point: DVec3) -> DVec3 {
-        let [a, b] = self.ends;
-        a + (b - a) * self.share_of_axis(point)
-    }
-
-    /// Where the point of the segment nearest to a point lies, as a share of the way from the first end to the second.
-    pub fn share_of_axis(&self, point: DVec3) -> f64 {
-        let [a, b] = self.ends;
-        let axis = b - a;
-        let along = (point - a).dot(axis);
-        let length_sq = axis.length_squared();
-        if along > 0.0 && length_sq > 0.0 {
-            (along / length_sq).min(1.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Centre and radius of a ball around it.
-    pub fn bounding_ball(&self) -> (DVec3, f64) {
-        let [a, b] = self.ends;
-        ((a + b) * 0.5, (b - a).length() * 0.5 + self.radius)
-    }
-}
-
 /// Where a capsule on its way first touches an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepContact {
@@ -147,6 +75,7 @@ pub struct SweepContact {
 
 /// How a material point moves over the tick that ends now.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PointMotion {
     /// Where it is now, in world space.
     pub position: DVec3,
@@ -169,6 +98,21 @@ pub struct PointMotion {
 }
 
 impl PointMotion {
+    /// Of material that neither turns nor stretches, over a tick of `dt` seconds.
+    pub fn translated(previous_position: DVec3, position: DVec3, dt: f64) -> Self {
+        let way = position - previous_position;
+        Self {
+            position,
+            previous_position,
+            velocity: if dt > 0.0 { way / dt } else { DVec3::ZERO },
+            placed: way == DVec3::ZERO,
+            frame: Some(DQuat::IDENTITY),
+            turn: DQuat::IDENTITY,
+            area_ratio: 1.0,
+            stretches: [1.0, 1.0],
+        }
+    }
+
     /// Whether all numbers that a character is carried by are finite.
     pub fn is_finite(&self) -> bool {
         let vectors = [self.position, self.previous_position, self.velocity];
@@ -180,58 +124,99 @@ impl PointMotion {
 
 /// Something that a character can stand on, hit, or be carried by.
 ///
-/// All queries are in world space and take `&self`. All but [`Obstacle::sweep_capsule`] see the pose of this tick. A
-/// point or direction that is not finite finds nothing, and neither does a length that is NaN or negative; lengths may be
-/// infinite, but for those of capsules that move.
+/// Three methods make an obstacle: [`overlap_capsule`](Obstacle::overlap_capsule),
+/// [`cast_capsule`](Obstacle::cast_capsule) and [`motion`](Obstacle::motion). The others have defaults made of these, for
+/// an obstacle to answer faster or better where it can.
+///
+/// All queries are in world space and take `&self`. They see the obstacle as it stands now, except a cast with
+/// [`TargetMotion::Moving`]. A point or direction that is not finite finds nothing, and neither does a length that is NaN
+/// or negative; lengths may be infinite, except displacements.
 pub trait Obstacle {
+    /// Appends what lies within a capsule: for each triangle or convex body its point nearest to the capsule's segment,
+    /// by ascending [`MaterialPoint::key`]. Distances are from the segment.
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>);
+
+    /// The first contact of a capsule, each of whose ends goes straight by its own displacement, so that it may turn, as the
+    /// legs of a climber that swings.
+    ///
+    /// With [`TargetMotion::Still`] the obstacle stands as it stands now. With [`TargetMotion::Moving`] it moves meanwhile
+    /// from where it stood a tick ago to where it stands now: `capsule` is the capsule at the tick's start.
+    ///
+    /// The time is never later than the first contact, and at that time the capsule is at most
+    /// [`WorldCapsule::sweep_tolerance`] from touching.
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact>;
+
+    /// The motion of a material point over the tick of `dt` seconds that ends now; `None` if the
+    /// material is no longer there, or queries no longer see it.
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
+
     /// Centre and radius of a ball in world space that holds all that queries of this tick can touch; `None` for what
     /// has no bounds, or does not know them. What is out of its reach is not asked.
     fn bounds(&self) -> Option<(DVec3, f64)> {
         None
     }
 
+    /// [`Obstacle::cast_capsule`] among the contacts that count: of each triangle and solid that may be the first to be
+    /// touched its contact is shown to `counts`, in no order. A body that is pressed into one thing still meets the others.
+    ///
+    /// The default shows the first contact alone, which is right for a single solid.
+    fn cast_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.cast_capsule(capsule, displacements, target)
+            .filter(|contact| counts(contact))
+    }
+
     /// The first point along a ray from `origin`, up to `max_distance`. `direction` may have any
     /// length but zero; distances are in metres along it.
-    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact>;
+    ///
+    /// The default casts a ball of no radius, so its distance is short by at most a micrometre. Without
+    /// [`Obstacle::bounds`] it looks no farther than 1,000 km.
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        if max_distance.is_nan() || max_distance < 0.0 || !origin.is_finite() {
+            return None;
+        }
+        let length = max_distance.min(farthest(self.bounds(), origin));
+        let way = direction.try_normalize()? * length;
+        let ball = WorldCapsule::ball(origin, 0.0);
+        let hit = self.cast_capsule(&ball, [way; 2], TargetMotion::Still)?;
+        let distance = hit.time * length;
+        Some(Contact {
+            distance,
+            ..hit.contact
+        })
+    }
 
     /// The point nearest to `point`, up to `max_distance`.
-    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact>;
-
-    /// Appends what lies within a capsule: for each triangle or convex body its point nearest to the capsule's segment,
-    /// by ascending [`MaterialPoint::key`]. Distances are from the segment.
-    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>);
+    ///
+    /// The default looks through all that a ball of that radius overlaps. Without [`Obstacle::bounds`] it looks no farther
+    /// than 1,000 km.
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        let mut contacts = Vec::new();
+        // A comparison, since `f64::min` passes over NaN.
+        let farthest = farthest(self.bounds(), point);
+        let reach = if max_distance > farthest {
+            farthest
+        } else {
+            max_distance
+        };
+        self.overlap_sphere(point, reach, &mut contacts);
+        let nearer = |a: &Contact, b: &Contact| a.distance.total_cmp(&b.distance);
+        contacts.into_iter().min_by(nearer)
+    }
 
     /// [`Obstacle::overlap_capsule`] for a ball.
     fn overlap_sphere(&self, center: DVec3, radius: f64, contacts: &mut Vec<Contact>) {
         self.overlap_capsule(&WorldCapsule::ball(center, radius), contacts);
-    }
-
-    /// The first contact of a capsule that moves by `displacement`, with the obstacle standing still as it stands now.
-    /// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm; on skin, and a 4,000th of
-    /// the radius.
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact>;
-
-    /// The first contact of a capsule over the tick that ends now, while the obstacle moves from where it stood a tick
-    /// ago to where it stands now. `capsule` is the capsule at the tick's start; each of its ends goes straight by its own
-    /// displacement, so that it may turn, as the legs of one who swings.
-    fn sweep_capsule(
-        &self,
-        capsule: &WorldCapsule,
-        displacements: [DVec3; 2],
-    ) -> Option<SweepContact>;
-
-    /// [`Obstacle::sweep_capsule`] among the contacts that count: of each triangle and solid that may be the first to be
-    /// touched its contact is shown to `counts`, in no order. A body that is pressed into one thing still meets the others.
-    ///
-    /// The default shows the first contact alone, which is right for a single solid.
-    fn sweep_capsule_where(
-        &self,
-        capsule: &WorldCapsule,
-        displacements: [DVec3; 2],
-        counts: &mut dyn FnMut(&SweepContact) -> bool,
-    ) -> Option<SweepContact> {
-        self.sweep_capsule(capsule, displacements)
-            .filter(|contact| counts(contact))
     }
 
     /// The speed, metres a second, that an impulse of 1 N s along a unit `direction` gives to a material point; 0 for
@@ -247,8 +232,7 @@ pub trait Obstacle {
         let _ = point;
         0
     }
-
-    /// The motion of a material point over the tick of `dt` seconds that ends now; `None` if the
-    /// material is no longer there, or queries no longer see it.
-    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bevy_clamber::core::geometry::{Capsule, Ray, Similarity};
 use bevy_clamber::core::mesh::{ColliderMesh, TriangleId};
 use bevy_clamber::core::rig::Pose;
-use bevy_clamber::core::surface::{Anchor, SkinnedSurface, SurfaceHit, TOLERANCE};
+use bevy_clamber::core::surface::{Anchor, CastOptions, SkinnedSurface, SurfaceHit, TargetMotion};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Dir3, Quat, Vec3};
@@ -76,22 +76,17 @@ pub(crate) fn answer(
 ) -> usize {
     let mut found = 0;
     for rider in riders {
-        let body = |radius| Capsule {
-            a: rider.ends[0],
-            b: rider.ends[1],
-            radius,
-        };
-        surface
-            .overlap_capsule(&body(RADIUS + REACH), hits)
-            .unwrap();
+        let body = |radius| Capsule::new(rider.ends[0], rider.ends[1], radius).unwrap();
+        let space = surface.in_model();
+        space.overlap_capsule(&body(RADIUS + REACH), hits);
         found += hits.len();
         let motions = [rider.step(); 2];
-        let swept = surface.sweep_capsule(&body(RADIUS), motions, TOLERANCE);
-        found += usize::from(swept.unwrap().is_some());
-        let nearest = surface.closest_point(rider.middle(), SIGHT);
-        found += usize::from(nearest.unwrap().is_some());
+        let swept = space.cast_capsule(&body(RADIUS), motions, &CastOptions::MOVING);
+        found += usize::from(swept.is_some());
+        let nearest = space.closest_point(rider.middle(), SIGHT);
+        found += usize::from(nearest.is_some());
         let ray = Ray::new(rider.middle(), -rider.outward).unwrap();
-        found += usize::from(surface.cast_ray(&ray, SIGHT).unwrap().is_some());
+        found += usize::from(space.cast_ray(&ray, SIGHT).is_some());
         found += usize::from(surface.motion(&rider.anchor, TICK).is_ok());
     }
     found
@@ -131,7 +126,7 @@ pub(crate) fn ask(
         surfaces.overlap_capsule(rider.ends, RADIUS + REACH, &all, &mut hits);
         answers.0 += hits.len();
         let motions = [rider.step(); 2];
-        let swept = surfaces.sweep_capsule(rider.ends, RADIUS, motions, &all);
+        let swept = surfaces.cast_capsule(rider.ends, RADIUS, motions, TargetMotion::Moving, &all);
         answers.0 += usize::from(swept.is_some());
         let nearest = surfaces.closest_point(rider.middle(), SIGHT, &all);
         answers.0 += usize::from(nearest.is_some());

@@ -104,14 +104,11 @@ impl RigAssets {
         let mut added = Vec::new();
         for visual in &rig.visual {
             for primitive in &visual.primitives {
-                let material = primitive
-                    .material
-                    .and_then(|index| rig.materials.get(index));
                 added.push(RigMesh {
                     name: visual.name.clone(),
                     mesh: meshes.add(mesh(visual, primitive)),
                     material: primitive.material,
-                    tag: material.map(|material| material.tag).unwrap_or_default(),
+                    tag: primitive.tag,
                 });
             }
         }

@@ -121,17 +121,13 @@ mod tests {
 
     #[test]
     fn vertices_that_a_primitive_does_not_use_are_left_out() {
-        let visual = VisualMesh {
-            positions: (0..5).map(|x| Vec3::X * x as f32).collect(),
-            normals: vec![Vec3::Y; 5],
-            influences: (0..5).map(|joint| influence((joint, 1.0))).collect(),
-            influence_ends: (1..=5).collect(),
-            ..VisualMesh::default()
-        };
-        let primitive = VisualPrimitive {
-            material: None,
-            triangles: vec![[4, 1, 3], [1, 4, 2], [0, 1, 5]],
-        };
+        let mut visual = VisualMesh::default();
+        visual.positions = (0..5).map(|x| Vec3::X * x as f32).collect();
+        visual.normals = vec![Vec3::Y; 5];
+        visual.influences = (0..5).map(|joint| influence((joint, 1.0))).collect();
+        visual.influence_ends = (1..=5).collect();
+        let mut primitive = VisualPrimitive::default();
+        primitive.triangles = vec![[4, 1, 3], [1, 4, 2], [0, 1, 5]];
         let mesh = mesh(&visual, &primitive);
         let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION).unwrap();
         let x: Vec<f32> = positions

@@ -3,17 +3,13 @@ use std::collections::BTreeMap;
 use bevy_color::Color;
 use bevy_ecs::prelude::*;
 use bevy_gizmos::gizmos::Gizmos;
-use bevy_gizmos::primitives::dim3::GizmoPrimitive3d;
-use bevy_math::{Isometry3d, Quat, Vec3};
-use bevy_shape::Capsule3d;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
-use clamber_surface::geometry::{BoundingVolume, Similarity};
-use clamber_surface::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
-use clamber_surface::surface::{JointMaps, SkinnedSurface};
+use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
+use clamber_surface::surface::SkinnedSurface;
 
 use super::SurfaceGizmos;
-use super::part_bounds::PartBoundsCache;
 use super::touched::TouchedClusters;
 use crate::{PosedSurface, SurfaceAnchor};
 
@@ -30,14 +26,10 @@ const VELOCITY_ARROW: f64 = 0.1;
 /// Length of an anchor's axes, of the creature's radius: seen on all of it, and smaller than its limbs.
 const ANCHOR_AXES: f64 = 0.03;
 
-/// Of a capsule's caps and sides; Bevy's default is 32, too dense around small parts.
-const CAPSULE_LINES: u32 = 12;
-
 /// Parts, clusters and contacts.
 pub(super) fn draw_surfaces(
     mut surfaces: Query<(Entity, &mut PosedSurface)>,
     touched: Res<TouchedClusters>,
-    mut bounds: Local<PartBoundsCache>,
     mut gizmos: Gizmos<SurfaceGizmos>,
 ) {
     let show = *gizmos.config_ext;
@@ -45,7 +37,7 @@ pub(super) fn draw_surfaces(
         for (entity, mut surface) in &mut surfaces {
             let surface = surface.bypass_change_detection();
             if show.parts {
-                draw_parts(surface, &mut bounds, &mut gizmos);
+                draw_parts(surface, &mut gizmos);
             }
             if !(show.clusters || show.contacts) || surface.pose_as_drawn().is_none() {
                 continue;
@@ -65,7 +57,6 @@ pub(super) fn draw_surfaces(
             }
         }
     }
-    bounds.forget_unwanted();
 }
 
 /// Anchors and velocities.
@@ -114,51 +105,16 @@ pub(super) fn draw_anchors(
     }
 }
 
-fn draw_parts(
-    surface: &mut PosedSurface,
-    bounds: &mut PartBoundsCache,
-    gizmos: &mut Gizmos<SurfaceGizmos>,
-) {
+fn draw_parts(surface: &mut PosedSurface, gizmos: &mut Gizmos<SurfaceGizmos>) {
     let Some(drawn) = surface.pose_as_drawn() else {
         return;
     };
-    let (mesh, world_from_model) = (drawn.mesh().clone(), *drawn.world_from_model());
-    let palette = surface.palette_as_drawn();
-    let Some(Ok(maps)) = palette.map(|palette| JointMaps::new(&mesh, palette)) else {
-        return;
-    };
-    let bounds = bounds.get(&mesh);
-    for part in (0..bounds.part_count() as u32).map(PartId) {
-        if let Some(volume) = bounds.volume(part, &maps) {
-            draw_volume(volume, &world_from_model, gizmos);
-        }
-    }
-}
-
-fn draw_volume(
-    volume: BoundingVolume,
-    world_from_model: &Similarity,
-    gizmos: &mut Gizmos<SurfaceGizmos>,
-) {
-    let point = |point: Vec3| world_from_model.transform_point_f32(point).as_vec3();
-    let length = |length: f32| (f64::from(length) * world_from_model.scale) as f32;
-    match volume {
-        BoundingVolume::Sphere(sphere) => {
-            let (center, radius) = (point(sphere.center), length(sphere.radius));
-            gizmos.sphere(Isometry3d::from_translation(center), radius, PART);
-        }
-        BoundingVolume::Capsule(capsule) => {
-            let ([a, b], radius) = ([capsule.a, capsule.b].map(point), length(capsule.radius));
-            let up = (b - a).try_normalize().unwrap_or(Vec3::Y);
-            let along = Quat::from_rotation_arc(Vec3::Y, up);
-            gizmos
-                .primitive_3d(
-                    &Capsule3d::new(radius, (b - a).length()),
-                    Isometry3d::new((a + b) / 2.0, along),
-                    PART,
-                )
-                .resolution(CAPSULE_LINES);
-        }
+    let world_from_model = drawn.world_from_model();
+    for (_, sphere) in drawn.in_model().part_spheres() {
+        let center = world_from_model.transform_point_f32(sphere.center);
+        let radius = f64::from(sphere.radius) * world_from_model.scale;
+        let place = Isometry3d::from_translation(center.as_vec3());
+        gizmos.sphere(place, radius as f32, PART);
     }
 }
 
@@ -205,7 +161,7 @@ fn corners(mesh: &ColliderMesh, triangle: TriangleId) -> Option<[VertexId; 3]> {
 fn positions<const N: usize>(drawn: &SkinnedSurface, vertices: [VertexId; N]) -> Option<[Vec3; N]> {
     let mut positions = [Vec3::ZERO; N];
     for (position, vertex) in positions.iter_mut().zip(vertices) {
-        let in_model = drawn.position(vertex)?;
+        let in_model = drawn.in_model().position(vertex)?;
         let in_world = drawn.world_from_model().transform_point_f32(in_model);
         *position = in_world.as_vec3();
     }

@@ -1,7 +1,6 @@
 //! What surfaces are and do, drawn with Bevy's gizmos.
 
 mod draw;
-mod part_bounds;
 mod touched;
 
 use bevy_app::{App, FixedPostUpdate, Plugin, PostUpdate};
@@ -30,7 +29,7 @@ use touched::{TouchedClusters, note_touched};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect, GizmoConfigGroup)]
 #[reflect(Default, Clone, Debug, PartialEq)]
 pub struct SurfaceGizmos {
-    /// Around the triangles that each joint moves most: the sphere or capsule that bounds them, whichever is smaller.
+    /// Around the triangles that each joint moves most: the sphere that bounds them.
     pub parts: bool,
     /// Borders of the clusters that queries reached: what was skinned for them.
     pub clusters: bool,

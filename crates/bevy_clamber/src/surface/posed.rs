@@ -2,7 +2,6 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Palette, RigError};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
@@ -320,29 +319,17 @@ impl PosedSurface {
     pub(crate) fn pose_as_drawn(&mut self) -> Option<&SkinnedSurface> {
         if self.as_drawn.is_none() || !self.as_drawn_is_fresh {
             self.as_drawn_is_fresh = false;
-            let placed = self.compose_drawn()?;
+            let scratch = &mut self.scratch;
+            let placed = self.rig.compose(
+                &self.drawn,
+                &mut scratch.model_from_node,
+                &mut scratch.palette,
+            )?;
             let surface = self.as_drawn.get_or_insert_with(|| self.surface.clone());
             surface.place(&self.scratch.palette, placed).ok()?;
             self.as_drawn_is_fresh = true;
         }
         self.as_drawn.as_ref()
-    }
-
-    /// The palette that the last frame drew; `None` if it has none.
-    #[cfg(feature = "gizmos")]
-    pub(crate) fn palette_as_drawn(&mut self) -> Option<&Palette> {
-        self.compose_drawn()?;
-        Some(&self.scratch.palette)
-    }
-
-    /// Puts the palette that the last frame drew into `scratch`, and gives where the creature stood.
-    fn compose_drawn(&mut self) -> Option<Similarity> {
-        let scratch = &mut self.scratch;
-        self.rig.compose(
-            &self.drawn,
-            &mut scratch.model_from_node,
-            &mut scratch.palette,
-        )
     }
 
     /// As the last frame drew it, if anyone asked for that since.

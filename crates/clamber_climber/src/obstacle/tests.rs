@@ -75,7 +75,7 @@ fn sweeps_stop_where_small_steps_first_touch() {
         let touch = (0..=20_000)
             .map(|k| f64::from(k) / 20_000.0)
             .find(|time| gap(*time) <= 0.0);
-        let hit = body.sweep_capsule(&other, displacements);
+        let hit = body.cast_capsule(&other, displacements, TargetMotion::Moving);
         let told = || format!("{body:?} {other:?} by {displacements:?}: {hit:?}, {touch:?}");
         if let Some(touch) = touch {
             let hit = hit.unwrap();
@@ -169,8 +169,14 @@ fn what_is_no_query_finds_nothing() {
         assert_eq!(body.closest_point(DVec3::ZERO, bad), None);
         let ball = WorldCapsule::ball(DVec3::ZERO, bad);
         body.overlap_capsule(&ball, &mut contacts);
-        assert_eq!(body.cast_capsule(&ball, DVec3::X), None);
-        assert_eq!(body.sweep_capsule(&ball, [DVec3::X; 2]), None);
+        assert_eq!(
+            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Still),
+            None
+        );
+        assert_eq!(
+            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Moving),
+            None
+        );
     }
     for bad in [DVec3::NAN, DVec3::INFINITY] {
         let ball = WorldCapsule::ball(bad, 0.1);
@@ -178,9 +184,16 @@ fn what_is_no_query_finds_nothing() {
         assert_eq!(body.cast_ray(bad, DVec3::X, 9.0), None);
         assert_eq!(body.cast_ray(DVec3::X, bad, 9.0), None);
         assert_eq!(body.closest_point(bad, 9.0), None);
-        assert_eq!(body.cast_capsule(&ball, DVec3::X), None);
         assert_eq!(
-            body.sweep_capsule(&WorldCapsule::ball(DVec3::X, 0.1), [bad; 2]),
+            body.cast_capsule(&ball, [DVec3::X; 2], TargetMotion::Still),
+            None
+        );
+        assert_eq!(
+            body.cast_capsule(
+                &WorldCapsule::ball(DVec3::X, 0.1),
+                [bad; 2],
+                TargetMotion::Moving
+            ),
             None
         );
     }
@@ -204,7 +217,9 @@ fn grazes_are_never_late() {
     for exponent in 0..40 {
         let deep = libm::exp2(-f64::from(exponent)) * 0.1;
         let ball = WorldCapsule::ball(DVec3::new(-30.0, 1.0 + 0.8 - deep, 0.0), 0.4);
-        let hit = body.cast_capsule(&ball, DVec3::X * 60.0).unwrap();
+        let hit = body
+            .cast_capsule(&ball, [DVec3::X * 60.0; 2], TargetMotion::Still)
+            .unwrap();
         let height = 0.8 - deep;
         let touch = (30.0 - (0.64 - height * height).sqrt()) / 60.0;
         assert!(hit.time <= touch + 1e-12, "{deep}: {hit:?}, {touch}");

@@ -158,7 +158,7 @@ fn in_an_accelerating_frame_it_hangs_aslant() {
             report.tension
         );
         assert!(
-            (found - expected).abs() < 1e-3 && report.arm == Arm::Taut,
+            (found - expected).abs() < 1e-3 && report.arm == ArmTension::Taut,
             "{a}: {found} {report:?}"
         );
         assert!(
@@ -236,14 +236,14 @@ fn thrown_down_it_goes_slack_and_is_caught() {
     let (mut pendulum, mut tick) = (at_angle(0.0), tick(60.0));
     tick.pivot_change = DVec3::Y * -3.0;
     let first = pendulum.step(&tick);
-    assert_eq!(first.arm, Arm::Slack, "{pendulum:?}");
+    assert_eq!(first.arm, ArmTension::Slack, "{pendulum:?}");
     tick.pivot_change = DVec3::ZERO;
     // Thrown up at 3 m/s relative to the pivot, back at the arm's end after 2 V / g.
     let mut time = tick.dt;
     let caught = loop {
         let report = pendulum.step(&tick);
         time += tick.dt;
-        if report.arm == Arm::Taut {
+        if report.arm == ArmTension::Taut {
             break report.caught;
         }
         assert!(time < 2.0, "{pendulum:?}");
@@ -262,7 +262,7 @@ fn over_the_top_needs_the_speed_to_stay_taut() {
         let mut slack = None;
         for _ in 0..120 {
             let report = pendulum.step(&tick);
-            if report.arm == Arm::Slack && slack.is_none() {
+            if report.arm == ArmTension::Slack && slack.is_none() {
                 slack = Some(pendulum.arm.y / LENGTH);
             }
         }

@@ -38,7 +38,7 @@ impl Tick<'_> {
     /// Hangs from a ledge in front of a position, if there is one.
     pub(super) fn catch_ledge(&mut self, place: DVec3) -> Option<NextMode> {
         let config = self.config.ledge?;
-        let Ledge { touch, facing } = self.find_ledge(place, self.facing(), &config)?;
+        let Ledge { touch, facing, .. } = self.find_ledge(place, self.facing(), &config)?;
         let lift = (touch.contact.point - place).dot(self.config.up()) - config.drop;
         if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
             // It would hang with its feet on the ground.

@@ -4,7 +4,8 @@ use clamber_climber::{Climber, ClimberEvent, ClimberInput, ClimberState, StepRep
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, Vector};
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 use glam::{DQuat, DVec3};
 
@@ -100,16 +101,13 @@ impl Obstacle for Mute<'_> {
         self.inner.overlap_capsule(capsule, contacts);
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.inner.cast_capsule(capsule, displacement)
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
-        self.inner.sweep_capsule(capsule, displacements)
+        self.inner.cast_capsule(capsule, displacements, target)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

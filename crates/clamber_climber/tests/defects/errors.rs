@@ -200,6 +200,7 @@ fn of_movers() {
 fn of_debris_and_surfaces() {
     let surface: SkinnedSurface = cuboid(Vec3::ONE, STONE);
     let anchor = Anchor {
+        mesh: surface.mesh().id(),
         triangle: TriangleId(0),
         barycentric: [1.0, 0.0, 0.0],
         frame: Quat::IDENTITY,

@@ -47,7 +47,7 @@ impl Bits {
             self.word(u64::from(hit.triangle.0) + 1);
             self.singles(hit.barycentric);
             self.positions(&[hit.point, hit.normal]);
-            self.singles([hit.distance]);
+            self.singles([hit.distance as f32]);
         }
     }
 

@@ -2,12 +2,10 @@
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberState, StepRules};
 use clamber_surface::SimdLevel;
-use clamber_surface::geometry::{
-    Affine, Capsule, Ray, Similarity, Sphere, rotation_from_axis_angle,
-};
+use clamber_surface::geometry::{Affine, Capsule, Ray, Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Palette, Playback};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{CastOptions, SkinnedSurface};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -143,45 +141,30 @@ fn ask(surface: &SkinnedSurface, number: u64) -> u64 {
         Vec3::new(7.5 + 7.0 * share(), share(), share())
     };
     let (from, to) = (point(3.0), point(1.2));
+    let space = surface.in_model();
     let mut bits = Bits::default();
     let ray = Ray::new(from, to - from).unwrap();
-    bits.hits(&surface.cast_ray(&ray, 20.0).unwrap());
+    bits.hits(&space.cast_ray(&ray, 20.0));
     let (mut hits, mut sweeps) = (Vec::new(), Vec::new());
-    surface.cast_ray_all(&ray, 20.0, &mut hits).unwrap();
+    space.cast_ray_all(&ray, 20.0, &mut hits);
     bits.hits(&hits);
-    bits.hits(&surface.closest_point(from, 5.0).unwrap());
-    let sphere = Sphere {
-        center: to,
-        radius: 0.2,
-    };
-    surface.overlap_sphere(&sphere, &mut hits).unwrap();
+    bits.hits(&space.closest_point(from, 5.0));
+    let sphere = Capsule::ball(to, 0.2).unwrap();
+    space.overlap_capsule(&sphere, &mut hits);
     bits.hits(&hits);
-    let capsule = Capsule {
-        a: to,
-        b: to + Vec3::Y * 0.3,
-        radius: 0.1,
-    };
-    surface.overlap_capsule(&capsule, &mut hits).unwrap();
+    let capsule = Capsule::new(to, to + Vec3::Y * 0.3, 0.1).unwrap();
+    space.overlap_capsule(&capsule, &mut hits);
     bits.hits(&hits);
-    let sphere = Sphere {
-        center: from,
-        radius: 0.1,
-    };
-    bits.sweeps(&surface.cast_sphere(&sphere, to - from, 1e-4).unwrap());
-    surface
-        .sweep_sphere_all(&sphere, to - from, 1e-4, &mut sweeps)
-        .unwrap();
-    bits.sweeps(&sweeps);
-    let capsule = Capsule {
-        a: from,
-        b: from + Vec3::Y * 0.3,
-        radius: 0.1,
-    };
-    bits.sweeps(
-        &surface
-            .sweep_capsule(&capsule, [to - from, Vec3::Y], 1e-4)
-            .unwrap(),
+    let sphere = Capsule::ball(from, 0.1).unwrap();
+    let (still, moving) = (
+        CastOptions::STILL.with_tolerance(1e-4),
+        CastOptions::MOVING.with_tolerance(1e-4),
     );
+    bits.sweeps(&space.cast_capsule(&sphere, [to - from; 2], &still));
+    space.cast_capsule_all(&sphere, [to - from; 2], &moving, &mut sweeps);
+    bits.sweeps(&sweeps);
+    let capsule = Capsule::new(from, from + Vec3::Y * 0.3, 0.1).unwrap();
+    bits.sweeps(&space.cast_capsule(&capsule, [to - from, Vec3::Y], &moving));
     let triangle = TriangleId((number % surface.mesh().triangles().len() as u64) as u32);
     let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25]).unwrap();
     bits.motion(&surface.motion(&anchor, TICK).unwrap());

@@ -1,7 +1,9 @@
 //! A conveyor: a shape that stands while its material moves, as an obstacle around another.
 
 use clamber_climber::ClimberInput;
-use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+};
 use glam::{DQuat, DVec3};
 
 use crate::stage::Run;
@@ -78,16 +80,13 @@ impl Obstacle for Running<'_> {
         }
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        Some(self.met(self.shape.cast_capsule(capsule, displacement)?))
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
-        Some(self.met(self.shape.sweep_capsule(capsule, displacements)?))
+        Some(self.met(self.shape.cast_capsule(capsule, displacements, target)?))
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

@@ -2,7 +2,9 @@
 
 use clamber_climber::ClimberMode::Standing;
 use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberState};
-use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+};
 use glam::DVec3;
 
 use crate::frames::{hills, tour};
@@ -31,24 +33,18 @@ impl Obstacle for Broken<'_> {
         }));
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let hit = self.inner.cast_capsule(capsule, displacement)?;
-        Some(SweepContact {
-            away: self.bad,
-            ..hit
-        })
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
-        let hit = self.inner.sweep_capsule(capsule, displacements)?;
-        Some(SweepContact {
-            time: self.bad.x,
-            ..hit
-        })
+        let mut hit = self.inner.cast_capsule(capsule, displacements, target)?;
+        match target {
+            TargetMotion::Still => hit.away = self.bad,
+            TargetMotion::Moving => hit.time = self.bad.x,
+        }
+        Some(hit)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

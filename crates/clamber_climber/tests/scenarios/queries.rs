@@ -1,7 +1,7 @@
 //! Queries of surfaces and bodies, through the trait that a climber asks them by.
 
 use clamber_world::rapier3d::prelude::ColliderBuilder;
-use clamber_world::{Contact, Obstacle, WorldCapsule};
+use clamber_world::{Contact, Obstacle, TargetMotion, WorldCapsule};
 use glam::DVec3;
 
 use crate::stage::{Played, Shape, Stage, kinds, shifted, within};
@@ -94,7 +94,9 @@ pub(crate) fn a_sliver_is_met_where_it_is_and_nowhere_else() {
         for &played in kinds() {
             let stage = Stage::new(played).with_still(&triangle(corners));
             let ball = WorldCapsule::ball(from, 0.2);
-            let hit = ask(&stage, |obstacle| obstacle.cast_capsule(&ball, way));
+            let hit = ask(&stage, |obstacle| {
+                obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Still)
+            });
             assert_eq!(
                 hit.is_some(),
                 truth < 0.2,
@@ -159,7 +161,7 @@ pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
         for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
             let ball = WorldCapsule::ball(DVec3::Y * height, 0.5);
             let hit = ask(&stage, |obstacle| {
-                obstacle.cast_capsule(&ball, DVec3::Y * way)
+                obstacle.cast_capsule(&ball, [DVec3::Y * way; 2], TargetMotion::Still)
             });
             assert!(hit.is_some(), "{played:?}: nothing at {height}");
             let hit = hit.unwrap();
@@ -205,7 +207,9 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
                 );
                 let away = found[0].away(capsule.nearest_on_axis(found[0].point));
                 assert!((away.length() - 1.0).abs() <= 1e-5, "{played:?}: {away}");
-                let hit = ask(&stage, |obstacle| obstacle.cast_capsule(&capsule, DVec3::X));
+                let hit = ask(&stage, |obstacle| {
+                    obstacle.cast_capsule(&capsule, [DVec3::X; 2], TargetMotion::Still)
+                });
                 let away = hit.map(|hit| hit.away);
                 let is_unit = away.is_some_and(|away| (away.length() - 1.0).abs() <= 1e-5);
                 assert!(is_unit, "{played:?}: {away:?} of {capsule:?}");
@@ -264,8 +268,8 @@ pub(crate) fn motions_too_small_to_be_any_end() {
                 let ball = WorldCapsule::ball(DVec3::Y * 2.0, 0.5);
                 let hits = ask(&stage, |obstacle| {
                     [
-                        obstacle.cast_capsule(&ball, direction * size),
-                        obstacle.sweep_capsule(&ball, [direction * size; 2]),
+                        obstacle.cast_capsule(&ball, [direction * size; 2], TargetMotion::Still),
+                        obstacle.cast_capsule(&ball, [direction * size; 2], TargetMotion::Moving),
                     ]
                 });
                 assert_eq!(hits, [None; 2], "{played:?}: {size}");
@@ -283,12 +287,12 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
         let ball = WorldCapsule::ball(DVec3::Y * 1.6, 0.5);
         for way in [1.0, 1.5, 30.0] {
             let hit = ask(&stage, |obstacle| {
-                obstacle.sweep_capsule(&ball, [DVec3::Y * way; 2])
+                obstacle.cast_capsule(&ball, [DVec3::Y * way; 2], TargetMotion::Moving)
             });
             assert_eq!(hit, None, "{played:?}: {way}");
         }
         let hit = ask(&stage, |obstacle| {
-            obstacle.sweep_capsule(&ball, [DVec3::ZERO; 2])
+            obstacle.cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
         });
         assert!(hit.is_some(), "{played:?}: nothing where the box comes");
         let hit = hit.unwrap();
@@ -299,8 +303,8 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
         for way in [DVec3::ZERO, DVec3::Y, DVec3::X] {
             let hits = ask(&stage, |obstacle| {
                 [
-                    obstacle.cast_capsule(&ball, way),
-                    obstacle.sweep_capsule(&ball, [way; 2]),
+                    obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Still),
+                    obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Moving),
                 ]
             });
             assert_eq!(hits, [None; 2], "{played:?}: {way}");

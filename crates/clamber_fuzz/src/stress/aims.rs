@@ -1,10 +1,11 @@
 //! What is asked: one question of every kind and aim, about random places of the skin.
 
-use clamber_surface::geometry::{Capsule, Ray, Sphere};
+use clamber_surface::geometry::{Capsule, Ray};
+use clamber_surface::surface::CastOptions;
 use glam::{DVec3, Vec3};
 
 use super::posed::{Posed, point_of, random_weights};
-use super::questions::Question;
+use super::questions::{Question, ball, capsule};
 use super::soups::random_direction;
 
 /// A question, and what it is called; those of one name are alike.
@@ -78,47 +79,43 @@ impl<'a> Aims<'a> {
     }
 
     fn overlaps(&mut self, questions: &mut Vec<Named>) {
-        let [small, large] = [0.02, 0.2].map(|radius| self.sphere(0.5 * radius, radius));
+        let [small, large] = [0.02, 0.2].map(|radius| self.ball(0.5 * radius, radius));
         let capsule = self.capsule(0.03, 0.02);
         questions.extend([
-            ("overlap, small", Question::Sphere(small)),
-            ("overlap, large", Question::Sphere(large)),
-            ("overlap, capsule", Question::Capsule(capsule)),
+            ("overlap, small", Question::Overlap(small)),
+            ("overlap, large", Question::Overlap(large)),
+            ("overlap, capsule", Question::Overlap(capsule)),
         ]);
     }
 
     fn moving(&mut self, questions: &mut Vec<Named>) {
-        let slack = self.tolerance();
         let (through, into) = self.towards_skin();
-        let along = self.sphere(0.03, 0.02);
+        let beside = self.ball(0.03, 0.02);
         let aside = random_direction(self.rng).as_vec3() * (0.3 * self.unit);
         let capsule = self.capsule(0.15, 0.02);
+        let along = [aside; 2];
         let ways = [into, into + aside * 0.5];
+        let still = CastOptions::STILL.with_tolerance(self.tolerance());
+        let moving = CastOptions::MOVING.with_tolerance(self.tolerance());
         questions.extend([
-            ("cast through", Question::CastSphere(through, into, slack)),
-            ("cast along", Question::CastSphere(along, aside, slack)),
-            ("cast capsule", Question::CastCapsule(capsule, ways, slack)),
-            ("sweep through", Question::SweepSphere(through, into, slack)),
-            ("sweep along", Question::SweepSphere(along, aside, slack)),
-            (
-                "sweep capsule",
-                Question::SweepCapsule(capsule, ways, slack),
-            ),
+            ("cast through", Question::Cast(through, [into; 2], still)),
+            ("cast along", Question::Cast(beside, along, still)),
+            ("cast capsule", Question::Cast(capsule, ways, still)),
+            ("sweep through", Question::Cast(through, [into; 2], moving)),
+            ("sweep along", Question::Cast(beside, along, moving)),
+            ("sweep capsule", Question::Cast(capsule, ways, moving)),
             (
                 "sweep, all",
-                Question::SweepSphereAll(along, aside * 0.3, slack),
+                Question::CastAll(beside, [aside * 0.3; 2], moving),
             ),
         ]);
     }
 
-    /// A sphere off the skin, and a way that leads it through.
-    pub(super) fn towards_skin(&mut self) -> (Sphere, Vec3) {
+    /// A ball off the skin, and a way that leads it through.
+    fn towards_skin(&mut self) -> (Capsule, Vec3) {
         let (p, away) = (self.skin(), random_direction(self.rng).as_vec3());
-        let sphere = Sphere {
-            center: p + away * (0.2 * self.unit),
-            radius: 0.02 * self.unit,
-        };
-        (sphere, away * (-0.4 * self.unit))
+        let off = ball(p + away * (0.2 * self.unit), 0.02 * self.unit);
+        (off, away * (-0.4 * self.unit))
     }
 
     /// A twenty-thousandth of the creature: 0.1 mm for a human.
@@ -152,21 +149,15 @@ impl<'a> Aims<'a> {
         p + random_direction(self.rng).as_vec3() * (extents * self.unit)
     }
 
-    fn sphere(&mut self, off: f32, radius: f32) -> Sphere {
+    fn ball(&mut self, off: f32, radius: f32) -> Capsule {
         let skin = self.skin();
-        Sphere {
-            center: self.off(skin, off),
-            radius: radius * self.unit,
-        }
+        ball(self.off(skin, off), radius * self.unit)
     }
 
     fn capsule(&mut self, off: f32, radius: f32) -> Capsule {
         let skin = self.skin();
-        Capsule {
-            a: self.off(skin, off),
-            b: self.off(skin, off),
-            radius: radius * self.unit,
-        }
+        let ends = [self.off(skin, off), self.off(skin, off)];
+        capsule(ends, radius * self.unit)
     }
 }
 

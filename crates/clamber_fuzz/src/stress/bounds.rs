@@ -1,38 +1,20 @@
 //! Every bound holds every vertex as it is skinned.
 
-use std::sync::Arc;
-
-use clamber_surface::geometry::Sphere;
-use clamber_surface::mesh::{ColliderMesh, PartId, VertexId};
-use clamber_surface::rig::Palette;
-use clamber_surface::surface::{JointMaps, NodeBounds, PartBounds};
+use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::surface::CastOptions;
 use glam::Vec3;
 
 use super::posed::Posed;
+use super::questions::ball;
 
-/// What bounds a mesh in any pose, made once.
+/// Vertices that are looked at closely in every pose, chosen once.
 pub(super) struct Bounds {
-    parts: PartBounds,
-    /// Bounds of some sets of vertices that no part is.
-    sets: Vec<(Vec<VertexId>, NodeBounds)>,
-    /// For vertices that are looked at closely: the triangles around them.
+    /// Each with the triangles around it.
     around: Vec<(usize, Vec<u32>)>,
-    maps: JointMaps,
 }
 
 impl Bounds {
-    pub(super) fn new(mesh: &Arc<ColliderMesh>, rng: &mut fastrand::Rng) -> Self {
-        let count = mesh.positions().len();
-        let mut sets = Vec::new();
-        for size in [1, 3, 20, 200] {
-            let first = rng.usize(0..count);
-            // Neighbours, and vertices from all over.
-            let next = (0..size).map(|k| VertexId(((first + k) % count) as u32));
-            let any = (0..size).map(|_| VertexId(rng.usize(0..count) as u32));
-            for set in [next.collect::<Vec<_>>(), any.collect()] {
-                sets.extend(NodeBounds::new(mesh, &set).map(|node| (set, node)));
-            }
-        }
+    pub(super) fn new(mesh: &ColliderMesh, rng: &mut fastrand::Rng) -> Self {
         let mut around: Vec<(usize, Vec<u32>)> = (0..24)
             .map(|_| {
                 let corners = mesh.triangles()[rng.usize(0..mesh.triangles().len())];
@@ -46,73 +28,60 @@ impl Bounds {
                 }
             }
         }
-        Self {
-            parts: PartBounds::new(mesh),
-            sets,
-            around,
-            maps: JointMaps::default(),
-        }
+        Self { around }
     }
 
     /// Gives how often a vertex was held against a bound.
-    pub(super) fn check(&mut self, posed: &Posed<'_>, palette: &Palette) -> usize {
-        let mesh = posed.surface.mesh();
-        if let Err(error) = self.maps.update(mesh, palette) {
-            panic!("bounds refuse what the surface took: {error}");
-        }
-        let mut checked = 0;
-        for (index, part) in mesh.parts().iter().enumerate() {
-            if let Some(node) = self.parts.node(PartId(index as u32)) {
-                checked += self.check_node(node, &part.vertices, posed);
-            }
-        }
-        for (set, node) in &self.sets {
-            checked += self.check_node(node, set, posed);
-        }
-        checked + check_ball(posed) + self.check_tree(posed)
-    }
-
-    fn check_node(&self, node: &NodeBounds, vertices: &[VertexId], posed: &Posed<'_>) -> usize {
-        let maps = &self.maps;
-        let (hull, interval) = (node.hull(maps), node.weight_interval(maps));
-        let (capsule, volume) = (node.capsule(maps), node.volume(maps));
-        for vertex in vertices {
-            let p = posed.positions[vertex.index()];
-            let held = [
-                hull.contains(p),
-                interval.contains(p),
-                node.sphere(maps).contains(p),
-                capsule.contains(p),
-                volume.contains(p),
-            ];
-            assert_eq!(held, [true; 5], "vertex {vertex} at {p} escapes");
-        }
-        5 * vertices.len()
+    pub(super) fn check(&self, posed: &Posed<'_>) -> usize {
+        check_parts(posed) + check_ball(posed) + self.check_tree(posed)
     }
 
     /// The hierarchy lets a query through that asks at a vertex.
     fn check_tree(&self, posed: &Posed<'_>) -> usize {
-        let surface = posed.surface;
+        let space = posed.surface.in_model();
+        let touching = CastOptions::STILL.with_tolerance(0.0);
         let mut hits = Vec::new();
         for (vertex, triangles) in &self.around {
             let p = posed.positions[*vertex];
-            let touching = Sphere {
-                center: p,
-                radius: 0.0,
-            };
-            let overlapped = surface.overlap_sphere(&touching, &mut hits);
-            assert!(overlapped.is_ok(), "{overlapped:?}");
+            let point = ball(p, 0.0);
+            space.overlap_capsule(&point, &mut hits);
             for triangle in triangles {
                 let found = hits.iter().any(|hit| hit.triangle.0 == *triangle);
                 assert!(found, "triangle {triangle} does not touch its corner {p}");
             }
-            let nearest = surface.closest_point(p, 0.0);
-            assert!(matches!(nearest, Ok(Some(_))), "nothing is at vertex {p}");
-            let cast = surface.cast_sphere(&touching, Vec3::ZERO, 0.0);
-            assert!(matches!(cast, Ok(Some(_))), "no cast starts at vertex {p}");
+            let nearest = space.closest_point(p, 0.0);
+            assert!(nearest.is_some(), "nothing is at vertex {p}");
+            let cast = space.cast_capsule(&point, [Vec3::ZERO; 2], &touching);
+            assert!(cast.is_some(), "no cast starts at vertex {p}");
         }
         self.around.len() * 3
     }
+}
+
+/// The sphere of every part.
+fn check_parts(posed: &Posed<'_>) -> usize {
+    let parts = posed.surface.mesh().parts();
+    let mut bounded = vec![false; parts.len()];
+    let mut checked = 0;
+    for (id, sphere) in posed.surface.in_model().part_spheres() {
+        let vertices = &parts[id.index()].vertices;
+        for vertex in vertices {
+            let p = posed.positions[vertex.index()];
+            let held = sphere.contains(p);
+            assert!(
+                held,
+                "vertex {vertex} at {p} escapes {sphere:?} of part {id}"
+            );
+        }
+        let twice = std::mem::replace(&mut bounded[id.index()], true);
+        assert!(!twice, "part {id} has two spheres");
+        checked += vertices.len();
+    }
+    for (index, bounded) in bounded.into_iter().enumerate() {
+        let has_sphere = bounded || parts[index].triangles.is_empty();
+        assert!(has_sphere, "part {index} has no sphere");
+    }
+    checked
 }
 
 /// The ball about all skin over the tick, in the world.

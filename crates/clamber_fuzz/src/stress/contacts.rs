@@ -1,13 +1,12 @@
 //! No contact is missed, reported late, or reported where nothing is: casts and sweeps against skin whose way is known,
 //! in f64.
 
-use clamber_surface::geometry::{Capsule, Sphere};
-use clamber_surface::surface::SweepHit;
+use clamber_surface::surface::{CastOptions, SweepHit};
 use glam::DVec3;
 
 use super::aims::Aims;
 use super::posed::{Posed, nearest_in, point_of, random_weights};
-use super::questions::{Answer, Question};
+use super::questions::{Answer, Question, ball, capsule};
 use super::soups::random_direction;
 
 /// Times at which all triangles are looked at.
@@ -64,12 +63,13 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         let way = random_direction(rng).as_vec3() * (unit * rng.f32());
         let center = end + within - way;
         let tolerance = Aims::new(posed, rng).tolerance();
-        let sphere = Sphere { center, radius };
-        let question = if sweeps {
-            Question::SweepSphere(sphere, way, tolerance)
+        let options = if sweeps {
+            CastOptions::MOVING
         } else {
-            Question::CastSphere(sphere, way, tolerance)
+            CastOptions::STILL
         };
+        let options = options.with_tolerance(tolerance);
+        let question = Question::Cast(ball(center, radius), [way; 2], options);
         let mover = Mover {
             start: [center.as_dvec3(); 2],
             ways: [way.as_dvec3(); 2],
@@ -81,18 +81,10 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
 
         let other = end + random_direction(rng).as_vec3() * (unit * 0.3 * rng.f32());
         let back = random_direction(rng).as_vec3() * (unit * rng.f32());
-        let capsule = Capsule {
-            a: center,
-            b: other - back,
-            radius,
-        };
-        let question = if sweeps {
-            Question::SweepCapsule(capsule, [way, back], tolerance)
-        } else {
-            Question::CastCapsule(capsule, [way, back], tolerance)
-        };
+        let ends = [center, other - back];
+        let question = Question::Cast(capsule(ends, radius), [way, back], options);
         let mover = Mover {
-            start: [capsule.a.as_dvec3(), capsule.b.as_dvec3()],
+            start: ends.map(|end| end.as_dvec3()),
             ways: [way.as_dvec3(), back.as_dvec3()],
             ..mover
         };
@@ -110,9 +102,7 @@ fn compare(
     weights: [f32; 3],
     answer: &mut Answer,
 ) -> usize {
-    if let Err(error) = question.ask(posed.surface, answer) {
-        panic!("{question:?}: {error}");
-    }
+    question.ask(posed.surface, answer);
     let hit = answer.sweeps.first();
     if let Some(hit) = hit {
         assert_near(posed, question, mover, hit);

@@ -90,8 +90,8 @@ fn must_hit(posed: &Posed<'_>, ray: &Ray, reach: f32, answer: &mut Answer) {
         Question::AnyAlong(*ray, reach),
         Question::AllAlong(*ray, reach),
     ] {
-        let asked = question.ask(posed.surface, answer);
-        let found = asked.is_ok() && answer.count() > 0;
+        question.ask(posed.surface, answer);
+        let found = answer.count() > 0;
         assert!(found, "a leak: {question:?} finds nothing");
     }
 }

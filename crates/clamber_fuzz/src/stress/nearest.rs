@@ -10,9 +10,9 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
         let mut aims = Aims::new(posed, rng);
         let skin = aims.skin();
         let point = aims.off(skin, off);
-        let found = match posed.surface.closest_point(point, f32::INFINITY) {
-            Ok(Some(hit)) => hit,
-            other => panic!("nearest to {point}: {other:?}"),
+        let space = posed.surface.in_model();
+        let Some(found) = space.closest_point(point, f32::INFINITY) else {
+            panic!("nothing is nearest to {point}");
         };
         let p = point.as_dvec3();
         let triangles = 0..posed.surface.mesh().triangles().len();
@@ -21,10 +21,10 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
             (nearest_in(corners, p) - p).length()
         });
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        // The distance is rounded to f32, and the lengths involved are of this size.
+        // The lengths involved are of this size.
         let size = f64::from(posed.farthest) + p.length();
-        let lost = nearest * 1e-7 + size * 1e-11;
-        let off = (f64::from(found.distance) - nearest).abs();
+        let lost = size * 1e-11;
+        let off = (found.distance - nearest).abs();
         assert!(
             off <= lost,
             "nearest to {point}: {found:?}, but {nearest} away"

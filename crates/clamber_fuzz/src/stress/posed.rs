@@ -1,6 +1,6 @@
 //! What checks need to know of a posed surface, found by means that owe nothing to its queries.
 
-use clamber_surface::mesh::TriangleId;
+use clamber_surface::mesh::{TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
@@ -22,7 +22,8 @@ impl<'a> Posed<'a> {
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
         let all = 0..positions.len() as u32;
-        let before = |v| surface.previous_position(clamber_surface::mesh::VertexId(v));
+        let space = surface.in_model();
+        let before = |v| space.previous_position(VertexId(v));
         let previous: Vec<Vec3> = all.filter_map(before).collect();
         assert_eq!(previous.len(), positions.len());
         let both = positions.iter().chain(&previous);

@@ -1,10 +1,11 @@
 //! Questions of every kind and aim, and their answers.
 
-use clamber_surface::geometry::{Capsule, Ray, Sphere};
-use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError, SurfaceHit, SweepHit};
+use clamber_surface::geometry::{Capsule, Ray};
+use clamber_surface::measure::BruteForce;
+use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceHit, SweepHit};
 use glam::Vec3;
 
-use crate::same::bits;
+use crate::same::{same_hits, same_sweeps};
 
 /// A query with its arguments.
 #[derive(Clone, Copy, Debug)]
@@ -14,13 +15,22 @@ pub(super) enum Question {
     AllAlong(Ray, f32),
     Closest(Vec3, f32),
     ClosestToCapsule(Capsule, f32),
-    Sphere(Sphere),
-    Capsule(Capsule),
-    CastSphere(Sphere, Vec3, f32),
-    CastCapsule(Capsule, [Vec3; 2], f32),
-    SweepSphere(Sphere, Vec3, f32),
-    SweepCapsule(Capsule, [Vec3; 2], f32),
-    SweepSphereAll(Sphere, Vec3, f32),
+    Overlap(Capsule),
+    Cast(Capsule, [Vec3; 2], CastOptions),
+    CastAll(Capsule, [Vec3; 2], CastOptions),
+}
+
+/// A ball of numbers that make one.
+pub(super) fn ball(center: Vec3, radius: f32) -> Capsule {
+    capsule([center; 2], radius)
+}
+
+/// A capsule of numbers that make one.
+pub(super) fn capsule([a, b]: [Vec3; 2], radius: f32) -> Capsule {
+    match Capsule::new(a, b, radius) {
+        Some(capsule) => capsule,
+        None => panic!("no capsule of {radius} from {a} to {b}"),
+    }
 }
 
 /// What came of it. Keeps its memory.
@@ -31,57 +41,42 @@ pub(super) struct Answer {
     pub(super) met: bool,
 }
 
-/// Runs the same call on a surface or on brute force.
+/// Runs the same call on a surface or on brute force, which say in their own ways whether a ray meets anything.
 macro_rules! ask {
-    ($question:expr, $of:expr, $answer:expr) => {{
+    ($question:expr, $of:expr, $answer:expr, $meets:expr) => {{
         let (of, answer) = ($of, $answer);
         answer.clear();
         match $question {
-            Question::Ray(ray, max) => answer.hits.extend(of.cast_ray(ray, *max)?),
-            Question::AnyAlong(ray, max) => answer.met = of.intersects_ray(ray, *max)?,
-            Question::AllAlong(ray, max) => of.cast_ray_all(ray, *max, &mut answer.hits)?,
-            Question::Closest(point, max) => answer.hits.extend(of.closest_point(*point, *max)?),
+            Question::Ray(ray, max) => answer.hits.extend(of.cast_ray(ray, *max)),
+            Question::AnyAlong(ray, max) => answer.met = $meets(ray, *max),
+            Question::AllAlong(ray, max) => of.cast_ray_all(ray, *max, &mut answer.hits),
+            Question::Closest(point, max) => answer.hits.extend(of.closest_point(*point, *max)),
             Question::ClosestToCapsule(capsule, max) => {
-                let found = of.closest_to_capsule(capsule, *max)?;
+                let found = of.closest_to_capsule(capsule, *max);
                 answer.hits.extend(found.map(|hit| hit.surface));
             }
-            Question::Sphere(sphere) => of.overlap_sphere(sphere, &mut answer.hits)?,
-            Question::Capsule(capsule) => of.overlap_capsule(capsule, &mut answer.hits)?,
-            Question::CastSphere(sphere, way, slack) => {
-                answer.sweeps.extend(of.cast_sphere(sphere, *way, *slack)?)
+            Question::Overlap(capsule) => of.overlap_capsule(capsule, &mut answer.hits),
+            Question::Cast(capsule, ways, options) => {
+                let found = of.cast_capsule(capsule, *ways, options);
+                answer.sweeps.extend(found);
             }
-            Question::CastCapsule(capsule, ways, slack) => answer
-                .sweeps
-                .extend(of.cast_capsule(capsule, *ways, *slack)?),
-            Question::SweepSphere(sphere, way, slack) => {
-                answer.sweeps.extend(of.sweep_sphere(sphere, *way, *slack)?)
-            }
-            Question::SweepCapsule(capsule, ways, slack) => answer
-                .sweeps
-                .extend(of.sweep_capsule(capsule, *ways, *slack)?),
-            Question::SweepSphereAll(sphere, way, slack) => {
-                of.sweep_sphere_all(sphere, *way, *slack, &mut answer.sweeps)?
+            Question::CastAll(capsule, ways, options) => {
+                of.cast_capsule_all(capsule, *ways, options, &mut answer.sweeps);
             }
         }
-        Ok(())
     }};
 }
 
 impl Question {
-    pub(super) fn ask(
-        &self,
-        surface: &SkinnedSurface,
-        answer: &mut Answer,
-    ) -> Result<(), SurfaceError> {
-        ask!(self, surface, answer)
+    pub(super) fn ask(&self, surface: &SkinnedSurface, answer: &mut Answer) {
+        let space = surface.in_model();
+        let meets = |ray: &Ray, max| space.intersects_ray(ray, max);
+        ask!(self, space, answer, meets);
     }
 
-    pub(super) fn ask_brute_force(
-        &self,
-        brute_force: &BruteForce<'_>,
-        answer: &mut Answer,
-    ) -> Result<(), SurfaceError> {
-        ask!(self, brute_force, answer)
+    pub(super) fn ask_brute_force(&self, brute_force: &BruteForce<'_>, answer: &mut Answer) {
+        let meets = |ray: &Ray, max| brute_force.cast_ray(ray, max).is_some();
+        ask!(self, brute_force, answer, meets);
     }
 }
 
@@ -99,9 +94,8 @@ impl Answer {
 
     /// Equal in every bit.
     pub(super) fn same(&self, other: &Self) -> bool {
-        let sweeps = self.sweeps.iter().map(sweep_bits);
-        crate::same::same_hits(&self.hits, &other.hits)
-            && sweeps.eq(other.sweeps.iter().map(sweep_bits))
+        same_hits(&self.hits, &other.hits)
+            && same_sweeps(&self.sweeps, &other.sweeps)
             && self.met == other.met
     }
 
@@ -137,14 +131,4 @@ impl Answer {
 
 fn is_unit(normal: Vec3) -> bool {
     (normal.as_dvec3().length() - 1.0).abs() < 1e-6
-}
-
-fn sweep_bits(hit: &SweepHit) -> impl PartialEq + use<> {
-    (
-        (hit.triangle, hit.part, hit.tag),
-        (hit.barycentric.map(f32::to_bits), bits(hit.point)),
-        (bits(hit.normal), bits(hit.surface_normal)),
-        (hit.time.to_bits(), hit.distance.to_bits()),
-        (hit.started_inside, hit.undecided),
-    )
 }

@@ -207,6 +207,10 @@ fn no_change_of_a_value_panics() {
             match changed.load() {
                 Ok(rig) => {
                     use_rig(&rig);
+                    let tall = LoadOptions::default().with_height(7.0);
+                    if let Ok(rig) = load_slice(&changed.glb(), &tall) {
+                        use_rig(&rig);
+                    }
                     loaded += 1;
                 }
                 Err(error) => {

@@ -1,6 +1,6 @@
 //! Skins, joints, clips and weak points.
 
-use clamber_gltf::{GltfErrorKind, LoadOptions, load_all, load_slice};
+use clamber_gltf::{GltfErrorKind, ImportWarning, LoadOptions, load_all, load_slice};
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{SurfaceKind, VertexId};
 use clamber_surface::rig::JointId;
@@ -26,7 +26,7 @@ fn the_square_loads_as_it_was_made() {
     // Half way the upper edge has turned by 45 degrees about (0, 1), at twice the size.
     assert_eq!(rig.clips[0].name, "turn");
     let surface = posed(&rig, 0.5);
-    let corner = surface.position(VertexId(2)).unwrap();
+    let corner = surface.in_model().position(VertexId(2)).unwrap();
     let diagonal = 2.0 * 0.5f32.sqrt();
     let expected = glam::Vec3::new(diagonal, 2.0 + diagonal, 0.0);
     assert!((corner - expected).length() < 1e-6, "{corner} {expected}");
@@ -55,7 +55,7 @@ fn what_does_not_concern_a_collider_is_passed_over() {
     assert_eq!(rig.report.warnings.len(), 5, "{:?}", rig.report.warnings);
 
     file.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    assert!(matches!(file.load(), Err(GltfErrorKind::Format(_))));
+    assert!(matches!(file.load(), Err(GltfErrorKind::Format { .. })));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     ] {
         let expected = Vec3::new(1.0, 1.0, 0.0) * scale;
         assert_eq!(
-            posed(&rig, time).position(VertexId(2)),
+            posed(&rig, time).in_model().position(VertexId(2)),
             Some(expected),
             "at {time} s"
         );
@@ -170,15 +170,16 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
         "each skin has a space of its own"
     );
     assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
-    assert!(
-        rig.report.warnings[0]
-            .contains("creature of skins 0, 1, 2; other creatures passed over: 1")
-    );
-
-    let pick = |skin| LoadOptions {
-        skin: Some(skin),
-        ..LoadOptions::default()
+    let warning = &rig.report.warnings[0];
+    let expected = ImportWarning::OtherCreatures {
+        skins: vec![0, 1, 2],
+        others: 1,
     };
+    assert_eq!(*warning, expected);
+    let text = warning.to_string();
+    assert!(text.contains("creature of skins 0, 1, 2; other creatures passed over: 1"));
+
+    let pick = |skin| LoadOptions::default().with_skin(skin);
     let stranger = load_slice(&file.glb(), &pick(3)).unwrap();
     assert_eq!(stranger.skeleton.joints()[0].name, "stranger");
     assert!(stranger.clips.is_empty(), "the clip moves the others");
@@ -226,10 +227,10 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
     let mut file = File::square();
     let between = file.node_under(2, json!({"translation": [0, 1, 0], "scale": [2, 2, 2]}));
     let says = |json| json!({"clamber": {"weak_point": json}});
-    let eye = json!({"name": "eye", "translation": [1, 0, 0],
+    let eye = json!({"name": "eye", "translation": [1, 0, 0], "scale": [0.4, 0.4, -0.4],
         "extras": says(json!({"hit_points": 3.0, "major": true}))});
     file.node_under(between, eye);
-    file.json["nodes"][1]["extras"] = says(json!({"hit_points": 1}));
+    file.json["nodes"][1]["extras"] = says(json!({"hit_points": 1, "radius": 0.25}));
     file.push("nodes", json!({"extras": says(json!({"hit_points": 1}))}));
 
     let rig = file.load().unwrap();
@@ -243,11 +244,18 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
         (JointId(1), Vec3::new(2.0, 1.0, 0.0))
     );
     assert!(eye.major && eye.hit_points == 3.0 && eye.name == "eye");
-    assert_eq!(rig.report.warnings.len(), 1, "{:?}", rig.report.warnings);
+    // As the file says; and a node of scale 0.4 under one of 2, in an armature of 2.
+    assert_eq!((lower.radius, eye.radius), (0.25, 0.4 * 2.0 * 2.0));
+    let [warning] = rig.report.warnings.as_slice() else {
+        panic!("{:?}", rig.report.warnings);
+    };
+    assert!(matches!(warning, ImportWarning::WeakPointWithoutJoint { node } if node == "node 6"));
 
     for bad in [
         json!({"hit_points": 0}),
         json!({"hit_points": -1}),
+        json!({"hit_points": 1, "radius": -0.5}),
+        json!({"hit_points": 1, "radius": 1e39}),
         json!({}),
         json!(3),
     ] {

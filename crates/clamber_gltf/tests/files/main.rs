@@ -9,7 +9,11 @@ mod broken;
 mod buffers;
 mod builder;
 mod creatures;
+mod errors;
+mod height;
 #[cfg(unix)]
 mod links;
 mod meshes;
+mod resolver;
+mod tags;
 mod weights;

@@ -1,5 +1,6 @@
 //! Weights and joint indices as exporters write them.
 
+use clamber_gltf::ImportWarning;
 use clamber_surface::mesh::VertexId;
 use clamber_surface::rig::JointId;
 use serde_json::json;
@@ -78,7 +79,8 @@ fn sums_other_than_one_are_normalised_and_reported() {
     let weights = file.floats("VEC4", &[0.0; 16]);
     replace(&mut file, "WEIGHTS_0", weights);
     let rig = file.load().unwrap();
-    assert!(rig.report.warnings[0].starts_with("vertices without weights"));
+    let unweighted = ImportWarning::UnweightedVertices { vertices: 4 };
+    assert_eq!(rig.report.warnings, [unweighted]);
     assert_eq!(rig.report.build.worst_weight_error, 0.0);
     assert_eq!(weights_of(&file)[2], [(0, 1.0)]);
     for bad in [-1.0, f32::NAN, f32::INFINITY] {

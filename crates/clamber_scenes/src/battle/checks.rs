@@ -1,8 +1,8 @@
 //! What the scene holds against the climber, by means that owe nothing to it.
 
 use clamber_climber::{Climber, ClimberMode, StepReport};
+use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::rig::Palette;
-use clamber_surface::skin::skin_vertex_reference;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;

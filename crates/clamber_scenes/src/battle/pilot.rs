@@ -344,6 +344,6 @@ fn slope(normal: DVec3, up: DVec3) -> f64 {
 }
 
 fn place(surface: &SkinnedSurface, vertex: VertexId) -> DVec3 {
-    let position = surface.position(vertex).unwrap_or_default();
+    let position = surface.in_model().position(vertex).unwrap_or_default();
     surface.world_from_model().transform_point_f32(position)
 }

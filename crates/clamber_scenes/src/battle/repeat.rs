@@ -8,9 +8,9 @@
 
 use std::collections::BTreeMap;
 
+use clamber_surface::measure::skin_vertex_reference;
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose};
-use clamber_surface::skin::skin_vertex_reference;
 use glam::DVec3;
 
 use super::{BattleError, TICK};

@@ -1,10 +1,10 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use clamber_surface::geometry::{Affine, Capsule, Similarity, Sphere};
+use clamber_surface::geometry::{Affine, Capsule, Similarity};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
-use clamber_surface::surface::{SkinnedSurface, SurfaceError, SweepHit};
+use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceError, SweepHit};
 use glam::Vec3;
 
 use super::pair::{Core, MovingPair};
@@ -71,19 +71,16 @@ impl Stage {
         self.surface.advance(&palette(end), Similarity::IDENTITY)?;
         let radius = pair.radius;
         let begin = Instant::now();
-        let hit = match pair.core {
-            Core::Sphere { center, motion } => {
-                let sphere = Sphere { center, radius };
-                self.surface.sweep_sphere(&sphere, motion, tolerance)?
-            }
-            Core::Capsule { ends, motions } => {
-                let [a, b] = ends;
-                let capsule = Capsule { a, b, radius };
-                self.surface.sweep_capsule(&capsule, motions, tolerance)?
-            }
+        let (ends, motions) = match pair.core {
+            Core::Sphere { center, motion } => ([center; 2], [motion; 2]),
+            Core::Capsule { ends, motions } => (ends, motions),
         };
+        let options = CastOptions::MOVING.with_tolerance(tolerance);
+        let capsule = Capsule::new(ends[0], ends[1], radius);
+        let space = self.surface.in_model();
+        let hit = capsule.and_then(|capsule| space.cast_capsule(&capsule, motions, &options));
         let took = begin.elapsed();
-        let steps = self.surface.diagnostics().most_sweep_steps;
+        let steps = self.surface.diagnostics().most_cast_steps;
         Ok(Answer { hit, steps, took })
     }
 }

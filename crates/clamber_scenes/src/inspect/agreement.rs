@@ -1,7 +1,8 @@
 //! Queries against brute force over all triangles.
 
-use clamber_surface::geometry::{Capsule, Ray, Sphere};
-use clamber_surface::surface::{BruteForce, SkinnedSurface, SurfaceError};
+use clamber_surface::geometry::{Capsule, Ray};
+use clamber_surface::measure::BruteForce;
+use clamber_surface::surface::{CastOptions, ModelSpace, SkinnedSurface};
 use glam::Vec3;
 
 /// What a comparison found.
@@ -16,17 +17,14 @@ pub struct Agreement {
 /// Compares every query with brute force at random places near the skin, in the surface's pose: as the
 /// surface answers, skinning what it touches, and as it does with everything skinned ahead. Positions
 /// are compared as well.
-///
-/// # Errors
-/// [`SurfaceError`] if a query refuses its input, which for a finite surface none does.
 pub fn compare_queries(
     surface: &SkinnedSurface,
     rng: &mut fastrand::Rng,
     places: usize,
-) -> Result<Agreement, SurfaceError> {
+) -> Agreement {
     let mut eager = surface.clone();
     eager.skin_ahead();
-    let brute_force = BruteForce::new(surface);
+    let brute_force = BruteForce::new(surface.in_model());
     let positions = brute_force.positions();
     let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = positions
@@ -45,81 +43,67 @@ pub fn compare_queries(
         let place = near + Vec3::new(offset(), offset(), offset());
         let target = positions[rng.usize(0..positions.len())];
         let reach = size * rng.f32() * 0.2;
-        let sphere = Sphere {
-            center: place,
-            radius: reach,
-        };
-        let capsule = Capsule {
-            a: place,
-            b: place + (target - place) * 0.2 * rng.f32(),
-            radius: reach * 0.5,
-        };
-        for surface in [surface, &eager] {
+        let end = place + (target - place) * 0.2 * rng.f32();
+        let shapes = [
+            Capsule::ball(place, reach),
+            Capsule::new(place, end, reach * 0.5),
+        ];
+        for space in [surface.in_model(), eager.in_model()] {
             if let Some(ray) = Ray::new(place, target - place) {
-                let hit = surface.cast_ray(&ray, size)?;
-                let reference = brute_force.cast_ray(&ray, size)?;
+                let hit = space.cast_ray(&ray, size);
+                let reference = brute_force.cast_ray(&ray, size);
                 agreement.count(hit.is_some().into(), hit == reference);
-                let met = surface.intersects_ray(&ray, size)?;
+                let met = space.intersects_ray(&ray, size);
                 agreement.count(0, met == reference.is_some());
-                surface.cast_ray_all(&ray, size, &mut hits)?;
-                brute_force.cast_ray_all(&ray, size, &mut expected)?;
+                space.cast_ray_all(&ray, size, &mut hits);
+                brute_force.cast_ray_all(&ray, size, &mut expected);
                 agreement.count(hits.len(), hits == expected);
             }
-            let closest = surface.closest_point(place, reach)?;
-            let reference = brute_force.closest_point(place, reach)?;
+            let closest = space.closest_point(place, reach);
+            let reference = brute_force.closest_point(place, reach);
             agreement.count(closest.is_some().into(), closest == reference);
-            surface.overlap_sphere(&sphere, &mut hits)?;
-            brute_force.overlap_sphere(&sphere, &mut expected)?;
-            agreement.count(hits.len(), hits == expected);
-            surface.overlap_capsule(&capsule, &mut hits)?;
-            brute_force.overlap_capsule(&capsule, &mut expected)?;
-            agreement.count(hits.len(), hits == expected);
-            let closest = surface.closest_to_capsule(&capsule, reach)?;
-            let reference = brute_force.closest_to_capsule(&capsule, reach)?;
-            agreement.count(closest.is_some().into(), closest == reference);
+            for capsule in shapes.iter().flatten() {
+                space.overlap_capsule(capsule, &mut hits);
+                brute_force.overlap_capsule(capsule, &mut expected);
+                agreement.count(hits.len(), hits == expected);
+                let closest = space.closest_to_capsule(capsule, reach);
+                let reference = brute_force.closest_to_capsule(capsule, reach);
+                agreement.count(closest.is_some().into(), closest == reference);
+            }
         }
-        if number % SWEEP_EVERY == 0 {
+        if number % CAST_EVERY == 0 {
             let motions = [target - place, (target - place) * (1.0 + rng.f32())];
-            for surface in [surface, &eager] {
-                agreement.compare_sweeps(surface, &brute_force, &capsule, motions)?;
+            for space in [surface.in_model(), eager.in_model()] {
+                let [ball, capsule] = &shapes;
+                if let (Some(ball), Some(capsule)) = (ball, capsule) {
+                    agreement.compare_casts(&space, &brute_force, ball, [motions[0]; 2]);
+                    agreement.compare_casts(&space, &brute_force, capsule, motions);
+                }
             }
         }
     }
-    Ok(agreement)
+    agreement
 }
 
-/// Sweeps are compared at every so many places: by brute force they take by far the longest.
-const SWEEP_EVERY: usize = 4;
+/// Casts are compared at every so many places: by brute force they take by far the longest.
+const CAST_EVERY: usize = 4;
 
 impl Agreement {
-    /// Of the capsule, and of the sphere about its first end.
-    fn compare_sweeps(
+    fn compare_casts(
         &mut self,
-        surface: &SkinnedSurface,
+        space: &ModelSpace<'_>,
         brute_force: &BruteForce<'_>,
         capsule: &Capsule,
         motions: [Vec3; 2],
-    ) -> Result<(), SurfaceError> {
-        let sphere = Sphere {
-            center: capsule.a,
-            radius: capsule.radius,
-        };
-        let tolerance = capsule.radius * 1e-3;
-        let hit = surface.cast_sphere(&sphere, motions[0], tolerance)?;
-        let reference = brute_force.cast_sphere(&sphere, motions[0], tolerance)?;
-        self.count(hit.is_some().into(), hit == reference);
+    ) {
         let (mut hits, mut expected) = (Vec::new(), Vec::new());
-        surface.sweep_sphere_all(&sphere, motions[0], tolerance, &mut hits)?;
-        brute_force.sweep_sphere_all(&sphere, motions[0], tolerance, &mut expected)?;
-        self.count(hits.len(), hits == expected);
-        let first = surface.sweep_sphere(&sphere, motions[0], tolerance)?;
-        self.count(0, first.as_ref() == expected.first());
-        surface.sweep_capsule_all(capsule, motions, tolerance, &mut hits)?;
-        brute_force.sweep_capsule_all(capsule, motions, tolerance, &mut expected)?;
-        self.count(hits.len(), hits == expected);
-        let first = surface.sweep_capsule(capsule, motions, tolerance)?;
-        self.count(0, first.as_ref() == expected.first());
-        Ok(())
+        for options in [CastOptions::STILL, CastOptions::MOVING] {
+            space.cast_capsule_all(capsule, motions, &options, &mut hits);
+            brute_force.cast_capsule_all(capsule, motions, &options, &mut expected);
+            self.count(hits.len(), hits == expected);
+            let first = space.cast_capsule(capsule, motions, &options);
+            self.count(0, first.as_ref() == expected.first());
+        }
     }
 
     fn count(&mut self, hits: usize, equal: bool) {

@@ -1,53 +1,33 @@
 //! Bounds against the vertices that they are to hold.
 
 use clamber_surface::geometry::Sphere;
-use clamber_surface::mesh::{ColliderMesh, PartId};
-use clamber_surface::rig::Palette;
-use clamber_surface::surface::{JointMaps, PartBounds, SurfaceError, refit_part_spheres};
+use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
-/// Rest data for the bounds of a mesh.
-pub(super) struct BoundCheck {
-    bounds: PartBounds,
-    maps: JointMaps,
-    refitted: Vec<Option<Sphere>>,
+/// How many skinned vertices are outside the sphere of their part, as it follows from the palette and as it is refitted
+/// to the positions.
+pub(super) fn violations(surface: &SkinnedSurface, positions: &[Vec3]) -> usize {
+    let mesh = surface.mesh();
+    let mut refitted = Vec::new();
+    refit(mesh, positions, &mut refitted);
+    let mut outside = 0;
+    for (part, sphere) in surface.in_model().part_spheres() {
+        let spheres = [Some(sphere), refitted.get(part.index()).copied().flatten()];
+        for vertex in &mesh.parts()[part.index()].vertices {
+            let position = positions[vertex.index()];
+            let spheres = spheres.iter().flatten();
+            outside += spheres.filter(|sphere| !sphere.contains(position)).count();
+        }
+    }
+    outside
 }
 
-impl BoundCheck {
-    pub(super) fn new(mesh: &ColliderMesh) -> Self {
-        Self {
-            bounds: PartBounds::new(mesh),
-            maps: JointMaps::default(),
-            refitted: Vec::new(),
-        }
-    }
-
-    /// How many skinned vertices are outside a bound of their part, counted once for each bound:
-    /// by hull, by weight interval, the capsule, and the sphere refitted to the positions.
-    pub(super) fn violations(
-        &mut self,
-        mesh: &ColliderMesh,
-        palette: &Palette,
-        positions: &[Vec3],
-    ) -> Result<usize, SurfaceError> {
-        self.maps.update(mesh, palette)?;
-        refit_part_spheres(mesh, positions, &mut self.refitted);
-        let mut outside = 0;
-        for (index, part) in mesh.parts().iter().enumerate() {
-            let id = PartId(index as u32);
-            let Some(node) = self.bounds.node(id) else {
-                continue;
-            };
-            let refitted = self.refitted.get(index).copied().flatten();
-            let capsule = node.capsule(&self.maps);
-            let spheres = [node.hull(&self.maps), node.weight_interval(&self.maps)];
-            for vertex in &part.vertices {
-                let position = positions[vertex.index()];
-                let spheres = spheres.iter().chain(&refitted);
-                outside += spheres.filter(|sphere| !sphere.contains(position)).count();
-                outside += usize::from(!capsule.contains(position));
-            }
-        }
-        Ok(outside)
-    }
+/// For every part a sphere around the mean of its skinned vertices: the thesis's way (5.2.4).
+pub(super) fn refit(mesh: &ColliderMesh, positions: &[Vec3], spheres: &mut Vec<Option<Sphere>>) {
+    spheres.clear();
+    spheres.extend(mesh.parts().iter().map(|part| {
+        let vertices = part.vertices.iter();
+        Sphere::around_mean(vertices.filter_map(|v| positions.get(v.index()).copied()))
+    }));
 }

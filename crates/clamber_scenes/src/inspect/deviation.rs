@@ -2,9 +2,9 @@
 
 use clamber_gltf::Rig;
 use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::measure::{error_bound, skin_vertex_reference};
 use clamber_surface::mesh::{ColliderMesh, MeshError, VertexId};
 use clamber_surface::rig::Palette;
-use clamber_surface::skin::{error_bound, skin_vertex_reference};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::Vec3;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ impl VisualDistance {
         for (from, to) in [(&*visual, collider), (collider, &*visual)] {
             for _ in 0..SAMPLES {
                 let vertex = rng.usize(0..from.mesh().positions().len());
-                if let Some(place) = from.position(VertexId(vertex as u32)) {
+                if let Some(place) = from.in_model().position(VertexId(vertex as u32)) {
                     self.distances.push(distance(to, place)?);
                 }
             }
@@ -90,8 +90,8 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
     // Most places are within a hundredth of the creature's size.
     let mut reach = surface.mesh().radius() * 0.01;
     loop {
-        if let Some(hit) = surface.closest_point(place, reach)? {
-            return Ok(f64::from(hit.distance));
+        if let Some(hit) = surface.in_model().closest_point(place, reach) {
+            return Ok(hit.distance);
         }
         if reach == f32::INFINITY {
             return Ok(f64::INFINITY);

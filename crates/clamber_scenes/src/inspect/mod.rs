@@ -12,10 +12,10 @@ use std::time::Instant;
 use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Similarity, Sphere};
-use clamber_surface::mesh::MeshError;
+use clamber_surface::mesh::{MeshError, PaletteError};
 use clamber_surface::rig::{Palette, Playback, Pose, RigError};
 use clamber_surface::skin::skin_into;
-use clamber_surface::surface::{SkinnedSurface, SurfaceError, refit_part_spheres};
+use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::Vec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use thiserror::Error;
@@ -26,7 +26,7 @@ pub use options::InspectOptions;
 pub use report::Inspection;
 
 use crate::measure::quantile;
-use bounds::BoundCheck;
+use bounds::{refit, violations};
 use deviation::VisualDistance;
 
 /// Places in each pose at which queries are compared with brute force.
@@ -45,6 +45,9 @@ pub enum InspectError {
     /// Its skin cannot be posed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
+    /// Its palette does not fit it.
+    #[error(transparent)]
+    Palette(#[from] PaletteError),
     /// What is to be seen of it is no mesh.
     #[error(transparent)]
     Visual(#[from] MeshError),
@@ -55,10 +58,8 @@ pub enum InspectError {
 /// # Errors
 /// [`InspectError`] if it cannot be loaded, or one of its clips does not fit it.
 pub fn run(options: &InspectOptions) -> Result<Inspection, InspectError> {
-    let load = LoadOptions {
-        skin: options.skin,
-        ..LoadOptions::default()
-    };
+    let mut load = LoadOptions::default();
+    load.skin = options.skin;
     let rig = load_with(&options.file, &load)?;
     inspect(&rig, options)
 }
@@ -71,7 +72,6 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     let mut inspection = Inspection::of_import(rig);
     let mut surface = SkinnedSurface::new(rig.collider.clone());
     let mut visual = VisualDistance::new(rig)?;
-    let mut bounds = BoundCheck::new(&rig.collider);
     let mut rng = fastrand::Rng::with_seed(options.seed);
     let mut timings = Timings::default();
     let mut positions = Vec::new();
@@ -85,10 +85,10 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
         surface.skin_all(&mut positions);
         let share = skinning_error_share(&rig.collider, palette.matrices(), &positions);
         inspection.skinning_error_share = inspection.skinning_error_share.max(share);
-        let agreement = compare_queries(&surface, &mut rng, PLACES)?;
+        let agreement = compare_queries(&surface, &mut rng, PLACES);
         inspection.query_hits += agreement.hits;
         inspection.query_mismatches += agreement.mismatches;
-        inspection.bound_violations += bounds.violations(&rig.collider, &palette, &positions)?;
+        inspection.bound_violations += violations(&surface, &positions);
         visual.measure(&palette, &surface, &mut rng)?;
         timings.measure(rig, &palette)?;
         bar.inc(1);
@@ -123,7 +123,7 @@ struct Timings {
 }
 
 impl Timings {
-    fn measure(&mut self, rig: &Rig, palette: &Palette) -> Result<(), SurfaceError> {
+    fn measure(&mut self, rig: &Rig, palette: &Palette) -> Result<(), PaletteError> {
         let mesh = &rig.collider;
         self.positions.resize(mesh.positions().len(), Vec3::ZERO);
         let start = Instant::now();
@@ -134,7 +134,7 @@ impl Timings {
             &mut self.positions,
         )?;
         let skinned = Instant::now();
-        refit_part_spheres(mesh, &self.positions, &mut self.spheres);
+        refit(mesh, &self.positions, &mut self.spheres);
         let refitted = Instant::now();
         self.skin.push((skinned - start).as_secs_f64() * 1e6);
         self.refit.push((refitted - skinned).as_secs_f64() * 1e6);

@@ -124,7 +124,12 @@ impl Inspection {
             weak_points: rig.weak_points.iter().map(weak_point).collect(),
             visual_meshes: rig.visual.len(),
             visual_vertices: rig.visual.iter().map(|seen| seen.positions.len()).sum(),
-            warnings: rig.report.warnings.clone(),
+            warnings: rig
+                .report
+                .warnings
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
             ..Self::default()
         }
     }

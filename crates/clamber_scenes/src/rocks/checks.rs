@@ -125,14 +125,11 @@ pub fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHand
             let place = body.position().transform_point(local).as_dvec3();
             let in_model = root.inverse_transform_point(place);
             // Far from the skin no sum over all triangles is needed.
-            let near = surface
-                .closest_point(in_model.as_vec3(), 0.5)
-                .ok()
-                .flatten();
+            let near = surface.in_model().closest_point(in_model.as_vec3(), 0.5);
             if let Some(near) = near
                 && solid_angle::is_inside(&positions, mesh, in_model)
             {
-                deepest = deepest.max(f64::from(near.distance) * root.scale);
+                deepest = deepest.max(near.distance * root.scale);
             }
         }
     }

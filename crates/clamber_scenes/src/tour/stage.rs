@@ -116,7 +116,7 @@ impl<'a> Stage<'a> {
     pub fn vertex(&self, vertex: VertexId) -> (DVec3, DVec3) {
         let world_from_model = self.surface.world_from_model();
         let place = |vertex: VertexId| {
-            let position = self.surface.position(vertex).unwrap_or_default();
+            let position = self.surface.in_model().position(vertex).unwrap_or_default();
             world_from_model.transform_point_f32(position)
         };
         let corners = self.triangle_at[vertex.index()];

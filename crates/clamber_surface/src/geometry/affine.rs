@@ -1,6 +1,6 @@
+use glam::{Affine3, DAffine3, DMat3, DVec3, Vec3};
 #[expect(clippy::disallowed_types, reason = "what other engines have")]
-use glam::Mat4;
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{Affine3A, Mat4};
 
 use super::widen;
 
@@ -11,6 +11,7 @@ use super::widen;
 /// coordinate of a skinned vertex, and the order of its operations is part of the skinning
 /// contract (see [`crate::skin`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C)]
 pub struct Affine {
     /// Three rows of a 3 x 4 matrix; the fourth column is the translation.
@@ -37,6 +38,18 @@ impl Affine {
                 [m[2], m[6], m[10], m[14]],
             ],
         }
+    }
+
+    /// The map of 12 numbers, column by column, as glam stores it; the last three are the translation.
+    fn from_columns(m: &[f32; 12]) -> Self {
+        Self {
+            rows: core::array::from_fn(|row| core::array::from_fn(|column| m[3 * column + row])),
+        }
+    }
+
+    /// The same 12 numbers, column by column.
+    fn to_columns(self) -> [f32; 12] {
+        core::array::from_fn(|k| self.rows[k % 3][k / 3])
     }
 
     /// Rounds each element of a map in f64 once.
@@ -108,6 +121,33 @@ impl From<Mat4> for Affine {
     }
 }
 
+/// Exact, as all conversions between [`Affine`] and glam's affine maps in f32.
+impl From<Affine3> for Affine {
+    fn from(map: Affine3) -> Self {
+        Self::from_columns(&map.to_cols_array())
+    }
+}
+
+impl From<Affine> for Affine3 {
+    fn from(map: Affine) -> Self {
+        Self::from_cols_array(&map.to_columns())
+    }
+}
+
+#[expect(clippy::disallowed_types, reason = "read element by element")]
+impl From<Affine3A> for Affine {
+    fn from(map: Affine3A) -> Self {
+        Self::from_columns(&map.to_cols_array())
+    }
+}
+
+#[expect(clippy::disallowed_types, reason = "written element by element")]
+impl From<Affine> for Affine3A {
+    fn from(map: Affine) -> Self {
+        Self::from_cols_array(&map.to_columns())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,6 +166,23 @@ mod tests {
             Vec3::new(44.0, 51.0, 58.0)
         );
         assert_eq!(Affine::from_f64(&map.to_f64()), map);
+    }
+
+    #[test]
+    #[expect(clippy::disallowed_types, reason = "what is converted")]
+    fn glams_maps_have_the_same_elements() {
+        let mut map = Affine::IDENTITY;
+        for (k, x) in map.rows.as_flattened_mut().iter_mut().enumerate() {
+            *x = k as f32 - 3.5;
+        }
+        let [plain, simd] = [Affine3::from(map), Affine3::from(Affine3A::from(map))];
+        for theirs in [plain, simd] {
+            assert_eq!(theirs.matrix3.x_axis, Vec3::new(-3.5, 0.5, 4.5));
+            assert_eq!(theirs.translation, Vec3::new(-0.5, 3.5, 7.5));
+        }
+        assert_eq!(Affine::from(plain), map);
+        assert_eq!(Affine::from(Affine3A::from(map)), map);
+        assert_eq!(Affine::from(Mat4::from(simd)), map);
     }
 
     #[test]

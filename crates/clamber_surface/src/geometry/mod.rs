@@ -1,7 +1,6 @@
 //! Shapes and maps: plain values with the arithmetic that the bit contract asks for.
 
 mod affine;
-mod bounding_volume;
 mod capsule;
 mod lanes;
 mod moving_capsule;
@@ -12,17 +11,18 @@ mod slerp;
 mod sphere;
 pub(crate) mod triangle;
 mod vector3;
+mod world_capsule;
 
 pub use affine::Affine;
-pub use bounding_volume::BoundingVolume;
 pub use capsule::Capsule;
 pub use moving_capsule::{MovingCapsule, TriangleTouch};
 pub use quaternion::{rotation_from_axis_angle, rotation_vector};
 pub use ray::Ray;
-pub use similarity::Similarity;
+pub use similarity::{Similarity, SimilarityError};
 pub(crate) use slerp::Slerp;
 pub use slerp::slerp;
 pub use sphere::Sphere;
+pub use world_capsule::WorldCapsule;
 
 use glam::{DVec3, Vec3};
 

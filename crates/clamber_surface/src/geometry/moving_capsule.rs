@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::MAX_COORDINATE;
-use super::triangle::{advance_relative, nearest_to_axis};
+use super::triangle::{first_contact_relative, nearest_to_axis};
 
 /// A capsule whose ends each move on a straight line, over a time from 0 to 1; a sphere where both ends are one point
 /// at both times.
@@ -32,6 +32,7 @@ pub struct MovingCapsule {
 
 /// Where a moving capsule first touches a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TriangleTouch {
     /// 0..=1, never later than the first contact.
     pub time: f64,
@@ -101,9 +102,9 @@ impl MovingCapsule {
         let lengths = [self.radius, tolerance];
         let contact = if self.is_ball() {
             let core = core.map(|[center, _]| [center]);
-            advance_relative(relative, core, lengths, limit.min(1.0))
+            first_contact_relative(relative, core, lengths, limit.min(1.0))
         } else {
-            advance_relative(relative, core, lengths, limit.min(1.0))
+            first_contact_relative(relative, core, lengths, limit.min(1.0))
         };
         let contact = contact?;
         let [start, end] = corners;

@@ -1,3 +1,7 @@
+mod from_affine;
+
+pub use from_affine::SimilarityError;
+
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::{round_to_f32, widen};
@@ -12,6 +16,7 @@ const UNIT_TOLERANCE: f64 = 1e-5;
 /// creature 100 km away as exact as one at the origin: all surface arithmetic happens in the
 /// creature's own model space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Similarity {
     /// Unit quaternion.
     pub rotation: DQuat,
@@ -33,6 +38,22 @@ impl Similarity {
     pub fn from_translation(translation: DVec3) -> Self {
         Self {
             translation,
+            ..Self::IDENTITY
+        }
+    }
+
+    /// A pure rotation, by a unit quaternion.
+    pub fn from_rotation(rotation: DQuat) -> Self {
+        Self {
+            rotation,
+            ..Self::IDENTITY
+        }
+    }
+
+    /// A pure scale, which is positive.
+    pub fn from_scale(scale: f64) -> Self {
+        Self {
+            scale,
             ..Self::IDENTITY
         }
     }
@@ -77,7 +98,7 @@ impl Similarity {
         round_to_f32(self.inverse_transform_point(p))
     }
 
-    /// As a general affine map.
+    /// As a general affine map. The way back is `Similarity::try_from`.
     pub fn to_affine(&self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(
             DVec3::splat(self.scale),

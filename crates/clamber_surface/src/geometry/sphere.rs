@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{round_to_f32, round_up_to_f32, widen};
 
 /// A ball: all points within `radius` of `center`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sphere {
     /// Centre, in the space of the points that it bounds.
     pub center: Vec3,

@@ -7,15 +7,17 @@
 //! segment, distance), measured against rational arithmetic: below 5e-15, in slivers of height h and
 //! length 1 below 2^-53 / h, which at 1e-7 is 1e-9 (found: 1e-12).
 
-mod advance;
 mod candidate;
 mod eight;
+mod first_contact;
 mod point;
 mod segment;
 mod sheared_ray;
 
-pub(crate) use advance::{Contact, MovingCore, advance, advance_eight, advance_relative};
 pub(crate) use eight::{Corners8, EIGHT, Points8, closest_points, closest_to_segments};
+pub(crate) use first_contact::{
+    Contact, MovingCore, first_contact, first_contact_of_eight, first_contact_relative,
+};
 pub(crate) use point::closest_point;
 pub(crate) use segment::{closest_to_segment, nearest_to_axis};
 pub(crate) use sheared_ray::{ShearedRay, intersect_sheared};

@@ -7,12 +7,15 @@ use glam::Vec3;
 
 use super::clusters::Clusters;
 use super::collider::has_area;
-use super::hierarchy::Hierarchy;
+use super::derived::Derived;
+use super::hierarchy::{Hierarchy, STACK};
+use super::joint_balls::JointBalls;
 use super::weights::{normalize, weight_of};
-use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
+use super::{
+    ColliderMesh, Influence, MeshError, MeshId, Part, PartId, SurfaceTag, TriangleId, VertexId,
+};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
-use crate::surface::RootBalls;
 
 /// What a mesh is built from, as importers and engines have it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,6 +70,7 @@ pub struct BuildOptions {
 
 /// What a build found and changed.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BuildReport {
     /// Vertices of the mesh.
     pub vertices: usize,
@@ -145,8 +149,16 @@ impl ColliderMesh {
                 triangles: source.triangles.len(),
             });
         }
+        mesh.identify();
         mesh.assign_parts();
         mesh.cluster();
+        let needed = mesh.hierarchy.stack_needed();
+        if needed > STACK {
+            return Err(MeshError::TooDeep {
+                needed,
+                most: STACK,
+            });
+        }
         report.triangles = mesh.triangles.len();
         Ok((mesh, report))
     }
@@ -362,6 +374,7 @@ fn unify(keys: &mut [VertexKey], groups: &[CoincidentGroup]) {
 /// A mesh of the distinct vertices, numbered by first appearance, and each given vertex's number.
 fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>) {
     let mut mesh = ColliderMesh {
+        id: MeshId::default(),
         joint_count: source.joint_count,
         positions: Vec::new(),
         influence_start: vec![0],
@@ -373,10 +386,11 @@ fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>)
         parts: Vec::new(),
         vertex_removed: Vec::new(),
         radius: 0.0,
-        poses: Vec::new(),
         clusters: Clusters::default(),
         hierarchy: Hierarchy::default(),
-        root_balls: RootBalls::default(),
+        joint_balls: JointBalls::default(),
+        part_nodes: Derived::default(),
+        adjacency: Derived::default(),
     };
     let mut number_of: HashMap<&VertexKey, u32> = HashMap::new();
     let mut vertex_of = Vec::with_capacity(keys.len());

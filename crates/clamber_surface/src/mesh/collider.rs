@@ -2,18 +2,22 @@ use std::fmt;
 
 use glam::Vec3;
 
+use super::adjacency::Adjacency;
 use super::clusters::{self, Clusters};
+use super::derived::Derived;
 use super::hierarchy::Hierarchy;
-use super::{SurfaceTag, WEIGHT_ONE};
+use super::joint_balls::JointBalls;
+use super::weights::WEIGHT_ONE;
+use super::{PaletteError, SurfaceTag};
 use crate::geometry::triangle::scaled_normal;
-use crate::geometry::{Affine, round_up_to_f32, widen};
-use crate::rig::{JointId, Palette};
-use crate::surface::{JointMaps, RootBalls, SurfaceError};
+use crate::geometry::{Affine, MAX_COORDINATE, round_up_to_f32, widen};
+use crate::rig::JointId;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         pub struct $name(pub u32);
 
         impl $name {
@@ -44,8 +48,36 @@ id! {
     PartId
 }
 
+id! {
+    /// A connected set of triangles of a collider mesh, as [`ColliderMesh::island_of`] numbers them: by their lowest
+    /// triangle. Edits number them anew.
+    IslandId
+}
+
+/// Which mesh: a fingerprint of its rest data as it was built, the same wherever it is built from the same data. A
+/// copy that is edited keeps it.
+///
+/// Hits and anchors carry it, so that what belongs to one creature is not taken for a point of another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MeshId(pub u64);
+
+impl MeshId {
+    /// By FNV-1a (Fowler, Noll, Vo; RFC 9923), word by word.
+    fn of(mesh: &ColliderMesh) -> Self {
+        let positions = mesh.positions.iter().flat_map(|p| p.to_array());
+        let words = positions.chain(mesh.weights.iter().copied());
+        let words = words.map(f32::to_bits).chain(mesh.joints.iter().copied());
+        let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
+        Self(words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
+            (hash ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3)
+        }))
+    }
+}
+
 /// The triangles that one joint moves most, bounded together.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Part {
     /// The joint with the largest weight over each triangle's three corners.
     pub joint: JointId,
@@ -59,6 +91,7 @@ pub struct Part {
 /// surfaces through an `Arc`; one that is edited has its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderMesh {
+    pub(super) id: MeshId,
     pub(super) joint_count: usize,
     pub(super) positions: Vec<Vec3>,
     /// Influences of vertex v stand at `influence_start[v]..influence_start[v + 1]`.
@@ -75,14 +108,26 @@ pub struct ColliderMesh {
     pub(super) vertex_removed: Vec<bool>,
     /// At least that of every vertex there is or was.
     pub(super) radius: f32,
-    /// Palettes that clusters are made for; see [`ColliderMesh::tuned`].
-    pub(super) poses: Vec<Vec<Affine>>,
     pub(super) clusters: Clusters,
     pub(super) hierarchy: Hierarchy,
-    pub(super) root_balls: RootBalls,
+    pub(super) joint_balls: JointBalls,
+    /// See [`ColliderMesh::part_nodes`].
+    pub(super) part_nodes: Derived<Hierarchy>,
+    /// See [`ColliderMesh::neighbours`].
+    pub(super) adjacency: Derived<Adjacency>,
 }
 
 impl ColliderMesh {
+    /// Which mesh it is.
+    pub fn id(&self) -> MeshId {
+        self.id
+    }
+
+    /// Names the mesh after what it was built from.
+    pub(super) fn identify(&mut self) {
+        self.id = MeshId::of(self);
+    }
+
     /// How many matrices a palette for this mesh has.
     pub fn joint_count(&self) -> usize {
         self.joint_count
@@ -111,6 +156,11 @@ impl ColliderMesh {
     /// The part that a triangle belongs to; `None` if it was removed or never was.
     pub fn part_of(&self, triangle: TriangleId) -> Option<PartId> {
         self.part_of.get(triangle.index()).copied().flatten()
+    }
+
+    /// The joint that moves a triangle most; `None` if it was removed or never was.
+    pub fn joint_of(&self, triangle: TriangleId) -> Option<JointId> {
+        Some(self.parts[self.part_of(triangle)?.index()].joint)
     }
 
     /// True if there is such a vertex: false for one that was removed or never was.
@@ -154,34 +204,35 @@ impl ColliderMesh {
     }
 
     /// What bounds the whole mesh in any pose.
-    pub(crate) fn root_balls(&self) -> &RootBalls {
-        &self.root_balls
+    pub(crate) fn joint_balls(&self) -> &JointBalls {
+        &self.joint_balls
     }
 
-    /// The same mesh, its clusters and hierarchy made for these poses: cut so that bounds are small in
-    /// them, where a build without poses takes weights that differ and sizes at rest for a sign of what
-    /// they will be. For creatures whose clips are known, a few poses of each; more than some ten in all
-    /// change little. Queries give the same answers, and edits keep to the poses. (Bittner and Meister
-    /// 2015, "T-SAH: Animation Optimized Bounding Volume Hierarchies", for one tree over all frames.)
+    /// What bounds every part in any pose. Read from the rest data when first asked for.
+    pub(crate) fn part_nodes(&self) -> &Hierarchy {
+        self.part_nodes.get_or(|| Hierarchy::of_parts(self))
+    }
+
+    /// Whether a surface of this mesh takes a palette.
     ///
     /// # Errors
-    /// [`SurfaceError::JointCount`] or [`SurfaceError::Palette`] for a palette that a surface of this
-    /// mesh would refuse.
-    pub fn tuned(&self, poses: &[Palette]) -> Result<Self, SurfaceError> {
-        let mut maps = JointMaps::default();
-        for pose in poses {
-            maps.update(self, pose)?;
+    /// [`PaletteError`], for another number of matrices than the mesh has joints, or for one that is not
+    /// finite or moves vertices beyond 2^100.
+    pub fn check_palette(&self, matrices: &[Affine]) -> Result<(), PaletteError> {
+        if matrices.len() != self.joint_count {
+            return Err(PaletteError::JointCount {
+                expected: self.joint_count,
+                found: matrices.len(),
+            });
         }
-        let mut tuned = self.clone();
-        tuned.poses = poses.iter().map(|pose| pose.matrices().to_vec()).collect();
-        (tuned.clusters, tuned.hierarchy) = clusters::build(self, &tuned.poses);
-        Ok(tuned)
+        check_matrices(matrices.iter().copied(), self.radius)
     }
 
     /// Makes clusters and hierarchy anew.
     pub(crate) fn cluster(&mut self) {
-        (self.clusters, self.hierarchy) = clusters::build(self, &self.poses);
-        self.root_balls = RootBalls::new(self);
+        (self.clusters, self.hierarchy) = clusters::build(self);
+        self.joint_balls = JointBalls::new(self);
+        self.part_nodes.forget();
     }
 
     /// Bytes of all rest data.
@@ -196,11 +247,6 @@ impl ColliderMesh {
             + size_of_val(&self.tags[..])
             + size_of_val(&self.part_of[..])
             + size_of_val(&self.vertex_removed[..])
-            + self
-                .poses
-                .iter()
-                .map(|p| size_of_val(&p[..]))
-                .sum::<usize>()
             + parts.sum::<usize>()
             + self.clusters.memory()
             + self.hierarchy.memory()
@@ -258,6 +304,30 @@ impl ColliderMesh {
         round_up_to_f32(farthest * (1.0 + 1e-15))
     }
 }
+
+/// Refuses a matrix that does not keep everything within `radius` of the mesh's origin within 2^100 of the model's.
+pub(crate) fn check_matrices(
+    mut matrices: impl Iterator<Item = Affine>,
+    radius: f32,
+) -> Result<(), PaletteError> {
+    match matrices.position(|matrix| !keeps(&matrix, radius)) {
+        None => Ok(()),
+        Some(joint) => Err(PaletteError::Matrix(JointId(joint as u32))),
+    }
+}
+
+/// False for NaN.
+fn keeps(matrix: &Affine, radius: f32) -> bool {
+    // As all creatures do: three by three products of such numbers, and three more, are less.
+    let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
+    if usual(&radius) && matrix.rows.as_flattened().iter().all(usual) {
+        return true;
+    }
+    matrix.reach(f64::from(radius)) <= MAX_COORDINATE
+}
+
+/// 2^40: a size of matrix elements and creatures that needs no closer look.
+const USUAL_COORDINATE: f32 = (1u64 << 40) as f32;
 
 /// False for a triangle whose corners stand on one line, or on one point.
 pub(super) fn has_area(corners: [Vec3; 3]) -> bool {

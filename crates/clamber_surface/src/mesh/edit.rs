@@ -12,11 +12,12 @@ use glam::Vec3;
 use super::build::is_usable;
 use super::clusters::{Clusters, build_beside};
 use super::collider::has_area;
-use super::hierarchy::Hierarchy;
+use super::derived::Derived;
+use super::hierarchy::{Hierarchy, STACK};
+use super::joint_balls::JointBalls;
 use super::weights::{normalize, weight_of};
 use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::rig::JointId;
-use crate::surface::{RootBalls, SurfaceError};
 
 /// A vertex that may be added.
 pub(crate) struct NewVertex {
@@ -84,24 +85,21 @@ impl ColliderMesh {
         self.influence_start.push(self.joints.len() as u32);
         self.radius = vertex.radius;
         let joints = vertex.influences.iter().map(|(joint, _)| *joint);
-        self.root_balls.hold(vertex.position, joints);
+        self.joint_balls.hold(vertex.position, joints);
         self.clusters.loose.push(id);
         id
     }
 
-    /// Checks a triangle to be added.
-    pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), SurfaceError> {
+    /// Checks a triangle to be added, of vertices that exist.
+    pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), MeshError> {
         let found = self.triangles.len() + 1;
         if found >= u32::MAX as usize {
             let what = "triangles";
-            return Err(MeshError::TooLarge { what, found }.into());
-        }
-        if let Some(bad) = corners.iter().find(|v| !self.has_vertex(**v)) {
-            return Err(SurfaceError::Vertex(*bad));
+            return Err(MeshError::TooLarge { what, found });
         }
         if !has_area(corners.map(|v| self.positions[v.index()])) {
             let vertices = corners.map(|v| v.0);
-            return Err(MeshError::DegenerateTriangle { vertices }.into());
+            return Err(MeshError::DegenerateTriangle { vertices });
         }
         Ok(())
     }
@@ -128,12 +126,14 @@ impl ColliderMesh {
         self.parts[part].triangles.push(id);
         let part = PartId(part as u32);
         self.part_of.push(Some(part));
+        self.adjacency.forget();
         (id, part)
     }
 
     /// Marks a triangle as removed; its part lists it until [`ColliderMesh::recluster`].
     pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) {
         self.part_of[triangle.index()] = None;
+        self.adjacency.forget();
     }
 
     /// Marks a vertex as removed, which no triangle has as a corner any more.
@@ -171,6 +171,7 @@ impl ColliderMesh {
             triangles.retain(|t| part_of[t.index()] == Some(*part));
             self.collect_vertices(part.index());
         }
+        self.part_nodes.forget();
         let killed = self.clusters.kill(touched, self.positions.len());
         self.hierarchy.cut_off(touched);
         for part in touched {
@@ -190,7 +191,8 @@ impl ColliderMesh {
             return;
         }
         let held = self.clusters.held(&part.vertices);
-        let (clusters, hierarchy) = build_beside(&self.alone(part), &self.poses, held);
+        let (clusters, hierarchy) = build_beside(&self.alone(part), held);
+        debug_assert!(hierarchy.stack_needed() <= STACK);
         let first = self.clusters.clusters.len() as u32;
         self.hierarchy.append(hierarchy, id, first);
         self.clusters
@@ -203,6 +205,7 @@ impl ColliderMesh {
         let number = |v: VertexId| part.vertices.partition_point(|other| *other < v) as u32;
         let corners = part.triangles.iter().map(|t| self.triangles[t.index()]);
         let mut alone = Self {
+            id: self.id,
             joint_count: self.joint_count,
             positions: Vec::with_capacity(part.vertices.len()),
             influence_start: vec![0],
@@ -218,10 +221,11 @@ impl ColliderMesh {
             }],
             vertex_removed: Vec::new(),
             radius: self.radius,
-            poses: Vec::new(),
             clusters: Clusters::default(),
             hierarchy: Hierarchy::default(),
-            root_balls: RootBalls::default(),
+            joint_balls: JointBalls::default(),
+            part_nodes: Derived::default(),
+            adjacency: Derived::default(),
         };
         for vertex in &part.vertices {
             let (joints, weights) = self.influence_slices(vertex.index());
@@ -231,28 +235,5 @@ impl ColliderMesh {
             alone.influence_start.push(alone.joints.len() as u32);
         }
         alone
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{bend, tube};
-
-    #[test]
-    fn edits_keep_to_the_poses_that_a_mesh_was_tuned_for() {
-        let poses = [0.9, -1.3].map(|angle| bend(5, glam::DVec3::Z, angle));
-        let tuned = tube(5, 60).tuned(&poses).unwrap();
-        let mut forgetful = tuned.clone();
-        forgetful.poses.clear();
-        let part = [PartId(2)].into();
-        let [mut one, mut other] = [tuned.clone(), forgetful.clone()];
-        one.recluster(&part);
-        other.recluster(&part);
-        assert_ne!(one.clusters, other.clusters);
-        one.cluster();
-        forgetful.cluster();
-        assert_eq!(one.clusters, tuned.clusters);
-        assert_ne!(forgetful.clusters, tuned.clusters);
     }
 }

@@ -2,6 +2,24 @@ use thiserror::Error;
 
 use crate::rig::JointId;
 
+/// Why a palette does not fit a mesh. Nothing was changed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PaletteError {
+    /// It has another number of matrices than the mesh has joints.
+    #[error("the mesh has {expected} joints, the palette {found} matrices")]
+    JointCount {
+        /// As the mesh has.
+        expected: usize,
+        /// As the palette has.
+        found: usize,
+    },
+    /// A matrix is not finite, or could move a vertex, one to be added among them, farther than 2^100
+    /// from the origin.
+    #[error("matrix {0} of the palette is not finite, or moves vertices beyond 2^100")]
+    Matrix(JointId),
+}
+
 /// Why a mesh could not be built or edited. Nothing was changed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -77,6 +95,17 @@ pub enum MeshError {
         what: &'static str,
         /// How many.
         found: usize,
+    },
+    /// The hierarchy over the triangles is so deep that a query could not descend it. It is balanced, so this is
+    /// not met by meshes that can be numbered.
+    #[error(
+        "a query of this mesh may have {needed} nodes still to visit, {most} at most are possible"
+    )]
+    TooDeep {
+        /// Nodes and clusters that a query may have still to visit.
+        needed: usize,
+        /// As many as it can have.
+        most: usize,
     },
     /// A triangle to be added has no area at rest.
     #[error("a triangle of vertices {vertices:?} has no area at rest")]

@@ -3,19 +3,27 @@
 //! [`ColliderMesh::build`] takes plain slices, as any importer or engine has them, and makes an
 //! immutable mesh that surfaces share by `Arc`.
 
+mod adjacency;
 mod build;
 pub(crate) mod clusters;
 mod collider;
+mod derived;
 mod edit;
 mod error;
 pub(crate) mod hierarchy;
+mod joint_balls;
+mod summary;
 mod tag;
 mod weights;
 
 pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
-pub use collider::{ColliderMesh, Part, PartId, TriangleId, VertexId};
+pub(crate) use collider::check_matrices;
+pub use collider::{ColliderMesh, IslandId, MeshId, Part, PartId, TriangleId, VertexId};
 pub(crate) use edit::Reclustered;
-pub use error::MeshError;
+pub use error::{MeshError, PaletteError};
+pub(crate) use joint_balls::JointBalls;
+#[cfg(test)]
+pub(crate) use summary::Summarizer;
+pub(crate) use summary::Summary;
 pub use tag::{SurfaceKind, SurfaceTag};
 pub use weights::{Influence, normalize_influences};
-pub(crate) use weights::{WEIGHT_ONE, normalize};

@@ -226,6 +226,7 @@ fn hermite_indices(key: usize, next: usize) -> [usize; 4] {
 
 /// What happens outside a clip's length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Playback {
     /// Starts again from the first key frame.
     Loop,

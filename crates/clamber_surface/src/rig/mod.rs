@@ -10,6 +10,7 @@ mod palette;
 mod pose;
 mod skeleton;
 mod transform;
+mod weak_point;
 
 pub use clip::{Channel, Clip, Interpolation, Keyframes, Playback};
 pub use error::RigError;
@@ -18,3 +19,4 @@ pub use pose::Pose;
 pub use skeleton::{Joint, JointId, Skeleton};
 pub use transform::Transform;
 pub(crate) use transform::{rotation_f32, rotation_f64};
+pub use weak_point::WeakPoint;

@@ -1,6 +1,8 @@
 use glam::DAffine3;
 
 use super::JointId;
+#[cfg(feature = "serde")]
+use super::RigError;
 use crate::geometry::Affine;
 
 /// One matrix per joint that takes mesh space at rest to model space now:
@@ -9,6 +11,8 @@ use crate::geometry::Affine;
 /// Comes from [`crate::rig::Skeleton::palette`], or from an engine's own matrices through
 /// [`Palette::from_matrices`].
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "StoredPalette"))]
 pub struct Palette {
     pub(super) matrices: Vec<Affine>,
     pub(super) model_from_joint: Vec<DAffine3>,
@@ -39,5 +43,40 @@ impl Palette {
     /// by [`Palette::from_matrices`], which does not know.
     pub fn model_from_joint(&self, joint: JointId) -> Option<&DAffine3> {
         self.model_from_joint.get(joint.0 as usize)
+    }
+}
+
+/// [`Palette::from_matrices`], for `collect`.
+impl FromIterator<Affine> for Palette {
+    fn from_iter<I: IntoIterator<Item = Affine>>(matrices: I) -> Self {
+        Self::from_matrices(matrices)
+    }
+}
+
+/// A palette as it was written, to be checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct StoredPalette {
+    matrices: Vec<Affine>,
+    model_from_joint: Vec<DAffine3>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<StoredPalette> for Palette {
+    type Error = RigError;
+
+    fn try_from(stored: StoredPalette) -> Result<Self, RigError> {
+        let StoredPalette {
+            matrices,
+            model_from_joint,
+        } = stored;
+        let (expected, found) = (matrices.len(), model_from_joint.len());
+        if found != 0 && found != expected {
+            return Err(RigError::JointCount { expected, found });
+        }
+        Ok(Self {
+            matrices,
+            model_from_joint,
+        })
     }
 }

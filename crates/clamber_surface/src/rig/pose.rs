@@ -4,6 +4,7 @@ use crate::geometry::{Slerp, round_to_f32};
 
 /// The local transform of every joint of a skeleton, in joint order.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Relative to each joint's parent.
     pub transforms: Vec<Transform>,

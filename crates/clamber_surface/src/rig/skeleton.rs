@@ -7,7 +7,15 @@ use crate::geometry::Affine;
 
 /// Index of a joint in its skeleton, and of its matrix in a palette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointId(pub u32);
+
+impl JointId {
+    /// As an index into a slice.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
 
 impl fmt::Display for JointId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -73,6 +81,21 @@ impl Skeleton {
     pub fn find(&self, name: &str) -> Option<JointId> {
         let index = self.joints.iter().position(|joint| joint.name == name)?;
         Some(JointId(index as u32))
+    }
+
+    /// True if following parents from `joint` leads to `ancestor`, or if they are one joint. O(depth). False for a joint
+    /// that does not exist.
+    ///
+    /// Which joints an arm consists of is the question whether they are the shoulder or one of its descendants.
+    pub fn is_descendant_or_self(&self, joint: JointId, ancestor: JointId) -> bool {
+        let parent = |joint: &JointId| {
+            self.joints
+                .get(joint.index())
+                .and_then(|joint| joint.parent)
+        };
+        let exists = joint.index() < self.joints.len();
+        // Ends at a root: a skeleton has no cycles.
+        exists && core::iter::successors(Some(joint), parent).any(|joint| joint == ancestor)
     }
 
     /// Every joint at rest.
@@ -207,6 +230,20 @@ mod tests {
             Skeleton::new(vec![joint(None, f32::NAN)]),
             Err(RigError::NotFinite { .. })
         ));
+    }
+
+    #[test]
+    fn descendants_are_found_at_any_depth_and_order() {
+        // Two trees: 1 > 2 > 0, 2 > 4, and 3 alone.
+        let parents = [Some(2), None, Some(1), None, Some(2)];
+        let joints = parents.map(|parent| joint(parent, 0.0));
+        let skeleton = Skeleton::new(joints.to_vec()).unwrap();
+        let below = [(0, 2), (0, 1), (2, 1), (4, 2), (4, 1)];
+        for (a, b) in (0..7).flat_map(|a| (0..7).map(move |b| (a, b))) {
+            let expected = a < 5 && (a == b || below.contains(&(a, b)));
+            let found = skeleton.is_descendant_or_self(JointId(a), JointId(b));
+            assert_eq!(found, expected, "{a} below {b}");
+        }
     }
 
     #[test]

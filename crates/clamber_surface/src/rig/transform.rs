@@ -5,6 +5,7 @@ use crate::geometry::widen;
 /// Translation, rotation and scale of a joint relative to its parent: glTF's node transform.
 /// A point is scaled first, then rotated, then translated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transform {
     /// In units of the parent.
     pub translation: Vec3,

@@ -8,25 +8,23 @@
 //!
 //! The fast kernel skins a cluster of up to 64 vertices at a time, as many at once as the machine is wide
 //! ([`crate::SimdLevel`]): a list of the cluster's joints, and per joint a row of weights, zero where it
-//! does not move a vertex, so that nothing is gathered. [`skin_scalar`] is the plain loop that it is
-//! compared with.
+//! does not move a vertex, so that nothing is gathered. Tests compare it with a plain scalar loop.
 //!
 //! Against exact arithmetic on the same f32 palette each coordinate of a vertex with n influences
 //! is off by at most `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|)`, plus `(4 n + 4) 2^-149` where
-//! products underflow: see [`error_bound`].
+//! products underflow.
 
 mod cluster;
 #[cfg(feature = "rayon")]
 mod parallel;
-mod reference;
+pub(crate) mod reference;
 mod scalar;
-mod whole;
+pub(crate) mod whole;
 
 pub(crate) use cluster::{ClusterPositions, skin_cluster};
-pub use reference::{error_bound, skin_vertex_reference};
 pub(crate) use scalar::skin_vertex;
 pub(crate) use whole::skin_checked;
-pub use whole::{skin, skin_clusters, skin_into, skin_scalar};
+pub use whole::{skin, skin_into};
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::SimdLevel;
+use crate::measure::{skin_clusters, skin_scalar};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::JointId;
 use crate::surface::SkinnedSurface;

@@ -3,16 +3,15 @@ use glam::Vec3;
 use super::cluster::{ClusterPositions, skin_cluster, skin_owned};
 use super::scalar::skin_vertex;
 use crate::geometry::Affine;
-use crate::mesh::ColliderMesh;
 use crate::mesh::clusters::{Clusters, ROW};
+use crate::mesh::{ColliderMesh, PaletteError};
 use crate::simd::SimdLevel;
-use crate::surface::SurfaceError;
 
 /// Skins every vertex of a mesh.
 ///
 /// # Errors
 /// As [`skin_into`].
-pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, SurfaceError> {
+pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, PaletteError> {
     let mut positions = Vec::new();
     skin_into(mesh, palette, SimdLevel::best(), &mut positions)?;
     Ok(positions)
@@ -22,16 +21,16 @@ pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, Surfac
 /// come out in model space, in vertex order, each vertex once.
 ///
 /// # Errors
-/// [`SurfaceError::JointCount`] if the palette has another number of matrices than the mesh has
+/// [`PaletteError::JointCount`] if the palette has another number of matrices than the mesh has
 /// joints. Matrices that are not finite give positions that are not finite.
 pub fn skin_into(
     mesh: &ColliderMesh,
     palette: &[Affine],
     level: SimdLevel,
     positions: &mut Vec<Vec3>,
-) -> Result<(), SurfaceError> {
+) -> Result<(), PaletteError> {
     if palette.len() != mesh.joint_count() {
-        return Err(SurfaceError::JointCount {
+        return Err(PaletteError::JointCount {
             expected: mesh.joint_count(),
             found: palette.len(),
         });
@@ -88,9 +87,9 @@ pub fn skin_clusters(
     palette: &[Affine],
     level: SimdLevel,
     numbers: &mut Vec<f32>,
-) -> Result<(), SurfaceError> {
+) -> Result<(), PaletteError> {
     if palette.len() != mesh.joint_count() {
-        return Err(SurfaceError::JointCount {
+        return Err(PaletteError::JointCount {
             expected: mesh.joint_count(),
             found: palette.len(),
         });
@@ -115,9 +114,9 @@ pub fn skin_clusters(
 ///
 /// # Errors
 /// As [`skin_into`].
-pub fn skin_scalar(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, SurfaceError> {
+pub fn skin_scalar(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, PaletteError> {
     if palette.len() != mesh.joint_count() {
-        return Err(SurfaceError::JointCount {
+        return Err(PaletteError::JointCount {
             expected: mesh.joint_count(),
             found: palette.len(),
         });

@@ -1,19 +1,56 @@
 use glam::{DQuat, Quat};
 
 use super::deformation::material_frame;
-use super::{SkinnedSurface, SurfaceError, SurfaceHit};
-use crate::mesh::TriangleId;
+use super::{SkinnedSurface, SurfaceError};
+use crate::mesh::{MeshId, TriangleId};
+use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
 use crate::rig::rotation_f32;
 
 /// How far barycentric coordinates may be from a sum of 1: some rounding of three f32.
 const BARYCENTRIC_TOLERANCE: f32 = 1e-5;
+
+/// A point of a mesh's material, wherever that is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SurfacePoint {
+    /// The mesh that has the triangle.
+    pub mesh: MeshId,
+    /// The triangle that the point lies on.
+    pub triangle: TriangleId,
+    /// Weights of its corners: not negative, sum 1.
+    pub barycentric: [f32; 3],
+}
+
+macro_rules! point_of {
+    ($($hit:ident),*) => {$(
+        impl From<&$hit> for SurfacePoint {
+            fn from(hit: &$hit) -> Self {
+                Self {
+                    mesh: hit.mesh,
+                    triangle: hit.triangle,
+                    barycentric: hit.barycentric,
+                }
+            }
+        }
+    )*};
+}
+point_of!(SurfaceHit, SweepHit, Anchor);
+
+impl From<&CapsuleHit> for SurfacePoint {
+    fn from(hit: &CapsuleHit) -> Self {
+        (&hit.surface).into()
+    }
+}
 
 /// A material point: it stays where it is on the skin, whatever the skin does.
 ///
 /// A small plain value. It is tied to a triangle id, so it holds for every surface that shares the
 /// mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor {
+    /// The mesh that has the triangle.
+    pub mesh: MeshId,
     /// The triangle that the point lies on.
     pub triangle: TriangleId,
     /// Weights of its corners: not negative, sum 1.
@@ -25,9 +62,15 @@ pub struct Anchor {
 }
 
 impl SkinnedSurface {
-    /// The material point of a hit on this surface, as posed now.
-    pub fn anchor_at(&self, hit: &SurfaceHit) -> Anchor {
-        self.anchor_unchecked(hit.triangle, hit.barycentric)
+    /// What sticks to the material point of a hit, or to any other, as the surface is posed now.
+    ///
+    /// # Errors
+    /// [`SurfaceError::ForeignMesh`] for a point of another mesh, [`SurfaceError::Triangle`] for one whose triangle was
+    /// removed since, [`SurfaceError::Barycentric`] for weights that are none.
+    pub fn anchor_at(&self, point: impl Into<SurfacePoint>) -> Result<Anchor, SurfaceError> {
+        let point = point.into();
+        self.check_mesh(point.mesh)?;
+        self.anchor(point.triangle, point.barycentric)
     }
 
     /// A material point by triangle and corner weights.
@@ -39,23 +82,29 @@ impl SkinnedSurface {
         triangle: TriangleId,
         barycentric: [f32; 3],
     ) -> Result<Anchor, SurfaceError> {
-        if self.mesh.part_of(triangle).is_none() {
-            return Err(SurfaceError::Triangle(triangle));
-        }
+        let mesh = self.mesh();
+        let joint = mesh.joint_of(triangle);
+        let joint = joint.ok_or(SurfaceError::Triangle(triangle))?;
         check_barycentric(barycentric)?;
-        Ok(self.anchor_unchecked(triangle, barycentric))
-    }
-
-    fn anchor_unchecked(&self, triangle: TriangleId, barycentric: [f32; 3]) -> Anchor {
-        let frame = self.mesh.part_of(triangle).and_then(|part| {
-            let joint = self.mesh.parts()[part.index()].joint.0 as usize;
-            let rest = self.mesh.rest_corners(triangle);
-            material_frame(rest, self.corners(triangle), &self.current.palette()[joint])
-        });
-        Anchor {
+        let instance = &self.instance;
+        let matrix = &instance.current.palette()[joint.index()];
+        let rest = mesh.rest_corners(triangle);
+        let frame = material_frame(rest, instance.corners(triangle), matrix);
+        Ok(Anchor {
+            mesh: mesh.id(),
             triangle,
             barycentric,
             frame: rotation_f32(frame.unwrap_or(DQuat::IDENTITY)),
+        })
+    }
+
+    /// Refuses what belongs to another mesh.
+    pub(super) fn check_mesh(&self, found: MeshId) -> Result<(), SurfaceError> {
+        let expected = self.mesh().id();
+        if found == expected {
+            Ok(())
+        } else {
+            Err(SurfaceError::ForeignMesh { expected, found })
         }
     }
 }

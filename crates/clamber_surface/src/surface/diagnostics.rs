@@ -6,6 +6,7 @@ use crate::mesh::TriangleId;
 /// What this tick's queries touched. Counts what is distinct, so it does not depend on how threads
 /// interleave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostics {
     /// Bounds of nodes and clusters that were evaluated.
     pub bounds_evaluated: usize,
@@ -21,12 +22,13 @@ pub struct Diagnostics {
     pub vertices: usize,
     /// Triangles that no box ruled out: tested exactly, each as often as queries met it.
     pub triangles_tested: u64,
-    /// Most steps that the exact test of a cast or sweep took for a triangle.
-    pub most_sweep_steps: u32,
+    /// Most steps that the exact test of a cast took for a triangle.
+    pub most_cast_steps: u32,
 }
 
 /// One cluster of a surface's triangles, and what this tick's queries made of it.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct ClusterState<'a> {
     /// Its triangles. Removed ones stand in no cluster.
     pub triangles: &'a [TriangleId],
@@ -40,26 +42,26 @@ impl SkinnedSurface {
     /// What was touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`].
     /// Clusters that an edit has replaced since then count no more. Takes O(clusters).
     pub fn diagnostics(&self) -> Diagnostics {
-        let (clusters, hierarchy) = (&self.mesh.clusters().clusters, self.mesh.hierarchy());
+        let (clusters, hierarchy) = (&self.mesh().clusters().clusters, self.mesh().hierarchy());
         let slots = |cluster: usize| usize::from(clusters[cluster].slots);
         let lanes = |node: usize| usize::from(hierarchy.nodes[node].lanes);
         Diagnostics {
-            bounds_evaluated: self.current.asked_nodes().map(lanes).sum(),
-            clusters_touched: self.current.asked_clusters().count(),
-            clusters_skinned: self.current.skinned_clusters().count(),
-            clusters: self.mesh.clusters().living(),
-            vertices_skinned: self.current.skinned_clusters().map(slots).sum(),
+            bounds_evaluated: self.instance.current.asked_nodes().map(lanes).sum(),
+            clusters_touched: self.instance.current.asked_clusters().count(),
+            clusters_skinned: self.instance.current.skinned_clusters().count(),
+            clusters: self.mesh().clusters().living(),
+            vertices_skinned: self.instance.current.skinned_clusters().map(slots).sum(),
             vertices: (0..clusters.len()).map(slots).sum(),
-            triangles_tested: self.triangles_tested.load(Ordering::Relaxed),
-            most_sweep_steps: self.most_sweep_steps.load(Ordering::Relaxed),
+            triangles_tested: self.instance.triangles_tested.load(Ordering::Relaxed),
+            most_cast_steps: self.instance.most_cast_steps.load(Ordering::Relaxed),
         }
     }
 
     /// Every cluster, and what was made of it since then. Takes O(clusters).
     pub fn clusters(&self) -> impl Iterator<Item = ClusterState<'_>> {
-        let clusters = self.mesh.clusters();
-        let mut touched = self.current.asked_clusters().peekable();
-        let mut skinned = self.current.skinned_clusters().peekable();
+        let clusters = self.mesh().clusters();
+        let mut touched = self.instance.current.asked_clusters().peekable();
+        let mut skinned = self.instance.current.skinned_clusters().peekable();
         let all = clusters.clusters.iter().enumerate();
         let states = all.map(move |(index, cluster)| ClusterState {
             triangles: cluster.triangles(clusters),
@@ -78,25 +80,11 @@ impl SkinnedSurface {
 
     /// Bytes that the collider takes: the rest data that surfaces share, and this surface's caches.
     pub fn memory(&self) -> usize {
-        self.mesh.memory()
-            + self.current.memory()
-            + self.previous.memory()
-            + self.part_enabled.len()
-            + self.triangle_enabled.len()
-    }
-
-    /// Counts exact triangle tests of a query.
-    pub(super) fn count_tested(&self, triangles: usize) {
-        if triangles > 0 {
-            let count = triangles as u64;
-            self.triangles_tested.fetch_add(count, Ordering::Relaxed);
-        }
-    }
-
-    /// Counts exact triangle tests of a cast or sweep, which took so many steps at most.
-    pub(super) fn count_swept(&self, triangles: usize, steps: u32) {
-        self.count_tested(triangles);
-        self.most_sweep_steps.fetch_max(steps, Ordering::Relaxed);
+        self.mesh().memory()
+            + self.instance.current.memory()
+            + self.instance.previous.memory()
+            + self.instance.part_enabled.len()
+            + self.instance.triangle_enabled.len()
     }
 }
 

@@ -33,7 +33,7 @@ impl SkinnedSurface {
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn enable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
         let hidden = !std::mem::replace(self.triangle_flag(triangle)?, true);
-        self.hidden_triangles -= usize::from(hidden);
+        self.instance.hidden_triangles -= usize::from(hidden);
         Ok(())
     }
 
@@ -43,7 +43,7 @@ impl SkinnedSurface {
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn disable_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
         let shown = std::mem::replace(self.triangle_flag(triangle)?, false);
-        self.hidden_triangles += usize::from(shown);
+        self.instance.hidden_triangles += usize::from(shown);
         Ok(())
     }
 
@@ -87,26 +87,20 @@ impl SkinnedSurface {
 
     /// True if queries see the triangle: it exists, and neither it nor its part is disabled.
     pub fn is_enabled(&self, triangle: TriangleId) -> bool {
-        self.mesh.part_of(triangle).is_some_and(|part| {
-            self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]
-        })
-    }
-
-    /// [`SkinnedSurface::is_enabled`] for a triangle of an enabled part. Where nothing is hidden, it
-    /// reads nothing.
-    pub(super) fn shows(&self, triangle: TriangleId) -> bool {
-        self.hidden_triangles == 0 || self.triangle_enabled[triangle.index()]
+        self.instance.is_enabled(triangle)
     }
 
     fn part_flag(&mut self, part: PartId) -> Result<&mut bool, SurfaceError> {
-        self.part_enabled
+        self.instance
+            .part_enabled
             .get_mut(part.index())
             .ok_or(SurfaceError::Part(part))
     }
 
     fn triangle_flag(&mut self, triangle: TriangleId) -> Result<&mut bool, SurfaceError> {
-        let exists = self.mesh.part_of(triangle).is_some();
-        self.triangle_enabled
+        let exists = self.mesh().part_of(triangle).is_some();
+        self.instance
+            .triangle_enabled
             .get_mut(triangle.index())
             .filter(|_| exists)
             .ok_or(SurfaceError::Triangle(triangle))

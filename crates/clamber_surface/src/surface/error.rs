@@ -1,24 +1,14 @@
 use thiserror::Error;
 
-use crate::mesh::{PartId, TriangleId, VertexId};
-use crate::rig::JointId;
+use crate::mesh::{MeshError, MeshId, PaletteError, PartId, TriangleId, VertexId};
 
-/// Why a surface refused a palette, a query or an edit. Nothing was changed.
+/// Why a surface refused a palette, a point or an edit. Nothing was changed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SurfaceError {
-    /// The palette has another number of matrices than the mesh has joints.
-    #[error("the mesh has {expected} joints, the palette {found} matrices")]
-    JointCount {
-        /// As the mesh has.
-        expected: usize,
-        /// As the palette has.
-        found: usize,
-    },
-    /// A matrix is not finite, or could move a vertex, one to be added among them, farther than 2^100
-    /// from the origin.
-    #[error("matrix {0} of the palette is not finite, or moves vertices beyond 2^100")]
-    Palette(JointId),
+    /// The palette does not fit the mesh.
+    #[error(transparent)]
+    Palette(#[from] PaletteError),
     /// `world_from_model` is not finite, has no positive scale, or its rotation is not of unit
     /// length.
     #[error(
@@ -26,19 +16,20 @@ pub enum SurfaceError {
          (to 1e-5)"
     )]
     WorldFromModel,
-    /// A number of a query is NaN or negative, or a tick has no length.
-    #[error("{what} must be {range}, found {found}")]
-    Query {
-        /// Which number.
-        what: &'static str,
-        /// What it may be.
-        range: &'static str,
-        /// Its value.
-        found: f64,
+    /// A tick has no length.
+    #[error("the length of a tick must be positive and finite, found {0}")]
+    Tick(f64),
+    /// Over so short a tick velocities are larger than any f32.
+    #[error("the length of a tick must be long enough for velocities that fit in f32, found {0}")]
+    ShortTick(f64),
+    /// A hit or anchor belongs to another mesh.
+    #[error("the point lies on mesh {found:?}, not on {expected:?}")]
+    ForeignMesh {
+        /// The surface's.
+        expected: MeshId,
+        /// The point's.
+        found: MeshId,
     },
-    /// The point of a query is not finite.
-    #[error("the point of a query must be finite")]
-    Point,
     /// No such triangle, or it was removed.
     #[error("triangle {0} does not exist, or was removed")]
     Triangle(TriangleId),
@@ -53,5 +44,5 @@ pub enum SurfaceError {
     Barycentric([f32; 3]),
     /// A vertex or a triangle could not be added.
     #[error(transparent)]
-    Mesh(#[from] crate::mesh::MeshError),
+    Mesh(#[from] MeshError),
 }

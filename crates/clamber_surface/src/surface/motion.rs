@@ -12,6 +12,7 @@ use crate::rig::{rotation_f32, rotation_f64};
 /// The motion of an anchor over one tick, in the *current* model frame: a moving root moves it
 /// too. Differences of positions over `dt`, never an instantaneous velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Motion {
     /// Where the point is now.
     pub position: Vec3,
@@ -41,39 +42,41 @@ impl SkinnedSurface {
     /// The motion of a material point over a tick of `dt` seconds. Skins three vertices.
     ///
     /// # Errors
-    /// [`SurfaceError::Triangle`] if the triangle does not exist or was removed,
-    /// [`SurfaceError::Barycentric`], or [`SurfaceError::Query`] if `dt` is not positive.
+    /// [`SurfaceError::ForeignMesh`], [`SurfaceError::Triangle`] if the triangle does not exist or was removed,
+    /// [`SurfaceError::Barycentric`], [`SurfaceError::Tick`] if `dt` is not positive and finite, or
+    /// [`SurfaceError::ShortTick`].
     pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<Motion, SurfaceError> {
-        let triangle = anchor.triangle;
-        let part = self
+        self.check_mesh(anchor.mesh)?;
+        let (triangle, instance) = (anchor.triangle, &self.instance);
+        let part = instance
             .mesh
             .part_of(triangle)
             .ok_or(SurfaceError::Triangle(triangle))?;
         check_barycentric(anchor.barycentric)?;
         if !(dt > 0.0 && dt.is_finite()) {
-            return Err(SurfaceError::Query {
-                what: "the length of a tick",
-                range: "positive and finite",
-                found: dt,
-            });
+            return Err(SurfaceError::Tick(dt));
         }
-        let rest = self.mesh.rest_corners(triangle);
-        let before = self.previous_corners(triangle);
-        let now = self.corners(triangle);
+        let rest = instance.mesh.rest_corners(triangle);
+        let before = instance.corners_in(&instance.previous, triangle);
+        let now = instance.corners(triangle);
 
         let weights = widen(Vec3::from_array(anchor.barycentric));
         let (position, previous) = (point_at(now, weights), point_at(before, weights));
-        let joint = self.mesh.parts()[part.index()].joint.0 as usize;
-        let previous_frame = material_frame(rest, before, &self.previous.palette()[joint]);
-        let current_frame = material_frame(rest, now, &self.current.palette()[joint]);
+        let joint = instance.mesh.parts()[part.index()].joint.index();
+        let previous_frame = material_frame(rest, before, &instance.previous.palette()[joint]);
+        let current_frame = material_frame(rest, now, &instance.current.palette()[joint]);
         let frame = current_frame
             .or(previous_frame)
             .unwrap_or_else(|| last_frame(anchor));
         let previous_frame = previous_frame.unwrap_or(frame);
-        let normal = match self.outward_normal(now, part) {
+        let normal = match instance.outward_normal(now, part) {
             Some(normal) if !is_collapsed(now) => normal,
             _ => {
-                let sign = if self.is_mirrored(part) { -1.0 } else { 1.0 };
+                let sign = if instance.is_mirrored(part) {
+                    -1.0
+                } else {
+                    1.0
+                };
                 frame * scaled_normal(rest).normalize_or(DVec3::Y) * sign
             }
         };
@@ -81,11 +84,7 @@ impl SkinnedSurface {
         let velocity = (position - previous) / dt;
         let angular_velocity = rotation_vector(frame * previous_frame.conjugate()) / dt;
         if velocity.length().max(angular_velocity.length()) > f64::from(f32::MAX) {
-            return Err(SurfaceError::Query {
-                what: "the length of a tick",
-                range: "long enough for velocities that fit in f32",
-                found: dt,
-            });
+            return Err(SurfaceError::ShortTick(dt));
         }
         Ok(Motion {
             position: round_to_f32(position),

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::{MovingTriangle, SkinnedSurface, SurfaceError};
+use super::SkinnedSurface;
 use crate::mesh::{TriangleId, VertexId};
+use crate::query::MovingTriangle;
 
 /// The triangles near a box, with where their vertices are and were, in memory that is used again each
 /// tick: what a physics engine needs of a creature near one body.
@@ -28,13 +29,13 @@ use crate::mesh::{TriangleId, VertexId};
 /// let mut surface = SkinnedSurface::new(Arc::new(mesh));
 /// let mut patch = Patch::default();
 /// let (low, high) = (Vec3::splat(-0.1), Vec3::splat(0.1));
-/// assert_eq!(patch.update(&surface, low, high, 0.1)?, PatchChange::Rebuilt);
+/// assert_eq!(patch.update(&surface, low, high, 0.1), PatchChange::Rebuilt);
 /// assert_eq!(patch.triangles(), [TriangleId(0)]);
 ///
 /// let mut lifted = Affine::IDENTITY;
 /// lifted.rows[2][3] = 0.05;
 /// surface.advance(&Palette::from_matrices([lifted]), Similarity::IDENTITY)?;
-/// assert_eq!(patch.update(&surface, low, high, 0.1)?, PatchChange::Moved);
+/// assert_eq!(patch.update(&surface, low, high, 0.1), PatchChange::Moved);
 /// assert_eq!(patch.positions()[0] - patch.previous_positions()[0], Vec3::Z * 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -51,6 +52,8 @@ pub struct Patch {
     found: Vec<MovingTriangle>,
     /// Memory for vertices with their places, by id.
     by_id: Vec<(VertexId, u32)>,
+    /// Memory for which vertices have this tick's positions.
+    is_taken: Vec<bool>,
 }
 
 /// What an update did to a [`Patch`].
@@ -66,23 +69,21 @@ pub enum PatchChange {
 
 impl Patch {
     /// Takes this tick's positions, and other triangles if need be: it holds every enabled triangle
-    /// that [moves within](SkinnedSurface::visit_box) the box from `low` to `high`, in model space.
+    /// that [moves within](super::ModelSpace::visit_box) the box from `low` to `high`, in model space.
     ///
     /// When it is rebuilt it takes in all within `margin` of the box, so that it need not be again
     /// before the box has moved so far over the skin: with 0 it holds nothing more than it must, and
     /// is rebuilt whenever something leaves or enters. A larger margin is rebuilt more seldom, and
     /// costs more in each tick between.
     ///
-    /// # Errors
-    /// As [`SkinnedSurface::visit_box`], and [`SurfaceError::Query`] if `margin` is negative or not
-    /// finite; the patch is unchanged then.
+    /// A box that is not finite, and a margin that is negative or not finite, hold nothing.
     pub fn update(
         &mut self,
         surface: &SkinnedSurface,
         low: Vec3,
         high: Vec3,
         margin: f32,
-    ) -> Result<PatchChange, SurfaceError> {
+    ) -> PatchChange {
         let apart = |moving: &MovingTriangle| {
             if moving.meets_box(low, high) {
                 0.0
@@ -95,9 +96,6 @@ impl Patch {
 
     /// [`Patch::update`] near a region that fills little of the box around it: `apart` tells how far a
     /// triangle moves past it, which may be less than it is, and is at most 0 for one that it meets.
-    ///
-    /// # Errors
-    /// As [`Patch::update`].
     pub fn update_near(
         &mut self,
         surface: &SkinnedSurface,
@@ -105,18 +103,12 @@ impl Patch {
         high: Vec3,
         margin: f32,
         apart: impl Fn(&MovingTriangle) -> f32,
-    ) -> Result<PatchChange, SurfaceError> {
-        if !(margin >= 0.0 && margin.is_finite()) {
-            return Err(SurfaceError::Query {
-                what: "the margin of a patch",
-                range: "not negative and finite",
-                found: f64::from(margin),
-            });
-        }
+    ) -> PatchChange {
         let around = Vec3::splat(margin);
         self.found.clear();
         let (mut met, mut all_held) = (0, true);
-        surface.visit_box(low - around, high + around, |moving| {
+        let (low, high) = (low - around, high + around);
+        surface.in_model().visit_box(low, high, |moving| {
             let apart = apart(moving);
             if apart <= margin {
                 self.found.push(*moving);
@@ -125,17 +117,17 @@ impl Patch {
                 met += 1;
                 all_held &= self.triangles.binary_search(&moving.triangle).is_ok();
             }
-        })?;
+        });
         // With a margin of 0, no more than it must; where nothing is met, nothing near it either.
         let no_more = met > 0 && margin > 0.0 || met == self.triangles.len();
         if all_held && no_more && self.is_of(surface) {
-            return Ok(self.take_positions(surface));
+            return self.take_positions(surface);
         }
         if met == 0 {
             self.found.clear();
         }
         self.rebuild(surface);
-        Ok(PatchChange::Rebuilt)
+        PatchChange::Rebuilt
     }
 
     /// Empty, of no surface; keeps its memory.
@@ -187,7 +179,7 @@ impl Patch {
 
     /// False once one of its triangles was edited away, or hidden.
     fn is_of(&self, surface: &SkinnedSurface) -> bool {
-        let all = surface.mesh.triangles();
+        let all = surface.mesh().triangles();
         let mut own = self.triangles.iter().zip(&self.indices);
         own.all(|(triangle, corners)| {
             let corners = corners.map(|corner| self.vertices[corner as usize]);
@@ -195,27 +187,55 @@ impl Patch {
         })
     }
 
+    /// The positions of all vertices: those of the triangles found, which a query has skinned, and the others skinned one
+    /// by one.
     fn take_positions(&mut self, surface: &SkinnedSurface) -> PatchChange {
-        let bits = |p: Vec3| p.to_array().map(f32::to_bits);
         let mut change = PatchChange::Same;
-        let own = self.vertices.iter();
-        let places = self.positions.iter_mut().zip(&mut self.previous_positions);
-        for (vertex, (now, before)) in own.zip(places) {
-            for (known, pose) in [(now, &surface.current), (before, &surface.previous)] {
-                let found = pose.position(&surface.mesh, vertex.index());
-                if bits(found) != bits(*known) {
-                    change = PatchChange::Moved;
+        self.is_taken.clear();
+        self.is_taken.resize(self.vertices.len(), false);
+        for found in 0..self.found.len() {
+            let moving = self.found[found];
+            if let Ok(triangle) = self.triangles.binary_search(&moving.triangle) {
+                for (corner, place) in self.indices[triangle].into_iter().enumerate() {
+                    let places = [moving.current[corner], moving.previous[corner]];
+                    self.put(place as usize, places, &mut change);
                 }
-                *known = found;
+            }
+        }
+        let instance = &surface.instance;
+        for place in 0..self.vertices.len() {
+            if !self.is_taken[place] {
+                let vertex = self.vertices[place].index();
+                let places = [&instance.current, &instance.previous]
+                    .map(|pose| pose.position(&instance.mesh, vertex));
+                self.put(place, places, &mut change);
             }
         }
         change
     }
 
+    /// Puts a vertex where it is now and was a tick ago, unless that was done.
+    fn put(&mut self, place: usize, [now, before]: [Vec3; 2], change: &mut PatchChange) {
+        if std::mem::replace(&mut self.is_taken[place], true) {
+            return;
+        }
+        let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+        let known = [
+            &mut self.positions[place],
+            &mut self.previous_positions[place],
+        ];
+        for (known, found) in known.into_iter().zip([now, before]) {
+            if bits(found) != bits(*known) {
+                *change = PatchChange::Moved;
+            }
+            *known = found;
+        }
+    }
+
     fn rebuild(&mut self, surface: &SkinnedSurface) {
         self.clear();
         self.found.sort_unstable_by_key(|moving| moving.triangle);
-        let all = surface.mesh.triangles();
+        let all = surface.mesh().triangles();
         self.by_id.clear();
         for moving in &self.found {
             let corners = all[moving.triangle.index()];

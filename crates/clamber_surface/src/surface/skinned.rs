@@ -1,13 +1,12 @@
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, AtomicU64};
 
 use glam::{DVec3, Vec3};
 
 use super::SurfaceError;
-use super::pose::Pose;
-use crate::geometry::{Affine, MAX_COORDINATE, Similarity};
-use crate::mesh::{ColliderMesh, TriangleId, VertexId};
-use crate::rig::{JointId, Palette};
+use crate::geometry::{Affine, Similarity};
+use crate::mesh::{ColliderMesh, check_matrices};
+use crate::query::{Instance, ModelSpace};
+use crate::rig::Palette;
 use crate::simd::SimdLevel;
 use crate::skin::skin_checked;
 
@@ -42,29 +41,18 @@ use crate::skin::skin_checked;
 /// surface.advance(&Palette::from_matrices([lifted]), Similarity::IDENTITY)?;
 ///
 /// let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z).unwrap();
-/// let hit = surface.cast_ray(&ray, 10.0)?.unwrap();
+/// let hit = surface.in_model().cast_ray(&ray, 10.0).unwrap();
 /// assert_eq!(hit.distance, 1.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SkinnedSurface {
-    pub(super) mesh: Arc<ColliderMesh>,
-    pub(super) current: Pose,
-    /// That of the previous tick, expressed in the current model frame.
-    pub(super) previous: Pose,
+    pub(crate) instance: Instance,
     world_from_model: Similarity,
     /// [`SkinnedSurface::is_placed`].
     placed: bool,
     /// [`SkinnedSurface::bounding_ball`].
     ball: Option<(DVec3, f64)>,
-    pub(super) simd_level: SimdLevel,
-    pub(super) part_enabled: Vec<bool>,
-    /// True for removed triangles.
-    pub(super) triangle_enabled: Vec<bool>,
-    /// How many triangles are not enabled.
-    pub(super) hidden_triangles: usize,
-    pub(super) triangles_tested: AtomicU64,
-    pub(super) most_sweep_steps: AtomicU32,
 }
 
 impl SkinnedSurface {
@@ -77,18 +65,10 @@ impl SkinnedSurface {
     /// results are the same.
     pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
         let mut surface = Self {
-            current: Pose::at_rest(&mesh, simd_level),
-            previous: Pose::at_rest(&mesh, simd_level),
+            instance: Instance::new(mesh, simd_level),
             world_from_model: Similarity::IDENTITY,
             placed: true,
             ball: None,
-            simd_level,
-            part_enabled: vec![true; mesh.parts().len()],
-            triangle_enabled: vec![true; mesh.triangles().len()],
-            hidden_triangles: 0,
-            triangles_tested: AtomicU64::new(0),
-            most_sweep_steps: AtomicU32::new(0),
-            mesh,
         };
         surface.bound();
         surface
@@ -99,8 +79,7 @@ impl SkinnedSurface {
     /// everything. That follows from which clusters queries reached, not from how many threads they ran on.
     ///
     /// # Errors
-    /// [`SurfaceError::JointCount`], [`SurfaceError::Palette`] or [`SurfaceError::WorldFromModel`];
-    /// the surface is unchanged then.
+    /// [`SurfaceError::Palette`] or [`SurfaceError::WorldFromModel`]; the surface is unchanged then.
     pub fn advance(
         &mut self,
         palette: &Palette,
@@ -109,21 +88,25 @@ impl SkinnedSurface {
         self.validate(palette, &world_from_model)?;
         let world_from_model = world_from_model.normalized();
         let ahead = self.touched_nearly_everything();
+        let Instance {
+            mesh,
+            current,
+            previous,
+            ..
+        } = &mut self.instance;
         if world_from_model == self.world_from_model {
             // The last tick's bounds and positions serve as they are.
-            std::mem::swap(&mut self.current, &mut self.previous);
+            std::mem::swap(current, previous);
         } else {
             let now_from_before = world_from_model.relative(&self.world_from_model);
             let moved = |before: &Affine| Affine::from_f64(&(now_from_before * before.to_f64()));
-            let before = self.current.palette();
-            let radius = self.mesh.radius();
-            if let Some(joint) = before.iter().position(|m| !keeps(&moved(m), radius)) {
-                return Err(SurfaceError::Palette(JointId(joint as u32)));
-            }
-            self.previous.set(&self.mesh, before.iter().map(moved));
+            let before = current.palette().iter();
+            check_matrices(before.clone().map(moved), mesh.radius())?;
+            previous.set(mesh, before.map(moved));
         }
         self.pose(palette, world_from_model, ahead);
         self.placed = false;
+        self.instance.is_still = false;
         Ok(())
     }
 
@@ -138,11 +121,12 @@ impl SkinnedSurface {
         world_from_model: Similarity,
     ) -> Result<(), SurfaceError> {
         self.validate(palette, &world_from_model)?;
-        self.previous
-            .set(&self.mesh, palette.matrices().iter().copied());
+        let Instance { mesh, previous, .. } = &mut self.instance;
+        previous.set(mesh, palette.matrices().iter().copied());
         let ahead = self.touched_nearly_everything();
         self.pose(palette, world_from_model.normalized(), ahead);
         self.placed = true;
+        self.instance.is_still = true;
         Ok(())
     }
 
@@ -159,8 +143,14 @@ impl SkinnedSurface {
     /// To wake it, [`SkinnedSurface::place`] it where it is by then: `advance` would take all the way since for
     /// the motion of one tick.
     pub fn sleep(&mut self) {
-        let palette = self.current.palette().iter().copied();
-        self.previous.set(&self.mesh, palette);
+        let Instance {
+            mesh,
+            current,
+            previous,
+            ..
+        } = &mut self.instance;
+        previous.set(mesh, current.palette().iter().copied());
+        self.instance.is_still = true;
         self.bound();
     }
 
@@ -173,7 +163,8 @@ impl SkinnedSurface {
 
     /// Finds the ball anew, after both poses have changed.
     pub(super) fn bound(&mut self) {
-        let root = self.current.root().union(self.previous.root());
+        let root = self.instance.current.root();
+        let root = root.union(self.instance.previous.root());
         let (low, high) = (root.min.as_dvec3(), root.max.as_dvec3());
         let center = self.world_from_model.transform_point((low + high) * 0.5);
         let radius = (high - low).length() * 0.5 * self.world_from_model.scale;
@@ -185,12 +176,19 @@ impl SkinnedSurface {
     /// Skins everything now and refits every bound to it, where queries would skin and bound what
     /// they touch: the eager way. For comparison; the surface does so by itself where it is faster.
     pub fn skin_ahead(&mut self) {
-        self.current.fill(&self.mesh);
+        self.instance.current.fill(&self.instance.mesh);
+    }
+
+    /// The surface in its own model space: its queries.
+    pub fn in_model(&self) -> ModelSpace<'_> {
+        ModelSpace {
+            instance: &self.instance,
+        }
     }
 
     /// The shared rest data.
     pub fn mesh(&self) -> &Arc<ColliderMesh> {
-        &self.mesh
+        &self.instance.mesh
     }
 
     /// Where the creature stands now.
@@ -200,69 +198,42 @@ impl SkinnedSurface {
 
     /// The instruction set that queries run on.
     pub fn simd_level(&self) -> SimdLevel {
-        self.simd_level
+        self.instance.simd_level
     }
 
     /// Skins every vertex, removed ones included, each once, in model space, by vertex id: for renderers,
     /// and whoever wants everything. `positions` keeps its memory. Queries neither need it nor profit from it.
     pub fn skin_all(&self, positions: &mut Vec<Vec3>) {
-        skin_checked(
-            &self.mesh,
-            self.current.palette(),
-            self.simd_level,
-            positions,
-        );
-    }
-
-    /// Where a vertex stands now, in model space; `None` if it does not exist or was removed.
-    pub fn position(&self, vertex: VertexId) -> Option<Vec3> {
-        self.position_in(&self.current, vertex)
-    }
-
-    /// Where a vertex stood a tick ago, in the current model frame; `None` if it does not exist or was
-    /// removed. One that was added since stood where the palette of a tick ago would have had it.
-    pub fn previous_position(&self, vertex: VertexId) -> Option<Vec3> {
-        self.position_in(&self.previous, vertex)
-    }
-
-    fn position_in(&self, pose: &Pose, vertex: VertexId) -> Option<Vec3> {
-        self.mesh
-            .has_vertex(vertex)
-            .then(|| pose.position(&self.mesh, vertex.index()))
-    }
-
-    /// The corners of a triangle now.
-    pub(super) fn corners(&self, triangle: TriangleId) -> [Vec3; 3] {
-        let corners = self.mesh.triangles()[triangle.index()];
-        corners.map(|v| self.current.position(&self.mesh, v.index()))
-    }
-
-    /// The corners of a triangle a tick ago, in the current model frame.
-    pub(super) fn previous_corners(&self, triangle: TriangleId) -> [Vec3; 3] {
-        let corners = self.mesh.triangles()[triangle.index()];
-        corners.map(|v| self.previous.position(&self.mesh, v.index()))
+        let palette = self.instance.current.palette();
+        skin_checked(self.mesh(), palette, self.simd_level(), positions);
     }
 
     /// True if this tick touched so much that skinning the next one ahead costs less than finding out.
     fn touched_nearly_everything(&self) -> bool {
         // Counted from the stamps. A counter that queries raise would count a cluster twice where two threads
         // reach it at once.
-        let asked = self.current.asked_clusters().count();
-        let all = self.mesh.clusters().living();
+        let asked = self.instance.current.asked_clusters().count();
+        let all = self.mesh().clusters().living();
         asked * 4 >= all * 3
     }
 
     /// Makes a pose current, skinned ahead or not; everything was checked before.
     fn pose(&mut self, palette: &Palette, world_from_model: Similarity, ahead: bool) {
-        self.current
-            .set(&self.mesh, palette.matrices().iter().copied());
+        let Instance {
+            mesh,
+            current,
+            triangles_tested,
+            most_cast_steps,
+            ..
+        } = &mut self.instance;
+        current.set(mesh, palette.matrices().iter().copied());
+        *triangles_tested.get_mut() = 0;
+        *most_cast_steps.get_mut() = 0;
+        if ahead {
+            current.fill(mesh);
+        }
         self.world_from_model = world_from_model;
         self.bound();
-        *self.triangles_tested.get_mut() = 0;
-        *self.most_sweep_steps.get_mut() = 0;
-        if ahead {
-            self.current.fill(&self.mesh);
-        }
     }
 
     fn validate(
@@ -270,17 +241,7 @@ impl SkinnedSurface {
         palette: &Palette,
         world_from_model: &Similarity,
     ) -> Result<(), SurfaceError> {
-        let matrices = palette.matrices();
-        if matrices.len() != self.mesh.joint_count() {
-            return Err(SurfaceError::JointCount {
-                expected: self.mesh.joint_count(),
-                found: matrices.len(),
-            });
-        }
-        let radius = self.mesh.radius();
-        if let Some(joint) = matrices.iter().position(|m| !keeps(m, radius)) {
-            return Err(SurfaceError::Palette(JointId(joint as u32)));
-        }
+        self.mesh().check_palette(palette.matrices())?;
         if !world_from_model.is_valid() {
             return Err(SurfaceError::WorldFromModel);
         }
@@ -288,43 +249,9 @@ impl SkinnedSurface {
     }
 }
 
-/// True if a matrix keeps everything within `radius` of the mesh's origin within 2^100 of the model's;
-/// false for NaN.
-pub(super) fn keeps(matrix: &Affine, radius: f32) -> bool {
-    // As all creatures do: three by three products of such numbers, and three more, are less.
-    let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
-    if usual(&radius) && matrix.rows.as_flattened().iter().all(usual) {
-        return true;
-    }
-    matrix.reach(f64::from(radius)) <= MAX_COORDINATE
-}
-
 /// How much larger the ball about a surface is made than its box asks for, as a share of its size and distance: some
 /// twenty roundings of f64 come to less.
 const BALL_SLACK: f64 = 1e-14;
-
-/// 2^40: a size of matrix elements and creatures that needs no closer look.
-const USUAL_COORDINATE: f32 = (1u64 << 40) as f32;
-
-impl Clone for SkinnedSurface {
-    /// Both poses and all flags; what queries computed is computed anew.
-    fn clone(&self) -> Self {
-        Self {
-            mesh: self.mesh.clone(),
-            current: self.current.renewed(&self.mesh),
-            previous: self.previous.renewed(&self.mesh),
-            world_from_model: self.world_from_model,
-            placed: self.placed,
-            ball: self.ball,
-            simd_level: self.simd_level,
-            part_enabled: self.part_enabled.clone(),
-            triangle_enabled: self.triangle_enabled.clone(),
-            hidden_triangles: self.hidden_triangles,
-            triangles_tested: AtomicU64::new(0),
-            most_sweep_steps: AtomicU32::new(0),
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,3 @@
-use clamber_surface::surface::SurfaceError;
 use rapier3d::dynamics::RigidBodyHandle;
 use thiserror::Error;
 
@@ -20,14 +19,12 @@ pub enum DebrisError {
     /// Two surfaces have the same id.
     #[error("obstacle {} is twice in the list of surfaces", .0.0)]
     TwiceListed(ObstacleId),
-    /// A surface refused a query; its body is too far away, or not finite.
-    #[error("body {body:?} cannot be held against obstacle {}: {source}", .obstacle.0)]
-    Surface {
+    /// A body is not finite, or farther from a surface than f32 reaches.
+    #[error("body {body:?} is not finite, or out of reach of obstacle {}", .obstacle.0)]
+    OutOfReach {
         /// Which body.
         body: RigidBodyHandle,
         /// Which surface.
         obstacle: ObstacleId,
-        /// Why.
-        source: SurfaceError,
     },
 }

@@ -1,10 +1,10 @@
 //! No skin passes through a body: what rapier let through is put back in front of it.
 
-use clamber_surface::geometry::{Capsule, Similarity, Sphere, rotation_from_axis_angle};
-use clamber_surface::surface::{Anchor, Motion, SkinnedSurface, SurfaceError, SweepHit};
-use glam::{DVec3, Quat, Vec3};
+use clamber_surface::geometry::{Capsule, Similarity, rotation_from_axis_angle};
+use clamber_surface::surface::{CastOptions, Motion, SkinnedSurface, SweepHit};
+use glam::{DVec3, Vec3};
 
-use super::core::Core;
+use super::inner_capsule::InnerCapsule;
 
 /// How much of a body's inside is swept, as a share of its radius: skin that rapier pushes out by itself
 /// must not reach it, and skin that does has not yet passed the middle.
@@ -44,43 +44,37 @@ impl Kept {
 /// by at most `motion` metres past each other.
 pub(super) fn stays_clear(
     surface: &SkinnedSurface,
-    core: &Core,
+    core: &InnerCapsule,
     end: [DVec3; 2],
     motion: f64,
-) -> Result<bool, SurfaceError> {
+) -> Option<bool> {
     let world_from_model = surface.world_from_model();
     let [a, b] = end.map(|end| world_from_model.inverse_transform_point_f32(end));
     let radius = (core.radius * MET / world_from_model.scale) as f32;
     let near = (motion / world_from_model.scale) as f32;
-    let found = surface.closest_to_capsule(&Capsule { a, b, radius }, near)?;
-    Ok(found.is_none())
+    let core = Capsule::new(a, b, radius)?;
+    Some(surface.in_model().closest_to_capsule(&core, near).is_none())
 }
 
 /// Sweeps the core from its ends `start` to `end`, in world space, against skin that moves over a tick of
 /// `dt` seconds.
 pub(super) fn keep_out(
     surface: &SkinnedSurface,
-    core: &Core,
+    core: &InnerCapsule,
     [start, end]: [[DVec3; 2]; 2],
     dt: f64,
-) -> Result<Kept, SurfaceError> {
+) -> Option<Kept> {
     let mut kept = Kept::FREE;
     for _ in 0..ROUNDS {
         let shifted = end.map(|end| end + kept.shift);
         let Some(hit) = sweep(surface, core, start, shifted)? else {
             kept.free = true;
-            return Ok(kept);
+            return Some(kept);
         };
         kept.free = false;
         let world_from_model = surface.world_from_model();
-        let motion = surface.motion(
-            &Anchor {
-                triangle: hit.triangle,
-                barycentric: hit.barycentric,
-                frame: Quat::IDENTITY,
-            },
-            dt,
-        )?;
+        let anchor = surface.anchor_at(&hit).ok()?;
+        let motion = surface.motion(&anchor, dt).ok()?;
         let normal = world_from_model.rotation * outward(&hit, &motion, dt);
         let skin = world_from_model.transform_point_f32(motion.position);
         let touching = touching(world_from_model, &hit, start, shifted);
@@ -88,13 +82,13 @@ pub(super) fn keep_out(
         // Behind the skin at the start and in front of it at the end: it came out.
         if depth <= 0.0 {
             kept.free = true;
-            return Ok(kept);
+            return Some(kept);
         }
         kept.shift += normal * depth;
         let velocity = world_from_model.transform_vector(motion.velocity.as_dvec3());
         kept.pushed = Some((normal, velocity));
     }
-    Ok(kept)
+    Some(kept)
 }
 
 /// From the skin to the body, now: as they touched, turned as the triangle turned since then; out of the
@@ -115,10 +109,10 @@ fn outward(hit: &SweepHit, motion: &Motion, dt: f64) -> DVec3 {
 
 fn sweep(
     surface: &SkinnedSurface,
-    core: &Core,
+    core: &InnerCapsule,
     start: [DVec3; 2],
     end: [DVec3; 2],
-) -> Result<Option<SweepHit>, SurfaceError> {
+) -> Option<Option<SweepHit>> {
     let world_from_model = surface.world_from_model();
     let radius = core.radius * SWEPT / world_from_model.scale;
     let tolerance = (radius * TOLERANCE) as f32;
@@ -129,11 +123,10 @@ fn sweep(
         (end - start[side]).as_vec3()
     });
     let [a, b] = start.map(|end| end.as_vec3());
-    if core.ends[0] == core.ends[1] {
-        surface.sweep_sphere(&Sphere { center: a, radius }, motions[0], tolerance)
-    } else {
-        surface.sweep_capsule(&Capsule { a, b, radius }, motions, tolerance)
-    }
+    let usable = motions.iter().all(|motion| motion.is_finite());
+    let core = Capsule::new(a, b, radius).filter(|_| usable)?;
+    let options = CastOptions::MOVING.with_tolerance(tolerance);
+    Some(surface.in_model().cast_capsule(&core, motions, &options))
 }
 
 /// The point of the core's segment that was touched, where it is at the end of the tick.

@@ -2,7 +2,7 @@
 //! cliff. Nothing ever pushes a creature, so one of them must give way, and it is the skin.
 
 use clamber_surface::geometry;
-use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{
@@ -12,7 +12,7 @@ use rapier3d::math::Pose;
 use rapier3d::parry::query::{DefaultQueryDispatcher, ShapeCastOptions};
 use rapier3d::pipeline::QueryFilter;
 
-use super::core::Core;
+use super::inner_capsule::InnerCapsule;
 use super::keep_out::SWEPT;
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
@@ -56,7 +56,7 @@ impl Immovable<'_> {
     pub(super) fn blocks(
         &self,
         bodies: &RigidBodySet,
-        core: &Core,
+        core: &InnerCapsule,
         pose: &Pose,
         shift: DVec3,
     ) -> Option<f64> {
@@ -89,22 +89,18 @@ pub(super) fn owner_in(
 }
 
 /// True if the body's core touches no skin, and its middle is not inside the creature. `origin` is rapier's in the
-/// world.
+/// world. `None` if it is out of reach.
 pub(super) fn is_outside(
     surface: &SkinnedSurface,
-    core: &Core,
+    core: &InnerCapsule,
     pose: &Pose,
     origin: DVec3,
-) -> Result<bool, SurfaceError> {
+) -> Option<bool> {
     let world_from_model = surface.world_from_model();
     let ends = core.ends_at(pose).map(|end| origin + end);
     let [a, b] = ends.map(|end| world_from_model.inverse_transform_point_f32(end));
     let radius = (core.radius / world_from_model.scale) as f32;
-    if surface
-        .closest_to_capsule(&geometry::Capsule { a, b, radius }, 0.0)?
-        .is_some()
-    {
-        return Ok(false);
-    }
-    Ok(!surface.is_inside((a + b) * 0.5)?)
+    let (space, core) = (surface.in_model(), geometry::Capsule::new(a, b, radius)?);
+    let touched = space.closest_to_capsule(&core, 0.0).is_some();
+    Some(!touched && !space.is_inside((a + b) * 0.5))
 }

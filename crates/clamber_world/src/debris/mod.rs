@@ -1,12 +1,13 @@
 //! Rocks, tree trunks and walls on a moving creature: dynamic bodies of rapier's that collide with skin.
 
 mod config;
-mod core;
 mod error;
 mod fit;
 mod hull;
+mod inner_capsule;
 mod keep_out;
 mod let_through;
+mod patch_mesh;
 mod piece;
 mod pieces;
 mod report;

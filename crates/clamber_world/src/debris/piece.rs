@@ -1,13 +1,13 @@
 //! One body, and the skin near it.
 
-use clamber_surface::surface::{SkinnedSurface, SurfaceError};
+use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use rapier3d::geometry::ColliderSet;
 use rapier3d::math::Pose;
 
-use super::core::Core;
 use super::hull::{Hull, Reach};
+use super::inner_capsule::InnerCapsule;
 use super::keep_out::{Kept, MET, SWEPT, keep_out, stays_clear};
 use super::skin_patch::{Place, SkinPatch};
 use crate::ObstacleId;
@@ -20,7 +20,7 @@ const REACH: f64 = 0.025;
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) body: RigidBodyHandle,
-    pub(super) core: Core,
+    pub(super) core: InnerCapsule,
     hull: Hull,
     /// Where it was before the step, and where it would be after it if nothing stopped it.
     course: [Pose; 2],
@@ -29,7 +29,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    pub(super) fn new(body: RigidBodyHandle, core: Core, hull: Hull, at: Pose) -> Self {
+    pub(super) fn new(body: RigidBodyHandle, core: InnerCapsule, hull: Hull, at: Pose) -> Self {
         Self {
             body,
             core,
@@ -40,7 +40,7 @@ impl Piece {
     }
 
     /// Its colliders have changed.
-    pub(super) fn reshape(&mut self, core: Core, hull: Hull) {
+    pub(super) fn reshape(&mut self, core: InnerCapsule, hull: Hull) {
         (self.core, self.hull) = (core, hull);
     }
 
@@ -111,7 +111,7 @@ impl Piece {
         end: &Pose,
         origin: DVec3,
         dt: f64,
-    ) -> Result<Kept, SurfaceError> {
+    ) -> Option<Kept> {
         let ends = [&self.course[0], end].map(|pose| self.core.ends_at(pose));
         let in_world = ends.map(|ends| ends.map(|end| end + origin));
         if let Some(patch) = self.patch(obstacle)
@@ -120,7 +120,7 @@ impl Piece {
         {
             #[cfg(test)]
             assert_eq!(keep_out(surface, &self.core, in_world, dt)?.pushed, None);
-            return Ok(Kept::FREE);
+            return Some(Kept::FREE);
         }
         keep_out(surface, &self.core, in_world, dt)
     }
@@ -132,7 +132,7 @@ impl Piece {
         surface: &SkinnedSurface,
         [start, end]: [[DVec3; 2]; 2],
         end_in_world: [DVec3; 2],
-    ) -> Result<bool, SurfaceError> {
+    ) -> Option<bool> {
         let motion = patch.most_motion([0, 1].map(|side| end[side] - start[side]));
         let middle = self.hull.middle_at(&self.course[0]);
         let farther = (start[0] - middle)
@@ -141,7 +141,7 @@ impl Piece {
         let far = patch
             .gap()
             .is_some_and(|gap| gap - farther - motion > self.core.radius * MET);
-        Ok(far || stays_clear(surface, &self.core, end_in_world, motion)?)
+        Some(far || stays_clear(surface, &self.core, end_in_world, motion)?)
     }
 
     /// True if its core ended where it was expected to, so far that what of it is swept can have met no

@@ -5,8 +5,8 @@ use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase, SolverFlags};
 use rapier3d::pipeline::{PairFilterContext, PhysicsHooks};
 
-use super::core::Core;
 use super::hull::Hull;
+use super::inner_capsule::InnerCapsule;
 use super::let_through::{Immovable, is_outside, owner_in};
 use super::piece::Piece;
 use super::skin_patch::SkinPatch;
@@ -125,7 +125,7 @@ impl Debris {
     ) -> Result<(), DebrisError> {
         let known = bodies.get_mut(body).filter(|known| known.is_dynamic());
         let found = known.ok_or(DebrisError::NotDynamic(body))?;
-        let core = Core::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
+        let core = InnerCapsule::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
         let hull = Hull::of(found, colliders).ok_or(DebrisError::NotSolid(body))?;
         found.set_soft_ccd_prediction(core.look_ahead());
         match self.place_of(body) {
@@ -182,7 +182,7 @@ impl Debris {
     ///
     /// # Errors
     /// [`DebrisError::Tick`] or [`DebrisError::TwiceListed`], and then nothing is changed.
-    /// [`DebrisError::Surface`] for a body that is
+    /// [`DebrisError::OutOfReach`] for a body that is
     /// not finite, or too far away for a surface; the bodies before it have their skin then.
     pub fn before_step(
         &mut self,
@@ -227,10 +227,9 @@ impl Debris {
                 let had = patch.handles();
                 patch
                     .update(surfaces[*index].1, &place, &self.config, bodies, colliders)
-                    .map_err(|source| DebrisError::Surface {
+                    .ok_or(DebrisError::OutOfReach {
                         body: piece.body,
                         obstacle: *obstacle,
-                        source,
                     })?;
                 *changed |= had != patch.handles();
             }
@@ -272,16 +271,15 @@ impl Debris {
                 let (start, end) = (*piece.start(), *body.position());
                 let moved = (end.translation - start.translation).as_dvec3();
                 let (known, handle) = (piece.index_of(obstacle).ok(), piece.body);
-                let failed = |source| DebrisError::Surface {
+                let failed = DebrisError::OutOfReach {
                     body: handle,
                     obstacle,
-                    source,
                 };
                 if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
                     && patch.let_through
                 {
                     let outside = is_outside(surface, &piece.core, &end, self.origin);
-                    patch.let_through = !outside.map_err(failed)?;
+                    patch.let_through = !outside.ok_or(failed)?;
                     report.caught += u32::from(patch.let_through);
                     continue;
                 }
@@ -300,7 +298,7 @@ impl Debris {
                     continue;
                 }
                 let kept = piece.keep_out(obstacle, surface, &end, self.origin, dt);
-                let kept = kept.map_err(failed)?;
+                let kept = kept.ok_or(failed)?;
                 let Some((normal, skin)) = kept.pushed else {
                     continue;
                 };

@@ -1,5 +1,6 @@
 /// What a tick did to debris.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct DebrisReport {
     /// Bodies that had skin near them.
     pub near: u32,

@@ -1,8 +1,7 @@
 //! The skin near one body, as a kinematic body of rapier's.
 
 use clamber_surface::geometry::Similarity;
-use clamber_surface::parry::{move_trimesh, trimesh};
-use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface, SurfaceError};
+use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface};
 use glam::DVec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
 use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ColliderSet, SharedShape, TriMesh};
@@ -14,6 +13,7 @@ use rapier3d::pipeline::ActiveHooks;
 use super::DebrisConfig;
 use super::fit::RigidMotion;
 use super::hull::Reach;
+use super::patch_mesh::{move_trimesh, trimesh};
 
 /// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
 /// box. More makes it less often, and gives rapier more triangles in every tick.
@@ -65,29 +65,32 @@ impl SkinPatch {
         config: &DebrisConfig,
         bodies: &mut RigidBodySet,
         colliders: &mut ColliderSet,
-    ) -> Result<(), SurfaceError> {
+    ) -> Option<()> {
         let world_from_model = surface.world_from_model();
         let reach = place.reach.on(world_from_model, place.origin);
+        if !(reach.low.is_finite() && reach.high.is_finite()) {
+            return None;
+        }
         let margin = reach.half_side() * MARGIN;
         let apart = |moving: &MovingTriangle| reach.apart(moving);
         let change = self
             .patch
-            .update_near(surface, reach.low, reach.high, margin, apart)?;
+            .update_near(surface, reach.low, reach.high, margin, apart);
         if self.patch.is_empty() {
             self.rest(colliders);
-            return Ok(());
+            return Some(());
         }
         self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
         if still && change == PatchChange::Same && self.still_at == Some(*world_from_model) {
             // Nothing is new. Left alone, rapier lets rocks fall asleep on it.
-            return Ok(());
+            return Some(());
         }
         self.still_at = still.then_some(*world_from_model);
         self.place_vertices(surface, place);
         self.fit(place);
         self.show(change, place, config, bodies, colliders);
-        Ok(())
+        Some(())
     }
 
     /// Forgets its surface and takes part in nothing, for another surface or body to use.

@@ -16,7 +16,9 @@ use crate::shapes::{
     FirstContact, Moved, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape,
     sort_contacts,
 };
-use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
+use crate::{
+    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+};
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
@@ -247,6 +249,18 @@ impl<'a> RapierTerrain<'a> {
         })
     }
 
+    /// Tries all that may be met, as it stands now or on its way there.
+    fn meet(&self, first: &mut FirstContact, target: TargetMotion, meet: &mut Meet<'_>) {
+        match target {
+            TargetMotion::Still => self.meet_near(first, |_| true, meet),
+            TargetMotion::Moving => {
+                let is_still = |collider: &Collider| self.previous_pose(collider).is_none();
+                self.meet_near(first, is_still, meet);
+                self.meet_moved(first, meet);
+            }
+        }
+    }
+
     /// Tries what moved, all along its way.
     fn meet_moved(&self, first: &mut FirstContact, meet: &mut Meet<'_>) {
         let all = self.moved();
@@ -355,32 +369,24 @@ impl Obstacle for RapierTerrain<'_> {
         sort_contacts(&mut contacts[start..]);
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), [displacement; 2])?;
-        self.meet_near(&mut first, |_| true, &mut |first, met| {
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
+        self.meet(&mut first, target, &mut |first, met| {
             first.meet(met.shape, &met.tick, met.key);
         });
         Some(self.tagged(first.contact(self.origin)?))
     }
 
-    fn sweep_capsule(
+    fn cast_capsule_where(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
-    ) -> Option<SweepContact> {
-        let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
-        let mut meet = |first: &mut FirstContact, met: &Met<'_>| {
-            first.meet(met.shape, &met.tick, met.key);
-        };
-        self.meet_near(&mut first, is_still(self), &mut meet);
-        self.meet_moved(&mut first, &mut meet);
-        Some(self.tagged(first.contact(self.origin)?))
-    }
-
-    fn sweep_capsule_where(
-        &self,
-        capsule: &WorldCapsule,
-        displacements: [DVec3; 2],
+        target: TargetMotion,
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
         let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
@@ -389,11 +395,9 @@ impl Obstacle for RapierTerrain<'_> {
             sweep.contact.point += self.origin;
             counts(&self.tagged(sweep))
         };
-        let mut meet = |first: &mut FirstContact, met: &Met<'_>| {
+        self.meet(&mut first, target, &mut |first, met| {
             first.meet_where(met.shape, &met.tick, met.key, &mut counts);
-        };
-        self.meet_near(&mut first, is_still(self), &mut meet);
-        self.meet_moved(&mut first, &mut meet);
+        });
         Some(self.tagged(first.contact(self.origin)?))
     }
 
@@ -426,10 +430,6 @@ struct Met<'a> {
 }
 
 type Meet<'a> = dyn FnMut(&mut FirstContact, &Met<'_>) + 'a;
-
-fn is_still<'a>(terrain: &'a RapierTerrain<'_>) -> impl Fn(&Collider) -> bool + 'a {
-    |collider| terrain.previous_pose(collider).is_none()
-}
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,3 @@
-use clamber_surface::parry::parry3d;
 use glam::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::Shape;
@@ -16,7 +15,7 @@ use crate::{Contact, SweepContact, WorldCapsule};
 /// ```
 /// use clamber_world::WorldCapsule;
 /// use clamber_world::shapes::{FirstContact, RigidPose, Tick};
-/// use clamber_surface::parry::parry3d::shape::Ball;
+/// use clamber_world::parry3d::shape::Ball;
 /// use glam::{DQuat, DVec3};
 ///
 /// let falling = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);

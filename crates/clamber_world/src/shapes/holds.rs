@@ -1,4 +1,3 @@
-use clamber_surface::parry::parry3d;
 use glam::DVec3;
 use parry3d::shape::{Shape, TypedShape};
 

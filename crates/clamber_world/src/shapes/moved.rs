@@ -1,4 +1,3 @@
-use clamber_surface::parry::parry3d;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
 use parry3d::shape::Shape;

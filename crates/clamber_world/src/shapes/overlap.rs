@@ -1,17 +1,17 @@
 use clamber_surface::geometry::MovingCapsule;
 use clamber_surface::mesh::SurfaceTag;
-use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
 use super::RigidPose;
-use super::convex::{Convex, Moving};
+use super::convex::{Convex, MovingConvex};
 use super::parts::{Part, visit_parts};
 use super::reach::Reach;
 use crate::{Contact, MaterialPoint};
 
 /// Where a shape is touched, in its own space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeContact {
     /// The shape's point.
     pub point: DVec3,
@@ -92,7 +92,7 @@ fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
 
 /// With the way out where they overlap.
 pub(super) fn solid(convex: &Convex<'_>, ends: [DVec3; 2]) -> ShapeContact {
-    match Moving::still(convex).nearest(0.0, ends, DVec3::ZERO) {
+    match MovingConvex::still(convex).nearest(0.0, ends, DVec3::ZERO) {
         Some(nearest) => ShapeContact {
             point: nearest.on_core + nearest.normal * convex.round,
             normal: nearest.normal,

@@ -1,4 +1,3 @@
-use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, TraversalAction};

@@ -1,4 +1,3 @@
-use clamber_surface::parry::parry3d;
 use glam::{DQuat, DVec3, Quat};
 use parry3d::math::Vector;
 

@@ -1,5 +1,4 @@
 use clamber_surface::geometry::MovingCapsule;
-use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 

@@ -1,14 +1,18 @@
 use clamber_surface::geometry::MovingCapsule;
-use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
-use super::convex::{Convex, Moving};
+use super::convex::{Convex, MovingConvex};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
 use super::reach::{Reach, is_usable, is_usable_radius};
 use super::{RigidPose, ShapeContact};
-use crate::obstacle::sweep_tolerance;
+use crate::WorldCapsule;
+
+/// [`WorldCapsule::sweep_tolerance`] by the radius alone.
+fn sweep_tolerance(radius: f64) -> f64 {
+    WorldCapsule::ball(DVec3::ZERO, radius).sweep_tolerance()
+}
 
 /// A capsule and a shape over a tick, as seen from where the shape is at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +26,7 @@ pub struct ShapeSweep {
 
 /// Where a capsule on its way first touches a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeTouch {
     /// Share of the way, 0..=1.
     pub time: f64,
@@ -200,11 +205,11 @@ impl ShapeSweep {
     }
 
     fn meet_solid(&self, convex: &Convex<'_>, limit: f64) -> Option<ShapeTouch> {
-        let moving = Moving {
+        let moving = MovingConvex {
             convex,
             before: self.before,
         };
-        let touch = moving.advance(&self.path, sweep_tolerance(self.path.radius), limit)?;
+        let touch = moving.first_contact(&self.path, sweep_tolerance(self.path.radius), limit)?;
         let time = touch.time;
         let ends = self.path.at(time);
         let contact = match touch.nearest {

@@ -6,7 +6,7 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
-use crate::{Obstacle, WorldCapsule};
+use crate::{Obstacle, TargetMotion, WorldCapsule};
 
 /// A level square of side 2 around the model's origin, on one joint.
 fn square() -> SkinnedSurface {
@@ -170,7 +170,8 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     let center = world_from_model.translation;
     let at = |x: f64, z: f64| center + DVec3::new(x, 2.0, z);
     let ball = WorldCapsule::ball(at(1.0, 4.0), 1.0);
-    let met = Obstacle::cast_capsule(&surface, &ball, DVec3::Z * -6.0).unwrap();
+    let met =
+        Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -6.0; 2], TargetMotion::Still).unwrap();
     assert!((met.time - 0.5).abs() < 2e-5, "{met:?}");
     assert!((met.away - DVec3::Z).length() < 1e-6, "{met:?}");
     assert!((met.contact.normal - DVec3::Z).length() < 1e-6, "{met:?}");
@@ -181,7 +182,7 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     assert!((met.contact.distance - 1.0).abs() < 1.1e-4, "{met:?}");
     assert!(!met.started_inside);
     assert_eq!(
-        Obstacle::cast_capsule(&surface, &ball, DVec3::Z * -2.9),
+        Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -2.9; 2], TargetMotion::Still),
         None
     );
 
@@ -201,7 +202,8 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     // On the line from 4 m to 2 m, 9.1 m along, the place over the edge is 2.022 m high; a little nearer, aslant.
     assert!((1.98..2.01).contains(&nearest), "{contacts:?}");
-    let met = Obstacle::cast_capsule(&surface, &rod, DVec3::Z * -3.0).unwrap();
+    let met =
+        Obstacle::cast_capsule(&surface, &rod, [DVec3::Z * -3.0; 2], TargetMotion::Still).unwrap();
     assert!((met.time - 0.5).abs() < 0.02, "{met:?}");
 
     // It comes nearer by 2 m over the tick.
@@ -211,16 +213,18 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     };
     let palette = Palette::from_matrices([Affine::IDENTITY]);
     surface.advance(&palette, moved).unwrap();
-    let met = Obstacle::sweep_capsule(&surface, &ball, [DVec3::Z * -4.0; 2]).unwrap();
+    let met = Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -4.0; 2], TargetMotion::Moving)
+        .unwrap();
     assert!((met.time - 0.5).abs() < 3e-5, "{met:?}");
     assert!(
         (met.contact.point - at(1.0, 1.0)).length() < 2e-4,
         "{met:?}"
     );
-    let met = Obstacle::sweep_capsule(&surface, &ball, [DVec3::ZERO; 2]);
+    let met = Obstacle::cast_capsule(&surface, &ball, [DVec3::ZERO; 2], TargetMotion::Moving);
     assert_eq!(met, None, "a metre is left");
     let inside = WorldCapsule::ball(at(1.0, 0.5), 1.0);
-    let met = Obstacle::sweep_capsule(&surface, &inside, [DVec3::ZERO; 2]).unwrap();
+    let met =
+        Obstacle::cast_capsule(&surface, &inside, [DVec3::ZERO; 2], TargetMotion::Moving).unwrap();
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
     assert!((met.contact.distance - 0.5).abs() < 1e-5, "{met:?}");
 }
@@ -230,7 +234,7 @@ fn capsules_that_are_not_finite_meet_nothing() {
     let (surface, world_from_model) = placed();
     let center = world_from_model.translation;
     let good = WorldCapsule::ball(center, 1.0);
-    assert!(Obstacle::cast_capsule(&surface, &good, DVec3::X).is_some());
+    assert!(Obstacle::cast_capsule(&surface, &good, [DVec3::X; 2], TargetMotion::Still).is_some());
     let mut contacts = Vec::new();
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let place = WorldCapsule {
@@ -238,25 +242,38 @@ fn capsules_that_are_not_finite_meet_nothing() {
             radius: 1.0,
         };
         for capsule in [place, WorldCapsule::ball(place.ends[1], 1.0)] {
-            assert_eq!(Obstacle::cast_capsule(&surface, &capsule, DVec3::X), None);
             assert_eq!(
-                Obstacle::sweep_capsule(&surface, &capsule, [DVec3::X; 2]),
+                Obstacle::cast_capsule(&surface, &capsule, [DVec3::X; 2], TargetMotion::Still),
+                None
+            );
+            assert_eq!(
+                Obstacle::cast_capsule(&surface, &capsule, [DVec3::X; 2], TargetMotion::Moving),
                 None
             );
             Obstacle::overlap_capsule(&surface, &capsule, &mut contacts);
         }
         let by = DVec3::X * bad;
-        assert_eq!(Obstacle::cast_capsule(&surface, &good, by), None, "{bad}");
         assert_eq!(
-            Obstacle::sweep_capsule(&surface, &good, [by; 2]),
+            Obstacle::cast_capsule(&surface, &good, [by; 2], TargetMotion::Still),
+            None,
+            "{bad}"
+        );
+        assert_eq!(
+            Obstacle::cast_capsule(&surface, &good, [by; 2], TargetMotion::Moving),
             None,
             "{bad}"
         );
         let endless = good.with_radius(bad);
-        assert_eq!(Obstacle::cast_capsule(&surface, &endless, DVec3::X), None);
+        assert_eq!(
+            Obstacle::cast_capsule(&surface, &endless, [DVec3::X; 2], TargetMotion::Still),
+            None
+        );
     }
     let negative = good.with_radius(-1.0);
-    assert_eq!(Obstacle::cast_capsule(&surface, &negative, DVec3::X), None);
+    assert_eq!(
+        Obstacle::cast_capsule(&surface, &negative, [DVec3::X; 2], TargetMotion::Still),
+        None
+    );
     Obstacle::overlap_capsule(&surface, &negative, &mut contacts);
     assert!(contacts.is_empty(), "{contacts:?}");
 }

@@ -12,7 +12,7 @@ const LOOSE: f32 = 1e-3;
 
 /// A collider of a body that is not static.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moving {
+pub(super) struct MovingBody {
     pub(super) entity: Entity,
     pub(super) pose: RigidPose,
     /// A step before, if it was elsewhere.
@@ -26,12 +26,12 @@ pub(super) struct Moving {
 /// Colliders of bodies that are not static, after the last step and before it; each by ascending entity.
 #[derive(Resource, Debug, Default)]
 pub(super) struct MovingColliders {
-    now: Vec<Moving>,
-    before: Vec<Moving>,
+    now: Vec<MovingBody>,
+    before: Vec<MovingBody>,
 }
 
 impl MovingColliders {
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Moving> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &MovingBody> {
         self.now.iter()
     }
 
@@ -46,7 +46,7 @@ impl MovingColliders {
     }
 }
 
-fn find(all: &[Moving], entity: Entity) -> Option<&Moving> {
+fn find(all: &[MovingBody], entity: Entity) -> Option<&MovingBody> {
     let index = all.binary_search_by_key(&entity, |moving| moving.entity);
     index.ok().map(|index| &all[index])
 }
@@ -75,7 +75,7 @@ pub(super) fn note(
         let bounds = collider.shape_scaled().compute_aabb(&in_f32(&pose));
         let bounds = bounds.loosened(LOOSE);
         let earlier = find(before, entity).filter(|earlier| earlier.pose != pose);
-        now.push(Moving {
+        now.push(MovingBody {
             entity,
             pose,
             before: earlier.map(|earlier| earlier.pose),

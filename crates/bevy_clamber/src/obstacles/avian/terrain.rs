@@ -8,11 +8,13 @@ use clamber_surface::mesh::SurfaceTag;
 use clamber_world::shapes::{
     FirstContact, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
-use clamber_world::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
+use clamber_world::{
+    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+};
 use glam::DVec3;
 
 use super::AvianObstacles;
-use super::moving::{Moving, in_f32};
+use super::moving::{MovingBody, in_f32};
 
 /// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
 const LOOSE: f32 = 1e-4;
@@ -108,7 +110,7 @@ impl<'a> AvianTerrain<'a> {
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
-        moving: impl Fn(&Moving) -> (Aabb, Tick),
+        moving: impl Fn(&MovingBody) -> (Aabb, Tick),
         mut meet: impl FnMut(&mut FirstContact, &Collider, &Tick, u64),
     ) -> Option<SweepContact> {
         let mut first = FirstContact::new(&capsule.moved(-self.origin), displacements)?;
@@ -247,23 +249,20 @@ impl Obstacle for AvianTerrain<'_> {
         sort_contacts(&mut contacts[start..]);
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let still = |moving: &Moving| (moving.bounds, Tick::still(moving.pose));
-        self.first_contact(capsule, [displacement; 2], still, meet)
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
-        self.first_contact(capsule, displacements, over_tick, meet)
+        self.first_contact(capsule, displacements, ticks(target), meet)
     }
 
-    fn sweep_capsule_where(
+    fn cast_capsule_where(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
         let mut counts = |sweep: &SweepContact| {
@@ -274,7 +273,7 @@ impl Obstacle for AvianTerrain<'_> {
         let meet = |first: &mut FirstContact, collider: &Collider, tick: &Tick, key| {
             first.meet_where(&**collider.shape_scaled(), tick, key, &mut counts);
         };
-        self.first_contact(capsule, displacements, over_tick, meet)
+        self.first_contact(capsule, displacements, ticks(target), meet)
     }
 
     fn body_of(&self, point: &MaterialPoint) -> u64 {
@@ -293,7 +292,15 @@ impl Obstacle for AvianTerrain<'_> {
     }
 }
 
-fn over_tick(moving: &Moving) -> (Aabb, Tick) {
+/// Where a moving body is during a cast, and a box around that.
+fn ticks(target: TargetMotion) -> fn(&MovingBody) -> (Aabb, Tick) {
+    match target {
+        TargetMotion::Still => |moving| (moving.bounds, Tick::still(moving.pose)),
+        TargetMotion::Moving => over_tick,
+    }
+}
+
+fn over_tick(moving: &MovingBody) -> (Aabb, Tick) {
     let tick = Tick {
         before: moving.before,
         now: moving.pose,

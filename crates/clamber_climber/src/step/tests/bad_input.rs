@@ -1,7 +1,8 @@
 //! What makes no sense, from callers and from obstacles.
 
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 use glam::DVec3;
 
@@ -24,11 +25,12 @@ impl Obstacle for Broken {
         contacts.push(self.nonsense());
     }
 
-    fn cast_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
-        Some(self.met())
-    }
-
-    fn sweep_capsule(&self, _: &WorldCapsule, _: [DVec3; 2]) -> Option<SweepContact> {
+    fn cast_capsule(
+        &self,
+        _: &WorldCapsule,
+        _: [DVec3; 2],
+        _: TargetMotion,
+    ) -> Option<SweepContact> {
         Some(self.met())
     }
 

@@ -2,7 +2,8 @@
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 use glam::{DAffine3, DVec3};
 
@@ -28,12 +29,13 @@ impl Obstacle for Elsewhere {
         panic!("asked for contacts at {}", self.0)
     }
 
-    fn cast_capsule(&self, _: &WorldCapsule, _: DVec3) -> Option<SweepContact> {
+    fn cast_capsule(
+        &self,
+        _: &WorldCapsule,
+        _: [DVec3; 2],
+        _: TargetMotion,
+    ) -> Option<SweepContact> {
         panic!("asked for a cast at {}", self.0)
-    }
-
-    fn sweep_capsule(&self, _: &WorldCapsule, _: [DVec3; 2]) -> Option<SweepContact> {
-        panic!("asked for a sweep at {}", self.0)
     }
 
     fn motion(&self, _: &MaterialPoint, _: f64) -> Option<PointMotion> {

@@ -6,7 +6,7 @@
 use clamber_surface::geometry::{MovingCapsule, TriangleTouch};
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, PointMotion, SurfaceKind, SurfaceTag, SweepContact,
-    WorldCapsule,
+    TargetMotion, WorldCapsule,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -228,16 +228,17 @@ impl Obstacle for Own {
         }
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        self.first(&path(capsule, [displacement; 2]), &self.now, DVec3::ZERO)
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
-        self.first(&path(capsule, displacements), &self.before, self.went)
+        let path = path(capsule, displacements);
+        match target {
+            TargetMotion::Still => self.first(&path, &self.now, DVec3::ZERO),
+            TargetMotion::Moving => self.first(&path, &self.before, self.went),
+        }
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {

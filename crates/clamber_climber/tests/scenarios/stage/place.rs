@@ -4,7 +4,8 @@ use clamber_climber::{
     ClimberConfig, ClimberEvent, ClimberState, HangingMemory, StepReport, Support,
 };
 use clamber_world::{
-    Attachment, Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule,
+    Attachment, Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 use glam::DVec3;
 
@@ -236,25 +237,26 @@ impl Obstacle for Elsewhere<'_> {
         }
     }
 
-    fn cast_capsule(&self, capsule: &WorldCapsule, displacement: DVec3) -> Option<SweepContact> {
-        let there = &self.there;
-        let way = displacement * there.scale;
-        let hit = self.inner.cast_capsule(&there.capsule(capsule), way)?;
-        Some(self.hit(hit, &there.inverse()))
-    }
-
-    fn sweep_capsule(
+    fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
+        target: TargetMotion,
     ) -> Option<SweepContact> {
         let there = &self.there;
+        if target == TargetMotion::Still {
+            let ways = displacements.map(|way| way * there.scale);
+            let hit = self
+                .inner
+                .cast_capsule(&there.capsule(capsule), ways, target)?;
+            return Some(self.hit(hit, &there.inverse()));
+        }
         let start = WorldCapsule {
             ends: capsule.ends.map(|end| there.point_before(end)),
             radius: capsule.radius * there.scale,
         };
         let ways = displacements.map(|way| way * there.scale + (there.now - there.before));
-        let hit = self.inner.sweep_capsule(&start, ways)?;
+        let hit = self.inner.cast_capsule(&start, ways, target)?;
         // Back from where the other space is when they touch.
         let then = Place {
             now: there.before + (there.now - there.before) * hit.time,

@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_climber::average_push_out;
-use clamber_surface::geometry::{Similarity, Sphere};
+use clamber_peers::mean_push_out;
+use clamber_surface::geometry::{Capsule, Similarity};
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::Palette;
-use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceError, SurfaceHit, TOLERANCE};
+use clamber_surface::surface::{Anchor, CastOptions, SkinnedSurface, SurfaceError, SurfaceHit};
 use clamber_world::{Contact, Obstacle};
 use glam::{DVec3, Vec3};
 
@@ -16,6 +16,11 @@ use super::limb::Course;
 
 /// Sweeps, and rounds over speculative planes, in a tick.
 const ROUNDS: usize = 8;
+
+/// How far from touching a sweep ends, metres; what it met is then left by as much.
+const TOLERANCE: f32 = 1e-4;
+
+const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);
 
 /// How a tick's collisions are resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,10 +115,10 @@ impl Body {
             self.center = walker.climber.state().position;
             return Ok(());
         }
-        let hit = self
-            .surface
-            .closest_point(self.center.as_vec3(), f32::INFINITY)?;
-        self.anchor = hit.map(|hit| self.surface.anchor_at(&hit));
+        let space = self.surface.in_model();
+        let hit = space.closest_point(self.center.as_vec3(), f32::INFINITY);
+        let hit = hit.ok_or("no skin for a sphere to rest on")?;
+        self.anchor = Some(self.surface.anchor_at(&hit)?);
         Ok(())
     }
 
@@ -186,33 +191,31 @@ impl Body {
 
     fn push_out(&mut self) {
         self.contacts.clear();
-        let surface: &dyn Obstacle = &self.surface;
-        surface.overlap_sphere(self.center, self.radius, &mut self.contacts);
-        self.center += average_push_out(&self.contacts, self.center, self.radius).displacement;
+        self.surface
+            .overlap_sphere(self.center, self.radius, &mut self.contacts);
+        let contacts = self.contacts.iter();
+        let contacts = contacts.map(|contact| (contact.away(self.center), contact.distance));
+        self.center += mean_push_out(contacts, self.radius);
     }
 
     /// A motion that stays in front of all planes of what the sphere may meet.
-    fn look_ahead(&mut self, wanted: DVec3) -> Result<DVec3, SurfaceError> {
+    fn look_ahead(&mut self, wanted: DVec3) -> Result<DVec3, Box<dyn Error>> {
         // Nothing comes from farther than the fastest skin near here moves.
-        let reach = self.radius + self.fastest()? + wanted.length();
-        let sphere = Sphere {
-            center: self.center.as_vec3(),
-            radius: reach as f32,
-        };
-        let mut hits = std::mem::take(&mut self.hits);
-        self.before.overlap_sphere(&sphere, &mut hits)?;
-        let mut planes = Vec::with_capacity(hits.len());
-        for hit in &hits {
-            let anchor = self.surface.anchor(hit.triangle, hit.barycentric)?;
+        let reach = self.ball(self.radius + self.fastest() + wanted.length())?;
+        self.before
+            .in_model()
+            .overlap_capsule(&reach, &mut self.hits);
+        let mut planes = Vec::with_capacity(self.hits.len());
+        for hit in &self.hits {
+            let anchor = self.surface.anchor_at(hit)?;
             let motion = self.surface.motion(&anchor, 1.0)?;
             let away = (self.center - hit.point.as_dvec3()).normalize_or(hit.normal.as_dvec3());
             // From behind the skin there is no way out ahead.
             if away.dot(hit.normal.as_dvec3()) > 0.0 {
-                let gap = f64::from(hit.distance) - self.radius;
+                let gap = hit.distance - self.radius;
                 planes.push((away, motion.velocity.as_dvec3().dot(away) - gap));
             }
         }
-        self.hits = hits;
         let mut motion = wanted;
         for _ in 0..ROUNDS {
             for (away, least) in &planes {
@@ -222,36 +225,39 @@ impl Body {
         Ok(motion)
     }
 
+    /// About where it is.
+    fn ball(&self, radius: f64) -> Result<Capsule, &'static str> {
+        Capsule::ball(self.center.as_vec3(), radius as f32).ok_or("a sphere is out of bounds")
+    }
+
     /// The most that a point of the limb nearby moves in this tick.
-    fn fastest(&self) -> Result<f64, SurfaceError> {
+    fn fastest(&self) -> f64 {
+        let space = self.surface.in_model();
         let mut fastest = 0.0_f64;
         // The limb is straight and stiff: its ends are its fastest.
         for vertex in [0, self.surface.mesh().positions().len() - 1] {
             let vertex = clamber_surface::mesh::VertexId(vertex as u32);
-            let ends = (
-                self.surface.position(vertex),
-                self.surface.previous_position(vertex),
-            );
+            let ends = (space.position(vertex), space.previous_position(vertex));
             if let (Some(now), Some(before)) = ends {
                 fastest = fastest.max(f64::from(now.distance(before)));
             }
         }
-        Ok(fastest)
+        fastest
     }
 
     /// A motion that sweeps find free, or that keeps touching what it met.
-    fn sweep(&self, wanted: DVec3) -> Result<DVec3, SurfaceError> {
-        let sphere = Sphere {
-            center: self.center.as_vec3(),
-            radius: self.radius as f32,
-        };
+    fn sweep(&self, wanted: DVec3) -> Result<DVec3, Box<dyn Error>> {
+        let space = self.surface.in_model();
+        let ball = self.ball(self.radius)?;
         let mut motion = wanted;
         for _ in 0..ROUNDS {
-            let hit = self
-                .surface
-                .sweep_sphere(&sphere, motion.as_vec3(), TOLERANCE)?;
-            let Some(hit) = hit else { break };
-            let anchor = self.surface.anchor(hit.triangle, hit.barycentric)?;
+            if !motion.as_vec3().is_finite() {
+                return Err("a sphere's motion is out of bounds".into());
+            }
+            let Some(hit) = space.cast_capsule(&ball, [motion.as_vec3(); 2], &SWEEP) else {
+                break;
+            };
+            let anchor = self.surface.anchor_at(&hit)?;
             let way: Vec3 = self.surface.motion(&anchor, 1.0)?.velocity;
             let normal = hit.normal.as_dvec3();
             let closing = (way.as_dvec3() - motion).dot(normal);

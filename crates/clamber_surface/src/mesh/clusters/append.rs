@@ -94,7 +94,7 @@ impl Clusters {
         self.loose.retain(|v| owners[v.index()] == NOBODY);
         self.loose.sort();
         #[cfg(feature = "rayon")]
-        self.ranks.0.take();
+        self.ranks.forget();
     }
 
     fn find_owners(&mut self) {

@@ -9,7 +9,6 @@
 
 mod append;
 mod build;
-mod cost;
 mod pack;
 mod parts;
 mod refine;
@@ -84,19 +83,7 @@ pub(crate) struct Clusters {
     owners: Vec<PartId>,
     /// See [`Clusters::ranks`].
     #[cfg(feature = "rayon")]
-    ranks: Ranks,
-}
-
-/// Computed from the clusters when first asked for, so it takes no part in their comparison.
-#[cfg(feature = "rayon")]
-#[derive(Clone, Debug, Default)]
-struct Ranks(std::sync::OnceLock<Vec<u32>>);
-
-#[cfg(feature = "rayon")]
-impl PartialEq for Ranks {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
+    ranks: super::derived::Derived<Vec<u32>>,
 }
 
 impl Cluster {
@@ -159,7 +146,7 @@ impl Clusters {
     /// one that no cluster holds. Counted when first asked for.
     #[cfg(feature = "rayon")]
     pub(crate) fn ranks(&self, vertices: usize) -> &[u32] {
-        self.ranks.0.get_or_init(|| {
+        self.ranks.get_or(|| {
             let mut ranks = vec![u32::MAX; vertices];
             let owned = |c: &Cluster| c.vertices(self)[..usize::from(c.owned)].to_vec();
             for (rank, vertex) in (0..).zip(self.clusters.iter().flat_map(owned)) {

@@ -3,9 +3,9 @@
 use glam::Vec3;
 
 use super::super::PartId;
-use super::cost::Extent;
-use super::split::{Splitter, ascending_bits, principal_axes};
+use super::split::{Splitter, area, ascending_bits, principal_axes};
 use super::tree::{Branch, Fork};
+use crate::mesh::summary::Summary;
 
 /// The least share of its triangles that either side of a cut gets, unless one part is in the way,
 /// which then stands alone two cuts later. So the tree is at most `2 log2(triangles) + 2` deep.
@@ -18,23 +18,23 @@ const PLACES: usize = 8;
 struct Piece {
     part: PartId,
     triangles: usize,
-    extent: Extent,
+    summary: Summary,
 }
 
 impl Splitter<'_> {
     /// The tree of all parts that have triangles.
     pub(super) fn mesh(&mut self) {
-        let parts = self.meter.mesh.parts().iter().enumerate();
+        let parts = self.summarizer.mesh.parts().iter().enumerate();
         let filled = parts.filter(|(_, part)| !part.triangles.is_empty());
         let mut pieces = Vec::new();
         for (index, part) in filled {
-            let mut extent = Extent::default();
+            let mut summary = Summary::default();
             let triangles = part.triangles.iter().map(|t| t.0);
-            self.meter.extent(triangles, &mut extent);
+            self.summarizer.of_corners(triangles, &mut summary);
             pieces.push(Piece {
                 part: PartId(index as u32),
                 triangles: part.triangles.len(),
-                extent,
+                summary,
             });
         }
         if !pieces.is_empty() {
@@ -70,9 +70,7 @@ impl Splitter<'_> {
     }
 
     fn area(&mut self, pieces: &[&Piece]) -> f32 {
-        let extent = self.meter.union(pieces.iter().map(|p| &p.extent));
-        let radius = self.meter.radius(&extent);
-        radius * radius
+        area(&self.summarizer.union(pieces.iter().map(|p| &p.summary)))
     }
 }
 
@@ -81,7 +79,7 @@ fn triangles(pieces: &[&Piece]) -> f32 {
 }
 
 fn center(piece: &Piece) -> Vec3 {
-    (piece.extent.low + piece.extent.high) * 0.5
+    piece.summary.middle()
 }
 
 fn sort(pieces: &mut [&Piece], axis: Vec3) {

@@ -3,9 +3,9 @@
 //! fewer, and clusters more equal, which lets the next triangles move: it saves 3 to 6 of 100 slots.
 
 use super::super::{ColliderMesh, TriangleId};
-use super::cost::Meter;
 use super::tree::Tree;
 use super::{MAX_SLOTS, MAX_TRIANGLES};
+use crate::mesh::summary::Summarizer;
 
 /// Rounds over the triangles. What the last ones gain is little.
 const ROUNDS: u8 = 8;
@@ -13,8 +13,8 @@ const ROUNDS: u8 = 8;
 const NONE: u32 = u32::MAX;
 
 /// Moves triangles between leaves of the same part; no leaf becomes empty.
-pub(super) fn refine(meter: &mut Meter<'_>, fans: &Fans, tree: &mut Tree) {
-    let mut borders = Borders::new(meter, fans, tree);
+pub(super) fn refine(summarizer: &mut Summarizer<'_>, fans: &Fans, tree: &mut Tree) {
+    let mut borders = Borders::new(summarizer, fans, tree);
     for round in 1..=ROUNDS {
         let triangles = 0..borders.leaf_of.len();
         if triangles.filter(|t| borders.improve(*t, round)).count() == 0 {
@@ -46,8 +46,8 @@ struct Borders<'a> {
 }
 
 impl<'a> Borders<'a> {
-    fn new<'m: 'a>(meter: &mut Meter<'m>, fans: &'a Fans, tree: &Tree) -> Self {
-        let mesh = meter.mesh;
+    fn new<'m: 'a>(summarizer: &mut Summarizer<'m>, fans: &'a Fans, tree: &Tree) -> Self {
+        let mesh = summarizer.mesh;
         let mut leaf_of = vec![NONE; mesh.triangles().len()];
         for (index, leaf) in tree.leaves.iter().enumerate() {
             for triangle in &leaf.triangles {
@@ -57,7 +57,7 @@ impl<'a> Borders<'a> {
         let leaves = tree.leaves.iter();
         let slots = leaves
             .clone()
-            .map(|l| meter.slots(l.triangles.iter().map(|t| t.0)));
+            .map(|l| summarizer.count_corners(l.triangles.iter().map(|t| t.0)));
         Self {
             mesh,
             fans,

@@ -9,10 +9,10 @@ use core::ops::Range;
 use glam::{DMat3, DVec3, Vec3};
 
 use super::super::{PartId, TriangleId, VertexId};
-use super::cost::{Extent, Meter};
 use super::tree::{Branch, Fork, Leaf, Tree};
 use super::{MAX_SLOTS, MAX_TRIANGLES};
 use crate::geometry::widen;
+use crate::mesh::summary::{Summarizer, Summary};
 
 /// Triangles that a cluster should have after the cuts: below [`MAX_TRIANGLES`], so that there is
 /// room for those that straighten its border.
@@ -36,7 +36,7 @@ enum Order {
 
 /// Cuts parts; see the module.
 pub(super) struct Splitter<'a> {
-    pub(super) meter: Meter<'a>,
+    pub(super) summarizer: Summarizer<'a>,
     pub(super) tree: Tree,
     /// Sums of the three corners, by triangle.
     centers: Vec<Vec3>,
@@ -44,7 +44,7 @@ pub(super) struct Splitter<'a> {
     triangles: Vec<u32>,
     /// Sort key and triangle; ties go to the smaller triangle.
     keys: Vec<u64>,
-    extent: Extent,
+    summary: Summary,
     /// Vertices of the sample, over which a cut is judged.
     whole: usize,
     /// Most vertices of a leaf.
@@ -59,8 +59,8 @@ struct Candidate {
 }
 
 impl<'a> Splitter<'a> {
-    pub(super) fn new(meter: Meter<'a>) -> Self {
-        let mesh = meter.mesh;
+    pub(super) fn new(summarizer: Summarizer<'a>) -> Self {
+        let mesh = summarizer.mesh;
         let positions = mesh.positions();
         let center = |corners: &[VertexId; 3]| {
             let [a, b, c] = corners.map(|v| positions[v.index()]);
@@ -68,11 +68,11 @@ impl<'a> Splitter<'a> {
         };
         Self {
             centers: mesh.triangles().iter().map(center).collect(),
-            meter,
+            summarizer,
             tree: Tree::default(),
             triangles: Vec::new(),
             keys: Vec::new(),
-            extent: Extent::default(),
+            summary: Summary::default(),
             whole: 1,
             max_slots: MAX_SLOTS,
         }
@@ -80,7 +80,7 @@ impl<'a> Splitter<'a> {
 
     /// Cuts one part, which has triangles, and appends its leaves.
     pub(super) fn part(&mut self, part: PartId) -> Branch {
-        let triangles = &self.meter.mesh.parts()[part.index()].triangles;
+        let triangles = &self.summarizer.mesh.parts()[part.index()].triangles;
         self.triangles.clear();
         self.triangles.extend(triangles.iter().map(|t| t.0));
         self.cut(0..triangles.len(), part)
@@ -107,8 +107,8 @@ impl<'a> Splitter<'a> {
     fn cut(&mut self, range: Range<usize>, part: PartId) -> Branch {
         let count = range.len();
         let slots = self
-            .meter
-            .slots(self.triangles[range.clone()].iter().copied());
+            .summarizer
+            .count_corners(self.triangles[range.clone()].iter().copied());
         if count <= MAX_TRIANGLES && slots <= self.max_slots {
             let triangles = self.triangles[range].iter().map(|t| TriangleId(*t));
             self.tree.leaves.push(Leaf {
@@ -154,13 +154,12 @@ impl<'a> Splitter<'a> {
             let mut areas = [0.0; 2];
             let (mut slots, mut cost) = (0, 0.0);
             let sides = [&self.keys[..cut], &self.keys[cut..]];
-            for (keys, area) in sides.into_iter().zip(&mut areas) {
+            for (keys, side_area) in sides.into_iter().zip(&mut areas) {
                 let triangles = keys.iter().map(|key| *key as u32);
-                self.meter.extent(triangles, &mut self.extent);
-                let radius = self.meter.radius(&self.extent);
-                *area = radius * radius;
-                cost += keys.len() as f32 * *area;
-                slots += self.extent.vertices;
+                self.summarizer.of_corners(triangles, &mut self.summary);
+                *side_area = area(&self.summary);
+                cost += keys.len() as f32 * *side_area;
+                slots += self.summary.vertices;
             }
             cost *= copies_cost(slots as f32 / self.whole as f32);
             if cost < best.cost {
@@ -179,10 +178,10 @@ impl<'a> Splitter<'a> {
         ];
         let centers = triangles.clone().map(|t| self.centers[t as usize]);
         orders.extend(principal_axes(centers).map(Order::Along));
-        self.meter.extent(triangles, &mut self.extent);
-        let vertices = self.extent.vertices;
+        self.summarizer.of_corners(triangles, &mut self.summary);
+        let vertices = self.summary.vertices;
         self.whole = vertices;
-        let spans = self.extent.weights.iter();
+        let spans = self.summary.spans.iter();
         let mut spreads: Vec<_> = spans.map(|s| (s.spread(vertices), s.joint)).collect();
         spreads.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let varying = spreads.iter().filter(|(spread, _)| *spread > 0.0);
@@ -193,7 +192,7 @@ impl<'a> Splitter<'a> {
     /// Puts every `stride`th triangle of a range into `keys`, the first `left` of the order first.
     fn order(&mut self, range: Range<usize>, stride: usize, order: Order, left: usize) {
         self.keys.clear();
-        let (mesh, centers) = (self.meter.mesh, &self.centers);
+        let (mesh, centers) = (self.summarizer.mesh, &self.centers);
         let triangles = self.triangles[range].iter().step_by(stride);
         let key = |t: &u32| {
             let value = match order {
@@ -211,6 +210,14 @@ impl<'a> Splitter<'a> {
         self.keys.extend(triangles.map(key));
         self.keys.select_nth_unstable(left);
     }
+}
+
+/// How often a set is met: about the square of its bound's radius by weight intervals, see [`crate::bounds`], as if
+/// every joint took the set's centre one radius away.
+pub(super) fn area(summary: &Summary) -> f32 {
+    let spreads = summary.spans.iter().map(|s| s.spread(summary.vertices));
+    let radius = summary.ball.radius * (1.0 + spreads.sum::<f32>());
+    radius * radius
 }
 
 /// What the vertices that stand on both sides weigh: the tenth power of slots by vertices.

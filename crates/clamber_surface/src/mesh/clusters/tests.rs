@@ -1,14 +1,13 @@
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::super::{
     BuildOptions, ColliderMesh, Influence, MeshSource, PartId, SurfaceTag, TriangleId, VertexId,
 };
 use super::*;
-use crate::geometry::Affine;
 use crate::rig::JointId;
-use crate::testing::{bend, point, tube};
+use crate::testing::{point, tube};
 
 /// A mesh from vertices with their influences.
 fn mesh_of(
@@ -146,7 +145,7 @@ fn slot_data(clusters: &Clusters, cluster: &Cluster, slot: usize) -> (Vec3, Vec<
 #[test]
 fn every_triangle_with_a_part_stands_in_one_cluster_of_that_part() {
     for (name, mesh) in meshes() {
-        let (clusters, _) = build(&mesh, &[]);
+        let (clusters, _) = build(&mesh);
         let mut seen = BTreeMap::new();
         for (index, cluster) in clusters.clusters.iter().enumerate() {
             let count = usize::from(cluster.triangles);
@@ -184,7 +183,7 @@ fn every_triangle_with_a_part_stands_in_one_cluster_of_that_part() {
 #[test]
 fn slots_hold_their_vertices_owned_ones_first() {
     for (name, mesh) in meshes() {
-        let (clusters, _) = build(&mesh, &[]);
+        let (clusters, _) = build(&mesh);
         let mut owner = BTreeMap::new();
         for (index, cluster) in clusters.clusters.iter().enumerate() {
             let (slots, owned) = (usize::from(cluster.slots), usize::from(cluster.owned));
@@ -233,7 +232,7 @@ fn slots_hold_their_vertices_owned_ones_first() {
 #[test]
 fn arrays_hold_the_clusters_one_behind_the_other() {
     for (name, mesh) in meshes() {
-        let (clusters, _) = build(&mesh, &[]);
+        let (clusters, _) = build(&mesh);
         let (mut row, mut rest, mut joint, mut block) = (0, 0, 0, 0);
         for c in &clusters.clusters {
             let firsts = (c.first_row, c.first_rest, c.first_joint, c.first_block);
@@ -278,7 +277,7 @@ fn few_copies_and_full_clusters_on_a_smooth_skin() {
     let triangles: Vec<_> = corners
         .flat_map(|v| [[v, v + 1, v + side], [v + 1, v + side + 1, v + side]])
         .collect();
-    let (clusters, _) = build(&mesh_of(&vertices, &triangles, 2), &[]);
+    let (clusters, _) = build(&mesh_of(&vertices, &triangles, 2));
     let (copies, triangles) = fill(&clusters);
     // 96 triangles in a hexagon would make 1.27.
     assert!(copies < 1.35, "{copies}");
@@ -287,7 +286,7 @@ fn few_copies_and_full_clusters_on_a_smooth_skin() {
 
 #[test]
 fn full_clusters_of_triangles_that_share_no_vertex() {
-    let (clusters, _) = build(&soup(2, 3_000, 1, 1), &[]);
+    let (clusters, _) = build(&soup(2, 3_000, 1, 1));
     let (copies, triangles) = fill(&clusters);
     assert_eq!(copies, 1.0);
     assert!(triangles > 18.0, "{triangles}");
@@ -295,33 +294,9 @@ fn full_clusters_of_triangles_that_share_no_vertex() {
 
 #[test]
 fn the_same_mesh_gives_the_same_clusters() {
-    let poses: Vec<Vec<Affine>> = [0.3, -0.7]
-        .map(|angle| bend(7, DVec3::Y, angle).matrices().to_vec())
-        .to_vec();
     for (name, mesh) in meshes() {
-        let poses = if mesh.joint_count() == 7 {
-            &poses[..]
-        } else {
-            &[]
-        };
-        assert_eq!(build(&mesh, poses), build(&mesh.clone(), poses), "{name}");
+        assert_eq!(build(&mesh), build(&mesh.clone()), "{name}");
     }
-}
-
-#[test]
-fn poses_that_do_not_fit_are_left_out() {
-    let mesh = tube(5, 30);
-    let poses = [vec![Affine::IDENTITY; 4]];
-    assert_eq!(build(&mesh, &poses), build(&mesh, &[]));
-    let nan = [vec![
-        Affine {
-            rows: [[f32::NAN; 4]; 3]
-        };
-        5
-    ]];
-    let (clusters, _) = build(&mesh, &nan);
-    let triangles = clusters.clusters.iter().map(|c| usize::from(c.triangles));
-    assert_eq!(triangles.sum::<usize>(), mesh.triangles().len());
 }
 
 #[test]
@@ -339,7 +314,7 @@ fn huge_coordinates_are_cut_all_the_same() {
             .collect();
         let triangles: Vec<_> = (0..300).map(|t| [0, 1, 2].map(|c| t * 3 + c)).collect();
         let mesh = mesh_of(&vertices, &triangles, 2);
-        let (clusters, _) = build(&mesh, &[]);
+        let (clusters, _) = build(&mesh);
         let triangles = clusters.clusters.iter().map(|c| usize::from(c.triangles));
         assert_eq!(triangles.sum::<usize>(), mesh.triangles().len(), "{scale}");
     }

@@ -1,115 +1,156 @@
 //! Fills the nodes of the hierarchy, from the root down.
 
+use glam::Vec3;
+
 use super::collapse::Collapse;
-use super::content::{Content, Points};
-use super::intervals::intervals;
-use super::{Child, Hierarchy, JointWeights, Node};
-use crate::geometry::{round_up_to_f32, widen};
+use super::{Child, Hierarchy, JointWeights, LANES, Node};
+use crate::geometry::round_up_to_f32;
+use crate::mesh::ColliderMesh;
 use crate::mesh::clusters::Clusters;
 use crate::mesh::clusters::tree::{Branch, Tree};
-use crate::surface::inflation;
+use crate::mesh::summary::{Summarizer, Summary};
 
 /// Builds while the tree is walked.
 struct Builder<'a> {
     clusters: &'a Clusters,
+    summarizer: Summarizer<'a>,
     collapse: Collapse<'a>,
-    points: Points,
+    /// The rest positions of all slots, cluster by cluster, and where those of each start.
+    points: Vec<Vec3>,
+    starts: Vec<usize>,
     hierarchy: Hierarchy,
 }
 
 impl Hierarchy {
     /// The hierarchy over clusters that were packed from the leaves of `tree`. Without clusters it
     /// is a root without lanes.
-    pub(crate) fn over(clusters: &Clusters, tree: &Tree) -> Self {
+    pub(crate) fn over(mesh: &ColliderMesh, clusters: &Clusters, tree: &Tree) -> Self {
+        let (mut points, mut starts) = (Vec::new(), vec![0]);
+        for cluster in &clusters.clusters {
+            let vertices = cluster.vertices(clusters).iter();
+            points.extend(vertices.map(|v| mesh.positions()[v.index()]));
+            starts.push(points.len());
+        }
         let mut builder = Builder {
             clusters,
+            summarizer: Summarizer::new(mesh),
             collapse: Collapse::of(tree),
-            points: Points::of(clusters),
+            points,
+            starts,
             hierarchy: Self::default(),
         };
         builder.hierarchy.nodes.push(Node::EMPTY);
-        let lanes = tree
-            .root
-            .map(|root| builder.collapse.lanes(root))
-            .unwrap_or_default();
-        if !lanes.is_empty() {
+        let root = tree.root.map(|root| builder.collapse.lanes(root));
+        if let Some(lanes) = root {
             builder.fill(0, 0, &lanes);
         }
         builder.hierarchy
+    }
+
+    /// Nodes without a tree above them whose children are a mesh's parts, but for those without triangles.
+    pub(crate) fn of_parts(mesh: &ColliderMesh) -> Self {
+        let mut summarizer = Summarizer::new(mesh);
+        let parts = (0..).map(Child::Cluster).zip(mesh.parts());
+        let filled = parts.filter(|(_, part)| !part.triangles.is_empty());
+        let children: Vec<(Child, Summary)> = filled
+            .map(|(child, part)| (child, summarizer.of_vertices(&part.vertices)))
+            .collect();
+        let mut hierarchy = Self::default();
+        for children in children.chunks(LANES) {
+            let node = hierarchy.node_of(children);
+            hierarchy.nodes.push(node);
+        }
+        hierarchy
+    }
+
+    /// A node with up to eight children, whose joints and weights are appended.
+    pub(crate) fn node_of(&mut self, children: &[(Child, Summary)]) -> Node {
+        let spans = children.iter().flat_map(|(_, summary)| &summary.spans);
+        let mut joints: Vec<u32> = spans.map(|span| span.joint).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let first = self.weights.len();
+        let mut node = Node {
+            first_joint: first as u32,
+            joints: joints.len() as u32,
+            lanes: children.len() as u8,
+            ..Node::EMPTY
+        };
+        self.weights
+            .resize(first + joints.len(), JointWeights::default());
+        let rows = &mut self.weights[first..];
+        for (lane, (child, summary)) in children.iter().enumerate() {
+            node.set_child(lane, *child);
+            [node.x[lane], node.y[lane], node.z[lane]] = summary.ball.center.to_array();
+            node.radius[lane] = summary.ball.radius;
+            node.reach[lane] = summary.reach;
+            let weights = summary.intervals();
+            let deviations = weights.iter().map(|w| f64::from(w.deviation)).sum();
+            node.inflation[lane] = inflation(summary.influences, weights.len(), deviations);
+            for interval in weights {
+                // Found: all of them are in the list.
+                if let Ok(row) = joints.binary_search(&interval.joint) {
+                    rows[row].middle[lane] = interval.middle;
+                    rows[row].deviation[lane] = interval.deviation;
+                }
+            }
+        }
+        self.joints.append(&mut joints);
+        node
     }
 }
 
 impl Builder<'_> {
     /// Fills a node whose first cluster is `first`; returns what its own parent keeps of it, and the
     /// cluster after its last.
-    fn fill(&mut self, index: usize, first: usize, lanes: &[Branch]) -> (Content, usize) {
-        let mut node = Node::EMPTY;
-        node.lanes = lanes.len() as u8;
-        for (lane, branch) in lanes.iter().enumerate() {
-            let child = match *branch {
-                Branch::Leaf(cluster) => Child::Cluster(cluster),
-                // Siblings stand side by side.
-                Branch::Fork(_) => {
-                    self.hierarchy.nodes.push(Node::EMPTY);
-                    Child::Node(self.hierarchy.nodes.len() as u32 - 1)
-                }
-            };
-            node.set_child(lane, child);
-        }
+    fn fill(&mut self, index: usize, first: usize, lanes: &[Branch]) -> (Summary, usize) {
+        // Siblings stand side by side.
+        let nodes = &mut self.hierarchy.nodes;
+        let places = lanes.iter().map(|branch| match *branch {
+            Branch::Leaf(cluster) => Child::Cluster(cluster),
+            Branch::Fork(_) => {
+                nodes.push(Node::EMPTY);
+                Child::Node(nodes.len() as u32 - 1)
+            }
+        });
+        let places: Vec<Child> = places.collect();
         let mut end = first;
-        let mut contents = Vec::with_capacity(lanes.len());
-        for (lane, branch) in lanes.iter().enumerate() {
-            let (content, next) = match node.child(lane) {
-                Child::Cluster(cluster) => (self.cluster(cluster as usize), end + 1),
+        let mut children = Vec::with_capacity(lanes.len());
+        for (place, branch) in places.into_iter().zip(lanes) {
+            let (summary, next) = match place {
+                Child::Cluster(cluster) => {
+                    let cluster = &self.clusters.clusters[cluster as usize];
+                    let vertices = cluster.vertices(self.clusters);
+                    (self.summarizer.of_vertices(vertices), end + 1)
+                }
                 Child::Node(child) => {
                     let lanes = self.collapse.lanes(*branch);
                     self.fill(child as usize, end, &lanes)
                 }
             };
-            contents.push(content);
+            children.push((place, summary));
             end = next;
         }
-        self.write(&mut node, &contents);
-        self.hierarchy.nodes[index] = node;
-        let points = self.points.starts[first]..self.points.starts[end];
-        let content = Content::of_node(&contents, &self.points.positions[points]);
-        (content, end)
+        self.hierarchy.nodes[index] = self.hierarchy.node_of(&children);
+        let points = &self.points[self.starts[first]..self.starts[end]];
+        let union = self.summarizer.union(children.iter().map(|(_, s)| s));
+        (union.bound(points), end)
     }
+}
 
-    fn cluster(&self, index: usize) -> Content {
-        let points = self.points.starts[index]..self.points.starts[index + 1];
-        let points = &self.points.positions[points];
-        Content::of_cluster(self.clusters, &self.clusters.clusters[index], points)
-    }
+/// Rounded up.
+const SQRT_3: f64 = 1.732_050_807_568_878;
 
-    fn write(&mut self, node: &mut Node, contents: &[Content]) {
-        let ranges = contents.iter().flat_map(|c| &c.ranges);
-        let mut joints: Vec<u32> = ranges.map(|(joint, ..)| joint.0).collect();
-        joints.sort_unstable();
-        joints.dedup();
-        let first = self.hierarchy.weights.len();
-        let rows = JointWeights::default();
-        self.hierarchy.weights.resize(first + joints.len(), rows);
-        let rows = &mut self.hierarchy.weights[first..];
-        for (lane, content) in contents.iter().enumerate() {
-            let ball = content.ball;
-            [node.x[lane], node.y[lane], node.z[lane]] = ball.center.to_array();
-            node.radius[lane] = ball.radius;
-            // The centre is moved like a vertex, so what that loses is that of the farther one.
-            let center = widen(ball.center).length() * (1.0 + 1e-15);
-            node.reach[lane] = round_up_to_f32(content.reach.max(center));
-            let weights = intervals(&content.ranges).unwrap_or_default();
-            let deviations = weights.iter().map(|w| f64::from(w.deviation)).sum();
-            node.inflation[lane] = inflation(content.influences, weights.len(), deviations);
-            for interval in weights {
-                if let Ok(row) = joints.binary_search(&interval.joint.0) {
-                    rows[row].middle[lane] = interval.middle;
-                    rows[row].deviation[lane] = interval.deviation;
-                }
-            }
-        }
-        node.first_joint = self.hierarchy.joints.len() as u32;
-        node.joints = joints.len() as u32;
-        self.hierarchy.joints.append(&mut joints);
-    }
+/// What [`Node::inflation`] holds for a child: for `influences` of a vertex at most, `joints` that
+/// move any of its vertices, and the sum of their deviations. [`crate::bounds`] derives it.
+fn inflation(influences: usize, joints: usize, deviations: f64) -> f32 {
+    let roundings = |count: f64| {
+        let unit = f64::from(f32::EPSILON) * 0.5;
+        count * unit / (1.0 - count * unit)
+    };
+    let skinning = roundings(influences as f64 + 4.0);
+    let center = roundings(joints as f64 + 4.0);
+    let images = deviations * roundings(4.0);
+    let evaluation = 1.0 + 8.0 * f64::from(f32::EPSILON) * 0.5;
+    round_up_to_f32(SQRT_3 * (skinning + center + images) * evaluation)
 }

@@ -3,20 +3,20 @@
 //! A part that was edited has a tree of its own beside that of the whole; there its old clusters are
 //! dead, and bounds hold more than they need.
 //!
-//! What bounds a child in a pose is computed from this and the palette, see `surface::bounds`.
+//! What bounds a child in a pose is computed from this and the palette, see [`crate::bounds`].
 
 mod append;
 mod build;
 mod collapse;
-mod content;
-mod intervals;
 
 use append::PartRoot;
-pub use intervals::WeightInterval;
-pub(crate) use intervals::intervals;
 
 /// Children of a node.
 pub(crate) const LANES: usize = 8;
+
+/// Most nodes and clusters that a traversal may have still to visit. Balanced trees need far fewer, see
+/// [`Hierarchy::stack_needed`].
+pub(crate) const STACK: usize = 256;
 
 /// A node or a cluster, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,23 @@ pub(crate) struct Hierarchy {
 
 const CLUSTER: u32 = 1 << 31;
 
+impl Child {
+    pub(crate) fn packed(self) -> u32 {
+        match self {
+            Self::Node(index) => index,
+            Self::Cluster(index) => index | CLUSTER,
+        }
+    }
+
+    pub(crate) fn unpacked(packed: u32) -> Self {
+        if packed & CLUSTER == 0 {
+            Self::Node(packed)
+        } else {
+            Self::Cluster(packed & !CLUSTER)
+        }
+    }
+}
+
 impl Node {
     /// Without children.
     pub(crate) const EMPTY: Self = Self {
@@ -104,23 +121,33 @@ impl Node {
 
     /// The child in a lane below `lanes`.
     pub(crate) fn child(&self, lane: usize) -> Child {
-        let packed = self.children[lane];
-        if packed & CLUSTER == 0 {
-            Child::Node(packed)
-        } else {
-            Child::Cluster(packed & !CLUSTER)
-        }
+        Child::unpacked(self.children[lane])
     }
 
     pub(crate) fn set_child(&mut self, lane: usize, child: Child) {
-        self.children[lane] = match child {
-            Child::Node(index) => index,
-            Child::Cluster(index) => index | CLUSTER,
-        };
+        self.children[lane] = child.packed();
     }
 }
 
 impl Hierarchy {
+    /// The most nodes and clusters that a traversal has still to visit at once, which pushes all children of the node
+    /// that it pops, in whatever order.
+    pub(crate) fn stack_needed(&self) -> usize {
+        let mut needed = vec![1; self.nodes.len()];
+        let mut most = 1;
+        // Every parent stands before its children.
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let lanes = usize::from(node.lanes);
+            let below = (0..lanes).map(|lane| match node.child(lane) {
+                Child::Node(child) => needed[child as usize],
+                Child::Cluster(_) => 1,
+            });
+            needed[index] = lanes.max(1) - 1 + below.max().unwrap_or(1);
+            most = most.max(needed[index]);
+        }
+        most
+    }
+
     /// In bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.nodes[..])

@@ -4,7 +4,9 @@ use super::*;
 use crate::geometry::widen;
 use crate::mesh::clusters::tests::meshes;
 use crate::mesh::clusters::{Clusters, ROW, build};
-use crate::mesh::{ColliderMesh, VertexId, WEIGHT_ONE};
+use crate::mesh::summary::Summarizer;
+use crate::mesh::weights::WEIGHT_ONE;
+use crate::mesh::{ColliderMesh, VertexId};
 
 /// The clusters below a child, left to right.
 fn clusters_below(hierarchy: &Hierarchy, child: Child, out: &mut Vec<u32>) {
@@ -34,7 +36,7 @@ fn for_each_lane(
     mut check: impl FnMut(&str, &ColliderMesh, &Node, usize, &[JointWeights], &[VertexId]),
 ) {
     for (name, mesh) in meshes() {
-        let (clusters, hierarchy) = build(&mesh, &[]);
+        let (clusters, hierarchy) = build(&mesh);
         for node in &hierarchy.nodes {
             let rows = &hierarchy.weights[node.first_joint as usize..][..node.joints as usize];
             for lane in 0..usize::from(node.lanes) {
@@ -48,7 +50,7 @@ fn for_each_lane(
 #[test]
 fn every_cluster_hangs_once_below_the_root_and_parents_come_first() {
     for (name, mesh) in meshes() {
-        let (clusters, hierarchy) = build(&mesh, &[]);
+        let (clusters, hierarchy) = build(&mesh);
         let mut below = Vec::new();
         clusters_below(&hierarchy, Child::Node(0), &mut below);
         let all: Vec<u32> = (0..clusters.clusters.len() as u32).collect();
@@ -69,23 +71,48 @@ fn every_cluster_hangs_once_below_the_root_and_parents_come_first() {
     }
 }
 
+/// The most that any traversal has still to visit, which pushes all children of the node that it pops, by trying
+/// each child last in turn.
+fn stack_needed_below(hierarchy: &Hierarchy, child: Child) -> usize {
+    let Child::Node(index) = child else {
+        return 1;
+    };
+    let node = &hierarchy.nodes[index as usize];
+    let lanes = usize::from(node.lanes);
+    let below = (0..lanes).map(|lane| lanes - 1 + stack_needed_below(hierarchy, node.child(lane)));
+    below.max().unwrap_or(1)
+}
+
 #[test]
 fn a_traversal_needs_few_entries() {
     for (name, mesh) in meshes() {
-        let (clusters, hierarchy) = build(&mesh, &[]);
-        let (mut stack, mut most) = (vec![0], 0);
-        while let Some(index) = stack.pop() {
-            let node: &Node = &hierarchy.nodes[index as usize];
-            for lane in 0..usize::from(node.lanes) {
-                if let Child::Node(child) = node.child(lane) {
-                    stack.push(child);
-                }
-            }
-            most = most.max(stack.len());
-        }
+        let (clusters, hierarchy) = build(&mesh);
+        let most = hierarchy.stack_needed();
+        assert_eq!(
+            most,
+            stack_needed_below(&hierarchy, Child::Node(0)),
+            "{name}"
+        );
         let levels = clusters.clusters.len().max(1).ilog2() as usize + 2;
-        assert!(most <= 7 * levels, "{name}: {most}");
+        assert!(most <= 7 * levels && most <= STACK, "{name}: {most}");
     }
+}
+
+#[test]
+fn a_chain_of_nodes_needs_an_entry_for_each_that_waits() {
+    let mut hierarchy = Hierarchy::default();
+    for index in 0..60u32 {
+        let mut node = Node::EMPTY;
+        node.lanes = 3;
+        node.set_child(0, Child::Cluster(0));
+        node.set_child(1, Child::Node((index + 1).min(59)));
+        node.set_child(2, Child::Cluster(1));
+        if index == 59 {
+            node.set_child(1, Child::Cluster(2));
+        }
+        hierarchy.nodes.push(node);
+    }
+    assert_eq!(hierarchy.stack_needed(), 60 * 2 + 1);
 }
 
 #[test]
@@ -131,7 +158,7 @@ fn middles_add_up_to_one_and_deviations_hold_every_weight() {
 #[test]
 fn lanes_have_the_intervals_of_their_vertices() {
     for (name, mesh) in meshes() {
-        let (clusters, hierarchy) = build(&mesh, &[]);
+        let (clusters, hierarchy) = build(&mesh);
         for node in &hierarchy.nodes {
             let first = node.first_joint as usize;
             let joints = &hierarchy.joints[first..][..node.joints as usize];
@@ -141,18 +168,17 @@ fn lanes_have_the_intervals_of_their_vertices() {
                 let mut vertices = vertices_below(&hierarchy, &clusters, node.child(lane));
                 vertices.sort_unstable();
                 vertices.dedup();
-                let bounds = crate::surface::NodeBounds::new(&mesh, &vertices).unwrap();
-                let wanted = bounds.intervals().iter();
-                let wanted: BTreeMap<u32, (f32, f32)> = wanted
-                    .map(|i| (i.joint.0, (i.middle, i.deviation)))
-                    .collect();
+                let summary = Summarizer::new(&mesh).of_vertices(&vertices);
+                let wanted = summary.intervals().into_iter();
+                let wanted: BTreeMap<u32, (f32, f32)> =
+                    wanted.map(|i| (i.joint, (i.middle, i.deviation))).collect();
                 for (joint, row) in joints.iter().zip(rows) {
                     let found = (row.middle[lane], row.deviation[lane]);
                     let wanted = wanted.get(joint).copied().unwrap_or_default();
                     assert_eq!(found, wanted, "{name}: joint {joint}");
                 }
                 // Near the ball that costs more to find.
-                let (found, near) = (node.radius[lane], bounds.rest_sphere().radius);
+                let (found, near) = (node.radius[lane], summary.ball.radius);
                 assert!(found <= near * 1.1, "{name}: {found} against {near}");
             }
             for lane in usize::from(node.lanes)..LANES {
@@ -170,7 +196,7 @@ fn lanes_have_the_intervals_of_their_vertices() {
 #[test]
 fn nodes_are_well_filled() {
     let (name, mesh) = &meshes()[1];
-    let (clusters, hierarchy) = build(mesh, &[]);
+    let (clusters, hierarchy) = build(mesh);
     let lanes = clusters.clusters.len() + hierarchy.nodes.len() - 1;
     let mean = lanes as f64 / hierarchy.nodes.len() as f64;
     assert!(mean > 4.0, "{name}: {mean}");
@@ -179,7 +205,7 @@ fn nodes_are_well_filled() {
 #[test]
 fn one_cluster_makes_a_root_of_one_lane() {
     let (_, mesh) = meshes().swap_remove(7);
-    let (clusters, hierarchy) = build(&mesh, &[]);
+    let (clusters, hierarchy) = build(&mesh);
     assert_eq!(clusters.clusters.len(), 1);
     assert_eq!(hierarchy.nodes.len(), 1);
     assert_eq!(hierarchy.nodes[0].lanes, 1);

@@ -1,6 +1,6 @@
 //! Answers as bits: `==` takes -0 for 0.
 
-use std::fmt::{Arguments, Debug};
+use std::fmt::Debug;
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use crate::mesh::{PartId, SurfaceTag, TriangleId};
 use crate::surface::{CapsuleHit, MovingTriangle, SurfaceHit, SweepHit};
 
 /// Appends every number of an answer, bit by bit.
-pub(in crate::surface) trait Bits {
+pub(crate) trait Bits {
     fn append_to(&self, bits: &mut Vec<u64>);
 }
 
@@ -21,11 +21,7 @@ fn bits(answer: &impl Bits) -> Vec<u64> {
 
 /// Asserts that answers are the same bit for bit.
 #[track_caller]
-pub(in crate::surface) fn assert_same_bits<T: Bits + Debug>(
-    found: &[T],
-    wanted: &[T],
-    case: Arguments<'_>,
-) {
+pub(crate) fn assert_same_bits<T: Bits + Debug>(found: &[T], wanted: &[T], case: &str) {
     let same =
         found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| bits(a) == bits(b));
     assert!(same, "{found:?}\nis not\n{wanted:?}\nof {case}");

@@ -3,10 +3,10 @@ use std::sync::Barrier;
 use glam::Vec3;
 
 use super::Diagnostics;
-use crate::geometry::{Ray, Similarity, Sphere};
+use crate::geometry::{Ray, Similarity};
 use crate::mesh::TriangleId;
 use crate::surface::SkinnedSurface;
-use crate::testing::{bend, tube};
+use crate::testing::{ball, bend, tube};
 
 #[test]
 fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
@@ -18,10 +18,12 @@ fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
     assert_eq!(idle.filter(|c| c.touched || c.skinned).count(), 0);
 
     // Through the tube from above its middle.
-    let middle = surface.position(mesh.triangles()[mesh.triangles().len() / 2][0]);
+    let middle = surface
+        .in_model()
+        .position(mesh.triangles()[mesh.triangles().len() / 2][0]);
     let above = middle.unwrap() + Vec3::Y * 100.0;
     let ray = Ray::new(above, Vec3::NEG_Y).unwrap();
-    let hit = surface.cast_ray(&ray, 200.0).unwrap().unwrap();
+    let hit = surface.in_model().cast_ray(&ray, 200.0).unwrap();
     let mut triangles: Vec<TriangleId> = Vec::new();
     for cluster in surface.clusters() {
         let holds = cluster.triangles.contains(&hit.triangle);
@@ -48,7 +50,7 @@ fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
 
     surface.advance(&bent, Similarity::IDENTITY).unwrap();
     surface.skin_ahead();
-    surface.cast_ray(&ray, 200.0).unwrap();
+    surface.in_model().cast_ray(&ray, 200.0);
     assert_eq!(counts(&surface), told(&surface), "skinned ahead");
     assert_eq!(told(&surface)[1], surface.diagnostics().clusters);
 }
@@ -64,10 +66,7 @@ fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
         let radius = 6.0 + 18.0 * (tick % 50) as f32 / 50.0;
         surface.advance(&bent, Similarity::IDENTITY).unwrap();
         let ahead = surface.diagnostics();
-        let sphere = Sphere {
-            center: Vec3::ZERO,
-            radius,
-        };
+        let sphere = ball(Vec3::ZERO, radius);
         let barrier = Barrier::new(threads);
         std::thread::scope(|scope| {
             for thread in 0..threads {
@@ -76,7 +75,7 @@ fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
                     let mut hits = Vec::new();
                     barrier.wait();
                     for _ in (thread..QUERIES).step_by(threads) {
-                        surface.overlap_sphere(&sphere, &mut hits).unwrap();
+                        surface.in_model().overlap_capsule(&sphere, &mut hits);
                     }
                 });
             }

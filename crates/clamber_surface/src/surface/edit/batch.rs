@@ -3,9 +3,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::mesh::{ColliderMesh, Influence, PartId, Reclustered, SurfaceTag, TriangleId, VertexId};
-use crate::rig::JointId;
-use crate::surface::skinned::keeps;
+use crate::mesh::{
+    ColliderMesh, Influence, PartId, Reclustered, SurfaceTag, TriangleId, VertexId, check_matrices,
+};
 use crate::surface::{SkinnedSurface, SurfaceError};
 
 /// Changes of triangles, vertices and tags that belong together; see [`SkinnedSurface::edit`].
@@ -40,14 +40,11 @@ impl<'a> SurfaceEdit<'a> {
         position: Vec3,
         influences: &[Influence],
     ) -> Result<VertexId, SurfaceError> {
-        let surface = &*self.surface;
-        let vertex = surface.mesh.check_vertex(position, influences)?;
-        if vertex.radius > surface.mesh.radius() {
-            for pose in [&surface.current, &surface.previous] {
-                let kept = |matrix| keeps(matrix, vertex.radius);
-                if let Some(joint) = pose.palette().iter().position(|m| !kept(m)) {
-                    return Err(SurfaceError::Palette(JointId(joint as u32)));
-                }
+        let instance = &self.surface.instance;
+        let vertex = instance.mesh.check_vertex(position, influences)?;
+        if vertex.radius > instance.mesh.radius() {
+            for pose in [&instance.current, &instance.previous] {
+                check_matrices(pose.palette().iter().copied(), vertex.radius)?;
             }
         }
         Ok(self.mesh_mut().add_vertex(vertex))
@@ -64,12 +61,17 @@ impl<'a> SurfaceEdit<'a> {
         corners: [VertexId; 3],
         tag: SurfaceTag,
     ) -> Result<TriangleId, SurfaceError> {
-        self.surface.mesh.check_triangle(corners)?;
+        let mesh = self.surface.mesh();
+        if let Some(bad) = corners.iter().find(|vertex| !mesh.has_vertex(**vertex)) {
+            return Err(SurfaceError::Vertex(*bad));
+        }
+        mesh.check_triangle(corners)?;
         let (triangle, part) = self.mesh_mut().add_triangle(corners, tag);
         self.touched.insert(part);
-        let parts = self.surface.mesh.parts().len();
-        self.surface.part_enabled.resize(parts, true);
-        self.surface.triangle_enabled.push(true);
+        let instance = &mut self.surface.instance;
+        let parts = instance.mesh.parts().len();
+        instance.part_enabled.resize(parts, true);
+        instance.triangle_enabled.push(true);
         Ok(triangle)
     }
 
@@ -79,7 +81,7 @@ impl<'a> SurfaceEdit<'a> {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed before.
     pub fn remove_triangle(&mut self, triangle: TriangleId) -> Result<(), SurfaceError> {
-        let part = self.surface.mesh.part_of(triangle);
+        let part = self.surface.mesh().part_of(triangle);
         let part = part.ok_or(SurfaceError::Triangle(triangle))?;
         // It no longer counts as hidden.
         self.surface.enable_triangle(triangle)?;
@@ -93,10 +95,10 @@ impl<'a> SurfaceEdit<'a> {
     /// # Errors
     /// [`SurfaceError::Vertex`] if it does not exist or was removed before.
     pub fn remove_vertex(&mut self, vertex: VertexId) -> Result<(), SurfaceError> {
-        if !self.surface.mesh.has_vertex(vertex) {
+        if !self.surface.mesh().has_vertex(vertex) {
             return Err(SurfaceError::Vertex(vertex));
         }
-        let around = self.surface.mesh.triangles_around(vertex, &self.touched);
+        let around = self.surface.mesh().triangles_around(vertex, &self.touched);
         for triangle in around {
             self.remove_triangle(triangle)?;
         }
@@ -109,7 +111,7 @@ impl<'a> SurfaceEdit<'a> {
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
     pub fn set_tag(&mut self, triangle: TriangleId, tag: SurfaceTag) -> Result<(), SurfaceError> {
-        if self.surface.mesh.part_of(triangle).is_none() {
+        if self.surface.mesh().part_of(triangle).is_none() {
             return Err(SurfaceError::Triangle(triangle));
         }
         self.mesh_mut().set_tag(triangle, tag);
@@ -118,7 +120,7 @@ impl<'a> SurfaceEdit<'a> {
 
     /// The mesh, for this surface alone.
     fn mesh_mut(&mut self) -> &mut ColliderMesh {
-        Arc::make_mut(&mut self.surface.mesh)
+        Arc::make_mut(&mut self.surface.instance.mesh)
     }
 }
 
@@ -128,15 +130,15 @@ impl Drop for SurfaceEdit<'_> {
         let reclustered = if self.touched.is_empty() {
             Reclustered::Parts(Vec::new())
         } else {
-            Arc::make_mut(&mut self.surface.mesh).recluster(&self.touched)
+            Arc::make_mut(&mut self.surface.instance.mesh).recluster(&self.touched)
         };
-        let surface = &mut *self.surface;
-        for pose in [&mut surface.current, &mut surface.previous] {
+        let instance = &mut self.surface.instance;
+        for pose in [&mut instance.current, &mut instance.previous] {
             match &reclustered {
-                Reclustered::All => *pose = pose.renewed(&surface.mesh),
-                Reclustered::Parts(dead) => pose.follow(&surface.mesh, dead),
+                Reclustered::All => *pose = pose.renewed(&instance.mesh),
+                Reclustered::Parts(dead) => pose.follow(&instance.mesh, dead),
             }
         }
-        surface.bound();
+        self.surface.bound();
     }
 }

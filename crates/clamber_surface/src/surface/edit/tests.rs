@@ -96,15 +96,15 @@ fn an_added_vertex_moves_from_where_the_old_palette_has_it() {
         });
         bits(&[sum])
     };
-    let now = surface.position(vertex).unwrap();
-    let before = surface.previous_position(vertex).unwrap();
-    assert_eq!(bits(&[now]), at(surface.current.palette()));
-    assert_eq!(bits(&[before]), at(surface.previous.palette()));
+    let now = surface.in_model().position(vertex).unwrap();
+    let before = surface.in_model().previous_position(vertex).unwrap();
+    assert_eq!(bits(&[now]), at(surface.instance.current.palette()));
+    assert_eq!(bits(&[before]), at(surface.instance.previous.palette()));
     assert_ne!(now, before);
     // It sticks out of what the surface was, and is found there.
     let corners = [VertexId(0), VertexId(1), vertex];
     let added = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
-    let hit = surface.closest_point(now, 0.01).unwrap().unwrap();
+    let hit = surface.in_model().closest_point(now, 0.01).unwrap();
     assert_eq!(Ok(hit.triangle), added);
     assert_poses_hold(&surface, "a vertex far out");
 }
@@ -134,8 +134,8 @@ fn anchors_on_removed_triangles_report_it() {
     surface.edit(|edit| edit.remove_vertex(corner)).unwrap();
     let refused = Err(SurfaceError::Triangle(anew.triangle));
     assert_eq!(surface.motion(&anew, 0.1), refused);
-    assert_eq!(surface.position(corner), None);
-    assert_eq!(surface.previous_position(corner), None);
+    assert_eq!(surface.in_model().position(corner), None);
+    assert_eq!(surface.in_model().previous_position(corner), None);
 }
 
 #[test]

@@ -13,7 +13,8 @@ fn surface() -> SkinnedSurface {
 /// A point on top of the tube's middle.
 fn anchor(surface: &SkinnedSurface) -> Anchor {
     let ray = Ray::new(Vec3::new(2.05, 5.0, 0.03), -Vec3::Y).unwrap();
-    surface.anchor_at(&surface.cast_ray(&ray, 10.0).unwrap().unwrap())
+    let hit = surface.in_model().cast_ray(&ray, 10.0).unwrap();
+    surface.anchor_at(&hit).unwrap()
 }
 
 fn scaled(x: f32, y: f32, z: f32) -> Palette {
@@ -167,7 +168,7 @@ fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
         let palette = bend(JOINTS, DVec3::Z, f64::from(step) * 0.01);
         surface.advance(&palette, Similarity::IDENTITY).unwrap();
         let motion = surface.motion(&anchor, 1.0 / 60.0).unwrap();
-        let corners = surface.corners(anchor.triangle).map(widen);
+        let corners = surface.instance.corners(anchor.triangle).map(widen);
         let by_hand: DVec3 = (0..3)
             .map(|k| corners[k] * f64::from(anchor.barycentric[k]))
             .sum();
@@ -176,8 +177,8 @@ fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
             "step {step}"
         );
         let on_skin = surface
+            .in_model()
             .closest_point(motion.position, 1.0)
-            .unwrap()
             .unwrap();
         assert!(on_skin.distance < 1e-6, "step {step}: {}", on_skin.distance);
     }

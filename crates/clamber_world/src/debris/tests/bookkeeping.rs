@@ -110,7 +110,8 @@ fn a_piece_of_skin_meets_its_own_rock_only_and_contacts_name_its_triangles() {
                 assert_eq!(surface, CREATURE);
                 // It is the triangle there, within rapier's prediction and a tick of motion.
                 let corners = scene.surface.mesh().triangles()[triangle.index()];
-                let corners = corners.map(|v| scene.surface.previous_position(v).unwrap());
+                let corners =
+                    corners.map(|v| scene.surface.in_model().previous_position(v).unwrap());
                 let place = scene.in_model(owner).as_vec3();
                 let triangle = rapier3d::parry::shape::Triangle::from(corners);
                 use rapier3d::parry::query::PointQuery;
@@ -199,7 +200,7 @@ fn bad_input_is_an_error() {
         .debris
         .before_step(&[(CREATURE, &scene.surface)], bodies, colliders, DT);
     assert!(
-        matches!(&result, Err(DebrisError::Surface { body, obstacle: CREATURE, .. }) if *body == rock),
+        matches!(&result, Err(DebrisError::OutOfReach { body, obstacle: CREATURE, .. }) if *body == rock),
         "{result:?}"
     );
 }

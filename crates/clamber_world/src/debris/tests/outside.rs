@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use clamber_surface::geometry::Similarity;
+use clamber_surface::measure::winding_number;
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::JointId;
-use clamber_surface::surface::{SkinnedSurface, winding_number};
+use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 use rapier3d::math::Pose;
 
 use super::scene::{at, lifted};
-use crate::debris::core::Core;
+use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::let_through::is_outside;
 
 /// Closed boxes, each from a low corner to a high one, as one creature of one joint; they may overlap.
@@ -59,8 +60,8 @@ fn creature(positions: &[Vec3], triangles: &[[u32; 3]]) -> SkinnedSurface {
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-fn ball(radius: f64) -> Core {
-    Core {
+fn ball(radius: f64) -> InnerCapsule {
+    InnerCapsule {
         ends: [DVec3::ZERO; 2],
         radius,
     }
@@ -91,7 +92,7 @@ fn a_body_is_outside_where_nothing_winds_around_it_and_it_touches_nothing() {
         let middle = surface
             .world_from_model()
             .inverse_transform_point_f32(exact);
-        let touches = surface.closest_point(middle, 0.05).unwrap().is_some();
+        let touches = surface.in_model().closest_point(middle, 0.05).is_some();
         let winding = winding_number(&positions, surface.mesh(), middle.as_dvec3());
         let found = is_outside(&surface, &core, &pose, origin).unwrap();
         assert_eq!(

@@ -194,8 +194,12 @@ fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
         terrain.cast_ray(DVec3::Y * 3.0, way, 9.0).is_some(),
         terrain.closest_point(DVec3::Y * 1.2, 9.0).is_some(),
         !contacts.is_empty(),
-        terrain.cast_capsule(&capsule, way).is_some(),
-        terrain.sweep_capsule(&capsule, [way; 2]).is_some(),
+        terrain
+            .cast_capsule(&capsule, [way; 2], TargetMotion::Still)
+            .is_some(),
+        terrain
+            .cast_capsule(&capsule, [way; 2], TargetMotion::Moving)
+            .is_some(),
         terrain.motion(material, 0.1).is_some(),
     ]
 }

@@ -1,15 +1,14 @@
 //! Solid convex shapes in f64, as a core of which only support points are known, and what is rounded around it.
 
-mod advance;
-mod moving;
+mod first_contact;
+mod moving_convex;
 mod nearest;
 mod simplex;
 mod way_out;
 
-pub(super) use moving::Moving;
-pub(super) use nearest::Nearest;
+pub(super) use moving_convex::MovingConvex;
+pub(super) use nearest::ClosestPoints;
 
-use clamber_surface::parry::parry3d;
 use glam::{DVec3, Vec3};
 use parry3d::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};
 

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Moving;
+use super::MovingConvex;
 use super::simplex::{Corner, Simplex};
 
 /// Most rounds. In the tests' thousands of cases cores with corners take four, at most nine, and cores with rims fourteen,
@@ -18,7 +18,7 @@ const MEETING: f64 = 1e-14;
 
 /// The nearest points of a core and a segment that do not meet.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::shapes) struct Nearest {
+pub(in crate::shapes) struct ClosestPoints {
     /// Where the core's lies at rest.
     pub(in crate::shapes) on_core: DVec3,
     /// Unit vector from the core's to the segment's: of all directions tried that of the widest gap.
@@ -26,7 +26,7 @@ pub(in crate::shapes) struct Nearest {
     pub(in crate::shapes) distance: f64,
 }
 
-impl Moving<'_> {
+impl MovingConvex<'_> {
     /// Begins with the direction from core to segment that is guessed, of any length, zero for none. `None` where core
     /// and segment meet.
     pub(in crate::shapes) fn nearest(
@@ -34,7 +34,7 @@ impl Moving<'_> {
         time: f64,
         ends: [DVec3; 2],
         guess: DVec3,
-    ) -> Option<Nearest> {
+    ) -> Option<ClosestPoints> {
         let corner = |towards_axis: DVec3| {
             let on_core = self.support(time, towards_axis);
             let farther = towards_axis.dot(ends[1]) < towards_axis.dot(ends[0]);
@@ -74,7 +74,7 @@ impl Moving<'_> {
             }
             (simplex, best) = (wider, nearest);
         }
-        Some(Nearest {
+        Some(ClosestPoints {
             on_core: best.on_core,
             normal,
             distance: best.apart.length(),

@@ -37,15 +37,15 @@ impl Simplex {
         all.count += 1;
         let p = all.corners.map(|corner| corner.apart);
         let nearest = match all.count {
-            2 => Nearest::of_segment(p, [0, 1]),
-            3 => Nearest::of_triangle(p, [0, 1, 2]),
+            2 => ClosestPoint::of_segment(p, [0, 1]),
+            3 => ClosestPoint::of_triangle(p, [0, 1, 2]),
             _ => {
                 if !apart && is_inside(p) {
                     return None;
                 }
                 let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
-                let [first, others @ ..] = faces.map(|face| Nearest::of_triangle(p, face));
-                others.into_iter().fold(first, Nearest::or_nearer)
+                let [first, others @ ..] = faces.map(|face| ClosestPoint::of_triangle(p, face));
+                others.into_iter().fold(first, ClosestPoint::or_nearer)
             }
         };
         let mut kept = Self::default();
@@ -72,12 +72,12 @@ impl Simplex {
 
 /// Weights of four corners, and how far from the origin their point is.
 #[derive(Clone, Copy)]
-struct Nearest {
+struct ClosestPoint {
     weights: [f64; 4],
     distance: f64,
 }
 
-impl Nearest {
+impl ClosestPoint {
     fn new(p: [DVec3; 4], weights: [f64; 4]) -> Self {
         let sum = p.into_iter().zip(weights).map(|(p, weight)| p * weight);
         Self {

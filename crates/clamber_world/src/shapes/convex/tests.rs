@@ -3,12 +3,10 @@ mod times;
 mod ways_out;
 
 use clamber_surface::geometry::MovingCapsule;
-use clamber_surface::parry::parry3d::shape::{
-    ConvexPolyhedron, Cuboid, RoundShape, SharedShape, Triangle,
-};
 use glam::{DQuat, DVec3, Vec3};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, RoundShape, SharedShape, Triangle};
 
-use super::{Convex, Moving};
+use super::{Convex, MovingConvex};
 
 /// A shape, and how far a point outside of its core is from that by another road; 0 inside.
 struct Case {

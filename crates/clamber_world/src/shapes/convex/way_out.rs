@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::{Convex, Core, Moving};
+use super::{Convex, Core, MovingConvex};
 use crate::shapes::ShapeContact;
 
 /// Directions tried around the segment, where the core has rims.
@@ -108,7 +108,7 @@ impl Convex<'_> {
         let deepest = ends[usize::from(behind[1] < behind[0])];
         // Where that leaves the core beside a face, the face's point next to it.
         let out = deepest + normal * depth;
-        let on_core = Moving::still(self).nearest(0.0, [out; 2], normal);
+        let on_core = MovingConvex::still(self).nearest(0.0, [out; 2], normal);
         let on_core = on_core.map_or(out, |nearest| nearest.on_core);
         ShapeContact {
             point: on_core + normal * self.round,

@@ -1,7 +1,7 @@
 //! Moving triangles against moving spheres and capsules.
 
 use super::*;
-use crate::geometry::triangle::advance::STEPS;
+use crate::geometry::triangle::first_contact::STEPS;
 use crate::simd::SimdLevel;
 use crate::testing::point;
 
@@ -15,7 +15,7 @@ fn bits(contact: &Option<Contact>) -> Option<[u64; 5]> {
 /// A sphere on its way to a triangle that does not move.
 fn cast(corners: [Vec3; 3], center: Vec3, motion: Vec3, radius: f32) -> Option<Contact> {
     let core = MovingCore::new([center], [motion], radius, 1e-4);
-    advance(corners, corners, &core, 1.0).0
+    first_contact([corners, corners], &core, 1.0).0
 }
 
 const FLOOR: [Vec3; 3] = [
@@ -71,7 +71,7 @@ fn a_limb_that_passes_through_a_resting_capsule_touches_it_first() {
     let later = limb.map(|p| p + Vec3::X * 6.0);
     let ends = [Vec3::NEG_Y, Vec3::Y];
     let core = MovingCore::new(ends, [Vec3::ZERO; 2], 0.25, 1e-4);
-    let contact = advance(limb, later, &core, 1.0).0.unwrap();
+    let contact = first_contact([limb, later], &core, 1.0).0.unwrap();
     let expected = (3.0 - 0.25) / 6.0;
     assert!(
         (0.0..1e-4).contains(&(expected - contact.time)),
@@ -127,11 +127,16 @@ fn compare<const N: usize>(batches: u32, seed: u64) -> [u32; 3] {
         }
         let found = levels
             .iter()
-            .map(|level| advance_eight(*level, &corners[0], &corners[1], &core, limit));
+            .map(|level| first_contact_of_eight(*level, &corners, &core, limit));
         let found: Vec<_> = found.collect();
+        let still = [corners[0]];
+        let of_still = levels
+            .iter()
+            .map(|level| first_contact_of_eight(*level, &still, &core, limit));
+        let of_still: Vec<_> = of_still.collect();
         for (lane, [start, end]) in pairs.into_iter().enumerate() {
             let case = format_args!("batch {batch} {start:?} {end:?} {core:?} {limit}");
-            let (one, steps) = advance(start, end, &core, limit);
+            let (one, steps) = first_contact([start, end], &core, limit);
             for (level, found) in levels.iter().zip(&found) {
                 assert_eq!(bits(&found.get(lane)), bits(&one), "{level} {case}");
                 assert!(
@@ -139,8 +144,15 @@ fn compare<const N: usize>(batches: u32, seed: u64) -> [u32; 3] {
                     "{level} {case}"
                 );
             }
+            // A triangle that stands still is one that moves nowhere.
+            let (still, _) = first_contact([start], &core, limit);
+            let (nowhere, _) = first_contact([start, start], &core, limit);
+            assert_eq!(bits(&still), bits(&nowhere), "{case}");
+            for (level, found) in levels.iter().zip(&of_still) {
+                assert_eq!(bits(&found.get(lane)), bits(&still), "{level} {case}");
+            }
             // What the limit leaves away changes nothing else.
-            let whole = advance(start, end, &core, 1.0).0;
+            let whole = first_contact([start, end], &core, 1.0).0;
             let kept = whole.filter(|c| c.time <= limit);
             assert_eq!(bits(&one), bits(&kept), "{case}");
             if let Some(contact) = one {
@@ -184,7 +196,7 @@ fn what_only_turning_brings_closer_is_a_contact_once_it_is_near() {
     let center = Vec3::new(0.56197846, 4.6092825, -0.8551329);
     let motion = Vec3::new(-0.2915352, 0.39834568, 1.2191159);
     let core = MovingCore::new([center], [motion], 0.29228053, 7.307013e-4);
-    let sphere = advance(needle, needle_later, &core, 1.0);
+    let sphere = first_contact([needle, needle_later], &core, 1.0);
 
     let still = [
         Vec3::new(0.16663875, 0.15703431, -0.16905947),
@@ -200,7 +212,7 @@ fn what_only_turning_brings_closer_is_a_contact_once_it_is_near() {
         Vec3::new(-0.21398029, 0.14502981, 0.39101768),
     ];
     let core = MovingCore::new(ends, motions, 0.02, 5e-5);
-    let capsule = advance(still, still, &core, 1.0);
+    let capsule = first_contact([still, still], &core, 1.0);
 
     for (contact, steps) in [sphere, capsule] {
         assert!(steps <= FEW, "{steps} steps: {contact:?}");
@@ -230,7 +242,7 @@ fn a_turn_of_a_lever_a_thousand_times_as_long_takes_few_steps() {
         Vec3::new(-0.55852157, 1.9148715, -4.7341466),
     ];
     let core = MovingCore::new(ends, motions, 0.23920207, 5.980052e-4);
-    let (contact, steps) = advance(start, end, &core, 1.0);
+    let (contact, steps) = first_contact([start, end], &core, 1.0);
     assert!(steps <= FEW, "{steps} steps: {contact:?}");
     assert!(contact.is_some_and(|c| !c.undecided), "{contact:?}");
 }

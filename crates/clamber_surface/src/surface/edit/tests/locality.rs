@@ -5,12 +5,12 @@ use std::ops::Range;
 use super::model::Model;
 use super::sound::assert_poses_hold;
 use super::{bent, rigid};
-use crate::geometry::{Similarity, Sphere};
+use crate::geometry::Similarity;
 use crate::mesh::clusters::{Cluster, Clusters};
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::surface::{Diagnostics, SkinnedSurface};
-use crate::testing::{bend, tube};
+use crate::testing::{ball, bend, tube};
 use glam::{DVec3, Vec3};
 
 const PART: PartId = PartId(3);
@@ -40,12 +40,9 @@ fn of_part(mesh: &ColliderMesh) -> Vec<usize> {
 }
 
 fn touch_everything(surface: &SkinnedSurface) -> usize {
-    let everything = Sphere {
-        center: Vec3::ZERO,
-        radius: f32::INFINITY,
-    };
+    let everything = ball(Vec3::ZERO, f32::MAX);
     let mut hits = Vec::new();
-    surface.overlap_sphere(&everything, &mut hits).unwrap();
+    surface.in_model().overlap_capsule(&everything, &mut hits);
     hits.len()
 }
 
@@ -86,12 +83,18 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     };
     assert_eq!(after, wanted);
     assert!(after.vertices_skinned > 0 && after.vertices_skinned < after.vertices);
-    assert_eq!(surface.current.asked_clusters().count(), before.len());
+    assert_eq!(
+        surface.instance.current.asked_clusters().count(),
+        before.len()
+    );
 
     // The rest is skinned when it is asked for, and nothing twice.
     assert_eq!(touch_everything(&surface), all);
     assert_eq!(surface.diagnostics().clusters_skinned, wanted.clusters);
-    assert_eq!(surface.current.asked_clusters().count(), wanted.clusters);
+    assert_eq!(
+        surface.instance.current.asked_clusters().count(),
+        wanted.clusters
+    );
     assert_poses_hold(&surface, "lazily");
 
     // So it is with what was skinned ahead.
@@ -100,7 +103,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     let diagnostics = ahead.diagnostics();
     assert_eq!(diagnostics.clusters_skinned, before.len());
     assert_eq!(diagnostics.clusters_touched, 0);
-    assert_eq!(ahead.current.asked_clusters().count(), 0);
+    assert_eq!(ahead.instance.current.asked_clusters().count(), 0);
     assert_poses_hold(&ahead, "ahead");
     // Nothing dead is skinned, nor does it make a bound larger.
     ahead.skin_ahead();
@@ -109,7 +112,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     let mut empty = 0;
     let mesh = ahead.mesh();
     for (index, node) in (0..).zip(&mesh.hierarchy().nodes) {
-        let spheres = ahead.current.spheres(mesh, index);
+        let spheres = ahead.instance.current.spheres(mesh, index);
         for lane in 0..usize::from(node.lanes) {
             let dead = is_dead(mesh, node.child(lane));
             assert_eq!(
@@ -227,7 +230,8 @@ fn what_is_removed_to_the_last_and_added_again_is_found() {
         assert_eq!(surface.diagnostics().clusters, 0);
         surface.skin_ahead();
         assert_eq!(touch_everything(&surface), 0);
-        assert_eq!(surface.closest_point(Vec3::ZERO, f32::INFINITY), Ok(None));
+        let nearest = surface.in_model().closest_point(Vec3::ZERO, f32::INFINITY);
+        assert_eq!(nearest, None);
         let vertices = mesh.positions().len();
         assert_eq!(surface.mesh().clusters().loose.len(), vertices);
         assert_poses_hold(&surface, "nothing left");

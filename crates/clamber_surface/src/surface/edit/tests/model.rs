@@ -199,7 +199,11 @@ impl Model {
         assert_eq!(mesh.positions().len(), self.vertices.len(), "{case}");
         for (id, position) in (0..).map(VertexId).zip(&self.vertices) {
             assert_eq!(mesh.has_vertex(id), position.is_some(), "{case}: {id}");
-            assert_eq!(surface.position(id).is_some(), position.is_some(), "{case}");
+            assert_eq!(
+                surface.in_model().position(id).is_some(),
+                position.is_some(),
+                "{case}"
+            );
             if let Some(position) = position {
                 assert_eq!(mesh.positions()[id.index()], *position, "{case}: {id}");
             }
@@ -218,7 +222,7 @@ impl Model {
             assert_eq!(surface.is_enabled(id), enabled, "{case}: {id}");
             hidden += usize::from(!known.enabled);
         }
-        assert_eq!(surface.hidden_triangles, hidden, "{case}");
+        assert_eq!(surface.instance.hidden_triangles, hidden, "{case}");
         for (id, part) in (0..).map(PartId).zip(mesh.parts()) {
             let all = (0..self.triangles.len() as u32).map(TriangleId);
             let own: Vec<_> = all.filter(|t| mesh.part_of(*t) == Some(id)).collect();

@@ -2,7 +2,9 @@
 
 use super::{bent, rigid};
 use crate::geometry::{Affine, Similarity};
-use crate::mesh::{ColliderMesh, Influence, MeshError, PartId, SurfaceTag, TriangleId, VertexId};
+use crate::mesh::{
+    ColliderMesh, Influence, MeshError, PaletteError, PartId, SurfaceTag, TriangleId, VertexId,
+};
 use crate::rig::{JointId, Palette};
 use crate::surface::{Diagnostics, SkinnedSurface, SurfaceEdit, SurfaceError};
 use crate::testing::{bend, tube};
@@ -10,9 +12,15 @@ use glam::{DVec3, Vec3};
 
 /// All that an edit could change.
 fn state(surface: &SkinnedSurface) -> (ColliderMesh, Diagnostics, String) {
-    let flags = (&surface.part_enabled, &surface.triangle_enabled);
-    let roots = (surface.current.root(), surface.previous.root());
-    let hidden = surface.hidden_triangles;
+    let flags = (
+        &surface.instance.part_enabled,
+        &surface.instance.triangle_enabled,
+    );
+    let roots = (
+        surface.instance.current.root(),
+        surface.instance.previous.root(),
+    );
+    let hidden = surface.instance.hidden_triangles;
     let others = format!("{flags:?} {hidden} {roots:?} {}", surface.memory());
     (
         surface.mesh().as_ref().clone(),
@@ -38,7 +46,7 @@ fn edited() -> SkinnedSurface {
         edit.remove_triangle(TriangleId(11)).unwrap();
         edit.remove_vertex(VertexId(20)).unwrap();
     });
-    surface.closest_point(Vec3::ZERO, 0.3).unwrap();
+    surface.in_model().closest_point(Vec3::ZERO, 0.3);
     surface
 }
 
@@ -131,13 +139,13 @@ fn a_vertex_that_either_palette_would_take_too_far() {
     for palette in [&large, &small] {
         surface.advance(palette, Similarity::IDENTITY).unwrap();
         let error = assert_refused(&mut surface, add);
-        assert_eq!(error, SurfaceError::Palette(JointId(1)));
+        assert_eq!(error, PaletteError::Matrix(JointId(1)).into());
     }
     // Out of both poses, it is taken; then the palette is not.
     surface.advance(&small, Similarity::IDENTITY).unwrap();
     surface.edit(add).unwrap();
     let refused = surface.advance(&large, Similarity::IDENTITY);
-    assert_eq!(refused, Err(SurfaceError::Palette(JointId(1))));
+    assert_eq!(refused, Err(PaletteError::Matrix(JointId(1)).into()));
 }
 
 #[test]

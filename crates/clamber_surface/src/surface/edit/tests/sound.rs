@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{Sphere, widen};
+use crate::geometry::widen;
+use crate::measure::skin_scalar;
 use crate::mesh::hierarchy::Child;
 use crate::mesh::{ColliderMesh, TriangleId, VertexId};
-use crate::skin::{ClusterPositions, skin_scalar};
+use crate::pose::PosedMesh;
+use crate::skin::ClusterPositions;
 use crate::surface::SkinnedSurface;
-use crate::surface::pose::Pose;
 use glam::{DVec3, Vec3};
 
 /// Living clusters by how often the hierarchy leads to them.
@@ -71,9 +72,9 @@ pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
     let mesh = surface.mesh();
     let mut all = Vec::new();
     surface.skin_all(&mut all);
-    let wanted = skin_scalar(mesh, surface.current.palette()).unwrap();
+    let wanted = skin_scalar(mesh, surface.instance.current.palette()).unwrap();
     assert_eq!(bits(&all), bits(&wanted), "{case}: skin_all");
-    for pose in [&surface.current, &surface.previous] {
+    for pose in [&surface.instance.current, &surface.instance.previous] {
         let skinned = skin_scalar(mesh, pose.palette()).unwrap();
         check_clusters(mesh, pose, &skinned, case);
         let root = pose.root();
@@ -90,7 +91,7 @@ pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
     }
 }
 
-fn check_clusters(mesh: &ColliderMesh, pose: &Pose, skinned: &[Vec3], case: &str) {
+fn check_clusters(mesh: &ColliderMesh, pose: &PosedMesh, skinned: &[Vec3], case: &str) {
     let (hierarchy, clusters) = (mesh.hierarchy(), mesh.clusters());
     for index in 0..hierarchy.nodes.len() as u32 {
         let (node, spheres) = (&hierarchy.nodes[index as usize], pose.spheres(mesh, index));
@@ -104,10 +105,7 @@ fn check_clusters(mesh: &ColliderMesh, pose: &Pose, skinned: &[Vec3], case: &str
             }
             let mut positions = ClusterPositions::ZERO;
             pose.positions(mesh, cluster, &mut positions);
-            let sphere = Sphere {
-                center: Vec3::new(spheres.x[lane], spheres.y[lane], spheres.z[lane]),
-                radius: spheres.radius[lane],
-            };
+            let sphere = spheres.sphere(lane);
             for (slot, v) in entry.vertices(clusters).iter().enumerate() {
                 let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));
                 assert_eq!(bits(&[found]), bits(&[skinned[v.index()]]), "{case}: {v}");

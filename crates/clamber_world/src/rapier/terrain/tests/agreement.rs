@@ -234,8 +234,11 @@ fn casts_are_the_same() {
             for _ in 0..20 {
                 let capsule = capsule(&mut rng, origin);
                 let by = random_point(&mut rng, 3.0);
-                let skin = Obstacle::cast_capsule(&both.surface, &capsule, by);
-                let body = both.terrain().cast_capsule(&capsule, by);
+                let skin =
+                    Obstacle::cast_capsule(&both.surface, &capsule, [by; 2], TargetMotion::Still);
+                let body = both
+                    .terrain()
+                    .cast_capsule(&capsule, [by; 2], TargetMotion::Still);
                 tally.compare([skin, body], &capsule, by, 1.2e-4);
             }
         }
@@ -259,8 +262,11 @@ fn sweeps_of_what_slides_are_the_same() {
             for case in 0..20 {
                 let capsule = capsule(&mut rng, origin);
                 let by = random_point(&mut rng, 3.0) * f64::from(case % 3);
-                let skin = Obstacle::sweep_capsule(&both.surface, &capsule, [by; 2]);
-                let body = both.terrain().sweep_capsule(&capsule, [by; 2]);
+                let skin =
+                    Obstacle::cast_capsule(&both.surface, &capsule, [by; 2], TargetMotion::Moving);
+                let body = both
+                    .terrain()
+                    .cast_capsule(&capsule, [by; 2], TargetMotion::Moving);
                 let slide = places[1].translation - places[0].translation;
                 tally.compare([skin, body], &capsule, by - slide.as_dvec3(), 1.2e-4);
             }
@@ -288,8 +294,11 @@ fn sweeps_of_what_turns_are_the_same() {
                 if case % 2 == 1 {
                     by[1] = random_point(&mut rng, 3.0);
                 }
-                let skin = Obstacle::sweep_capsule(&both.surface, &capsule, by);
-                let body = both.terrain().sweep_capsule(&capsule, by);
+                let skin =
+                    Obstacle::cast_capsule(&both.surface, &capsule, by, TargetMotion::Moving);
+                let body = both
+                    .terrain()
+                    .cast_capsule(&capsule, by, TargetMotion::Moving);
                 // How fast they close on each other is not asked of what turns.
                 let off = |a: SweepContact, b: SweepContact| (a.time - b.time).abs();
                 match (skin, body) {

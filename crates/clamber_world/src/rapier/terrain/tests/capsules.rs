@@ -78,8 +78,12 @@ fn falling_ball_meets_every_kind_of_shape() {
         let terrain = RapierTerrain::of_world(&world, &NO_POSES);
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
         let by = DVec3::NEG_Y * 4.0;
-        let cast = terrain.cast_capsule(&ball, by).unwrap();
-        let swept = terrain.sweep_capsule(&ball, [by; 2]).unwrap();
+        let cast = terrain
+            .cast_capsule(&ball, [by; 2], TargetMotion::Still)
+            .unwrap();
+        let swept = terrain
+            .cast_capsule(&ball, [by; 2], TargetMotion::Moving)
+            .unwrap();
         assert_eq!(cast, swept, "{name}");
         assert!((cast.time - 0.375).abs() < 3e-5, "{name}: {cast:?}");
         assert!((cast.away - DVec3::Y).length() < 1e-6, "{name}: {cast:?}");
@@ -92,8 +96,16 @@ fn falling_ball_meets_every_kind_of_shape() {
             "{name}: {cast:?}"
         );
         assert!(!cast.started_inside, "{name}");
-        assert_eq!(terrain.cast_capsule(&ball, DVec3::NEG_Y), None, "{name}");
-        assert_eq!(terrain.cast_capsule(&ball, DVec3::Y * 9.0), None, "{name}");
+        assert_eq!(
+            terrain.cast_capsule(&ball, [DVec3::NEG_Y; 2], TargetMotion::Still),
+            None,
+            "{name}"
+        );
+        assert_eq!(
+            terrain.cast_capsule(&ball, [DVec3::Y * 9.0; 2], TargetMotion::Still),
+            None,
+            "{name}"
+        );
         let motion = terrain.motion(&cast.contact.material, 0.1).unwrap();
         assert!(
             (motion.position - cast.contact.point).length() < 1e-6,
@@ -119,7 +131,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
     // Its side goes from -0.95 to -0.45.
     let met = moving
         .terrain()
-        .sweep_capsule(&at(-0.4), [DVec3::ZERO; 2])
+        .cast_capsule(&at(-0.4), [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
     assert!((met.time - 0.5).abs() < 2e-4, "{met:?}");
     assert!(!met.started_inside && (met.away - DVec3::X).length() < 1e-6);
@@ -133,18 +145,23 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
     // With it, it never catches up; against it, it does so sooner.
     let with = moving
         .terrain()
-        .sweep_capsule(&at(-0.4), [DVec3::X * 0.5; 2]);
+        .cast_capsule(&at(-0.4), [DVec3::X * 0.5; 2], TargetMotion::Moving);
     assert_eq!(with, None);
-    let against = moving
-        .terrain()
-        .sweep_capsule(&at(-0.4), [DVec3::X * -0.5; 2]);
+    let against =
+        moving
+            .terrain()
+            .cast_capsule(&at(-0.4), [DVec3::X * -0.5; 2], TargetMotion::Moving);
     assert!((against.unwrap().time - 0.25).abs() < 2e-4, "{against:?}");
     // Not there yet, and as it stands now a cast sees it.
     assert_eq!(
-        moving.terrain().sweep_capsule(&at(0.0), [DVec3::ZERO; 2]),
+        moving
+            .terrain()
+            .cast_capsule(&at(0.0), [DVec3::ZERO; 2], TargetMotion::Moving),
         None
     );
-    let cast = moving.terrain().cast_capsule(&at(-0.4), DVec3::ZERO);
+    let cast = moving
+        .terrain()
+        .cast_capsule(&at(-0.4), [DVec3::ZERO; 2], TargetMotion::Still);
     assert!(cast.unwrap().started_inside);
 }
 
@@ -166,8 +183,11 @@ fn what_rests_is_met_alike_however_it_hangs_on_its_body() {
         let middle = middle.position().translation.as_dvec3();
         let ball = WorldCapsule::ball(middle + vector(4.0).as_dvec3(), 0.2);
         let by = middle - ball.ends[0];
-        let swept = terrain.sweep_capsule(&ball, [by; 2]);
-        assert_eq!(swept, terrain.cast_capsule(&ball, by));
+        let swept = terrain.cast_capsule(&ball, [by; 2], TargetMotion::Moving);
+        assert_eq!(
+            swept,
+            terrain.cast_capsule(&ball, [by; 2], TargetMotion::Still)
+        );
         let swept = swept.unwrap();
         let motion = terrain.motion(&swept.contact.material, 0.1).unwrap();
         assert_eq!(motion.velocity, DVec3::ZERO);
@@ -183,16 +203,23 @@ fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
         let ball = WorldCapsule::ball(DVec3::new(0.1, 0.3, -0.2), radius);
         let met = moving
             .terrain()
-            .sweep_capsule(&ball, [DVec3::ZERO; 2])
+            .cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
             .unwrap();
         let expected = (0.9 - radius - 0.0005) / 1.6667;
         assert!((met.time - expected).abs() < 1e-4, "{radius}: {met:?}");
         assert!((met.away - DVec3::X).length() < 1e-6, "{radius}: {met:?}");
-        assert_eq!(moving.terrain().cast_capsule(&ball, DVec3::ZERO), None);
+        assert_eq!(
+            moving
+                .terrain()
+                .cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Still),
+            None
+        );
     }
     let aside = WorldCapsule::ball(DVec3::new(0.1, 1.3, 0.0), 0.29);
     assert_eq!(
-        moving.terrain().sweep_capsule(&aside, [DVec3::ZERO; 2]),
+        moving
+            .terrain()
+            .cast_capsule(&aside, [DVec3::ZERO; 2], TargetMotion::Moving),
         None
     );
 }
@@ -212,7 +239,7 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
         let ball = at(share, 0.1);
         let met = moving
             .terrain()
-            .sweep_capsule(&ball, [DVec3::ZERO; 2])
+            .cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
             .unwrap();
         // Its near side comes about 0.2 m before its middle, of some 2.1 m of way; and points go straight, not round:
         // up to 2 (1 - cos(30 degrees)) = 0.27 m off.
@@ -226,7 +253,7 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
     assert_eq!(
         moving
             .terrain()
-            .sweep_capsule(&at(1.5, 0.1), [DVec3::ZERO; 2]),
+            .cast_capsule(&at(1.5, 0.1), [DVec3::ZERO; 2], TargetMotion::Moving),
         None
     );
 }
@@ -243,7 +270,7 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
     };
     let met = moving
         .terrain()
-        .sweep_capsule(&rod, [DVec3::ZERO; 2])
+        .cast_capsule(&rod, [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
     // Where the box was, not where it is.
@@ -254,11 +281,16 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
     assert!(
         moving
             .terrain()
-            .cast_capsule(&now, DVec3::ZERO)
+            .cast_capsule(&now, [DVec3::ZERO; 2], TargetMotion::Still)
             .unwrap()
             .started_inside
     );
-    assert_eq!(moving.terrain().cast_capsule(&rod, DVec3::ZERO), None);
+    assert_eq!(
+        moving
+            .terrain()
+            .cast_capsule(&rod, [DVec3::ZERO; 2], TargetMotion::Still),
+        None
+    );
     let mut contacts = Vec::new();
     moving.terrain().overlap_capsule(&now, &mut contacts);
     assert_eq!(contacts.len(), 1);
@@ -279,8 +311,11 @@ fn what_is_not_finite_is_met_nowhere() {
         let mut contacts = Vec::new();
         terrain.overlap_capsule(capsule, &mut contacts);
         let overlaps = !contacts.is_empty();
-        let swept = terrain.sweep_capsule(capsule, [by; 2]);
-        assert_eq!(terrain.cast_capsule(capsule, by), swept);
+        let swept = terrain.cast_capsule(capsule, [by; 2], TargetMotion::Moving);
+        assert_eq!(
+            terrain.cast_capsule(capsule, [by; 2], TargetMotion::Still),
+            swept
+        );
         assert!(
             !overlaps || swept.is_some_and(|met| met.started_inside),
             "{contacts:?}"
@@ -299,12 +334,12 @@ fn what_is_not_finite_is_met_nowhere() {
             assert!(!meets(&WorldCapsule::ball(place, 0.5), by), "{place}");
         }
         assert_eq!(
-            terrain.cast_capsule(&good.with_radius(bad), by),
+            terrain.cast_capsule(&good.with_radius(bad), [by; 2], TargetMotion::Still),
             None,
             "{bad}"
         );
         assert_eq!(
-            terrain.sweep_capsule(&good.with_radius(bad), [by; 2]),
+            terrain.cast_capsule(&good.with_radius(bad), [by; 2], TargetMotion::Moving),
             None,
             "{bad}"
         );
@@ -346,8 +381,8 @@ fn the_order_in_which_bodies_were_made_does_not_matter() {
         };
         let [first, last] = [&one, &other].map(|moving| {
             let terrain = moving.terrain();
-            let swept = terrain.sweep_capsule(&capsule, [by; 2]);
-            let cast = terrain.cast_capsule(&capsule, by);
+            let swept = terrain.cast_capsule(&capsule, [by; 2], TargetMotion::Moving);
+            let cast = terrain.cast_capsule(&capsule, [by; 2], TargetMotion::Still);
             let mut contacts = Vec::new();
             terrain.overlap_capsule(&capsule, &mut contacts);
             let keys: Vec<u64> = contacts

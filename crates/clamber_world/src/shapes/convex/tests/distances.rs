@@ -9,7 +9,7 @@ fn nearest_points_agree_with_a_search_and_part_the_two() {
             let ends = segment(&mut rng, 2.0);
             let expected = case.distance(ends);
             let convex = case.convex();
-            let found = Moving::still(&convex).nearest(0.0, ends, point(&mut rng, 1.0));
+            let found = MovingConvex::still(&convex).nearest(0.0, ends, point(&mut rng, 1.0));
             let name = case.name;
             let Some(found) = found else {
                 assert!(expected < 1e-7, "{name} {round} {ends:?}: {expected}");
@@ -49,7 +49,7 @@ fn far_out_and_very_near_they_agree_as_well() {
                 let along = n.any_orthonormal_vector() * rng.f64();
                 let ends = [at - along, at + along];
                 let expected = case.distance(ends);
-                let found = Moving::still(&convex).nearest(0.0, ends, DVec3::ZERO);
+                let found = MovingConvex::still(&convex).nearest(0.0, ends, DVec3::ZERO);
                 let distance = found.map_or(0.0, |found| found.distance);
                 assert!(
                     (distance - expected).abs() < 1e-7 + expected * 1e-7,

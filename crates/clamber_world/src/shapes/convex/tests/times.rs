@@ -32,7 +32,7 @@ fn contacts_are_never_late_and_always_near() {
             let convex = case.convex();
             let name = case.name;
             let reach = radius + convex.round;
-            let touch = Moving::still(&convex).advance(&path, TOLERANCE, 1.0);
+            let touch = MovingConvex::still(&convex).first_contact(&path, TOLERANCE, 1.0);
             let until = touch.as_ref().map_or(1.0, |touch| touch.time);
             // Nothing before: where the distance is least between steps, too.
             let (mut time, fastest) = (0.0, speed(&path));
@@ -75,8 +75,8 @@ fn what_slides_along_a_side_or_leaves_is_no_contact() {
     let convex = Convex::new(&*side).unwrap();
     let along = |height: f64, by: DVec3| {
         let path = MovingCapsule::ball(DVec3::new(-40.0, height, 0.0), by, 0.5);
-        Moving::still(&convex)
-            .advance(&path, TOLERANCE, 1.0)
+        MovingConvex::still(&convex)
+            .first_contact(&path, TOLERANCE, 1.0)
             .map(|touch| touch.time)
     };
     assert_eq!(along(1.501, DVec3::X * 80.0), None, "beside");
@@ -104,7 +104,7 @@ fn nothing_later_than_the_limit_is_said_and_all_before_is() {
             let path = path(&mut rng, 0.2);
             let convex = case.convex();
             let time = |limit: f64| {
-                let touch = Moving::still(&convex).advance(&path, TOLERANCE, limit);
+                let touch = MovingConvex::still(&convex).first_contact(&path, TOLERANCE, limit);
                 touch.map(|touch| touch.time)
             };
             let Some(all) = time(1.0) else { continue };
@@ -127,7 +127,7 @@ fn solids_that_turn_are_met_in_time_as_well() {
             let convex = case.convex();
             let angle = [0.1, 0.6, 1.5][rng.usize(0..3)];
             let axis = direction(&mut rng);
-            let moving = Moving {
+            let moving = MovingConvex {
                 convex: &convex,
                 before: Some(RigidPose {
                     rotation: clamber_surface::geometry::rotation_from_axis_angle(axis, angle),
@@ -136,7 +136,7 @@ fn solids_that_turn_are_met_in_time_as_well() {
             };
             let name = case.name;
             let input = (name, round, &path, moving.before);
-            let touch = moving.advance(&path, TOLERANCE, 1.0);
+            let touch = moving.first_contact(&path, TOLERANCE, 1.0);
             let until = touch.as_ref().map_or(1.0, |touch| touch.time);
             let reach = radius + convex.round;
             let gap = |time: f64| {
@@ -203,7 +203,7 @@ fn long_levers_are_neither_late_nor_undecided() {
                 radius: 0.02,
             };
             let convex = case.convex();
-            let moving = Moving {
+            let moving = MovingConvex {
                 convex: &convex,
                 before: rng.bool().then(|| RigidPose {
                     rotation: turn.conjugate(),
@@ -211,7 +211,7 @@ fn long_levers_are_neither_late_nor_undecided() {
                 }),
             };
             let input = (case.name, round, &path, moving.before);
-            let touch = moving.advance(&path, TOLERANCE, 1.0);
+            let touch = moving.first_contact(&path, TOLERANCE, 1.0);
             let until = touch.as_ref().map_or(1.0, |touch| touch.time);
             let steps = if until > 0.0 { 400 } else { 0 };
             for step in 0..steps {

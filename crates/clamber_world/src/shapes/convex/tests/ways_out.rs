@@ -36,7 +36,7 @@ fn ways_out_lead_out_and_none_is_shorter() {
         for case in cases(&mut rng) {
             let ends = segment(&mut rng, 0.4);
             let convex = case.convex();
-            if Moving::still(&convex)
+            if MovingConvex::still(&convex)
                 .nearest(0.0, ends, DVec3::ZERO)
                 .is_some()
             {
@@ -60,7 +60,7 @@ fn ways_out_lead_out_and_none_is_shorter() {
                 "{name} {round} {ends:?}: {out:?}, but {expected} is enough"
             );
             let moved = ends.map(|end| end + out.normal * (depth + 1e-6));
-            let apart = Moving::still(&convex).nearest(0.0, moved, out.normal);
+            let apart = MovingConvex::still(&convex).nearest(0.0, moved, out.normal);
             assert!(apart.is_some(), "{name} {round} {ends:?}: {out:?}");
             let off = case.distance([out.point - out.normal * convex.round; 2]);
             assert!(off < 1e-6, "{name} {round} {ends:?}: {out:?} is {off} off");

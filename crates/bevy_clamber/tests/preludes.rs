@@ -1,0 +1,52 @@
+//! The prelude and those of Bevy can all be imported whole: a name that two of them have does not compile here.
+
+// In `use`, an ambiguous name is a lint.
+#![deny(ambiguous_glob_imports)]
+
+#[expect(unused_imports, reason = "only their names matter")]
+use {
+    bevy_app::prelude::*, bevy_asset::prelude::*, bevy_camera::prelude::*, bevy_ecs::prelude::*,
+    bevy_math::prelude::*, bevy_mesh::prelude::*, bevy_picking::prelude::*,
+    bevy_reflect::prelude::*, bevy_time::prelude::*, bevy_transform::prelude::*,
+    bevy_window::prelude::*,
+};
+
+use bevy_clamber::prelude::*;
+
+/// Uses every name where it is there, so that one that is ambiguous is an error, and lists them.
+macro_rules! use_each {
+    ($list:ident, $when:meta, $($name:ident)*) => {
+        $(
+            #[$when]
+            #[expect(unused_imports, reason = "that it is no error is enough")]
+            use crate::$name as _;
+        )*
+        const $list: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+use_each! { ALWAYS, cfg(all()),
+    AnchorLost ClamberPlugins ClamberSystems ColliderStatus ColliderTag PoseTiming PosedSurface SkinnedCollider
+    SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag SurfaceTagger TargetMotion WorldHit
+}
+use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
+use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
+use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
+use_each! { RIGS, cfg(feature = "clamber_gltf"),
+    RigAssets RigJoints RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
+}
+
+/// Or a name that is added to the prelude would not be looked at above.
+#[test]
+fn every_name_of_the_prelude_is_used() {
+    let lines = include_str!("../src/prelude.rs").lines();
+    let code = lines.filter(|line| !line.starts_with("//"));
+    let words = code.flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || c == '_')));
+    let mut names: Vec<&str> = words
+        .filter(|w| w.starts_with(char::is_uppercase))
+        .collect();
+    names.sort_unstable();
+    let mut used = [ALWAYS, DIAGNOSTICS, GIZMOS, PICKING, RIGS].concat();
+    used.sort_unstable();
+    assert_eq!(names, used);
+}

@@ -1,0 +1,62 @@
+use clamber_gltf::{Rig, VisualMesh};
+use clamber_render::{Paint, RenderMesh, SkinSource};
+
+/// A mesh of a rig, as a renderer takes it.
+#[derive(Clone, Debug)]
+pub struct VisualSource<'a> {
+    mesh: &'a VisualMesh,
+    paint: Paint,
+    joint_count: usize,
+}
+
+impl VisualSource<'_> {
+    /// For [`Renderer::add_mesh`](clamber_render::Renderer::add_mesh).
+    pub fn source(&self) -> RenderMesh<'_> {
+        RenderMesh {
+            positions: &self.mesh.positions,
+            normals: &self.mesh.normals,
+            colors: &self.paint.colors,
+            looks: &self.paint.looks,
+            triangles: &self.paint.triangles,
+            skin: Some(SkinSource {
+                influences: &self.mesh.influences,
+                ends: &self.mesh.influence_ends,
+                joint_count: self.joint_count,
+            }),
+        }
+    }
+}
+
+/// The visual meshes of a rig for a renderer, in the rig's order: colours of vertices times base colours of
+/// materials, and the look of each surface's kind. A vertex that several materials share has the last one's.
+/// With the features `gltf` and `render`.
+///
+/// ```no_run
+/// use clamber::render::{Gpu, Renderer};
+///
+/// let rig = clamber::gltf::load("creature.glb")?;
+/// let mut renderer = Renderer::new(Gpu::new()?, 640, 360)?;
+/// let mut meshes = Vec::new();
+/// for visual in clamber::visual_meshes(&rig) {
+///     meshes.push(renderer.add_mesh(&visual.source())?);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn visual_meshes(rig: &Rig) -> impl Iterator<Item = VisualSource<'_>> {
+    rig.visual.iter().map(|mesh| {
+        let mut paint = Paint::new(mesh.positions.len());
+        for primitive in &mesh.primitives {
+            let material = primitive
+                .material
+                .and_then(|index| rig.materials.get(index));
+            let [r, g, b, _] = material.map_or([1.0; 4], |material| material.base_color);
+            let look = primitive.tag.kind.into();
+            paint.add(&primitive.triangles, [r, g, b], &mesh.colors, look);
+        }
+        VisualSource {
+            mesh,
+            paint,
+            joint_count: rig.skeleton.joints().len(),
+        }
+    })
+}

@@ -1,0 +1,109 @@
+//! Creatures that are scaled to a height.
+
+use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
+use clamber_surface::rig::Playback;
+use glam::Vec3;
+use serde_json::json;
+
+use crate::builder::File;
+
+/// The square, 2 m tall in its armature of scale 2, moved by translations of every interpolation, with a weak point.
+fn moving_square() -> File {
+    let mut file = File::square();
+    // Not where it is bound, and bound where the inverse bind matrices have a translation.
+    file.json["nodes"][0]["translation"] = json!([0.5, -3, 0]);
+    let weak = json!({"name": "eye", "translation": [0, 0.25, 0.5],
+        "extras": {"clamber": {"weak_point": {"hit_points": 1, "radius": 0.3}}}});
+    file.node_under(2, weak);
+    let times = file.floats("SCALAR", &[0.0, 1.0]);
+    let two = file.floats("VEC3", &[0.0, 1.0, 0.0, 0.3, 1.5, 0.1]);
+    #[rustfmt::skip]
+    let spline = file.floats("VEC3", &[
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0,
+        0.0, 7.0, 0.0, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0,
+    ]);
+    let sizes = file.floats("VEC3", &[1.0, 1.0, 1.0, 2.0, 0.5, 3.0]);
+    let animation = &mut file.json["animations"][0];
+    for (sampler, (output, interpolation)) in [
+        (two, "LINEAR"),
+        (two, "STEP"),
+        (spline, "CUBICSPLINE"),
+        (sizes, "LINEAR"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let samplers = animation["samplers"].as_array_mut().unwrap();
+        samplers.push(json!({"input": times, "output": output, "interpolation": interpolation}));
+        let (node, path) = [
+            (2, "translation"),
+            (0, "translation"),
+            (1, "translation"),
+            (1, "scale"),
+        ][sampler];
+        let channels = animation["channels"].as_array_mut().unwrap();
+        channels.push(json!({"sampler": sampler + 1, "target": {"node": node, "path": path}}));
+    }
+    file
+}
+
+fn with_height(file: &File, height: f32) -> Result<Rig, GltfErrorKind> {
+    let options = LoadOptions::default().with_height(height);
+    load_slice(&file.glb(), &options).map_err(|error| error.kind)
+}
+
+/// All vertices at a time of the first clip, or at rest.
+fn skinned(rig: &Rig, time: Option<f64>) -> Vec<Vec3> {
+    let rest = rig.skeleton.rest_pose();
+    let pose = match time {
+        Some(time) => rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap(),
+        None => rest,
+    };
+    let palette = rig.skeleton.palette(&pose).unwrap();
+    clamber_surface::skin::skin(&rig.collider, palette.matrices()).unwrap()
+}
+
+#[test]
+fn every_length_is_multiplied() {
+    let file = moving_square();
+    let (plain, scaled) = (file.load().unwrap(), with_height(&file, 5.0).unwrap());
+    assert_eq!(plain.report.scale, None);
+    assert_eq!(scaled.report.scale, Some(2.5));
+    for time in [None, Some(0.0), Some(0.3), Some(0.8), Some(1.0)] {
+        for (plain, scaled) in skinned(&plain, time).iter().zip(skinned(&scaled, time)) {
+            let off = (*plain * 2.5 - scaled).length();
+            assert!(off < 1e-5, "{time:?}: {plain} became {scaled}");
+        }
+    }
+    let ys = || skinned(&scaled, None).into_iter().map(|p| p.y);
+    let height = ys().fold(f32::MIN, f32::max) - ys().fold(f32::MAX, f32::min);
+    assert!((height - 5.0).abs() < 1e-5, "{height}");
+    assert_eq!(scaled.visual[0].positions[2], Vec3::new(2.5, 2.5, 0.0));
+    let (eye, plain_eye) = (&scaled.weak_points[0], &plain.weak_points[0]);
+    assert_eq!(eye.position, plain_eye.position * 2.5);
+    assert_eq!(eye.radius, 0.3 * 2.5);
+    assert_eq!(scaled.skeleton.joints()[1].inverse_bind.rows[1][3], -2.5);
+    assert_eq!(scaled.collider.radius(), plain.collider.radius() * 2.5);
+}
+
+#[test]
+fn what_has_no_height_or_cannot_have_it_is_refused() {
+    let file = File::square();
+    for wanted in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let error = with_height(&file, wanted).unwrap_err();
+        assert!(matches!(error, GltfErrorKind::BadHeight { .. }), "{error}");
+    }
+    // Laid down.
+    let mut flat = File::square();
+    flat.json["nodes"][0]["rotation"] = json!([1, 0, 0, 0]);
+    flat.json["nodes"][0]["scale"] = json!([2, 0, 2]);
+    let error = with_height(&flat, 1.0).unwrap_err();
+    let expected = matches!(error, GltfErrorKind::NoHeight { found, .. } if found == 0.0);
+    assert!(expected, "{error}");
+    // The joints are farther away than f32 reaches at that height.
+    let mut far = File::square();
+    far.json["nodes"][0]["scale"] = json!([1e-20, 1e-20, 1e-20]);
+    far.json["nodes"][0]["translation"] = json!([1e20, 0, 0]);
+    let error = with_height(&far, 1e10).unwrap_err();
+    assert!(!error.to_string().is_empty(), "{error}");
+}

@@ -1,0 +1,104 @@
+//! Buffers that the caller gives.
+
+use std::io;
+
+use clamber_gltf::{GltfErrorKind, LoadOptions, load_slice_with};
+use serde_json::json;
+
+use crate::builder::File;
+
+/// A document whose buffers are at these URIs, the last of them with the data.
+fn document(file: &File, uris: &[(&str, usize)]) -> Vec<u8> {
+    let mut json = file.json.clone();
+    let buffers = uris.iter();
+    let buffers = buffers.map(|(uri, length)| json!({"byteLength": length, "uri": uri}));
+    json["buffers"] = buffers.collect();
+    for view in json["bufferViews"].as_array_mut().unwrap() {
+        view["buffer"] = json!(uris.len() - 1);
+    }
+    json.to_string().into_bytes()
+}
+
+#[test]
+fn each_file_is_asked_for_once_by_its_decoded_path() {
+    let file = File::square();
+    let all = file.bytes.len();
+    let uris = [
+        ("./a%20b//data.bin", 4),
+        ("other.bin", 2),
+        ("data:,%01%02", 2),
+        ("a%20b/./data.bin", all),
+    ];
+    let mut asked = Vec::new();
+    let rig = load_slice_with(&document(&file, &uris), &LoadOptions::default(), |path| {
+        asked.push(path.to_owned());
+        Ok(match path {
+            "a b/data.bin" => file.bytes.clone(),
+            _ => vec![0; 100],
+        })
+    });
+    assert_eq!(asked, ["a b/data.bin", "other.bin"]);
+    assert_eq!(rig.unwrap().collider.positions().len(), 4);
+}
+
+#[test]
+fn files_that_are_short_or_missing_are_errors() {
+    let file = File::square();
+    let all = file.bytes.len();
+    let document = document(&file, &[("data.bin", all)]);
+    let options = LoadOptions::default();
+    let short = load_slice_with(&document, &options, |_| Ok(file.bytes[1..].to_vec()));
+    let text = format!("buffer 0: claims {all} bytes, but holds {}", all - 1);
+    assert_eq!(short.unwrap_err().to_string(), text);
+    let missing = load_slice_with(&document, &options, |_| {
+        Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            "not in the archive",
+        ))
+    });
+    let error = missing.unwrap_err();
+    assert!(matches!(error.kind, GltfErrorKind::Read { .. }), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "cannot read data.bin: not in the archive"
+    );
+}
+
+#[test]
+fn paths_out_of_the_folder_are_refused_before_anyone_is_asked() {
+    let file = File::square();
+    for uri in [
+        "/data.bin",
+        "../data.bin",
+        "a/%2e%2e/data.bin",
+        "file:data.bin",
+        ".",
+    ] {
+        let document = document(&file, &[("fine.bin", 1), (uri, file.bytes.len())]);
+        let refused = load_slice_with(&document, &LoadOptions::default(), |path| {
+            panic!("{uri}: asked for {path}")
+        });
+        let error = refused.unwrap_err();
+        let expected = matches!(error.kind, GltfErrorKind::Invalid { .. });
+        assert!(expected, "{uri}: {error}");
+    }
+}
+
+#[test]
+fn what_a_file_has_beyond_its_buffers_gives_no_memory_to_take() {
+    let mut file = File::square();
+    let vertices = 20_000;
+    let zeros = json!({"componentType": 5126, "count": vertices, "type": "VEC3"});
+    let zeros = file.push("accessors", zeros);
+    file.json["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": zeros}}]);
+    file.json["nodes"][3] = json!({"mesh": 0});
+    file.json.as_object_mut().unwrap().remove("skins");
+    let document = document(&file, &[("data.bin", file.bytes.len())]);
+    let loaded = load_slice_with(&document, &LoadOptions::default(), |_| {
+        let mut bytes = file.bytes.clone();
+        bytes.resize(10 << 20, 0);
+        Ok(bytes)
+    });
+    let error = loaded.unwrap_err().to_string();
+    assert!(error.contains("more memory"), "{error}");
+}

@@ -1,0 +1,77 @@
+//! Tags from the file, and from the caller.
+
+use clamber_gltf::{LoadOptions, Rig, load_slice};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use serde_json::json;
+
+use crate::builder::File;
+
+/// Three primitives: of the square's nameless fur, of "horn", and of no material.
+fn three() -> File {
+    let mut file = File::square();
+    let extras = json!({"clamber": {"surface": "stone", "user": 7}});
+    file.push("materials", json!({"name": "horn", "extras": extras}));
+    for height in [1.0, 2.0] {
+        let at = |x, y| [x, y, height];
+        let points = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)];
+        let positions = file.positions(&points);
+        let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+        let mut primitive = json!({"attributes": {"POSITION": positions}});
+        if height == 1.0 {
+            primitive["material"] = json!(1);
+        }
+        primitives.push(primitive);
+    }
+    // Rigid, so that positions are enough.
+    file.json.as_object_mut().unwrap().remove("skins");
+    let body = file.json["nodes"][3].as_object_mut().unwrap();
+    body.remove("skin");
+    file
+}
+
+fn load(options: &LoadOptions) -> Rig {
+    load_slice(&three().glb(), options).unwrap()
+}
+
+/// The collider's tags, which are those of what is drawn.
+fn tags(rig: &Rig) -> Vec<SurfaceTag> {
+    let seen = rig.visual_collider().unwrap();
+    assert_eq!(seen.tags(), rig.collider.tags());
+    let primitives = rig.visual.iter().flat_map(|mesh| &mesh.primitives);
+    let drawn: Vec<_> = primitives
+        .flat_map(|primitive| vec![primitive.tag; primitive.triangles.len()])
+        .collect();
+    assert_eq!(drawn, rig.collider.tags());
+    drawn
+}
+
+#[test]
+fn extras_of_materials_tag_triangles_and_the_rest_is_the_default() {
+    let (fur, horn) = (SurfaceKind::Fur, SurfaceTag::new(SurfaceKind::Stone));
+    let fur = SurfaceTag::new(fur);
+    let expected = [fur, fur, horn.with_user(7), SurfaceTag::default()];
+    assert_eq!(tags(&load(&LoadOptions::default())), expected);
+}
+
+#[test]
+fn the_tagger_is_asked_for_every_surface_and_sees_what_the_file_says() {
+    let options = LoadOptions::default().with_tags(|name, of_file| match name {
+        Some("horn") => of_file.with_ledge().with_user(of_file.user + 1),
+        Some(name) => panic!("no material is called {name}"),
+        None => of_file.with_user(100 + of_file.kind as u32),
+    });
+    let fur = SurfaceTag::new(SurfaceKind::Fur);
+    let fur = fur.with_user(100 + SurfaceKind::Fur as u32);
+    let horn = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+    let bare = SurfaceTag::default().with_user(100 + SurfaceKind::Skin as u32);
+    let rig = load(&options);
+    assert_eq!(tags(&rig), [fur, fur, horn.with_user(8), bare]);
+    assert_eq!(rig.materials[1].tag, horn.with_user(8));
+}
+
+#[test]
+fn one_call_tags_all_of_it() {
+    let stone = SurfaceTag::new(SurfaceKind::Stone).with_user(u32::MAX);
+    let rig = load(&LoadOptions::default().with_tag(stone));
+    assert_eq!(tags(&rig), [stone; 4]);
+}

@@ -1,0 +1,34 @@
+//! Bounds of skinned vertices from the palette alone: no vertex is skinned.
+//!
+//! A skinned vertex is `p' = sum w_i M_i p` with `w_i >= 0`, `sum w_i = 1`, `M_i p = A_i p + t_i`.
+//! Let the vertices of a node lie at rest in the ball (c, r), let `w_i` lie within `[low_i, high_i]`
+//! over all of them, and let `s_i` be at least the largest singular value of `A_i`.
+//!
+//! - **Hull**: `M_i p` lies in the ball `(M_i c, s_i r)`, so p' lies in the convex hull of these
+//!   balls, and in every ball that holds them all.
+//! - **Weight interval**: choose fixed `o_i` that add up to exactly 1, here the middles of the
+//!   intervals, renormalised to multiples of 2^-24; let `d_i = max(high_i - o_i, o_i - low_i)` and
+//!   `c' = sum o_i M_i c`. Since `sum (w_i - o_i) = 0`,
+//!   `p' - c' = sum w_i A_i (p - c) + sum (w_i - o_i) (M_i c - c')`,
+//!   so p' lies within `r max s_i + sum d_i |M_i c - c'|` of c'. Where all vertices have the same
+//!   weights the second term is 0.
+//!
+//! The smaller of the two counts. All this holds for exact skinning; what f32 skinning and these bounds
+//! themselves lose is derived where they are computed, in `spheres.rs` and `root.rs`, and added to every
+//! radius. It costs O(joints of the node), in any order.
+//!
+//! Kavan and Zara 2005 ("Fast Collision Detection for Skeletally Deformable Models", Computer
+//! Graphics Forum 24(3)) refit spheres of linear blend skinning by the hull argument;
+//! Unterguggenberger, Kerbl, Pernsteiner and Wimmer 2021 ("Conservative Meshlet Bounds for Robust
+//! Culling of Skinned Meshes", Computer Graphics Forum 40(7)) bound meshlets.
+
+mod joint_table;
+mod root;
+mod spheres;
+
+pub(crate) use joint_table::JointTable;
+pub(crate) use root::{RootBox, root_box};
+pub(crate) use spheres::{Spheres, spheres};
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,139 @@
+//! Creatures on which one term of a bound alone holds the vertex, so that no test passes without it.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, Vec3};
+
+use crate::bounds::{JointTable, root_box, spheres};
+use crate::geometry::{Affine, rotation_from_axis_angle, widen};
+use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use crate::rig::JointId;
+use crate::simd::SimdLevel;
+use crate::skin::skin;
+use crate::testing::direction;
+
+/// One triangle from corners, each with its weights by joint.
+fn triangle(corners: [Vec3; 3], weights: [&[f32]; 3]) -> Arc<ColliderMesh> {
+    let joints = weights.map(<[f32]>::len).into_iter().max().unwrap_or(0);
+    let given: Vec<Influence> = weights
+        .iter()
+        .flat_map(|weights| (0..).zip(weights.iter()))
+        .map(|(joint, weight)| Influence {
+            joint: JointId(joint),
+            weight: *weight,
+        })
+        .collect();
+    let source = MeshSource {
+        positions: &corners,
+        triangles: &[[0, 1, 2]],
+        influences: &given,
+        joint_count: joints,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    Arc::new(mesh)
+}
+
+fn turn(rng: &mut fastrand::Rng) -> Affine {
+    let axis = widen(direction(rng)).normalize();
+    let angle = rng.f64() * 6.0;
+    Affine::from_f64(&DAffine3::from_quat(rotation_from_axis_angle(axis, angle)))
+}
+
+/// Every vertex in the sphere of the hierarchy's one lane.
+fn assert_in_lane(mesh: &ColliderMesh, palette: &[Affine], case: &str) {
+    let hierarchy = mesh.hierarchy();
+    let node = &hierarchy.nodes[0];
+    let mut table = JointTable::default();
+    table.update(palette);
+    for level in SimdLevel::available() {
+        let found = spheres(level, hierarchy, node, &table);
+        let sphere = found.sphere(0);
+        for p in skin(mesh, palette).unwrap() {
+            assert!(
+                sphere.contains(p),
+                "{case}, {level}: {p} outside {sphere:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_root_box_of_joints_that_move_one_vertex_each_holds_what_skinning_rounds() {
+    // Every joint's rest ball is a point: only the inflation relative to its distance is left.
+    let mut rng = fastrand::Rng::with_seed(111);
+    for case in 0..2_000 {
+        let center = direction(&mut rng) * 1e3;
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p + center);
+        let mesh = triangle(
+            corners,
+            [&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]],
+        );
+        let palette = [turn(&mut rng), turn(&mut rng), turn(&mut rng)];
+        let mut table = JointTable::default();
+        table.update(&palette);
+        let found = root_box(mesh.joint_balls(), &table);
+        for p in skin(&mesh, &palette).unwrap() {
+            let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
+            assert!(inside, "case {case}: {p} outside {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_root_box_holds_what_skinning_rounds_of_a_far_translation() {
+    let mut rng = fastrand::Rng::with_seed(112);
+    for case in 0..2_000 {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p * 1e-3);
+        let mesh = triangle(
+            corners,
+            [&[0.3, 0.3, 0.4], &[0.1, 0.3, 0.6], &[0.2, 0.2, 0.6]],
+        );
+        let mut matrix = turn(&mut rng);
+        let far = direction(&mut rng) * 1e6;
+        for (row, x) in matrix.rows.iter_mut().zip(far.to_array()) {
+            row[3] = x;
+        }
+        let mut table = JointTable::default();
+        table.update(&[matrix; 3]);
+        let found = root_box(mesh.joint_balls(), &table);
+        for p in skin(&mesh, &[matrix; 3]).unwrap() {
+            let inside = p.cmpge(found.min).all() && p.cmple(found.max).all();
+            assert!(inside, "case {case}: {p} outside {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_joint_whose_middle_rounds_to_nothing_still_moves_its_vertex() {
+    // The least weight there is, on a joint a thousand kilometres off: 6 cm.
+    let unit = 1.0 / 16_777_216.0;
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p * 1e-3);
+    let mesh = triangle(corners, [&[1.0 - unit, unit], &[1.0, 0.0], &[1.0, 0.0]]);
+    let node = &mesh.hierarchy().nodes[0];
+    let rows = node.weights(mesh.hierarchy());
+    assert_eq!((rows[1].middle[0], rows[1].deviation[0]), (0.0, unit));
+    let mut far = Affine::IDENTITY;
+    far.rows[1][3] = 1e6;
+    let palette = [Affine::IDENTITY, far];
+    let moved = skin(&mesh, &palette).unwrap()[0] - corners[0];
+    assert!(moved.length() > 0.05, "{moved}");
+    assert_in_lane(&mesh, &palette, "tiny weight");
+}
+
+#[test]
+fn a_lane_far_from_the_origin_that_only_turns_holds_what_skinning_rounds() {
+    // No translation: what skinning rounds grows with the rest position alone.
+    let mut rng = fastrand::Rng::with_seed(113);
+    for case in 0..4_000 {
+        let far = direction(&mut rng) * 1e3;
+        // As small as the coordinates allow: their last place is 6e-5 there.
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| far + p * 1.3e-4);
+        // Some of them lie on one line once rounded.
+        if crate::geometry::triangle::scaled_normal(corners).length() == 0.0 {
+            continue;
+        }
+        let mesh = triangle(corners, [&[1.0], &[1.0], &[1.0]]);
+        assert_in_lane(&mesh, &[turn(&mut rng)], &format!("case {case}: {far}"));
+    }
+}

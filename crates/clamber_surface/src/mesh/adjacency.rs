@@ -1,0 +1,160 @@
+//! Which triangles share edges, and which sets of triangles hang together.
+//!
+//! Three half-edges a triangle are sorted by the edge that they lie on; those of one edge are paired and joined into
+//! one island (union-find). O(n log n) for n triangles.
+
+use super::{ColliderMesh, IslandId, TriangleId};
+
+/// What follows from the triangles that a mesh has now.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Adjacency {
+    /// By triangle: across the edge from corner k to the next.
+    neighbours: Vec<[Option<TriangleId>; 3]>,
+    /// `None` for removed triangles.
+    island_of: Vec<Option<IslandId>>,
+    islands: usize,
+}
+
+impl ColliderMesh {
+    /// The triangles across the three edges of a triangle: the first from corner 0 to corner 1, then 1 to 2 and 2 to 0.
+    /// `None` where the surface ends, and everywhere for a triangle that was removed or never was.
+    ///
+    /// Triangles are neighbours if they share two vertices. Vertices that were left apart
+    /// ([`BuildReport::cracks`](super::BuildReport::cracks)) are two, so the surface ends there. Neighbours are mutual: of
+    /// more than two triangles at an edge those that run along it in opposite directions are paired first, then those
+    /// left, each by ascending id; an odd one out has none.
+    ///
+    /// The first call after the mesh was built or edited costs O(n log n) of all n triangles, any other O(1).
+    pub fn neighbours(&self, triangle: TriangleId) -> [Option<TriangleId>; 3] {
+        let neighbours = self.adjacency().neighbours.get(triangle.index());
+        neighbours.copied().unwrap_or_default()
+    }
+
+    /// The island that a triangle belongs to: all triangles that can be reached from it across shared edges. One vertex
+    /// in common joins none; an edge joins all its triangles. `None` if it was removed or never was. Costs what
+    /// [`ColliderMesh::neighbours`] does.
+    pub fn island_of(&self, triangle: TriangleId) -> Option<IslandId> {
+        let island_of = self.adjacency().island_of.get(triangle.index());
+        island_of.copied().flatten()
+    }
+
+    /// How many islands there are; their ids are `0..island_count`. Costs what [`ColliderMesh::neighbours`] does.
+    pub fn island_count(&self) -> usize {
+        self.adjacency().islands
+    }
+
+    fn adjacency(&self) -> &Adjacency {
+        self.adjacency.get_or(|| Adjacency::new(self))
+    }
+}
+
+/// A triangle's side: `corner` to the next.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct HalfEdge {
+    /// The smaller vertex first.
+    edge: [u32; 2],
+    triangle: u32,
+    corner: u8,
+    /// From the smaller vertex to the larger.
+    ascends: bool,
+}
+
+impl Adjacency {
+    fn new(mesh: &ColliderMesh) -> Self {
+        let mut neighbours = vec![[None; 3]; mesh.triangles.len()];
+        let mut forest: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let half_edges = half_edges(mesh);
+        for around in half_edges.chunk_by(|a, b| a.edge == b.edge) {
+            for [a, b] in pairs(around) {
+                neighbours[a.triangle as usize][usize::from(a.corner)] =
+                    Some(TriangleId(b.triangle));
+                neighbours[b.triangle as usize][usize::from(b.corner)] =
+                    Some(TriangleId(a.triangle));
+            }
+            for two in around.windows(2) {
+                join(&mut forest, two[0].triangle, two[1].triangle);
+            }
+        }
+        let (island_of, islands) = number_islands(mesh, &mut forest);
+        Self {
+            neighbours,
+            island_of,
+            islands,
+        }
+    }
+}
+
+/// Of all triangles that there are, by edge and then by triangle.
+fn half_edges(mesh: &ColliderMesh) -> Vec<HalfEdge> {
+    let mut found = Vec::with_capacity(3 * mesh.triangles.len());
+    let triangles = mesh.triangles.iter().zip(&mesh.part_of);
+    for ((corners, part), triangle) in triangles.zip(0..) {
+        if part.is_none() {
+            continue;
+        }
+        for corner in 0..3_u8 {
+            let from = corners[usize::from(corner)].0;
+            let to = corners[usize::from(corner + 1) % 3].0;
+            found.push(HalfEdge {
+                edge: [from.min(to), from.max(to)],
+                triangle,
+                corner,
+                ascends: from < to,
+            });
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Those of one edge, two by two: opposite directions first, then what is left.
+fn pairs(around: &[HalfEdge]) -> impl Iterator<Item = [&HalfEdge; 2]> {
+    let that = |ascends| around.iter().filter(move |half| half.ascends == ascends);
+    let opposite = that(true).count().min(that(false).count());
+    let both = that(true).zip(that(false)).map(|(a, b)| [a, b]);
+    // All of these run in one direction: of the other none is left.
+    let left = move |skip| {
+        that(true)
+            .skip(opposite)
+            .chain(that(false).skip(opposite))
+            .skip(skip)
+            .step_by(2)
+    };
+    both.chain(left(0).zip(left(1)).map(|(a, b)| [a, b]))
+}
+
+/// The lowest triangle of the tree that a triangle is in so far.
+fn root(forest: &mut [u32], mut triangle: u32) -> u32 {
+    while forest[triangle as usize] != triangle {
+        let parent = forest[triangle as usize];
+        forest[triangle as usize] = forest[parent as usize];
+        triangle = parent;
+    }
+    triangle
+}
+
+fn join(forest: &mut [u32], a: u32, b: u32) {
+    let [a, b] = [root(forest, a), root(forest, b)];
+    forest[a.max(b) as usize] = a.min(b);
+}
+
+/// Islands by their lowest triangle, and how many there are.
+fn number_islands(mesh: &ColliderMesh, forest: &mut [u32]) -> (Vec<Option<IslandId>>, usize) {
+    let mut island_of: Vec<Option<IslandId>> = vec![None; forest.len()];
+    let mut islands = 0;
+    for triangle in 0..forest.len() {
+        if mesh.part_of[triangle].is_none() {
+            continue;
+        }
+        let root = root(forest, triangle as u32) as usize;
+        if root == triangle {
+            island_of[root] = Some(IslandId(islands));
+            islands += 1;
+        }
+        island_of[triangle] = island_of[root];
+    }
+    (island_of, islands as usize)
+}
+
+#[cfg(test)]
+mod tests;

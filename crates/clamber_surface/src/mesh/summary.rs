@@ -1,0 +1,326 @@
+//! What bounds need of a set of vertices at rest.
+
+use glam::Vec3;
+
+use super::weights::{Influence, WEIGHT_ONE, normalize};
+use super::{ColliderMesh, VertexId};
+use crate::geometry::{Sphere, round_up_to_f32, widen};
+use crate::rig::JointId;
+
+/// Rest data of a set of vertices, at least one: from it and a palette follows what bounds them in any pose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Summary {
+    /// The box around the rest positions.
+    pub(crate) low: Vec3,
+    pub(crate) high: Vec3,
+    /// About the middle of the box, in f32, which may lose a vertex to rounding: good enough to choose by.
+    /// [`Summary::bound`] makes it one that holds all.
+    pub(crate) ball: Sphere,
+    /// The largest distance of a vertex or of the ball's centre from the mesh's origin, rounded up; 0 before
+    /// [`Summary::bound`].
+    pub(crate) reach: f32,
+    /// Those in several sets of a union count once for each.
+    pub(crate) vertices: usize,
+    /// The most of one vertex.
+    pub(crate) influences: usize,
+    /// Of every joint that moves one of them, in no promised order.
+    pub(crate) spans: Vec<Span>,
+}
+
+/// The weights of one joint over a set of vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Span {
+    pub(crate) joint: u32,
+    /// Smallest and largest, over the vertices that the joint moves.
+    low: f32,
+    high: f32,
+    /// How many these are.
+    vertices: usize,
+}
+
+impl Span {
+    /// The smallest of all of so many vertices: 0 as soon as there is one that the joint does not move.
+    fn low(&self, vertices: usize) -> f32 {
+        if self.vertices < vertices {
+            0.0
+        } else {
+            self.low
+        }
+    }
+
+    /// Half of how far its weights lie apart.
+    pub(crate) fn spread(&self, vertices: usize) -> f32 {
+        0.5 * (self.high - self.low(vertices))
+    }
+}
+
+/// How much one joint moves the vertices of a set. All weights are multiples of 2^-24, so the
+/// differences below are exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WeightInterval {
+    /// The joint; it moves at least one of the vertices.
+    pub(crate) joint: u32,
+    /// Near the middle of its weights; those of a set add up to exactly 1.
+    pub(crate) middle: f32,
+    /// The most by which a weight differs from `middle`.
+    pub(crate) deviation: f32,
+}
+
+/// So many points of a large set give the centre of its ball; all of them give the radius.
+const CENTER_SAMPLE: usize = 1024;
+
+impl Summary {
+    /// The middle of the box.
+    pub(crate) fn middle(&self) -> Vec3 {
+        (self.low + self.high) * 0.5
+    }
+
+    /// Makes the ball nearly the smallest that holds the vertices, which stand at `points`, and finds the reach.
+    #[must_use]
+    pub(crate) fn bound(mut self, points: &[Vec3]) -> Self {
+        let stride = points.len().div_ceil(CENTER_SAMPLE).max(1);
+        let sample = points.iter().copied().step_by(stride);
+        self.ball = match Sphere::nearly_smallest(sample) {
+            Some(ball) if stride == 1 => ball,
+            near => {
+                let center = near.map_or(Vec3::ZERO, |ball| ball.center);
+                Sphere::around(center, points.iter().copied())
+            }
+        };
+        self.reach = points
+            .iter()
+            .map(|p| reach_of(*p))
+            .fold(reach_of(self.ball.center), f32::max);
+        self
+    }
+
+    /// Grows a bounded ball so as to hold one more vertex. Its centre stays where it is.
+    pub(crate) fn hold(&mut self, position: Vec3) {
+        let grown = Sphere::around(self.ball.center, [position].into_iter());
+        self.ball.radius = self.ball.radius.max(grown.radius);
+        self.reach = self.reach.max(reach_of(position));
+    }
+
+    /// How much each joint moves the vertices, by ascending joint.
+    pub(crate) fn intervals(&self) -> Vec<WeightInterval> {
+        let mut spans = self.spans.clone();
+        spans.sort_unstable_by_key(|span| span.joint);
+        // Twice the middles. Their rounding does not matter, the sum of the integers they become does.
+        let doubled = |span: &Span| Influence {
+            joint: JointId(span.joint),
+            weight: span.low(self.vertices) + span.high,
+        };
+        let middles: Vec<Influence> = spans.iter().map(doubled).collect();
+        // Without those of the joints whose middle is 0.
+        let mut middles = normalize(&middles)
+            .unwrap_or_default()
+            .into_iter()
+            .peekable();
+        let interval = |span: &Span| {
+            let units = middles.next_if(|(joint, _)| joint.0 == span.joint);
+            let middle = units.map_or(0, |(_, units)| units) as f32 / WEIGHT_ONE as f32;
+            let low = span.low(self.vertices);
+            WeightInterval {
+                joint: span.joint,
+                middle,
+                deviation: (span.high - middle).max(middle - low),
+            }
+        };
+        spans.iter().map(interval).collect()
+    }
+}
+
+/// At least the distance from the mesh's origin.
+fn reach_of(position: Vec3) -> f32 {
+    round_up_to_f32(widen(position).length() * (1.0 + 1e-15))
+}
+
+/// Summarises sets of vertices of one mesh. Keeps its memory from one to the next.
+pub(crate) struct Summarizer<'a> {
+    pub(crate) mesh: &'a ColliderMesh,
+    /// The last set that a vertex, or a joint, was seen in; sets are numbered from 1.
+    vertex_seen: Vec<u32>,
+    joint_seen: Vec<u32>,
+    set: u32,
+    /// Where a joint of the current set stands in its spans.
+    place: Vec<u32>,
+    vertices: Vec<u32>,
+}
+
+impl<'a> Summarizer<'a> {
+    pub(crate) fn new(mesh: &'a ColliderMesh) -> Self {
+        Self {
+            mesh,
+            vertex_seen: vec![0; mesh.positions().len()],
+            joint_seen: vec![0; mesh.joint_count()],
+            set: 0,
+            place: vec![0; mesh.joint_count()],
+            vertices: Vec::new(),
+        }
+    }
+
+    /// How many vertices some triangles have.
+    pub(crate) fn count_corners(&mut self, triangles: impl Iterator<Item = u32>) -> usize {
+        self.collect_corners(triangles);
+        self.vertices.len()
+    }
+
+    /// The corners of some triangles, at least one, into `summary`, which keeps its memory.
+    pub(crate) fn of_corners(
+        &mut self,
+        triangles: impl Iterator<Item = u32>,
+        summary: &mut Summary,
+    ) {
+        self.collect_corners(triangles);
+        self.read(summary);
+    }
+
+    /// Some vertices, each once, bounded.
+    pub(crate) fn of_vertices(&mut self, vertices: &[VertexId]) -> Summary {
+        self.set += 1;
+        self.vertices.clear();
+        self.vertices.extend(vertices.iter().map(|vertex| vertex.0));
+        let mut summary = Summary::default();
+        self.read(&mut summary);
+        let positions = self.mesh.positions();
+        let points: Vec<Vec3> = vertices.iter().map(|v| positions[v.index()]).collect();
+        summary.bound(&points)
+    }
+
+    /// Several sets together.
+    pub(crate) fn union<'s>(&mut self, sets: impl Iterator<Item = &'s Summary> + Clone) -> Summary {
+        self.set += 1;
+        let mut union = Summary {
+            low: sets.clone().map(|s| s.low).fold(Vec3::INFINITY, Vec3::min),
+            high: sets
+                .clone()
+                .map(|s| s.high)
+                .fold(Vec3::NEG_INFINITY, Vec3::max),
+            ..Summary::default()
+        };
+        let middle = union.middle();
+        union.ball.center = middle;
+        for set in sets {
+            let reach = (set.middle() - middle).length() + set.ball.radius;
+            union.ball.radius = union.ball.radius.max(reach);
+            union.vertices += set.vertices;
+            union.influences = union.influences.max(set.influences);
+            for span in &set.spans {
+                // A joint that does not move all of the set's vertices has fewer in the union too.
+                self.add(*span, &mut union.spans);
+            }
+        }
+        union
+    }
+
+    /// The distinct corners of some triangles, by first appearance.
+    fn collect_corners(&mut self, triangles: impl Iterator<Item = u32>) {
+        self.set += 1;
+        self.vertices.clear();
+        for triangle in triangles {
+            for corner in self.mesh.triangles()[triangle as usize] {
+                if self.vertex_seen[corner.index()] != self.set {
+                    self.vertex_seen[corner.index()] = self.set;
+                    self.vertices.push(corner.0);
+                }
+            }
+        }
+    }
+
+    /// What was collected.
+    fn read(&mut self, summary: &mut Summary) {
+        let positions = self.mesh.positions();
+        let points = self.vertices.iter().map(|v| positions[*v as usize]);
+        summary.low = points.clone().fold(Vec3::INFINITY, Vec3::min);
+        summary.high = points.clone().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let middle = summary.middle();
+        let farthest = points.map(|p| (p - middle).length_squared());
+        summary.ball = Sphere {
+            center: middle,
+            radius: farthest.fold(0.0, f32::max).sqrt(),
+        };
+        summary.reach = 0.0;
+        summary.vertices = self.vertices.len();
+        summary.influences = 0;
+        summary.spans.clear();
+        let vertices = std::mem::take(&mut self.vertices);
+        for vertex in &vertices {
+            let (joints, weights) = self.mesh.influence_slices(*vertex as usize);
+            summary.influences = summary.influences.max(joints.len());
+            for (joint, weight) in joints.iter().zip(weights) {
+                let span = Span {
+                    joint: *joint,
+                    low: *weight,
+                    high: *weight,
+                    vertices: 1,
+                };
+                self.add(span, &mut summary.spans);
+            }
+        }
+        self.vertices = vertices;
+    }
+
+    fn add(&mut self, span: Span, spans: &mut Vec<Span>) {
+        let joint = span.joint as usize;
+        if self.joint_seen[joint] == self.set {
+            let known = &mut spans[self.place[joint] as usize];
+            known.low = known.low.min(span.low);
+            known.high = known.high.max(span.high);
+            known.vertices += span.vertices;
+        } else {
+            self.joint_seen[joint] = self.set;
+            self.place[joint] = spans.len() as u32;
+            spans.push(span);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::{Spread, creature};
+
+    #[test]
+    fn middles_of_weights_add_up_to_exactly_one() {
+        let mut rng = fastrand::Rng::with_seed(54);
+        for case in 0..300 {
+            let spread = [Spread::Uneven, Spread::Few][case / 16 % 2];
+            let (mesh, patch) = creature(&mut rng, 1 + case % 16, spread);
+            let vertices = patch[..rng.usize(1..=patch.len())].to_vec();
+            let intervals = Summarizer::new(&mesh).of_vertices(&vertices).intervals();
+            let sum: f64 = intervals.iter().map(|i| f64::from(i.middle)).sum();
+            assert_eq!(sum, 1.0, "case {case}");
+            for v in &vertices {
+                for interval in &intervals {
+                    let weight = mesh.influences(*v).find(|(j, _)| j.0 == interval.joint);
+                    let weight = weight.map_or(0.0, |(_, w)| w);
+                    let off = (weight - interval.middle).abs();
+                    assert!(off <= interval.deviation, "case {case}: {interval:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_union_has_the_intervals_of_its_sets() {
+        let mut rng = fastrand::Rng::with_seed(55);
+        for case in 0..300 {
+            let (mesh, patch) = creature(&mut rng, 1 + case % 5, Spread::Few);
+            if patch.len() < 2 {
+                continue;
+            }
+            let mut summarizer = Summarizer::new(&mesh);
+            let (left, right) = patch.split_at(rng.usize(1..patch.len()));
+            let sets = [left, right].map(|set| summarizer.of_vertices(set));
+            let union = summarizer.union(sets.iter());
+            let whole = summarizer.of_vertices(&patch);
+            assert_eq!(union.intervals(), whole.intervals(), "case {case}");
+            assert_eq!(union.influences, whole.influences, "case {case}");
+            assert_eq!(
+                (union.low, union.high),
+                (whole.low, whole.high),
+                "case {case}"
+            );
+        }
+    }
+}

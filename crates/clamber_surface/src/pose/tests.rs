@@ -1,0 +1,189 @@
+//! Every vertex in every bound above it, on meshes as they are built.
+
+use super::*;
+use crate::bounds::tests::random::{JOINTS, MOTIONS, Spread, creature, palette};
+use crate::measure::skin_scalar;
+use crate::mesh::clusters::Cluster;
+use crate::mesh::hierarchy::Child;
+use crate::mesh::{BuildOptions, Influence, MeshSource};
+use crate::rig::{JointId, Palette};
+use crate::testing::{bend, direction, point, tube};
+use glam::DVec3;
+
+/// Several hundred triangles between nearby vertices that follow `influences` joints of [`JOINTS`]:
+/// enough for nodes above nodes.
+fn many_clusters(rng: &mut fastrand::Rng, influences: usize) -> ColliderMesh {
+    let size = [1e-3, 1.0, 1e3][rng.usize(0..3)];
+    let offset = direction(rng) * [0.0, 1.0, 1e3][rng.usize(0..3)];
+    let (mut positions, mut given) = (Vec::new(), Vec::new());
+    for _ in 0..700 {
+        let middle = point(rng, size) + offset;
+        let first = rng.u32(0..JOINTS);
+        for _ in 0..3 {
+            positions.push(middle + point(rng, size * 0.1));
+            given.extend((0..influences as u32).map(|k| Influence {
+                joint: JointId((first + k) % JOINTS),
+                weight: rng.f32() + 1e-3,
+            }));
+        }
+    }
+    let triangles: Vec<[u32; 3]> = (0..700).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &given,
+        joint_count: JOINTS as usize,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    mesh
+}
+
+fn clusters_below(mesh: &ColliderMesh, child: Child, out: &mut Vec<u32>) {
+    match child {
+        Child::Cluster(cluster) => out.push(cluster),
+        Child::Node(index) => {
+            let node = &mesh.hierarchy().nodes[index as usize];
+            for lane in 0..usize::from(node.lanes) {
+                clusters_below(mesh, node.child(lane), out);
+            }
+        }
+    }
+}
+
+/// Looks at every vertex in every bound above it; gives how many pairs there were.
+fn check(mesh: &ColliderMesh, pose: &PosedMesh, case: &str) -> usize {
+    let skinned = skin_scalar(mesh, pose.palette()).unwrap();
+    let clusters = mesh.clusters();
+    let vertices = |cluster: &Cluster| cluster.vertices(clusters).iter().map(|v| v.index());
+    let mut checked = 0;
+    for (index, node) in mesh.hierarchy().nodes.iter().enumerate() {
+        let spheres = pose.spheres(mesh, index as u32);
+        for lane in 0..usize::from(node.lanes) {
+            let sphere = spheres.sphere(lane);
+            assert!(sphere.center.is_finite(), "{case}: {sphere:?}");
+            let mut below = Vec::new();
+            clusters_below(mesh, node.child(lane), &mut below);
+            for cluster in below {
+                for v in vertices(&clusters.clusters[cluster as usize]) {
+                    let p = skinned[v];
+                    assert!(
+                        sphere.contains(p),
+                        "{case}: node {index} {lane}: {p} {sphere:?}"
+                    );
+                    checked += 1;
+                }
+            }
+        }
+    }
+    let root = pose.root();
+    for p in &skinned {
+        let inside = p.cmpge(root.min).all() && p.cmple(root.max).all();
+        assert!(inside, "{case}: {p} outside {root:?}");
+    }
+    for (id, sphere) in pose.part_spheres(mesh) {
+        for v in &mesh.parts()[id.index()].vertices {
+            let p = skinned[v.index()];
+            assert!(sphere.contains(p), "{case}: part {id}: {p}");
+            checked += 1;
+        }
+    }
+    checked + skinned.len()
+}
+
+/// [`check`] of bounds from the palette, then of those refitted to what was skinned.
+fn check_both(mesh: &ColliderMesh, pose: &mut PosedMesh, palette: &Palette, case: &str) -> usize {
+    pose.set(mesh, palette.matrices().iter().copied());
+    let lazily = check(mesh, pose, case);
+    pose.set(mesh, palette.matrices().iter().copied());
+    pose.fill(mesh);
+    lazily + check(mesh, pose, &format!("{case}, refitted"))
+}
+
+fn hunt(seed: u64, cases: usize) -> usize {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let spreads = [
+        Spread::Random,
+        Spread::NearlyEqual,
+        Spread::Uneven,
+        Spread::Few,
+        Spread::Constant,
+    ];
+    let mut checked = 0;
+    for case in 0..cases {
+        let influences = 1 + case % 12;
+        let mesh = if case % 4 == 0 {
+            many_clusters(&mut rng, influences)
+        } else {
+            creature(&mut rng, influences, spreads[case / 12 % 5]).0
+        };
+        let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
+        for motion in MOTIONS {
+            let palette = palette(&mut rng, motion, mesh.radius());
+            let case = format!("seed {seed}, case {case}, {motion:?}");
+            checked += check_both(&mesh, &mut pose, &palette, &case);
+        }
+    }
+    for joints in [3, 9, 30] {
+        let mesh = tube(joints, 24);
+        let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
+        for step in 0..6 {
+            let axis = DVec3::new(0.0, 0.6, 0.8);
+            let palette = bend(joints, axis, f64::from(step) * 0.3 - 0.9);
+            let case = format!("tube of {joints}, step {step}");
+            checked += check_both(&mesh, &mut pose, &palette, &case);
+        }
+    }
+    checked
+}
+
+#[test]
+fn every_vertex_lies_in_every_bound_above_it() {
+    let checked = hunt(101, 60);
+    println!("{checked} checks");
+    assert!(checked > 1_000_000, "{checked}");
+}
+
+#[test]
+#[ignore = "minutes, in release"]
+fn every_vertex_lies_in_every_bound_above_it_however_long_one_looks() {
+    let checked: usize = (0..40).map(|k| hunt(1_000 + k, 600)).sum();
+    println!("{checked} checks");
+}
+
+#[test]
+fn what_was_asked_for_stays_so_when_everything_is_filled() {
+    let mesh = tube(9, 24);
+    let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
+    let mut out = ClusterPositions::ZERO;
+    for cluster in [3, 5] {
+        pose.positions(&mesh, cluster, &mut out);
+    }
+    pose.spheres(&mesh, 0);
+    pose.fill(&mesh);
+    for _ in 0..2 {
+        assert_eq!(pose.asked_clusters().collect::<Vec<_>>(), [3, 5]);
+        assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0]);
+        assert_eq!(pose.asked_clusters().count(), 2);
+        // Asked for again, they count no further.
+        for cluster in [3, 5] {
+            pose.positions(&mesh, cluster, &mut out);
+        }
+    }
+    let all = mesh.clusters().clusters.len();
+    assert_eq!(pose.skinned_clusters().count(), all);
+    pose.positions(&mesh, 4, &mut out);
+    assert_eq!(pose.asked_clusters().count(), 3);
+    pose.spheres(&mesh, 1);
+    assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0, 1]);
+    // Another palette outdates all of it.
+    pose.set(&mesh, pose.palette.clone().into_iter());
+    assert_eq!(
+        (
+            pose.asked_clusters().count(),
+            pose.skinned_clusters().count()
+        ),
+        (0, 0)
+    );
+    assert_eq!(pose.asked_nodes().count(), 0);
+}

@@ -1,0 +1,138 @@
+//! The eager way: everything at once, before anybody asks.
+
+use super::{NODE, PosedMesh, ROW, first_number};
+use crate::bounds::Spheres;
+use crate::mesh::ColliderMesh;
+use crate::mesh::hierarchy::Child;
+use crate::skin::{ClusterPositions, skin_cluster};
+
+impl PosedMesh {
+    /// Skins every cluster and refits every bound to what was skinned, children before parents.
+    pub(crate) fn fill(&mut self, mesh: &ColliderMesh) {
+        let nodes = &mesh.hierarchy().nodes;
+        let mut positions = ClusterPositions::ZERO;
+        for (index, node) in nodes.iter().enumerate().rev() {
+            let mut spheres = Spheres::ZERO;
+            for lane in 0..usize::from(node.lanes) {
+                let sphere = match node.child(lane) {
+                    Child::Cluster(cluster)
+                        if mesh.clusters().clusters[cluster as usize].is_dead() =>
+                    {
+                        EMPTY
+                    }
+                    Child::Cluster(cluster) => {
+                        self.fill_cluster(mesh, cluster as usize, &mut positions);
+                        let rows = mesh.clusters().clusters[cluster as usize].rows();
+                        around_positions(&positions, rows * ROW)
+                    }
+                    Child::Node(child) => around_spheres(
+                        &self.refitted(child as usize),
+                        usize::from(nodes[child as usize].lanes),
+                    ),
+                };
+                for (row, number) in spheres.rows_mut().into_iter().zip(sphere) {
+                    row[lane] = number;
+                }
+            }
+            let parts = spheres.rows().map(|row| &row[..]);
+            self.nodes
+                .keep_ahead(index, self.epoch, index * NODE, parts);
+        }
+    }
+
+    /// Spheres of a node that were kept ahead.
+    fn refitted(&mut self, node: usize) -> Spheres {
+        let mut found = Spheres::ZERO;
+        let parts = found.rows_mut().map(|row| &mut row[..]);
+        self.nodes.peek(node * NODE, parts);
+        found
+    }
+
+    fn fill_cluster(&mut self, mesh: &ColliderMesh, index: usize, out: &mut ClusterPositions) {
+        let clusters = mesh.clusters();
+        let cluster = &clusters.clusters[index];
+        skin_cluster(self.level, clusters, cluster, &self.palette, out);
+        let (slots, first) = (cluster.rows() * ROW, first_number(cluster));
+        let parts = out.0.each_ref().map(|axis| &axis[..slots]);
+        self.clusters.keep_ahead(index, self.epoch, first, parts);
+    }
+}
+
+/// A sphere that holds nothing, of a child that is dead with all below it: it makes no other larger.
+const EMPTY: [f32; 4] = [0.0, 0.0, 0.0, f32::NEG_INFINITY];
+
+/// What rounding in f32 may take off a radius: some eight roundings of 2^-24, and squares that
+/// underflow.
+fn rounded_up(radius: f32) -> f32 {
+    radius * (1.0 + 8.0 * f32::EPSILON) + LEAST_RADIUS
+}
+
+/// 2^-56, as the bounds that come from the palette have it.
+const LEAST_RADIUS: f32 = 1.0 / (1u64 << 56) as f32;
+
+/// Numbers at once.
+const WIDTH: usize = 8;
+
+/// Lowest and highest of some numbers, a multiple of [`WIDTH`] and at least one of them.
+fn range(numbers: &[f32]) -> (f32, f32) {
+    let (mut low, mut high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+    for chunk in numbers.as_chunks::<WIDTH>().0 {
+        for k in 0..WIDTH {
+            low[k] = if chunk[k] < low[k] { chunk[k] } else { low[k] };
+            high[k] = if chunk[k] > high[k] {
+                chunk[k]
+            } else {
+                high[k]
+            };
+        }
+    }
+    let least = low.into_iter().fold(f32::INFINITY, f32::min);
+    let most = high.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    (least, most)
+}
+
+/// A sphere about the middle of the box of some positions: x, y, z, radius.
+fn around_positions(positions: &ClusterPositions, count: usize) -> [f32; 4] {
+    let [x, y, z] = &positions.0;
+    let center = [x, y, z].map(|numbers| {
+        let (low, high) = range(&numbers[..count]);
+        low * 0.5 + high * 0.5
+    });
+    let mut farthest = [0.0; WIDTH];
+    for first in (0..count).step_by(WIDTH) {
+        for (k, farthest) in farthest.iter_mut().enumerate() {
+            let dx = x[first + k] - center[0];
+            let dy = y[first + k] - center[1];
+            let dz = z[first + k] - center[2];
+            let distance = dx * dx + dy * dy + dz * dz;
+            *farthest = if distance > *farthest {
+                distance
+            } else {
+                *farthest
+            };
+        }
+    }
+    let farthest = farthest.into_iter().fold(0.0, f32::max).sqrt();
+    [center[0], center[1], center[2], rounded_up(farthest)]
+}
+
+/// A sphere about the middle of the box of some spheres; [`EMPTY`] if all are.
+fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
+    let center = [&spheres.x, &spheres.y, &spheres.z].map(|numbers| {
+        let ends = numbers.iter().zip(&spheres.radius).take(count);
+        let (low, high) = ends.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), (x, r)| {
+            (low.min(x - r), high.max(x + r))
+        });
+        let middle = low * 0.5 + high * 0.5;
+        // Any place will do for the middle of an infinite or an empty sphere, but none is NaN.
+        if middle.is_finite() { middle } else { 0.0 }
+    });
+    let reach = |lane: usize| {
+        let dx = spheres.x[lane] - center[0];
+        let dy = spheres.y[lane] - center[1];
+        let dz = spheres.z[lane] - center[2];
+        (dx * dx + dy * dy + dz * dz).sqrt() + spheres.radius[lane]
+    };
+    let farthest = (0..count).map(reach).fold(f32::NEG_INFINITY, f32::max);
+    [center[0], center[1], center[2], rounded_up(farthest)]
+}

@@ -1,0 +1,74 @@
+//! Triangles near a box, over the tick.
+
+use glam::Vec3;
+
+use super::cluster::PosedCluster;
+use super::traverse::traverse;
+use super::{ModelSpace, broad, root};
+use crate::mesh::TriangleId;
+use crate::mesh::hierarchy::LANES;
+
+/// A triangle on its way from the previous pose to the current one, in the current model frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingTriangle {
+    /// Which one.
+    pub triangle: TriangleId,
+    /// Its corners a tick ago.
+    pub previous: [Vec3; 3],
+    /// Its corners now.
+    pub current: [Vec3; 3],
+}
+
+impl MovingTriangle {
+    /// Whether its own box, that around its corners a tick ago and now, meets the box from `low` to
+    /// `high`, touching included.
+    pub fn meets_box(&self, low: Vec3, high: Vec3) -> bool {
+        let corners = self.previous.iter().chain(&self.current);
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for corner in corners {
+            min = min.min(*corner);
+            max = max.max(*corner);
+        }
+        low.cmple(max).all() && min.cmple(high).all()
+    }
+}
+
+impl ModelSpace<'_> {
+    /// Every triangle that moves within the box from `low` to `high` between the previous pose and the
+    /// current one, both ends included: by [its own box](MovingTriangle::meets_box), so that none is
+    /// missed that enters the box, and some come along that pass it by a corner. In no promised order.
+    ///
+    /// A box whose `low` is above its `high`, or that is not finite, meets nothing.
+    pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(&MovingTriangle)) {
+        let instance = self.instance;
+        let poses = [&instance.previous, &instance.current];
+        let bounds = poses[0].root().union(poses[1].root());
+        let sides = [low.to_array(), high.to_array()];
+        let is_box = low.is_finite() && high.is_finite() && low.cmple(high).all();
+        if !is_box || !root::overlaps(&bounds, sides[0], sides[1]) {
+            return;
+        }
+        let mut posed = PosedCluster::new(instance, poses);
+        traverse::<false>(
+            instance.mesh.hierarchy(),
+            0.0,
+            |node, _| {
+                let near = broad::near_box(&instance.spheres(poses, node), sides);
+                (near, [0.0; LANES])
+            },
+            |cluster, limit| {
+                if posed.visit(cluster) {
+                    for triangle in posed.enabled(posed.in_box(sides)) {
+                        let [previous, current] = posed.corners(triangle);
+                        visit(&MovingTriangle {
+                            triangle: posed.id(triangle),
+                            previous,
+                            current,
+                        });
+                    }
+                }
+                Some(limit)
+            },
+        );
+    }
+}

@@ -1,0 +1,296 @@
+//! A query against the eight spheres of a node, in f32.
+//!
+//! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and
+//! written so that NaN and infinity, from coordinates whose squares overflow, touch. Squares that
+//! underflow do no harm, since every sphere has a radius of at least 2^-56.
+
+use glam::Vec3;
+
+use super::probe::{Probe, Sweep};
+use crate::bounds::Spheres;
+use crate::geometry::Ray;
+use crate::mesh::hierarchy::LANES;
+
+/// How far f32 arithmetic may be off, as a share of the lengths involved. Some ten roundings of
+/// 2^-24 are; less risks a missed triangle, more tests more.
+pub(super) const SLACK: f32 = 16.0 * f32::EPSILON;
+
+/// The length whose square f32 no longer holds, rounded down.
+const SQUARE_OVERFLOWS: f32 = 1.8e19;
+
+/// 2^60: products and sums of squares of lengths up to this are far from the end of f32.
+const LONG: f32 = (1u64 << 60) as f32;
+
+/// One bit a lane.
+pub(super) type LaneMask = u8;
+
+fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
+    let mut found = 0;
+    for lane in 0..LANES {
+        found |= LaneMask::from(test(lane)) << lane;
+    }
+    found
+}
+
+/// Per lane at most the distance from a probe's core, before it moves, to what the sphere holds; 0 of capsules for all that
+/// are [`LONG`] away or beside a segment that long, since where a product overflows, any place along it may come out.
+pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> [f32; LANES] {
+    let [a, b] = probe.segment();
+    let axis = b - a;
+    let length_sq = axis.length_squared();
+    let inverse = if length_sq > 0.0 {
+        1.0 / length_sq
+    } else {
+        0.0
+    };
+    let size = axis.x.abs() + axis.y.abs() + axis.z.abs();
+    let mut found = [0.0; LANES];
+    for (lane, found) in found.iter_mut().enumerate() {
+        let mut dx = spheres.x[lane] - a.x;
+        let mut dy = spheres.y[lane] - a.y;
+        let mut dz = spheres.z[lane] - a.z;
+        let mut lost = 0.0;
+        if N == 2 {
+            let apart = dx.abs() + dy.abs() + dz.abs() + size;
+            lost = SLACK * if apart < LONG { apart } else { f32::INFINITY };
+            let along = (dx * axis.x + dy * axis.y + dz * axis.z) * inverse;
+            let along = if along > 0.0 { along } else { 0.0 };
+            let along = if along < 1.0 { along } else { 1.0 };
+            // Any point of the segment will do: one that is off by rounding is hardly farther.
+            dx -= axis.x * along;
+            dy -= axis.y * along;
+            dz -= axis.z * along;
+        }
+        let apart = (dx * dx + dy * dy + dz * dz).sqrt();
+        let apart = if apart < SQUARE_OVERFLOWS {
+            apart
+        } else {
+            SQUARE_OVERFLOWS
+        };
+        let gap = apart * (1.0 - SLACK) - spheres.radius[lane] * (1.0 + SLACK) - lost;
+        *found = if gap > 0.0 { gap } else { 0.0 };
+    }
+    found
+}
+
+/// Lanes no farther than `reach`.
+pub(super) fn within(distances: &[f32; LANES], reach: f64) -> LaneMask {
+    lanes(|lane| f64::from(distances[lane]) <= reach)
+}
+
+/// Lanes whose sphere a ray meets within `limit`, and per lane at most the distance along the ray to
+/// what it holds.
+///
+/// By the perpendicular from the centre to the ray, which keeps its digits far out where the usual
+/// discriminant loses them.
+pub(super) fn along_ray(spheres: &Spheres, ray: &Ray, limit: f32) -> (LaneMask, [f32; LANES]) {
+    let (origin, direction) = (ray.origin(), ray.direction());
+    let [mut distance_sq, mut reach_sq] = [[0.0; LANES]; 2];
+    let [mut first, mut last] = [[0.0; LANES]; 2];
+    for lane in 0..LANES {
+        let dx = spheres.x[lane] - origin.x;
+        let dy = spheres.y[lane] - origin.y;
+        let dz = spheres.z[lane] - origin.z;
+        let along = dx * direction.x + dy * direction.y + dz * direction.z;
+        let ox = dx - direction.x * along;
+        let oy = dy - direction.y * along;
+        let oz = dz - direction.z * along;
+        distance_sq[lane] = ox * ox + oy * oy + oz * oz;
+        // Direction and triangle test are off by shares of this distance.
+        let apart = dx.abs() + dy.abs() + dz.abs();
+        let reach = spheres.radius[lane] + SLACK * (apart + spheres.radius[lane]);
+        reach_sq[lane] = reach * reach * (1.0 + SLACK);
+        first[lane] = along - reach;
+        last[lane] = along + reach;
+    }
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
+    let met = lanes(|lane| {
+        !(distance_sq[lane] > reach_sq[lane]) && !(first[lane] > limit) && !(last[lane] < 0.0)
+    });
+    (met, first)
+}
+
+/// Lanes of which a sweep may touch anything up to the time `limit`, and per lane at most the time at
+/// which that begins.
+///
+/// What a sphere holds at either end of the motion moves on straight lines, so at time t it is within
+/// `(1 - t) r0 + t r1` of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the
+/// core moves on straight lines as well.
+pub(super) fn along<const N: usize, const P: usize>(
+    spheres: &[Spheres; P],
+    sweep: &Sweep<N>,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let ends = [&spheres[0], &spheres[P - 1]];
+    if N == 1 {
+        along_line(ends, &sweep.probe, limit)
+    } else {
+        along_strip(ends, &sweep.probe, limit)
+    }
+}
+
+/// By the perpendicular from a sphere's centre to the path of the swept sphere's centre.
+fn along_line<const N: usize>(
+    [start, end]: [&Spheres; 2],
+    probe: &Probe<N>,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let (center, motion) = (probe.ends[0], probe.motions[0]);
+    let [mut distance_sq, mut reach_sq, mut first] = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        let (x, y, z) = (
+            center.x - start.x[lane],
+            center.y - start.y[lane],
+            center.z - start.z[lane],
+        );
+        let (dx, dy, dz) = (
+            motion.x + (start.x[lane] - end.x[lane]),
+            motion.y + (start.y[lane] - end.y[lane]),
+            motion.z + (start.z[lane] - end.z[lane]),
+        );
+        let length_sq = dx * dx + dy * dy + dz * dz;
+        let moves = length_sq > f32::MIN_POSITIVE;
+        let inverse = if moves { 1.0 / length_sq } else { 0.0 };
+        let closest = -(x * dx + y * dy + z * dz) * inverse;
+        let time = if closest > 0.0 { closest } else { 0.0 };
+        let time = if time < limit { time } else { limit };
+        // Any time up to the limit will do: one that is off by rounding is hardly farther.
+        let (ox, oy, oz) = (x + dx * time, y + dy * time, z + dz * time);
+        distance_sq[lane] = ox * ox + oy * oy + oz * oz;
+        let size = x.abs() + y.abs() + z.abs() + taxicab(motion) + radius(start, end, lane);
+        let apart = size + dx.abs() + dy.abs() + dz.abs();
+        let apart = if apart < LONG { apart } else { f32::INFINITY };
+        let reach = radius(start, end, lane) + probe.reach + SLACK * (apart + probe.reach);
+        reach_sq[lane] = reach * reach * (1.0 + SLACK);
+        let begin = closest - reach * inverse.sqrt();
+        first[lane] = if moves {
+            begin * (1.0 - SLACK) - SLACK
+        } else {
+            0.0
+        };
+    }
+    let first = first.map(|time| if time > 0.0 { time } else { 0.0 });
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
+    let near = lanes(|lane| !(distance_sq[lane] > reach_sq[lane]) && !(first[lane] > limit));
+    (near, first)
+}
+
+/// Rounds of [`nearest_direction`]: more would turn the direction by little.
+const ROUNDS: usize = 3;
+
+/// By one direction for all of the path, and one for its beginning: what is farther than the radii
+/// along either, at all four corners that the segment has on its path, is not touched, however the
+/// direction was found.
+fn along_strip<const N: usize>(
+    [start, end]: [&Spheres; 2],
+    probe: &Probe<N>,
+    limit: f32,
+) -> (LaneMask, [f32; LANES]) {
+    let (a, axis) = (probe.ends[0], probe.ends[N - 1] - probe.ends[0]);
+    let [of_a, of_b] = [probe.motions[0], probe.motions[N - 1]];
+    let longest = taxicab(axis) + taxicab(of_a) + taxicab(of_b);
+    let [mut gap, mut reach, mut first] = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        let center = Vec3::new(start.x[lane], start.y[lane], start.z[lane]);
+        let shift = center - Vec3::new(end.x[lane], end.y[lane], end.z[lane]);
+        let (near, far) = (a - center, a - center + axis);
+        let (of_a, of_b) = ((of_a + shift) * limit, (of_b + shift) * limit);
+        let corners = [near, far, near + of_a, far + of_b];
+
+        let size = taxicab(near) + taxicab(shift) + longest + radius(start, end, lane);
+        let apart = if size < LONG { size } else { f32::INFINITY };
+        reach[lane] = radius(start, end, lane) + probe.reach + SLACK * (apart + probe.reach);
+
+        let n = nearest_direction(near, axis, (of_a + of_b) * 0.5);
+        gap[lane] = corners
+            .map(|corner| n.dot(corner))
+            .into_iter()
+            .fold(f32::INFINITY, smaller);
+
+        let n = nearest_direction(near, axis, Vec3::ZERO);
+        let [near, far, near_later, far_later] = corners.map(|corner| n.dot(corner));
+        let begin = smaller(
+            until(near, near_later, reach[lane]),
+            until(far, far_later, reach[lane]),
+        );
+        first[lane] = begin * limit * (1.0 - SLACK);
+    }
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
+    let near = lanes(|lane| !(gap[lane] > reach[lane]) && !(first[lane] > limit));
+    (near, first)
+}
+
+/// About the unit direction from the origin to the nearest point of the parallelogram with a corner at
+/// `corner`; zero where that is the origin.
+fn nearest_direction(corner: Vec3, side: Vec3, other: Vec3) -> Vec3 {
+    let [inverse, inverse_of_other] = [side, other].map(|side| {
+        let length_sq = side.length_squared();
+        if length_sq > f32::MIN_POSITIVE {
+            1.0 / length_sq
+        } else {
+            0.0
+        }
+    });
+    let mut nearest = corner + side * 0.5;
+    let mut along = 0.0;
+    for _ in 0..ROUNDS {
+        along = to_unit(-(nearest - other * along).dot(other) * inverse_of_other);
+        let line = corner + other * along;
+        nearest = line + side * to_unit(-line.dot(side) * inverse);
+    }
+    let length_sq = nearest.length_squared();
+    if length_sq > f32::MIN_POSITIVE {
+        nearest * (1.0 / length_sq.sqrt())
+    } else {
+        Vec3::ZERO
+    }
+}
+
+/// The share of the way from `from` to `to` before which a number is above `level`; beyond 1 if it
+/// stays so.
+fn until(from: f32, to: f32, level: f32) -> f32 {
+    let share = (from - level) / (from - to);
+    let share = if to < level { share } else { 2.0 };
+    if from > level { share } else { 0.0 }
+}
+
+fn to_unit(share: f32) -> f32 {
+    let share = if share > 0.0 { share } else { 0.0 };
+    if share < 1.0 { share } else { 1.0 }
+}
+
+fn smaller(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+fn radius(start: &Spheres, end: &Spheres, lane: usize) -> f32 {
+    let (start, end) = (start.radius[lane], end.radius[lane]);
+    if start < end { end } else { start }
+}
+
+fn taxicab(v: Vec3) -> f32 {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
+/// Lanes of which anything may meet the box on its way between two poses: all of it lies in the box
+/// around the spheres at both.
+pub(super) fn near_box([start, end]: &[Spheres; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
+    let mut beyond = [false; LANES];
+    for (axis, (first, last)) in axes(start).into_iter().zip(axes(end)).enumerate() {
+        for lane in 0..LANES {
+            let reach = |spheres: &Spheres, x: f32| {
+                spheres.radius[lane] + SLACK * (x.abs() + spheres.radius[lane])
+            };
+            let (x, y) = (first[lane], last[lane]);
+            let (at_x, at_y) = (reach(start, x), reach(end, y));
+            // NaN is beyond nothing, so it touches.
+            beyond[lane] |= (x + at_x < low[axis]) & (y + at_y < low[axis]);
+            beyond[lane] |= (x - at_x > high[axis]) & (y - at_y > high[axis]);
+        }
+    }
+    lanes(|lane| !beyond[lane])
+}
+
+fn axes(spheres: &Spheres) -> [&[f32; LANES]; 3] {
+    [&spheres.x, &spheres.y, &spheres.z]
+}

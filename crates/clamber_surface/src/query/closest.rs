@@ -1,0 +1,78 @@
+use glam::Vec3;
+
+use super::cluster::{PosedCluster, by_eight};
+use super::hit::{Best, FoundPoint, capsule_hit};
+use super::instance::Instance;
+use super::probe::{BLUR, Probe, with_probe};
+use super::traverse::traverse;
+use super::{CapsuleHit, ModelSpace, SurfaceHit, broad, length, root};
+use crate::geometry::Capsule;
+
+impl ModelSpace<'_> {
+    /// The material point nearest to `point`, no farther than `max_distance`. Of a point that is not finite there is
+    /// none.
+    pub fn closest_point(&self, point: Vec3, max_distance: f32) -> Option<SurfaceHit> {
+        let ball = Capsule::ball(point, 0.0)?;
+        let probe = Probe::of_ball(&ball, Vec3::ZERO);
+        self.instance.closest(&probe, length(max_distance)?)
+    }
+
+    /// The material point nearest to a capsule's segment, and the point of the segment nearest to
+    /// that: for limbs. No farther than `max_distance` from the capsule, which may reach into the skin.
+    pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<CapsuleHit> {
+        let reach = f64::from(capsule.radius()) + length(max_distance)?;
+        let surface = with_probe!(capsule, [Vec3::ZERO; 2], probe => {
+            self.instance.closest(&probe, reach)
+        });
+        Some(capsule_hit(capsule, surface?))
+    }
+}
+
+impl Instance {
+    /// The material point nearest to a probe's core, within `reach` of it.
+    fn closest<const N: usize>(&self, probe: &Probe<N>, reach: f64) -> Option<SurfaceHit> {
+        let mut best = Best::within(reach);
+        let size = root::size(self.current.root());
+        let blur = probe.blur(size);
+        let [low, high] = probe.box_around(reach + blur);
+        if !root::overlaps(self.current.root(), low, high) {
+            return None;
+        }
+        let mut posed = PosedCluster::new(self, [&self.current]);
+        let mut tested = 0;
+        traverse::<true>(
+            self.mesh.hierarchy(),
+            reach + blur,
+            |node, limit| {
+                let [spheres] = self.spheres([&self.current], node);
+                let distances = broad::distances(&spheres, probe);
+                (broad::within(&distances, limit), distances)
+            },
+            |cluster, limit| {
+                if !posed.visit(cluster) {
+                    return Some(limit);
+                }
+                // No triangle farther than the nearest vertex matters, or so little farther as it may measure.
+                let (point, lost) = probe.facing(posed.somewhere()[0]);
+                let vertex = f64::from(posed.nearest_vertex(point)) + lost;
+                let near = best.limit().min(vertex + BLUR * size) + blur;
+                by_eight(
+                    posed.enabled(posed.near(&probe.reaching(near), 0.0)),
+                    |batch| {
+                        tested += batch.len();
+                        let points = probe.closest_of_eight(posed.level(), &posed.batch(batch)[0]);
+                        for (lane, triangle) in batch.iter().enumerate() {
+                            best.offer(FoundPoint {
+                                triangle: posed.id(*triangle),
+                                found: points.get(lane),
+                            });
+                        }
+                    },
+                );
+                Some(best.limit() + blur)
+            },
+        );
+        self.count_tested(tested, 0);
+        best.hit(self, probe.middle())
+    }
+}

@@ -1,0 +1,226 @@
+use glam::Vec3;
+
+use super::broad::SLACK;
+use super::instance::Instance;
+use super::narrow::{self, MovingBall, Survivors};
+use super::planes::Planes;
+use super::probe::Probe;
+use crate::geometry::triangle::{Corners8, EIGHT, ShearedRay};
+use crate::mesh::clusters::{BLOCK, Cluster, CornerBlock, MAX_SLOTS};
+use crate::mesh::{PartId, TriangleId};
+use crate::pose::PosedMesh;
+use crate::simd::SimdLevel;
+use crate::skin::ClusterPositions;
+
+/// Vertices that tell about where a cluster is.
+const SAMPLES: usize = 8;
+
+/// A cluster as skinned in one pose (P = 1), or in those that it moves between (P = 2), copied out of their caches.
+pub(super) struct PosedCluster<'a, const P: usize> {
+    instance: &'a Instance,
+    poses: [&'a PosedMesh; P],
+    cluster: &'a Cluster,
+    corners: &'a [CornerBlock],
+    triangles: &'a [TriangleId],
+    positions: [ClusterPositions; P],
+}
+
+impl<'a, const P: usize> PosedCluster<'a, P> {
+    /// Nothing yet: call [`PosedCluster::visit`] first. Made once a query, since it is large.
+    pub(super) fn new(instance: &'a Instance, poses: [&'a PosedMesh; P]) -> Self {
+        Self {
+            instance,
+            poses,
+            cluster: &Cluster::NONE,
+            corners: &[],
+            triangles: &[],
+            positions: [ClusterPositions::ZERO; P],
+        }
+    }
+
+    /// Goes to a cluster; false if it is dead or its part is disabled.
+    pub(super) fn visit(&mut self, index: u32) -> bool {
+        let (instance, mesh) = (self.instance, &self.instance.mesh);
+        let clusters = mesh.clusters();
+        self.cluster = &clusters.clusters[index as usize];
+        if self.cluster.is_dead() || !instance.part_enabled[self.cluster.part.index()] {
+            return false;
+        }
+        self.corners = self.cluster.corners(clusters);
+        self.triangles = self.cluster.triangles(clusters);
+        for (pose, positions) in self.poses.iter().zip(&mut self.positions) {
+            pose.positions(mesh, index, positions);
+        }
+        true
+    }
+
+    pub(super) fn level(&self) -> SimdLevel {
+        self.instance.simd_level
+    }
+
+    pub(super) fn part(&self) -> PartId {
+        self.cluster.part
+    }
+
+    pub(super) fn id(&self, triangle: usize) -> TriangleId {
+        self.triangles[triangle]
+    }
+
+    /// Triangles, by their number in the cluster, that a probe may touch up to the time `until`.
+    pub(super) fn near<const N: usize>(&self, probe: &Probe<N>, until: f32) -> Survivors {
+        let mut targets = self.somewhere();
+        targets[P - 1] = targets[0] + (targets[P - 1] - targets[0]) * until;
+        let planes = Planes::facing(probe, until, targets);
+        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
+        narrow::within_planes(self.level(), positions, rows, self.corners, &planes, until)
+    }
+
+    /// Triangles whose own boxes over the motion meet a box.
+    pub(super) fn in_box(&self, sides: [[f32; 3]; 2]) -> Survivors {
+        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
+        narrow::in_box(self.level(), positions, rows, self.corners, sides)
+    }
+
+    /// A time by which one of the triangles is touched; infinity where queries do not see all of them,
+    /// since the vertex touched may be none of theirs.
+    pub(super) fn touched_by<const N: usize>(&self, probe: &Probe<N>) -> f32 {
+        if !self.is_whole() {
+            return f32::INFINITY;
+        }
+        let ball = self.facing_ball(probe);
+        let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
+        narrow::touched_by(self.level(), positions, rows, &ball)
+    }
+
+    /// The ball of a capsule that is nearest to the cluster at the start.
+    fn facing_ball<const N: usize>(&self, probe: &Probe<N>) -> MovingBall {
+        let [a, b] = probe.segment();
+        let axis = b - a;
+        let share = (self.somewhere()[0] - a).dot(axis) / axis.length_squared();
+        let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+        let motion = probe.motions[0];
+        let turn = probe.motions[N - 1] - motion;
+        let lengths = [a, axis, motion, turn];
+        let size: f32 = lengths.map(|v| v.abs().element_sum()).iter().sum();
+        MovingBall {
+            center: (a + axis * share).to_array(),
+            motion: (motion + turn * share).to_array(),
+            radius: probe.radius,
+            lost: if N == 1 { 0.0 } else { size * SLACK },
+        }
+    }
+
+    /// Those of the survivors that queries see, by number in the cluster.
+    pub(super) fn enabled(&self, survivors: Survivors) -> impl Iterator<Item = usize> {
+        let beyond = self.triangles.len();
+        survivors
+            .iter()
+            .take_while(move |triangle| *triangle < beyond)
+            .filter(|triangle| self.instance.shows(self.triangles[*triangle]))
+    }
+
+    /// True if queries see all triangles.
+    fn is_whole(&self) -> bool {
+        let instance = self.instance;
+        instance.hidden_triangles == 0 || self.triangles.iter().all(|id| instance.shows(*id))
+    }
+
+    /// A point near the middle in each pose: the mean of a few vertices.
+    pub(super) fn somewhere(&self) -> [Vec3; P] {
+        let slots = usize::from(self.cluster.slots);
+        let mut means = [Vec3::ZERO; P];
+        for (mean, positions) in means.iter_mut().zip(&self.positions) {
+            for k in 0..SAMPLES {
+                *mean += position(positions, k * slots / SAMPLES);
+            }
+            *mean /= SAMPLES as f32;
+        }
+        means
+    }
+
+    /// The corners of a triangle in each pose.
+    pub(super) fn corners(&self, triangle: usize) -> [[Vec3; 3]; P] {
+        let mut corners = [[Vec3::ZERO; 3]; P];
+        for (corners, positions) in corners.iter_mut().zip(&self.positions) {
+            *corners = self.corners_in(positions, triangle);
+        }
+        corners
+    }
+
+    /// The corners of a triangle in some positions of the slots.
+    #[inline]
+    pub(super) fn corners_in(&self, positions: &ClusterPositions, triangle: usize) -> [Vec3; 3] {
+        let CornerBlock([a, b, c]) = &self.corners[triangle / BLOCK];
+        let slot = |corners: &[u8; BLOCK]| usize::from(corners[triangle % BLOCK]) % MAX_SLOTS;
+        [slot(a), slot(b), slot(c)].map(|slot| position(positions, slot))
+    }
+
+    /// The corners of up to eight triangles in each pose; lanes to spare repeat the first.
+    pub(super) fn batch(&self, triangles: &[usize]) -> [Corners8; P] {
+        let mut batches = [Corners8::default(); P];
+        for (batch, positions) in batches.iter_mut().zip(&self.positions) {
+            for lane in 0..EIGHT {
+                let triangle = triangles.get(lane).or(triangles.first());
+                if let Some(triangle) = triangle {
+                    batch.set(lane, self.corners_in(positions, *triangle));
+                }
+            }
+        }
+        batches
+    }
+}
+
+impl PosedCluster<'_, 1> {
+    /// Triangles that a ray as far as `limit` may meet, and the sheared positions.
+    pub(super) fn along_ray(
+        &self,
+        ray: &ShearedRay,
+        limit: f32,
+        sheared: &mut ClusterPositions,
+    ) -> Survivors {
+        narrow::along_ray(
+            self.level(),
+            &self.positions[0],
+            self.cluster.rows(),
+            self.corners,
+            ray,
+            limit,
+            sheared,
+        )
+    }
+
+    /// At least the distance from a point to the nearest vertex; infinite where queries do not see
+    /// all triangles, since that vertex may be none of theirs.
+    pub(super) fn nearest_vertex(&self, point: Vec3) -> f32 {
+        if !self.is_whole() {
+            return f32::INFINITY;
+        }
+        let rows = self.cluster.rows();
+        narrow::nearest_vertex(self.level(), &self.positions[0], rows, point.to_array())
+    }
+}
+
+#[inline]
+fn position(positions: &ClusterPositions, slot: usize) -> Vec3 {
+    Vec3::new(
+        positions.0[0][slot],
+        positions.0[1][slot],
+        positions.0[2][slot],
+    )
+}
+
+/// Calls `test` with up to eight of the items at a time, in their order.
+pub(super) fn by_eight(mut items: impl Iterator<Item = usize>, mut test: impl FnMut(&[usize])) {
+    let mut batch = [0; EIGHT];
+    loop {
+        let mut count = 0;
+        for (place, item) in batch.iter_mut().zip(&mut items) {
+            *place = item;
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        test(&batch[..count]);
+    }
+}

@@ -1,0 +1,145 @@
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+
+use glam::{DVec3, Vec3};
+
+use crate::bounds::Spheres;
+use crate::geometry::triangle::scaled_normal;
+use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
+use crate::pose::PosedMesh;
+use crate::simd::SimdLevel;
+
+/// A mesh in its poses of now and of a tick ago, less what is hidden: all that queries see.
+pub(crate) struct Instance {
+    pub(crate) mesh: Arc<ColliderMesh>,
+    pub(crate) current: PosedMesh,
+    /// That of the previous tick, expressed in the current model frame.
+    pub(crate) previous: PosedMesh,
+    /// Both poses are one.
+    pub(crate) is_still: bool,
+    pub(crate) simd_level: SimdLevel,
+    pub(crate) part_enabled: Vec<bool>,
+    /// True for removed triangles.
+    pub(crate) triangle_enabled: Vec<bool>,
+    /// How many triangles are not enabled.
+    pub(crate) hidden_triangles: usize,
+    pub(crate) triangles_tested: AtomicU64,
+    pub(crate) most_cast_steps: AtomicU32,
+}
+
+impl Instance {
+    /// At rest.
+    pub(crate) fn new(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
+        Self {
+            current: PosedMesh::at_rest(&mesh, simd_level),
+            previous: PosedMesh::at_rest(&mesh, simd_level),
+            is_still: true,
+            simd_level,
+            part_enabled: vec![true; mesh.parts().len()],
+            triangle_enabled: vec![true; mesh.triangles().len()],
+            hidden_triangles: 0,
+            triangles_tested: AtomicU64::new(0),
+            most_cast_steps: AtomicU32::new(0),
+            mesh,
+        }
+    }
+
+    /// True if queries see the triangle: it exists, and neither it nor its part is disabled.
+    pub(crate) fn is_enabled(&self, triangle: TriangleId) -> bool {
+        self.mesh.part_of(triangle).is_some_and(|part| {
+            self.part_enabled[part.index()] && self.triangle_enabled[triangle.index()]
+        })
+    }
+
+    /// [`Instance::is_enabled`] for a triangle of an enabled part. Where nothing is hidden, it
+    /// reads nothing.
+    pub(super) fn shows(&self, triangle: TriangleId) -> bool {
+        self.hidden_triangles == 0 || self.triangle_enabled[triangle.index()]
+    }
+
+    /// Where a vertex is in a pose; `None` if it does not exist or was removed.
+    pub(crate) fn position_in(&self, pose: &PosedMesh, vertex: VertexId) -> Option<Vec3> {
+        let exists = self.mesh.has_vertex(vertex);
+        exists.then(|| pose.position(&self.mesh, vertex.index()))
+    }
+
+    /// The corners of a triangle in a pose.
+    pub(crate) fn corners_in(&self, pose: &PosedMesh, triangle: TriangleId) -> [Vec3; 3] {
+        let corners = self.mesh.triangles()[triangle.index()];
+        corners.map(|vertex| pose.position(&self.mesh, vertex.index()))
+    }
+
+    /// The corners of a triangle now.
+    pub(crate) fn corners(&self, triangle: TriangleId) -> [Vec3; 3] {
+        self.corners_in(&self.current, triangle)
+    }
+
+    /// Spheres that hold the children of a node in each pose.
+    pub(super) fn spheres<const P: usize>(
+        &self,
+        poses: [&PosedMesh; P],
+        node: u32,
+    ) -> [Spheres; P] {
+        let mut found = [Spheres::ZERO; P];
+        for (found, pose) in found.iter_mut().zip(poses) {
+            *found = pose.spheres(&self.mesh, node);
+        }
+        found
+    }
+
+    /// The outward unit normal of a posed triangle; `None` if it has no area.
+    pub(crate) fn outward_normal(&self, corners: [Vec3; 3], part: PartId) -> Option<DVec3> {
+        let normal = scaled_normal(corners).try_normalize()?;
+        Some(if self.is_mirrored(part) {
+            -normal
+        } else {
+            normal
+        })
+    }
+
+    /// True if the joint of a part mirrors.
+    pub(crate) fn is_mirrored(&self, part: PartId) -> bool {
+        let joint = self.mesh.parts()[part.index()].joint;
+        self.current.palette()[joint.index()].is_mirrored()
+    }
+
+    /// Counts exact triangle tests of a query, which took so many steps at most.
+    pub(super) fn count_tested(&self, triangles: usize, steps: u32) {
+        if triangles > 0 {
+            let count = triangles as u64;
+            self.triangles_tested.fetch_add(count, Ordering::Relaxed);
+            self.most_cast_steps.fetch_max(steps, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Clone for Instance {
+    /// Both poses and all flags; what queries computed is computed anew.
+    fn clone(&self) -> Self {
+        Self {
+            mesh: self.mesh.clone(),
+            current: self.current.renewed(&self.mesh),
+            previous: self.previous.renewed(&self.mesh),
+            is_still: self.is_still,
+            simd_level: self.simd_level,
+            part_enabled: self.part_enabled.clone(),
+            triangle_enabled: self.triangle_enabled.clone(),
+            hidden_triangles: self.hidden_triangles,
+            triangles_tested: AtomicU64::new(0),
+            most_cast_steps: AtomicU32::new(0),
+        }
+    }
+}
+
+impl fmt::Debug for Instance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mesh, hidden) = (&self.mesh, self.hidden_triangles);
+        write!(
+            f,
+            "{} triangles on {} joints, {hidden} of them hidden",
+            mesh.triangles().len(),
+            mesh.joint_count()
+        )
+    }
+}

@@ -1,0 +1,71 @@
+use glam::Vec3;
+
+use super::cluster::{PosedCluster, by_eight};
+use super::hit::FoundPoint;
+use super::instance::Instance;
+use super::probe::{Probe, with_probe};
+use super::traverse::traverse;
+use super::{ModelSpace, SurfaceHit, broad, root};
+use crate::geometry::Capsule;
+
+impl ModelSpace<'_> {
+    /// Every triangle within the capsule, each with its own point closest to the capsule's segment,
+    /// by ascending triangle id. A hit's distance is that from the segment: 0 where it crosses the
+    /// triangle. `hits` is cleared first and keeps its memory.
+    pub fn overlap_capsule(&self, capsule: &Capsule, hits: &mut Vec<SurfaceHit>) {
+        hits.clear();
+        self.visit_overlap_capsule(capsule, |hit| hits.push(hit));
+        hits.sort_unstable_by_key(|hit| hit.triangle);
+    }
+
+    /// [`ModelSpace::overlap_capsule`] for callers with a place of their own for the hits, which
+    /// come in no promised order.
+    pub fn visit_overlap_capsule(&self, capsule: &Capsule, visit: impl FnMut(SurfaceHit)) {
+        with_probe!(capsule, [Vec3::ZERO; 2], probe => self.instance.visit_overlap(&probe, visit));
+    }
+}
+
+impl Instance {
+    fn visit_overlap<const N: usize>(&self, probe: &Probe<N>, mut visit: impl FnMut(SurfaceHit)) {
+        let radius = f64::from(probe.radius);
+        let reach = radius + probe.blur(root::size(self.current.root()));
+        let [low, high] = probe.box_around(reach);
+        if !root::overlaps(self.current.root(), low, high) {
+            return;
+        }
+        let reaching = probe.reaching(reach);
+        let mut posed = PosedCluster::new(self, [&self.current]);
+        let mut tested = 0;
+        traverse::<false>(
+            self.mesh.hierarchy(),
+            reach,
+            |node, limit| {
+                let [spheres] = self.spheres([&self.current], node);
+                let distances = broad::distances(&spheres, probe);
+                (broad::within(&distances, limit), distances)
+            },
+            |cluster, limit| {
+                if !posed.visit(cluster) {
+                    return Some(limit);
+                }
+                by_eight(posed.enabled(posed.near(&reaching, 0.0)), |batch| {
+                    tested += batch.len();
+                    let points = probe.closest_of_eight(posed.level(), &posed.batch(batch)[0]);
+                    for (lane, triangle) in batch.iter().enumerate() {
+                        let found = points.get(lane);
+                        if found.distance <= radius {
+                            let nearest = FoundPoint {
+                                triangle: posed.id(*triangle),
+                                found,
+                            };
+                            let [corners] = posed.corners(*triangle);
+                            visit(self.hit(nearest, posed.part(), corners, probe.middle()));
+                        }
+                    }
+                });
+                Some(limit)
+            },
+        );
+        self.count_tested(tested, 0);
+    }
+}

@@ -1,0 +1,196 @@
+use glam::{DVec3, Vec3};
+
+use crate::geometry::triangle::{
+    Corners8, MovingCore, Points8, TrianglePoint, closest_point, closest_points,
+    closest_to_segment, closest_to_segments,
+};
+use crate::geometry::{Capsule, round_to_f32, round_up_to_f32, widen};
+use crate::simd::SimdLevel;
+
+/// How far an exact test may be off, as a share of the lengths involved (segment, edges, distance):
+/// four times the 2^-48 by which a segment that all but touches a triangle counts as crossing it, and
+/// some thirty times what rounding takes. Less loses triangles that the exact test takes; more tests
+/// more.
+pub(super) const BLUR: f64 = 1.0 / (1u64 << 46) as f64;
+
+/// By how much rounding may widen a tolerance, as a share of the lengths involved: eight times the 2^-46
+/// by which [`first_contact`](crate::geometry::triangle::first_contact) does.
+const TOLERANCE_BLUR: f64 = 1.0 / (1u64 << 43) as f64;
+
+/// What a query asks about: a ball (N = 1) or a capsule (N = 2), each of whose ends may move on a straight line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe<const N: usize> {
+    pub(super) ends: [Vec3; N],
+    /// From time 0 to time 1.
+    pub(super) motions: [Vec3; N],
+    pub(super) radius: f32,
+    /// How near what matters comes to the core, at least.
+    pub(super) reach: f32,
+}
+
+/// Calls something with a [`Probe`] of one end for a capsule that is and stays a ball, of two for any other.
+macro_rules! with_probe {
+    ($capsule:expr, $motions:expr, $probe:ident => $call:expr) => {{
+        let (capsule, [of_a, of_b]): (&crate::geometry::Capsule, [glam::Vec3; 2]) =
+            ($capsule, $motions);
+        if capsule.is_ball() && of_a == of_b {
+            let $probe = crate::query::probe::Probe::of_ball(capsule, of_a);
+            $call
+        } else {
+            let $probe = crate::query::probe::Probe::of_capsule(capsule, [of_a, of_b]);
+            $call
+        }
+    }};
+}
+pub(super) use with_probe;
+
+impl Probe<1> {
+    pub(super) fn of_ball(ball: &Capsule, motion: Vec3) -> Self {
+        Self {
+            ends: [ball.ends()[0]],
+            motions: [motion],
+            radius: ball.radius(),
+            reach: ball.radius(),
+        }
+    }
+}
+
+impl Probe<2> {
+    pub(super) fn of_capsule(capsule: &Capsule, motions: [Vec3; 2]) -> Self {
+        Self {
+            ends: capsule.ends(),
+            motions,
+            radius: capsule.radius(),
+            reach: capsule.radius(),
+        }
+    }
+}
+
+impl<const N: usize> Probe<N> {
+    /// The first end, and the last, which is the same of a ball.
+    pub(super) fn segment(&self) -> [Vec3; 2] {
+        [self.ends[0], self.ends[N - 1]]
+    }
+
+    /// Where a hit's normal points where its triangle has none.
+    pub(super) fn middle(&self) -> Vec3 {
+        match self.segment() {
+            [center, _] if N == 1 => center,
+            [a, b] => a * 0.5 + b * 0.5,
+        }
+    }
+
+    /// A point of its core, about the nearest to `target`, and how far rounding may have taken it off.
+    pub(super) fn facing(&self, target: Vec3) -> (Vec3, f64) {
+        let [a, b] = self.segment().map(widen);
+        if N == 1 {
+            return (self.ends[0], 0.0);
+        }
+        let axis = b - a;
+        let along = (widen(target) - a).dot(axis) / axis.length_squared();
+        // An end where that is no number.
+        let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
+        let exact = a + axis * along;
+        let rounded = round_to_f32(exact);
+        let size = a.length() + axis.length();
+        (rounded, (widen(rounded) - exact).length() + size * BLUR)
+    }
+
+    /// How far beyond its radius the exact test may take a triangle for a touching one, of a surface
+    /// that is `size` across.
+    pub(super) fn blur(&self, size: f64) -> f64 {
+        if N == 1 {
+            // What a point's distance is off by is a share of itself: `box_around` pays for it.
+            return 0.0;
+        }
+        let [a, b] = self.segment().map(widen);
+        BLUR * ((b - a).length() + f64::from(self.radius) + size)
+    }
+
+    /// With the reach of a query for what is within `distance` of its core.
+    pub(super) fn reaching(&self, distance: f64) -> Self {
+        Self {
+            reach: round_up_to_f32(distance),
+            ..*self
+        }
+    }
+
+    /// The box around all that is within `distance` of its core before it moves, rounded outwards.
+    pub(super) fn box_around(&self, distance: f64) -> [[f32; 3]; 2] {
+        // Some roundings of 2^-53 in the exact test.
+        let distance = distance * (1.0 + 1e-12);
+        let [a, b] = self.segment();
+        let up = |x: f32| round_up_to_f32(f64::from(x) + distance);
+        let low = (-a.min(b)).to_array().map(|x| -up(x));
+        [low, a.max(b).to_array().map(up)]
+    }
+
+    /// The point of a triangle closest to the core.
+    pub(super) fn closest(&self, corners: [Vec3; 3]) -> TrianglePoint {
+        let [a, b] = self.segment();
+        if N == 1 {
+            closest_point(corners, a)
+        } else {
+            closest_to_segment(corners, a, b)
+        }
+    }
+
+    /// [`Probe::closest`] for eight triangles.
+    pub(super) fn closest_of_eight(&self, level: SimdLevel, corners: &Corners8) -> Points8 {
+        let [a, b] = self.segment();
+        if N == 1 {
+            closest_points(level, corners, a)
+        } else {
+            closest_to_segments(level, corners, a, b)
+        }
+    }
+}
+
+/// A probe on its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweep<const N: usize> {
+    pub(super) probe: Probe<N>,
+    pub(super) core: MovingCore<N>,
+}
+
+impl<const N: usize> Sweep<N> {
+    /// Up to `tolerance` from touching; `None` where either is not finite, or the tolerance is negative.
+    pub(super) fn new(probe: Probe<N>, tolerance: f32) -> Option<Self> {
+        let moves = probe.motions.iter().all(|motion| motion.is_finite());
+        let usable = moves && (0.0..f32::INFINITY).contains(&tolerance);
+        usable.then(|| Self {
+            probe,
+            core: MovingCore::new(probe.ends, probe.motions, probe.radius, tolerance),
+        })
+    }
+
+    /// With the reach that it has among triangles that are up to `size` across and away from it.
+    pub(super) fn among(&self, size: f64) -> Self {
+        let core = &self.core;
+        let reach = core.radius + core.tolerance + TOLERANCE_BLUR * (size + core.radius);
+        Self {
+            probe: self.probe.reaching(reach),
+            ..*self
+        }
+    }
+
+    /// Of its core and its way, at least.
+    pub(super) fn length(&self) -> f64 {
+        let ends = self.core.start.iter().chain(&self.core.end);
+        ends.map(|end| end.length()).sum()
+    }
+
+    /// The box around all that it reaches on its way, rounded outwards.
+    pub(super) fn bounds(&self) -> [[f32; 3]; 2] {
+        let origin = widen(self.core.origin);
+        let ends = self.core.start.iter().chain(&self.core.end);
+        let (low, high) = ends.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), end| (low.min(origin + *end), high.max(origin + *end)),
+        );
+        // A step of f32 is more than the sums are off by.
+        let reach = f64::from(self.probe.reach);
+        let up = |x: f64| round_up_to_f32(x + reach).next_up();
+        [(-low).to_array().map(|x| -up(x)), high.to_array().map(up)]
+    }
+}

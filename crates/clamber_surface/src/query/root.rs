@@ -1,0 +1,45 @@
+//! A query against the box around the whole surface: what is nowhere near costs no more.
+
+use glam::DVec3;
+
+use crate::bounds::RootBox;
+use crate::geometry::{Ray, widen};
+
+/// How far the f32 triangle test may be off, as a share of the distances involved.
+const SLACK: f64 = 16.0 * f32::EPSILON as f64;
+
+/// No edge of the surface is longer. May be infinite.
+pub(super) fn size(root: &RootBox) -> f64 {
+    (widen(root.max) - widen(root.min)).length()
+}
+
+/// False only if nothing on the surface lies in the box from `low` to `high`.
+pub(super) fn overlaps(root: &RootBox, low: [f32; 3], high: [f32; 3]) -> bool {
+    let (min, max) = (root.min.to_array(), root.max.to_array());
+    (0..3).all(|axis| low[axis] <= max[axis] && min[axis] <= high[axis])
+}
+
+/// False only if a ray as far as `limit` meets nothing on the surface: by its passage through the
+/// three slabs of the box (Kay and Kajiya 1986), widened by what the triangle test may be off.
+pub(super) fn may_meet(root: &RootBox, ray: &Ray, limit: f64) -> bool {
+    let origin = widen(ray.origin());
+    let (min, max) = (widen(root.min) - origin, widen(root.max) - origin);
+    let farthest = min.abs().max(max.abs());
+    let slack = DVec3::splat(SLACK * (farthest.x + farthest.y + farthest.z));
+    let (min, max) = ((min - slack).to_array(), (max + slack).to_array());
+    let direction = widen(ray.direction()).to_array();
+    let (mut enter, mut leave) = (-slack.x, limit + slack.x);
+    for axis in 0..3 {
+        if direction[axis] == 0.0 {
+            if min[axis] > 0.0 || max[axis] < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (min[axis] / direction[axis], max[axis] / direction[axis]);
+        let (first, last) = if a < b { (a, b) } else { (b, a) };
+        enter = if first > enter { first } else { enter };
+        leave = if last < leave { last } else { leave };
+    }
+    enter <= leave
+}

@@ -1,0 +1,200 @@
+//! Lazy against eager, bit for bit: any creature, any palette, any instruction set, any threads.
+
+mod accuracy;
+mod best;
+mod extremes;
+mod hidden;
+mod inside;
+mod nearest;
+mod places;
+mod sweeps;
+mod watertight;
+
+use std::sync::Arc;
+
+use crate::SimdLevel;
+use crate::bounds::tests::random::{MOTIONS, Spread, creature, palette};
+use crate::geometry::{Ray, Similarity};
+use crate::measure::skin_scalar;
+use crate::mesh::{ColliderMesh, VertexId};
+use crate::surface::SkinnedSurface;
+use crate::surface::agreement::{answers, assert_queries_agree};
+use crate::testing::{direction, point};
+use glam::Vec3;
+
+fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &str) {
+    let wanted = skin_scalar(mesh, surface.instance.current.palette()).unwrap();
+    let before = skin_scalar(mesh, surface.instance.previous.palette()).unwrap();
+    let mut all = Vec::new();
+    surface.skin_all(&mut all);
+    assert!(same_bits(&all, &wanted), "{case}: skin_all");
+    for (index, cluster) in mesh.clusters().clusters.iter().enumerate() {
+        for (pose, wanted) in [
+            (&surface.instance.current, &wanted),
+            (&surface.instance.previous, &before),
+        ] {
+            let mut positions = crate::skin::ClusterPositions::ZERO;
+            // Filled by the first, read from the cache by the second.
+            for _ in 0..2 {
+                pose.positions(mesh, index as u32, &mut positions);
+                for (slot, v) in cluster.vertices(mesh.clusters()).iter().enumerate() {
+                    let found = Vec3::from_array(positions.0.map(|axis| axis[slot]));
+                    assert!(same_bits(&[found], &[wanted[v.index()]]), "{case}: {v}");
+                }
+            }
+        }
+    }
+}
+
+fn same_bits(a: &[Vec3], b: &[Vec3]) -> bool {
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| bits(a) == bits(b))
+}
+
+#[test]
+fn any_creature_in_any_pose_at_every_simd_level() {
+    let mut rng = fastrand::Rng::with_seed(71);
+    let spreads = [
+        Spread::Random,
+        Spread::NearlyEqual,
+        Spread::Uneven,
+        Spread::Few,
+        Spread::Constant,
+    ];
+    let mut found = 0;
+    for case in 0..120 {
+        let (mesh, _) = creature(&mut rng, 1 + case % 16, spreads[case / 16 % 5]);
+        let mesh = Arc::new(mesh);
+        let mut surfaces: Vec<SkinnedSurface> = SimdLevel::available()
+            .into_iter()
+            .map(|level| SkinnedSurface::with_simd_level(mesh.clone(), level))
+            .collect();
+        for motion in MOTIONS {
+            let case = format!("case {case}, {motion:?}");
+            let palette = palette(&mut rng, motion, mesh.radius());
+            let before = rng.clone();
+            for surface in &mut surfaces {
+                rng = before.clone();
+                surface.advance(&palette, Similarity::IDENTITY).unwrap();
+                found += assert_queries_agree(surface, &mut rng, 2);
+                let case = format!("{case}, {}", surface.simd_level());
+                assert_positions_equal(surface, &mesh, &case);
+            }
+        }
+    }
+    assert!(found > 100_000, "{found} hits");
+}
+
+#[test]
+fn threads_that_query_at_once_find_what_one_finds() {
+    let mesh = crate::testing::tube(12, 48);
+    let mut rng = fastrand::Rng::with_seed(72);
+    let mut surface = SkinnedSurface::new(mesh);
+    for tick in 0..20 {
+        let angle = f64::from(tick) * 0.05;
+        let bent = crate::testing::bend(12, glam::DVec3::Z, angle);
+        let places: Vec<(Vec3, Vec3, f32)> = (0..64)
+            .map(|_| {
+                let place = Vec3::new(5.0, 1.0, 0.0) + point(&mut rng, 6.0);
+                (place, direction(&mut rng) * 3.0, rng.f32() * 2.0)
+            })
+            .collect();
+        let ask = |surface: &SkinnedSurface| -> Vec<_> {
+            let each = places.iter();
+            each.map(|(place, towards, reach)| answers(surface, *place, *towards, *reach))
+                .collect()
+        };
+        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        // Never skinned ahead, so that it counts what the others count.
+        let alone = surface.clone();
+        let wanted = ask(&alone);
+        let diagnostics = alone.diagnostics();
+        for threads in [1, 2, 8] {
+            let fresh = surface.clone();
+            std::thread::scope(|scope| {
+                let handles: Vec<_> = (0..threads).map(|_| scope.spawn(|| ask(&fresh))).collect();
+                for handle in handles {
+                    assert!(
+                        handle.join().unwrap() == wanted,
+                        "{threads} threads, tick {tick}"
+                    );
+                }
+            });
+            let touched = fresh.diagnostics();
+            assert_eq!(touched.bounds_evaluated, diagnostics.bounds_evaluated);
+            assert_eq!(touched.clusters_skinned, diagnostics.clusters_skinned);
+            assert_eq!(touched.vertices_skinned, diagnostics.vertices_skinned);
+            assert_eq!(
+                touched.triangles_tested,
+                threads * diagnostics.triangles_tested
+            );
+        }
+    }
+}
+
+#[test]
+fn skinning_ahead_changes_no_answer() {
+    let mesh = crate::testing::tube(8, 24);
+    let mut rng = fastrand::Rng::with_seed(73);
+    let mut ahead = SkinnedSurface::new(mesh.clone());
+    for tick in 0..10 {
+        let bent = crate::testing::bend(8, glam::DVec3::Y, 0.2 * f64::from(tick));
+        ahead.advance(&bent, Similarity::IDENTITY).unwrap();
+        ahead.skin_ahead();
+        assert!(assert_queries_agree(&ahead, &mut rng, 30) > 100);
+        assert_positions_equal(&ahead, &mesh, &format!("tick {tick}"));
+        let (touched, all) = (ahead.diagnostics(), mesh.clusters().clusters.len());
+        assert_eq!(touched.clusters_skinned, all);
+    }
+}
+
+#[test]
+fn a_tick_after_one_that_touched_everything_is_skinned_ahead_and_one_after_rest_is_not() {
+    let mesh = crate::testing::tube(8, 24);
+    let mut surface = SkinnedSurface::new(mesh.clone());
+    let bent = crate::testing::bend(8, glam::DVec3::Y, 0.2);
+    let everything = crate::testing::ball(Vec3::ZERO, f32::MAX);
+    let mut hits = Vec::new();
+    let mut tick = |touch: bool| {
+        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        let ahead = surface.diagnostics().clusters_skinned;
+        if touch {
+            surface.in_model().overlap_capsule(&everything, &mut hits);
+            assert_eq!(hits.len(), mesh.triangles().len());
+        }
+        ahead
+    };
+    let all = mesh.clusters().clusters.len();
+    assert_eq!(
+        [tick(true), tick(true), tick(false), tick(false)],
+        [0, all, all, 0]
+    );
+}
+
+#[test]
+fn only_what_is_touched_is_skinned() {
+    let mesh = crate::testing::tube(24, 48);
+    let mut surface = SkinnedSurface::new(mesh.clone());
+    let bent = crate::testing::bend(24, glam::DVec3::Z, 0.05);
+    surface.advance(&bent, Similarity::IDENTITY).unwrap();
+    assert_eq!(surface.diagnostics().clusters_skinned, 0);
+    let far = Ray::new(Vec3::new(0.0, 900.0, 0.0), Vec3::X).unwrap();
+    assert_eq!(surface.in_model().cast_ray(&far, 5.0), None);
+    let nothing = surface.diagnostics();
+    assert_eq!((nothing.bounds_evaluated, nothing.triangles_tested), (0, 0));
+    let at = surface.in_model().position(VertexId(100)).unwrap();
+    let near = surface.in_model().closest_point(at, 0.1);
+    assert!(near.is_some());
+    let touched = surface.diagnostics();
+    assert!(touched.clusters_skinned >= 1);
+    assert!(
+        touched.vertices_skinned * 4 < touched.vertices,
+        "{touched:?}"
+    );
+    assert!(touched.triangles_tested < 100, "{touched:?}");
+    // The same again touches nothing new.
+    assert_eq!(surface.in_model().closest_point(at, 0.1), near);
+    let again = surface.diagnostics();
+    assert_eq!(again.bounds_evaluated, touched.bounds_evaluated);
+    assert_eq!(again.clusters_skinned, touched.clusters_skinned);
+}

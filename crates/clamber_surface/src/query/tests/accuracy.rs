@@ -1,0 +1,99 @@
+//! The nearest point through the whole surface against all triangles by another method.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::widen;
+use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use crate::rig::JointId;
+use crate::surface::SkinnedSurface;
+use crate::testing::{direction, point};
+
+/// Slivers of length 1 and height `height` about `center`, each its own three vertices.
+fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface {
+    let mut positions = Vec::new();
+    for _ in 0..400 {
+        let first = center + point(rng, 3.0);
+        let along = direction(rng);
+        positions.push(first);
+        positions.push(first + along);
+        positions.push(first + along * rng.f32() + direction(rng) * height);
+    }
+    let count = positions.len() as u32;
+    let triangles: Vec<[u32; 3]> = (0..count).step_by(3).map(|t| [t, t + 1, t + 2]).collect();
+    let one = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![one; positions.len()],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    SkinnedSurface::new(Arc::new(mesh))
+}
+
+/// Distance from the origin to a triangle in f64: the plane's where the foot falls inside, else that of
+/// the nearest edge, on differences that were taken before anything was multiplied.
+fn distance(corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let edges = [(a, b), (b, c), (c, a)];
+    let to_edge = |(from, to): (DVec3, DVec3)| {
+        let along = to - from;
+        let t = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        (from + along * t).length()
+    };
+    let nearest = edges.map(to_edge).into_iter().fold(f64::INFINITY, f64::min);
+    let normal = (b - a).cross(c - a);
+    let inside = |(from, to): (DVec3, DVec3)| normal.dot((to - from).cross(-from)) >= 0.0;
+    if normal != DVec3::ZERO && edges.into_iter().all(inside) {
+        nearest.min(a.dot(normal).abs() / normal.length())
+    } else {
+        nearest
+    }
+}
+
+#[test]
+fn the_nearest_point_is_as_near_as_an_oracle_finds_it_on_slivers_and_far_out() {
+    let mut rng = fastrand::Rng::with_seed(92);
+    let mut worst = 0.0f64;
+    for height in [1e-1, 1e-3, 1e-5, 1e-7] {
+        for center in [Vec3::ZERO, Vec3::new(1000.0, -600.0, 500.0)] {
+            let surface = slivers(&mut rng, height, center);
+            let mut positions = Vec::new();
+            surface.skin_all(&mut positions);
+            for _ in 0..300 {
+                let away = [0.01, 1.0, 10.0][rng.usize(0..3)];
+                let near = positions[rng.usize(0..positions.len())];
+                let place = near + point(&mut rng, away);
+                let hit = surface
+                    .in_model()
+                    .closest_point(place, f32::INFINITY)
+                    .unwrap();
+                let local = |id: usize| {
+                    let corners = surface.mesh().triangles()[id];
+                    corners.map(|v| widen(positions[v.index()]) - widen(place))
+                };
+                let all = 0..surface.mesh().triangles().len();
+                let wanted = all
+                    .map(|id| distance(local(id)))
+                    .fold(f64::INFINITY, f64::min);
+                // Of the material point that the hit names, not of its rounded place.
+                let corners = local(hit.triangle.index());
+                let [u, v, w] = hit.barycentric.map(f64::from);
+                let met = (corners[0] * u + corners[1] * v + corners[2] * w).length();
+                for found in [hit.distance, met] {
+                    // Longest edge, distance.
+                    let share = (found - wanted).abs() / (1.0 + wanted);
+                    assert!(share <= 2e-7, "height {height}, {place}: {share} {hit:?}");
+                    worst = worst.max(share);
+                }
+            }
+        }
+    }
+    println!("worst error {worst:e} of edge and distance");
+}

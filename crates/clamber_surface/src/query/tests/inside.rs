@@ -1,0 +1,120 @@
+//! `is_inside` against the solid angle.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Ray, Similarity};
+use crate::measure::winding_number;
+use crate::mesh::TriangleId;
+use crate::query::inside::DIRECTIONS;
+use crate::surface::SkinnedSurface;
+use crate::testing::{bend, point, tube};
+
+/// Compares at a point; gives the winding number.
+fn assert_agrees(surface: &SkinnedSurface, positions: &[Vec3], place: Vec3, case: &str) -> f64 {
+    let winding = winding_number(positions, surface.mesh(), place.as_dvec3());
+    let inside = surface.in_model().is_inside(place);
+    assert_eq!(
+        inside,
+        winding > 0.5,
+        "{case}: winds {winding} around {place}"
+    );
+    winding
+}
+
+#[test]
+fn a_bent_tube_that_overlaps_itself_agrees_with_the_solid_angle() {
+    let mut rng = fastrand::Rng::with_seed(76);
+    let mesh = tube(10, 12);
+    let mut surface = SkinnedSurface::new(mesh);
+    let (mut inside, mut overlapping) = (0, 0);
+    // The last one winds up on itself.
+    for angle in [0.0, 0.2, 0.5, 0.9] {
+        let bent = bend(10, DVec3::new(0.0, 0.8, 0.6), angle);
+        surface.advance(&bent, Similarity::IDENTITY).unwrap();
+        let mut positions = Vec::new();
+        surface.skin_all(&mut positions);
+        for _ in 0..4_000 {
+            let near = positions[rng.usize(0..positions.len())];
+            let place = near + point(&mut rng, 0.6);
+            let winding = assert_agrees(&surface, &positions, place, &format!("{angle} rad"));
+            inside += u32::from(winding > 0.5);
+            overlapping += u32::from(winding > 1.5);
+        }
+    }
+    assert!(inside > 2_000 && overlapping > 20, "{inside} {overlapping}");
+}
+
+#[test]
+fn a_ray_through_edges_and_corners_is_outvoted() {
+    let mut rng = fastrand::Rng::with_seed(77);
+    let mut surface = SkinnedSurface::new(tube(6, 8));
+    surface
+        .advance(&bend(6, DVec3::Z, 0.3), Similarity::IDENTITY)
+        .unwrap();
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    for direction in DIRECTIONS {
+        for _ in 0..2_000 {
+            let corners =
+                surface.mesh().triangles()[rng.usize(0..surface.mesh().triangles().len())];
+            let [a, b, _] = corners.map(|v| positions[v.index()]);
+            let target = a + (b - a) * [0.0, 0.5, rng.f32()][rng.usize(0..3)];
+            let distance = (rng.f32() + 0.01) * [-1.0, 1.0, 3.0][rng.usize(0..3)];
+            let place = target - direction * distance;
+            assert_agrees(&surface, &positions, place, "towards an edge");
+        }
+    }
+}
+
+#[test]
+fn a_hole_in_one_direction_is_outvoted() {
+    // From the middle of each ring, the skin that one ray leaves through is taken away.
+    let whole = SkinnedSurface::new(tube(6, 16));
+    for x in [0.6, 2.1, 4.4] {
+        let middle = Vec3::new(x, 0.05, -0.03);
+        assert!(whole.in_model().is_inside(middle));
+        for direction in DIRECTIONS {
+            let mut surface = whole.clone();
+            let ray = Ray::new(middle, direction).unwrap();
+            let hit = surface.in_model().cast_ray(&ray, 10.0).unwrap();
+            surface.disable_triangle(hit.triangle).unwrap();
+            assert!(
+                surface.in_model().is_inside(middle),
+                "{direction} from {middle}"
+            );
+            assert!(!surface.in_model().is_inside(middle + Vec3::Y));
+        }
+    }
+}
+
+#[test]
+fn an_open_sheet_has_no_inside_from_half_its_size_on() {
+    // The end cap of a tube, seen from before it and from behind.
+    let mut surface = SkinnedSurface::new(tube(3, 16));
+    let mesh = surface.mesh().clone();
+    let caps: Vec<TriangleId> = (0..mesh.triangles().len() as u32)
+        .map(TriangleId)
+        .filter(|t| {
+            mesh.triangles()[t.index()]
+                .iter()
+                .any(|v| v.index() == mesh.positions().len() - 1)
+        })
+        .collect();
+    for triangle in (0..mesh.triangles().len() as u32).map(TriangleId) {
+        if !caps.contains(&triangle) {
+            surface.disable_triangle(triangle).unwrap();
+        }
+    }
+    for x in [1.0, 1.5, 2.5, 3.0] {
+        let place = Vec3::new(x, 0.1, 0.05);
+        assert!(!surface.in_model().is_inside(place), "{place}");
+    }
+}
+
+#[test]
+fn points_that_are_not_finite_are_outside() {
+    let surface = SkinnedSurface::new(tube(2, 3));
+    for bad in [Vec3::NAN, Vec3::splat(f32::INFINITY)] {
+        assert!(!surface.in_model().is_inside(bad), "{bad}");
+    }
+}

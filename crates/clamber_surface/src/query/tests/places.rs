@@ -1,0 +1,59 @@
+//! One place, every query, against brute force.
+
+use glam::Vec3;
+
+use crate::geometry::{Capsule, Ray};
+use crate::measure::BruteForce;
+use crate::surface::{SkinnedSurface, SurfaceHit};
+
+/// Where a query stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) origin: Vec3,
+    /// Where its ray goes, and from `origin` to the other end of its capsule.
+    pub(super) towards: Vec3,
+    pub(super) reach: f32,
+}
+
+/// Compares every query at a place; gives how many hits there were.
+pub(super) fn assert_agree(
+    surface: &SkinnedSurface,
+    brute_force: &BruteForce<'_>,
+    place: Place,
+    case: &str,
+) -> usize {
+    let Place {
+        origin,
+        towards,
+        reach,
+    } = place;
+    let (mut hits, mut wanted): (Vec<SurfaceHit>, Vec<SurfaceHit>) = Default::default();
+    let mut found = 0;
+    if let Some(ray) = Ray::new(origin, towards) {
+        let hit = surface.in_model().cast_ray(&ray, reach);
+        let expected = brute_force.cast_ray(&ray, reach);
+        assert_eq!(hit, expected, "{case}: cast_ray, {place:?}");
+        let met = surface.in_model().intersects_ray(&ray, reach);
+        assert_eq!(met, expected.is_some(), "{case}: intersects, {place:?}");
+        surface.in_model().cast_ray_all(&ray, reach, &mut hits);
+        brute_force.cast_ray_all(&ray, reach, &mut wanted);
+        assert_eq!(hits, wanted, "{case}: cast_ray_all, {place:?}");
+        found += hits.len();
+    }
+    let closest = surface.in_model().closest_point(origin, reach);
+    let expected = brute_force.closest_point(origin, reach);
+    assert_eq!(closest, expected, "{case}: closest_point, {place:?}");
+    found += usize::from(closest.is_some());
+    let radius = reach.min(f32::MAX);
+    let shapes = [
+        Capsule::ball(origin, radius),
+        Capsule::new(origin, origin + towards, radius),
+    ];
+    for capsule in shapes.into_iter().flatten() {
+        surface.in_model().overlap_capsule(&capsule, &mut hits);
+        brute_force.overlap_capsule(&capsule, &mut wanted);
+        assert_eq!(hits, wanted, "{case}: overlap_capsule, {capsule:?}");
+        found += hits.len();
+    }
+    found
+}

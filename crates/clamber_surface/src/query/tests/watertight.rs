@@ -1,0 +1,125 @@
+//! Rays from inside a closed mesh, at its edges and vertices, through the whole surface: bounds,
+//! cache and boxes included. Any miss is an error by topology.
+
+use core::f32::consts::PI;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec3};
+
+use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle, widen};
+use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use crate::rig::{JointId, Palette};
+use crate::surface::SkinnedSurface;
+use crate::testing::point;
+
+const COLUMNS: u32 = 200;
+const ROWS: u32 = 100;
+
+/// A sphere of radius 1 about `center`, from one joint at its south to another at its north.
+fn sphere(center: Vec3) -> Arc<ColliderMesh> {
+    let mut local = vec![Vec3::Y, -Vec3::Y];
+    for row in 1..ROWS {
+        let polar = PI * row as f32 / ROWS as f32;
+        for column in 0..COLUMNS {
+            let azimuth = 2.0 * PI * column as f32 / COLUMNS as f32;
+            let ring = libm::sinf(polar);
+            local.push(Vec3::new(
+                ring * libm::cosf(azimuth),
+                libm::cosf(polar),
+                ring * libm::sinf(azimuth),
+            ));
+        }
+    }
+    let at = |row: u32, column: u32| 2 + (row - 1) * COLUMNS + column % COLUMNS;
+    let mut triangles = Vec::new();
+    for column in 0..COLUMNS {
+        triangles.push([0, at(1, column + 1), at(1, column)]);
+        triangles.push([1, at(ROWS - 1, column), at(ROWS - 1, column + 1)]);
+        for row in 1..ROWS - 1 {
+            let (a, b) = (at(row, column), at(row, column + 1));
+            let (c, d) = (at(row + 1, column), at(row + 1, column + 1));
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    let influences: Vec<Influence> = local
+        .iter()
+        .flat_map(|p| [(0, 0.5 - 0.5 * p.y), (1, 0.5 + 0.5 * p.y)])
+        .map(|(joint, weight)| Influence {
+            joint: JointId(joint),
+            weight: weight.max(0.0),
+        })
+        .collect();
+    let positions: Vec<Vec3> = local.iter().map(|p| *p + center).collect();
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &influences,
+        joint_count: 2,
+        ..MeshSource::default()
+    };
+    let (mesh, report) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    assert_eq!((report.welded, report.degenerate_triangles), (0, 0));
+    Arc::new(mesh)
+}
+
+/// The north turned by `angle` about the centre, and everything moved.
+fn pose(center: Vec3, angle: f64, shift: Vec3) -> Palette {
+    let center = widen(center);
+    let turn = DAffine3::from_translation(center + widen(shift))
+        * DAffine3::from_quat(rotation_from_axis_angle(DVec3::Z, angle))
+        * DAffine3::from_translation(-center);
+    let still = DAffine3::from_translation(widen(shift));
+    Palette::from_matrices([still, turn].map(|map| Affine::from_f64(&map)))
+}
+
+/// How many rays at points of edges, or at vertices, leave without a hit.
+fn leaks(surface: &SkinnedSurface, center: Vec3, rays: u32, at_vertices: bool) -> u32 {
+    let mut rng = fastrand::Rng::with_seed(91);
+    let mut positions = Vec::new();
+    surface.skin_all(&mut positions);
+    let triangles = surface.mesh().triangles();
+    let mut leaks = 0;
+    for _ in 0..rays {
+        let corners = triangles[rng.usize(0..triangles.len())].map(|v| positions[v.index()]);
+        let side = rng.usize(0..3);
+        let (a, b) = (corners[side], corners[(side + 1) % 3]);
+        let along = if at_vertices { 0.0 } else { rng.f32() };
+        let target = a + (b - a) * along;
+        let origin = center + point(&mut rng, 0.15);
+        let ray = Ray::new(origin, target - origin).unwrap();
+        let hit = surface.in_model().cast_ray(&ray, f32::INFINITY);
+        leaks += u32::from(hit.is_none());
+    }
+    leaks
+}
+
+fn assert_watertight(rays: u32) {
+    let far = Vec3::new(1000.0, -1000.0, 1000.0);
+    for (center, shift) in [
+        (Vec3::ZERO, Vec3::ZERO),
+        (Vec3::ZERO, far),
+        (far, Vec3::ZERO),
+    ] {
+        let mut surface = SkinnedSurface::new(sphere(center));
+        for angle in [0.0, 0.7] {
+            let palette = pose(center, angle, shift);
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+            for at_vertices in [false, true] {
+                let leaks = leaks(&surface, center + shift, rays, at_vertices);
+                let case = format!("{center} {shift} {angle} vertices {at_vertices}");
+                assert_eq!(leaks, 0, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_ray_at_an_edge_or_a_vertex_leaks_through_the_surface() {
+    assert_watertight(100_000);
+}
+
+#[test]
+#[ignore = "a million rays per case: run it in release"]
+fn no_ray_of_a_million_leaks_through_the_surface() {
+    assert_watertight(1_000_000);
+}

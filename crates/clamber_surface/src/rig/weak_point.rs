@@ -1,0 +1,37 @@
+use glam::Vec3;
+
+use super::JointId;
+
+/// A place where a creature can be wounded: a ball that moves with a joint.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct WeakPoint {
+    /// For people and for looking it up; need not be unique.
+    pub name: String,
+    /// The joint that moves it.
+    pub joint: JointId,
+    /// The centre, in the joint's space.
+    pub position: Vec3,
+    /// Radius around the centre in model units, finite, at least 0. A joint that is scaled in a pose does not
+    /// change it.
+    pub radius: f32,
+    /// Damage that it takes before it is used up, finite, greater than 0.
+    pub hit_points: f64,
+    /// True if the creature dies when it is used up.
+    pub major: bool,
+}
+
+impl WeakPoint {
+    /// A minor weak point of radius 0 with 1 hit point.
+    pub fn new(name: impl Into<String>, joint: JointId, position: Vec3) -> Self {
+        Self {
+            name: name.into(),
+            joint,
+            position,
+            radius: 0.0,
+            hit_points: 1.0,
+            major: false,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What is written down as JSON and read again has the same bits, and what cannot be is refused.
+//!
+//! JSON that is read as the nearest float needs `float_roundtrip` of serde_json.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{IslandId, MeshId, PartId, TriangleId, VertexId};
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use clamber_surface::rig::{Joint, JointId, Palette, Playback, Pose, Skeleton, Transform};
+use glam::{DQuat, DVec3, Quat, Vec3};
+use serde_json::{from_str, json, to_string};
+
+/// Written, read, and told in full: `Debug` of a float names exactly one, and its sign.
+fn assert_stays<T>(value: &T)
+where
+    T: std::fmt::Debug + serde::Serialize + serde::de::DeserializeOwned,
+{
+    let read: T = from_str(&to_string(value).unwrap()).unwrap();
+    assert_eq!(format!("{read:?}"), format!("{value:?}"));
+}
+
+/// Any finite float.
+fn f32_of(rng: &mut fastrand::Rng) -> f32 {
+    let any = f32::from_bits(rng.u32(..));
+    if any.is_finite() { any } else { -0.0 }
+}
+
+fn f64_of(rng: &mut fastrand::Rng) -> f64 {
+    let any = f64::from_bits(rng.u64(..));
+    if any.is_finite() { any } else { -0.0 }
+}
+
+fn affine(rng: &mut fastrand::Rng) -> Affine {
+    Affine {
+        rows: std::array::from_fn(|_| std::array::from_fn(|_| f32_of(rng))),
+    }
+}
+
+#[test]
+fn maps_and_poses_keep_every_bit() {
+    let mut rng = fastrand::Rng::with_seed(61);
+    for _ in 0..1_000 {
+        assert_stays(&affine(&mut rng));
+        let mut wide = || f64_of(&mut rng);
+        assert_stays(&Similarity {
+            rotation: DQuat::from_array(std::array::from_fn(|_| wide())),
+            scale: wide(),
+            translation: DVec3::from_array(std::array::from_fn(|_| wide())),
+        });
+        let mut narrow = || f32_of(&mut rng);
+        let transform = Transform {
+            translation: Vec3::from_array(std::array::from_fn(|_| narrow())),
+            rotation: Quat::from_array(std::array::from_fn(|_| narrow())),
+            scale: Vec3::from_array(std::array::from_fn(|_| narrow())),
+        };
+        assert_stays(&transform);
+        assert_stays(&Pose {
+            transforms: vec![transform, Transform::IDENTITY],
+        });
+        let count = rng.usize(0..4);
+        assert_stays(&(0..count).map(|_| affine(&mut rng)).collect::<Palette>());
+    }
+}
+
+#[test]
+fn ids_and_tags_stay() {
+    assert_stays(&(JointId(u32::MAX), VertexId(1), TriangleId(2), PartId(3)));
+    assert_stays(&(IslandId(4), MeshId(u64::MAX), Playback::Loop));
+    let tag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
+    assert_stays(&tag.with_user(u32::MAX));
+}
+
+/// Of two joints: one that is posed by a skeleton knows where its joints are.
+fn posed() -> Palette {
+    let joint = |parent, x| Joint {
+        name: String::new(),
+        parent,
+        rest: Transform::from_translation(Vec3::X * x),
+        inverse_bind: Affine::IDENTITY,
+    };
+    let joints = vec![joint(None, 0.1), joint(Some(JointId(0)), 0.7)];
+    let skeleton = Skeleton::new(joints).unwrap();
+    skeleton.palette(&skeleton.rest_pose()).unwrap()
+}
+
+#[test]
+fn a_palette_knows_where_its_joints_are_after_it_was_read() {
+    let palette = posed();
+    assert_stays(&palette);
+    let read: Palette = from_str(&to_string(&palette).unwrap()).unwrap();
+    assert!(read.model_from_joint(JointId(1)).is_some());
+}
+
+#[test]
+fn a_palette_whose_lists_differ_in_length_is_refused() {
+    let mut stored = serde_json::to_value(posed()).unwrap();
+    stored["model_from_joint"].as_array_mut().unwrap().pop();
+    let refused = serde_json::from_value::<Palette>(stored.clone()).unwrap_err();
+    let told = refused.to_string();
+    assert!(told.contains("expected 2 joints, found 1"), "{told}");
+    stored["model_from_joint"] = json!([]);
+    assert!(serde_json::from_value::<Palette>(stored).is_ok());
+}

@@ -1,0 +1,142 @@
+//! What an obstacle gets that answers three questions only, beside all that it could answer.
+
+use std::sync::Arc;
+
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::SkinnedSurface;
+use glam::Vec3;
+
+use super::*;
+
+/// A creature's skin behind the three methods that every obstacle has.
+struct Least<'a> {
+    skin: &'a SkinnedSurface,
+    has_bounds: bool,
+}
+
+impl Obstacle for Least<'_> {
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        Obstacle::overlap_capsule(self.skin, capsule, contacts);
+    }
+
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        Obstacle::cast_capsule(self.skin, capsule, displacements, target)
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        Obstacle::motion(self.skin, point, dt)
+    }
+
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        self.has_bounds.then(|| self.skin.bounds())?
+    }
+}
+
+/// Eighty random triangles within two metres of a place 100 m out.
+fn rubble() -> (SkinnedSurface, DVec3) {
+    let mut rng = fastrand::Rng::with_seed(22);
+    let positions: Vec<Vec3> = (0..240).map(|_| random(&mut rng).as_vec3() * 2.0).collect();
+    let triangles: Vec<[u32; 3]> = (0..80).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let influence = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![influence; positions.len()],
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+    let mut skin = SkinnedSurface::new(Arc::new(mesh));
+    let place = DVec3::new(60.0, 0.0, -80.0);
+    let palette = Palette::from_matrices([Affine::IDENTITY]);
+    let world_from_model = Similarity::from_translation(place);
+    skin.place(&palette, world_from_model).unwrap();
+    (skin, place)
+}
+
+/// Each coordinate within -1..1.
+fn random(rng: &mut fastrand::Rng) -> DVec3 {
+    DVec3::from([(); 3].map(|()| rng.f64() * 2.0 - 1.0))
+}
+
+#[test]
+fn three_methods_answer_rays_and_nearest_points_as_all_would() {
+    let (skin, place) = rubble();
+    let mut rng = fastrand::Rng::with_seed(23);
+    let mut hits = 0;
+    for has_bounds in [false, true] {
+        let least = Least {
+            skin: &skin,
+            has_bounds,
+        };
+        for _ in 0..500 {
+            let point = place + random(&mut rng) * 3.0;
+            for reach in [0.0, 0.3, 3.0, f64::INFINITY] {
+                let (ours, all) = (
+                    least.closest_point(point, reach),
+                    Obstacle::closest_point(&skin, point, reach),
+                );
+                assert_eq!(
+                    ours.map(|contact| contact.distance),
+                    all.map(|contact| contact.distance),
+                    "{point} within {reach}"
+                );
+            }
+            let direction = random(&mut rng) * 5.0;
+            for length in [0.5, 8.0, f64::INFINITY] {
+                let ours = least.cast_ray(point, direction, length);
+                let all = Obstacle::cast_ray(&skin, point, direction, length);
+                let Some(all) = all else { continue };
+                let ours = ours.expect("a ball of no radius meets what a ray meets");
+                let apart = all.distance - ours.distance;
+                // Short by the tolerance over the sine of the angle at which the ray meets the triangle.
+                let sine = all.normal.dot(direction.normalize()).abs();
+                let allowed = (2e-6 + 1e-9 * ours.distance) / sine;
+                assert!(
+                    (-1e-5..allowed.max(1e-5)).contains(&apart),
+                    "{apart} {ours:?} {all:?}"
+                );
+                hits += 1;
+            }
+        }
+    }
+    assert!(hits > 500, "{hits}");
+}
+
+#[test]
+fn defaults_find_nothing_by_what_is_no_number() {
+    let (skin, place) = rubble();
+    let least = Least {
+        skin: &skin,
+        has_bounds: false,
+    };
+    for bad in [f64::NAN, -1.0] {
+        assert_eq!(least.closest_point(place, bad), None);
+        assert_eq!(least.cast_ray(place, DVec3::X, bad), None);
+    }
+    for bad in [DVec3::NAN, DVec3::INFINITY] {
+        assert_eq!(least.closest_point(bad, 1.0), None);
+        assert_eq!(least.cast_ray(bad, DVec3::X, 1.0), None);
+        assert_eq!(least.cast_ray(place, bad, 1.0), None);
+    }
+    assert_eq!(least.cast_ray(place, DVec3::ZERO, 1.0), None);
+}
+
+#[test]
+fn a_translated_point_moves_without_turning() {
+    let motion = PointMotion::translated(DVec3::X, DVec3::X * 1.5, 0.1);
+    assert_eq!((motion.velocity, motion.placed), (DVec3::X * 5.0, false));
+    let still = PointMotion::translated(DVec3::X, DVec3::X, 0.0);
+    assert_eq!((still.velocity, still.placed), (DVec3::ZERO, true));
+    assert!(motion.is_finite() && still.is_finite());
+}

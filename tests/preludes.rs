@@ -1,0 +1,40 @@
+//! The preludes of clamber and of rapier can both be imported whole: a name that both have does not compile here.
+
+// In `use`, an ambiguous name is a lint.
+#![deny(ambiguous_glob_imports)]
+
+use clamber::prelude::*;
+#[expect(unused_imports, reason = "only its names matter")]
+use clamber::world::rapier3d::prelude::*;
+
+/// Uses every name, so that one that is ambiguous is an error, and lists them.
+macro_rules! use_each {
+    ($($name:ident)*) => {
+        $(
+            #[expect(unused_imports, reason = "that it is no error is enough")]
+            use crate::$name as _;
+        )*
+        const NAMES: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+use_each! {
+    Affine Anchor Attachment BodyPoses BuildOptions CastOptions Climber ClimberConfig ClimberContact ClimberEvent
+    ClimberInput ClimberMode ClimberState Clip ColliderMesh ContactPhase CustomMode Debris DebrisConfig GripConfig
+    Influence JointId MaterialPoint MeshSource ModeContext Motion NextMode Obstacle ObstacleId Palette Playback
+    PointMotion RapierTerrain Similarity Skeleton SkinnedSurface StepReport StepRules Support SurfaceHit SurfaceKind
+    SurfacePoint SurfaceTag SweepHit TargetMotion Transform TriangleId
+}
+
+/// Or a name that is added to the prelude would not be looked at above.
+#[test]
+fn every_name_of_the_prelude_is_used() {
+    let source = include_str!("../crates/clamber/src/lib.rs");
+    let (_, prelude) = source.split_once("pub mod prelude").unwrap();
+    let words = prelude.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+    let mut names: Vec<&str> = words
+        .filter(|w| w.starts_with(char::is_uppercase))
+        .collect();
+    names.sort_unstable();
+    assert_eq!(names, NAMES);
+}

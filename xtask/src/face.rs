@@ -1,0 +1,144 @@
+//! The public items of each published crate, held against a stored list, so that no change of them goes unseen.
+//!
+//! The lists come from rustdoc's JSON, which stable Rust gives to none but those who ask as a nightly would.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use cargo_metadata::camino::Utf8PathBuf;
+use cargo_metadata::{Metadata, Package};
+use public_api::Builder;
+
+use crate::run::{IGNORE_RUST_VERSION, cargo_with};
+
+/// Where the lists stand.
+const FOLDER: &str = "xtask/face";
+
+/// Set where this program stands in for rustdoc.
+const AS_RUSTDOC: &str = "CLAMBER_XTASK_AS_RUSTDOC";
+
+/// Each crate has the items of its list, and no others.
+pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
+    let mut differences = Vec::new();
+    for (name, found) in faces(metadata)? {
+        let path = format!("{FOLDER}/{name}.txt");
+        let stored = std::fs::read_to_string(&path).unwrap_or_default();
+        differences.extend(compare(&name, &stored, &found));
+    }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    for line in &differences {
+        println!("   {line}");
+    }
+    Err(format!(
+        "{} public items changed: describe them in CHANGELOG.md, then `cargo xtask face`",
+        differences.len()
+    ))
+}
+
+/// Stores the lists.
+pub(crate) fn store(metadata: &Metadata) -> Result<(), String> {
+    for (name, found) in faces(metadata)? {
+        let path = format!("{FOLDER}/{name}.txt");
+        std::fs::write(&path, &found).map_err(|error| format!("{path}: {error}"))?;
+        println!("   {path}: {} items", found.lines().count());
+    }
+    Ok(())
+}
+
+/// The lines that only one of two lists has.
+fn compare(name: &str, stored: &str, found: &str) -> Vec<String> {
+    let [stored, found] = [stored, found].map(|text| text.lines().collect::<BTreeSet<_>>());
+    let gone = stored
+        .difference(&found)
+        .map(|line| format!("{name}: - {line}"));
+    let new = found
+        .difference(&stored)
+        .map(|line| format!("{name}: + {line}"));
+    gone.chain(new).collect()
+}
+
+/// The name of each published crate with a list of its public items, one a line.
+fn faces(metadata: &Metadata) -> Result<Vec<(String, String)>, String> {
+    document()?;
+    let published = |package: &&Package| package.publish.as_ref().is_none_or(|to| !to.is_empty());
+    let packages = metadata.workspace_packages().into_iter();
+    let faces = packages.filter(published).map(|package| {
+        let name = package.name.to_string();
+        let json: Utf8PathBuf = metadata.target_directory.join(format!("doc/{name}.json"));
+        let items = Builder::from_rustdoc_json(&json)
+            .omit_blanket_impls(true)
+            .omit_auto_trait_impls(true)
+            .omit_auto_derived_impls(true)
+            .build()
+            .map_err(|error| format!("{json}: {error}"))?;
+        Ok((name, items.to_string()))
+    });
+    faces.collect()
+}
+
+/// Has rustdoc write what it knows of every crate, with all features.
+fn document() -> Result<(), String> {
+    let this =
+        std::env::current_exe().map_err(|error| format!("where is this program? {error}"))?;
+    let this = this.to_string_lossy();
+    let doc = [
+        "doc",
+        "--workspace",
+        "--exclude",
+        "clamber_peers",
+        "--no-deps",
+        "--all-features",
+        IGNORE_RUST_VERSION,
+        "--quiet",
+    ];
+    let variables = [
+        ("RUSTDOC", this.as_ref()),
+        ("RUSTDOCFLAGS", "-Z unstable-options --output-format json"),
+        (AS_RUSTDOC, "1"),
+    ];
+    cargo_with(&doc, &variables)
+}
+
+/// Runs rustdoc with unstable options where cargo has called this program in its place; `None` for any other call.
+///
+/// The variable that allows them is set for rustdoc alone: seen by cargo, it would have half of all crates built anew.
+pub(crate) fn as_rustdoc() -> Option<ExitCode> {
+    std::env::var_os(AS_RUSTDOC)?;
+    let mut rustdoc = Command::new(rustdoc_beside_cargo());
+    rustdoc.args(std::env::args_os().skip(1));
+    rustdoc.env("RUSTC_BOOTSTRAP", "1");
+    let done = rustdoc.status();
+    Some(match done {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("cannot start rustdoc: {error}");
+            ExitCode::FAILURE
+        }
+    })
+}
+
+/// That of the toolchain whose cargo runs, if it is there.
+fn rustdoc_beside_cargo() -> std::ffi::OsString {
+    let cargo = std::env::var_os("CARGO").unwrap_or_default();
+    let beside = Path::new(&cargo).with_file_name("rustdoc");
+    if beside.exists() {
+        beside.into()
+    } else {
+        "rustdoc".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::compare;
+
+    #[test]
+    fn tells_what_is_gone_and_what_is_new() {
+        let told = compare("mesh", "fn a()\nfn b()\n", "fn a()\nfn c()\n");
+        assert_eq!(told, ["mesh: - fn b()", "mesh: + fn c()"]);
+    }
+}
