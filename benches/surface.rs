@@ -157,7 +157,7 @@ fn operations(surface: &SkinnedSurface) -> Result<Vec<Operation<'static>>, Box<d
         ),
         (
             "motion",
-            Box::new(move |s| drop(black_box(s.motion(&anchor, 1.0 / 60.0)))),
+            Box::new(move |s| drop(black_box(s.in_model().motion(&anchor, 1.0 / 60.0)))),
         ),
         ("skin all", Box::new(move |s| s.skin_all(&mut positions))),
     ])

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         } else {
             surface.advance(&palette, far_away)?;
         }
-        let motion = surface.motion(&arrow, dt)?;
+        let motion = surface.in_model().motion(&arrow, dt)?;
         arrow.frame = motion.frame;
         let skin = surface.in_model().closest_point(motion.position, 1.0);
         let skin = skin.ok_or("no skin")?;

@@ -282,7 +282,7 @@ fn users_found(options: &LoadOptions) -> [u32; 2] {
         let ray = Ray::new(origin, Vec3::Y * down).unwrap();
         let hit = surface.in_model().cast_ray(&ray, 10.0).unwrap();
         let (origin, direction) = (origin.as_dvec3(), DVec3::Y * f64::from(down));
-        let contact = Obstacle::cast_ray(&surface, origin, direction, 10.0).unwrap();
+        let contact = surface.cast_ray(origin, direction, 10.0).unwrap();
         assert_eq!(contact.tag, hit.tag);
         hit.tag.user
     })

@@ -111,7 +111,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     for palette in palettes(&giant) {
         surface.place(&palette, root).unwrap();
         let above = root.translation + DVec3::new(0.3, 60.0, 0.4);
-        let hit = Obstacle::cast_ray(&surface, above, -DVec3::Y, 100.0);
+        let hit = surface.cast_ray(above, -DVec3::Y, 100.0);
         let Some(hit) = hit.filter(|hit| hit.normal.y > 0.4) else {
             continue;
         };

@@ -114,7 +114,7 @@ fn standing_and_walking_on_the_giant_allocates_nothing() {
         stage.place(0.0).unwrap();
         let (middle, radius) = stage.surface().bounding_ball().unwrap();
         let top = middle + DVec3::Y * radius;
-        let below = Obstacle::cast_ray(stage.surface(), top, -DVec3::Y, 2.0 * radius);
+        let below = stage.surface().cast_ray(top, -DVec3::Y, 2.0 * radius);
         let start = below.unwrap().point + DVec3::Y * 0.45;
         let mut climber = Climber::new(ClimberConfig::walker(), start).unwrap();
         let mut ticks = Ticks::default();

@@ -79,7 +79,7 @@ impl Scene {
         };
         self.surface.advance(&self.palettes[tick], world).unwrap();
         for anchor in &self.anchors {
-            let motion = self.surface.motion(anchor, 1.0 / 60.0).unwrap();
+            let motion = self.surface.in_model().motion(anchor, 1.0 / 60.0).unwrap();
             let origin = motion.position + motion.normal * 0.5;
             let ray = Ray::new(origin, -motion.normal).unwrap();
             let space = self.surface.in_model();

@@ -187,7 +187,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
         let surface = &giants[giant].surface;
         let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
         let seat = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-        let steep = f64::from(surface.motion(&seat, DT)?.normal.y);
+        let steep = f64::from(surface.in_model().motion(&seat, DT)?.normal.y);
         let direction = DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5);
         if part == Part::Climbs || steep > LEVEL {
             riders.push(Rider {
@@ -206,7 +206,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
 fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
     for rider in riders {
         let surface = &giants[rider.giant].surface;
-        let motion = surface.motion(&rider.seat, DT)?;
+        let motion = surface.in_model().motion(&rider.seat, DT)?;
         let place = surface.world_from_model();
         let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
         let point = place.transform_point_f32(motion.position);

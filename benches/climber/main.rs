@@ -158,7 +158,7 @@ fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
         .bounding_ball()
         .ok_or("a giant without skin")?;
     let top = middle + DVec3::Y * radius;
-    let ray = Obstacle::cast_ray(stage.surface(), top, -DVec3::Y, 2.0 * radius);
+    let ray = stage.surface().cast_ray(top, -DVec3::Y, 2.0 * radius);
     Ok(ray.ok_or("nothing below")?.point + DVec3::Y * 0.5)
 }
 

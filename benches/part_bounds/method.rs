@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use clamber::SimdLevel;
 use clamber::geometry::Sphere;
 use clamber::mesh::PartId;
 use clamber::rig::Palette;
@@ -90,12 +89,7 @@ impl Method {
 
     fn refit(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
         let mesh = &subject.creature.collider;
-        let skinned = skin_into(
-            mesh,
-            palette.matrices(),
-            SimdLevel::best(),
-            &mut workspace.positions,
-        );
+        let skinned = skin_into(mesh, palette.matrices(), &mut workspace.positions);
         assert_eq!(skinned, Ok(()), "{}", subject.label());
         let positions = &workspace.positions;
         if self.shape == Shape::Sphere {

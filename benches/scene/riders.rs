@@ -41,7 +41,7 @@ impl Riders {
             let surface = &herd.giants[giant].surface;
             let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
             let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-            if surface.motion(&anchor, 1.0 / RATE)?.normal.y > LEVEL {
+            if surface.in_model().motion(&anchor, 1.0 / RATE)?.normal.y > LEVEL {
                 seats.push(Seat { giant, anchor });
             }
         }
@@ -54,7 +54,7 @@ impl Riders {
     pub(crate) fn sit(&mut self, herd: &Herd) -> Result<(), Box<dyn Error>> {
         for (climber, seat) in self.climbers.iter_mut().zip(&self.seats) {
             let surface = &herd.giants[seat.giant].surface;
-            let motion = surface.motion(&seat.anchor, 1.0 / RATE)?;
+            let motion = surface.in_model().motion(&seat.anchor, 1.0 / RATE)?;
             let place = surface.world_from_model();
             let normal = (place.rotation * motion.normal.as_dvec3()).normalize();
             let point = place.transform_point_f32(motion.position);

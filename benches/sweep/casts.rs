@@ -135,7 +135,7 @@ impl Field {
         while casts.len() < count {
             let triangle = TriangleId(rng.u32(0..self.surface.mesh().triangles().len() as u32));
             let seat = self.surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-            let skin = self.surface.motion(&seat, 1.0 / 60.0)?;
+            let skin = self.surface.in_model().motion(&seat, 1.0 / 60.0)?;
             let sphere = Sphere {
                 center: skin.position + skin.normal * (ABOVE * radius),
                 radius,

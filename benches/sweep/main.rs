@@ -14,7 +14,7 @@ mod pairs;
 mod parry;
 
 /// How near a cast comes before it counts as a contact, metres.
-pub(crate) const TOLERANCE: f32 = 1e-4;
+pub(crate) const TOLERANCE: f64 = 1e-4;
 
 use std::error::Error;
 use std::process::ExitCode;

@@ -44,7 +44,7 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
         cells.value(&format!("{name}: ours, ns a triangle"), ours);
         let ends = [
             ("to a tenth of the gap", End::Share),
-            ("to our tolerance", End::Tolerance(TOLERANCE.into())),
+            ("to our tolerance", End::Tolerance(TOLERANCE)),
         ];
         for (until, end) in ends {
             let name = format!("{name}: additive CCD {until}");
@@ -118,7 +118,7 @@ fn nearing(rng: &mut fastrand::Rng) -> Sheet {
 
 /// Along its own plane, two tolerances away from the sphere.
 fn sliding(rng: &mut fastrand::Rng) -> Sheet {
-    let height = RADIUS + 2.0 * TOLERANCE;
+    let height = RADIUS + 2.0 * TOLERANCE as f32;
     let way = vector(rng) * 0.5;
     let start: Vec<Vec3> = grid().map(|[x, z]| Vec3::new(x, height, z)).collect();
     let end = start.iter().map(|p| *p + Vec3::new(way.x, 0.0, way.z));

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use clamber::SimdLevel;
 use clamber::geometry::{Capsule, Sphere};
 use clamber::prelude::*;
 use clamber::skin::skin_into;
@@ -55,7 +54,7 @@ impl Lazy {
             }
             let hit = space.cast_ray(&rider.ray, rider.reach);
             found += usize::from(hit.is_some());
-            let motion = self.surface.motion(&rider.anchor, 1.0 / 60.0);
+            let motion = self.surface.in_model().motion(&rider.anchor, 1.0 / 60.0);
             found += usize::from(motion.is_ok());
         }
         found
@@ -115,7 +114,7 @@ impl Contender for Parry {
     fn tick(&mut self, tick: &Tick) -> usize {
         std::mem::swap(&mut self.positions, &mut self.before);
         let palette = tick.palette.matrices();
-        let skinned = skin_into(&self.mesh, palette, SimdLevel::best(), &mut self.positions);
+        let skinned = skin_into(&self.mesh, palette, &mut self.positions);
         assert_eq!(skinned, Ok(()));
         self.shape.set_vertices(&self.positions);
         let mut found = 0;

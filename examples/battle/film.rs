@@ -172,7 +172,7 @@ impl Film {
         // What is seen through is in front of the skin by as much as fur is long.
         let far = (eye - target).length();
         let toward = (eye - target).normalize_or(up);
-        let hit = Obstacle::cast_ray(battle.surface(), state.position, toward, far + FUR);
+        let hit = battle.surface().cast_ray(state.position, toward, far + FUR);
         let before = |skin: f64| (skin - FUR).max(0.5 * skin).min(far);
         let free = hit.map_or(far, |hit| before(hit.distance));
         Camera::new(target + toward * free, target)

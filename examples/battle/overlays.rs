@@ -140,7 +140,7 @@ impl Overlays {
     }
 
     fn anchors(&self, over: &mut Overlay, battle: &Battle<'_>, eye: DVec3) {
-        let motion = |point: &MaterialPoint| Obstacle::motion(battle.surface(), point, TICK);
+        let motion = |point: &MaterialPoint| battle.surface().motion(point, TICK);
         let mut show = |motion: PointMotion, width: f32, arrow, point| {
             let [from, to] = [DVec3::ZERO, motion.velocity * ARROW]
                 .map(|along| nearer(motion.position + along, eye, self.nearer));
@@ -465,8 +465,7 @@ fn state(battle: &Battle<'_>) -> String {
             )
         }
     };
-    let motion =
-        on_skin.and_then(|support| Obstacle::motion(surface, &support.attachment.point, TICK));
+    let motion = on_skin.and_then(|support| surface.motion(&support.attachment.point, TICK));
     let speeds = match motion {
         Some(motion) => format!(
             "speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s",

@@ -71,7 +71,6 @@ fn faces(metadata: &Metadata) -> Result<Vec<(String, String)>, String> {
         let items = Builder::from_rustdoc_json(&json)
             .omit_blanket_impls(true)
             .omit_auto_trait_impls(true)
-            .omit_auto_derived_impls(true)
             .build()
             .map_err(|error| format!("{json}: {error}"))?;
         Ok((name, items.to_string()))

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 const SOURCES: &str = "crates/clamber_surface/src";
 
 /// The way of the data, from the left to the right.
-const ORDER: [&str; 8] = [
-    "geometry", "rig", "mesh", "skin", "bounds", "pose", "query", "surface",
+const ORDER: [&str; 9] = [
+    "geometry", "rig", "mesh", "skin", "bounds", "pose", "query", "surface", "measure",
 ];
 
 pub(crate) fn check() -> Result<(), String> {

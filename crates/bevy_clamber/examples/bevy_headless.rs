@@ -222,7 +222,7 @@ fn shoot(
     In((eye, middle)): In<(Vec3, Vec3)>,
     surfaces: SurfaceQuery,
     mut commands: Commands,
-) -> Result<(WorldHit, Entity), String> {
+) -> Result<(EntityHit, Entity), String> {
     let all = SurfaceFilter::default();
     let nearest = surfaces.closest_point(eye, f32::INFINITY, &all);
     let nearest = nearest.ok_or("there is no skin")?;
@@ -235,10 +235,12 @@ fn shoot(
         hit.distance >= nearest.distance * 0.9999,
         "{hit:?} {nearest:?}"
     );
-    let anchor = surfaces.anchor_at(&hit).ok_or("the skin is gone")?;
+    let anchor = surfaces
+        .anchor_at(&hit)
+        .map_err(|error| error.to_string())?;
     Ok((hit, commands.spawn(anchor).id()))
 }
 
-fn nearest(point: In<Vec3>, surfaces: SurfaceQuery) -> Option<WorldHit> {
+fn nearest(point: In<Vec3>, surfaces: SurfaceQuery) -> Option<EntityHit> {
     surfaces.closest_point(*point, f32::INFINITY, &SurfaceFilter::default())
 }

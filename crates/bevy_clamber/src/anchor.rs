@@ -6,7 +6,7 @@ use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::mesh::MeshId;
 use clamber_surface::rig;
-use clamber_surface::surface::{Anchor, SkinnedSurface};
+use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceError};
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -46,8 +46,8 @@ impl SurfaceAnchor {
     pub fn new(entity: Entity, surface: &SkinnedSurface, anchor: Anchor, rotation: Quat) -> Self {
         let world_from_model = surface.world_from_model();
         let skin = (world_from_model.rotation * anchor.frame.as_dquat()).normalize();
-        let here = surface.motion(&anchor, 1.0);
-        let here = here.map(|motion| world_from_model.transform_point_f32(motion.position));
+        let here = surface.in_world().motion(&anchor, 1.0);
+        let here = here.map(|motion| motion.position);
         Self {
             surface: entity,
             mesh: anchor.mesh,
@@ -69,12 +69,15 @@ impl SurfaceAnchor {
         ObstacleId(surface.to_bits())
     }
 
-    /// The point of skin, to ask its surface about: [`SkinnedSurface::motion`]. `None` if it is none of a surface.
-    pub fn anchor(&self) -> Option<Anchor> {
+    /// The point of skin, to ask its surface about: [`ModelSpace::motion`](clamber_surface::surface::ModelSpace::motion).
+    ///
+    /// # Errors
+    /// [`AnchorError::NoSkin`] if the attachment was changed to a point of something else.
+    pub fn anchor(&self) -> Result<Anchor, AnchorError> {
         let point = &self.attachment.point;
-        Some(Anchor {
+        Ok(Anchor {
             mesh: self.mesh,
-            triangle: point.triangle()?,
+            triangle: point.triangle().ok_or(AnchorError::NoSkin)?,
             barycentric: point.coordinates.map(|weight| weight as f32),
             frame: Quat::IDENTITY,
         })
@@ -84,13 +87,12 @@ impl SurfaceAnchor {
     /// gone.
     pub(crate) fn follow(&mut self, surface: &SkinnedSurface) -> Option<DAffine3> {
         // The motion is not asked for: any tick will do.
-        let motion = surface.motion(&self.anchor()?, 1.0).ok()?;
-        let world_from_model = surface.world_from_model();
+        let motion = surface.in_world().motion(&self.anchor().ok()?, 1.0).ok()?;
         let attachment = &mut self.attachment;
         attachment.obstacle = Self::obstacle_of(self.surface);
-        attachment.contact = world_from_model.transform_point_f32(motion.position);
+        attachment.contact = motion.position;
         if !motion.collapsed {
-            attachment.frame = (world_from_model.rotation * motion.frame.as_dquat()).normalize();
+            attachment.frame = motion.frame;
         }
         let rotation: DQuat = (attachment.frame * self.rotation.as_dquat()).normalize();
         Some(DAffine3::from_rotation_translation(
@@ -98,6 +100,21 @@ impl SurfaceAnchor {
             attachment.place(),
         ))
     }
+}
+
+/// Why something cannot be stuck to skin, or has no motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AnchorError {
+    /// The entity has no [`PosedSurface`]: it was despawned, or its collider is not built yet.
+    #[error("entity {0} has no posed surface")]
+    NoSurface(Entity),
+    /// The anchor's attachment is to no triangle.
+    #[error("the anchor is at no point of skin")]
+    NoSkin,
+    /// The surface does not know the point, or the tick has no length.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
 }
 
 /// Triggered on an entity whose [`SurfaceAnchor`] was taken off because what it stuck to is gone.

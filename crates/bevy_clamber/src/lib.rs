@@ -17,7 +17,7 @@ pub mod prelude;
 mod query;
 mod surface;
 
-pub use anchor::{AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
+pub use anchor::{AnchorError, AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
@@ -34,7 +34,7 @@ pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
-pub use query::{SurfaceFilter, SurfaceQuery, WorldHit, WorldSweepHit};
+pub use query::{EntityHit, EntitySweepHit, SurfaceFilter, SurfaceQuery};
 pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};
 
 #[cfg(feature = "clamber_gltf")]

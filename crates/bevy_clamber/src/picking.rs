@@ -13,7 +13,7 @@ use bevy_shape::Ray3d;
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
 
 use crate::query::{in_f64, world_hit};
-use crate::{ClamberSystems, PosedSurface, SurfaceAnchor, WorldHit};
+use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 
 /// Where a pointer meets skin: the extra data of its `HitData`, whose position and outward unit normal are in world
 /// space.
@@ -141,7 +141,7 @@ fn cast(
     surface: &mut PosedSurface,
     ray: Ray3d,
     max_distance: f32,
-) -> Option<(WorldHit, SurfacePick)> {
+) -> Option<(EntityHit, SurfacePick)> {
     surface.pose_as_drawn()?;
     let surface = &*surface;
     let drawn = surface.as_drawn()?;

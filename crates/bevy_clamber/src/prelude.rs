@@ -3,9 +3,8 @@
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
-    AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, PoseTiming,
+    AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, EntityHit, PoseTiming,
     PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, SurfaceTagger,
-    WorldHit,
 };
 #[cfg(feature = "clamber_gltf")]
 pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};

@@ -2,12 +2,12 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_math::{Quat, Vec3};
 use bevy_shape::Ray3d;
-use clamber_surface::geometry::{Similarity, WorldCapsule};
-use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
-use clamber_surface::surface::{self, Motion, TargetMotion};
+use clamber_surface::geometry::{Capsule, WorldCapsule};
+use clamber_surface::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
+use clamber_surface::surface::{self, CastOptions, SurfacePoint, TargetMotion, WorldMotion};
 use glam::DVec3;
 
-use crate::{PosedSurface, SurfaceAnchor};
+use crate::{AnchorError, PosedSurface, SurfaceAnchor};
 
 /// How far, as a factor, to look for what is no farther, in the units of another surface: each way rounds to f32
 /// once or twice.
@@ -27,7 +27,9 @@ const EQUAL: f64 = 1.0 + 8.0 * f32::EPSILON as f64;
 ///     let ray = Ray3d::new(Vec3::new(0.0, 1.0, 9.0), Dir3::NEG_Z);
 ///     let hit = surfaces.cast_ray(ray, 50.0, &SurfaceFilter::default());
 ///     // An arrow that sticks there, whatever the skin does.
-///     if let Some(anchor) = hit.and_then(|hit| surfaces.anchor_at(&hit)) {
+///     if let Some(hit) = hit
+///         && let Ok(anchor) = surfaces.anchor_at(&hit)
+///     {
 ///         commands.spawn(anchor);
 ///     }
 /// }
@@ -68,7 +70,8 @@ impl<'a> SurfaceFilter<'a> {
 
 /// A point of skin that a query found, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorldHit {
+#[non_exhaustive]
+pub struct EntityHit {
     /// Whose skin: the entity with the [`PosedSurface`].
     pub entity: Entity,
     /// The point.
@@ -77,6 +80,8 @@ pub struct WorldHit {
     pub normal: Vec3,
     /// From the ray's origin, the query's point, or the capsule's segment, metres.
     pub distance: f32,
+    /// The collider's mesh.
+    pub mesh: MeshId,
     /// The collider's triangle; [`PosedSurface::source_triangle`] tells the mesh asset's.
     pub triangle: TriangleId,
     /// Weights of its corners: not negative, sum 1.
@@ -89,10 +94,12 @@ pub struct WorldHit {
 
 /// The first contact of something that moves with skin, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorldSweepHit {
-    /// The contact, where it is at that time. Its normal points from the skin to what moves, its distance is that
-    /// from the sphere's centre or the capsule's segment.
-    pub hit: WorldHit,
+#[non_exhaustive]
+pub struct EntitySweepHit {
+    /// The contact, where it is at that time; its distance is from the capsule's segment.
+    pub hit: EntityHit,
+    /// Unit vector from the point to the capsule's segment; where that lies on the triangle itself, its normal.
+    pub separation_normal: Vec3,
     /// Share of the motion that was made, 0 to 1.
     pub time: f32,
     /// They overlap at the start already; the time is 0.
@@ -108,7 +115,7 @@ impl SurfaceQuery<'_, '_> {
         ray: Ray3d,
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldHit> {
+    ) -> Option<EntityHit> {
         let (origin, along) = in_f64(ray);
         self.nearest(filter, max_distance, |surface, max_distance| {
             surface.in_world().cast_ray(origin, along, max_distance)
@@ -135,7 +142,7 @@ impl SurfaceQuery<'_, '_> {
         ray: Ray3d,
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
-        hits: &mut Vec<WorldHit>,
+        hits: &mut Vec<EntityHit>,
     ) {
         let (origin, along) = in_f64(ray);
         let mut found = Vec::new();
@@ -155,7 +162,7 @@ impl SurfaceQuery<'_, '_> {
         point: Vec3,
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldHit> {
+    ) -> Option<EntityHit> {
         self.nearest(filter, max_distance, |surface, max_distance| {
             surface
                 .in_world()
@@ -163,28 +170,15 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// Every triangle within a sphere, each with its own point nearest to the centre. `hits` is cleared first and
-    /// keeps its memory.
-    pub fn overlap_sphere(
-        &self,
-        center: Vec3,
-        radius: f32,
-        filter: &SurfaceFilter<'_>,
-        hits: &mut Vec<WorldHit>,
-    ) {
-        self.overlap_capsule([center; 2], radius, filter, hits);
-    }
-
-    /// Every triangle within a capsule around a segment, each with its own point nearest to the segment. `hits` is
+    /// Every triangle within a capsule, each with its own point nearest to the capsule's segment. `hits` is
     /// cleared first and keeps its memory.
     pub fn overlap_capsule(
         &self,
-        ends: [Vec3; 2],
-        radius: f32,
+        capsule: &Capsule,
         filter: &SurfaceFilter<'_>,
-        hits: &mut Vec<WorldHit>,
+        hits: &mut Vec<EntityHit>,
     ) {
-        let capsule = capsule(ends, radius);
+        let capsule = WorldCapsule::from(capsule);
         hits.clear();
         for (entity, surface) in self.seen(filter) {
             let space = surface.in_world();
@@ -193,33 +187,22 @@ impl SurfaceQuery<'_, '_> {
         hits.sort_unstable_by(by_distance_and_triangle);
     }
 
-    /// The first contact of a sphere that moves by `motion` with all skin, which stands still, or moves over the last
-    /// tick meanwhile.
-    pub fn cast_sphere(
-        &self,
-        center: Vec3,
-        radius: f32,
-        motion: Vec3,
-        target: TargetMotion,
-        filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldSweepHit> {
-        self.cast_capsule([center; 2], radius, [motion; 2], target, filter)
-    }
-
-    /// The first contact of a capsule whose ends each move by one of `motions` with all skin, which stands still, or moves
-    /// over the last tick meanwhile.
+    /// The first contact of a capsule, or a ball, each of whose ends goes straight by its own displacement, with all skin,
+    /// which stands still, or moves over the last tick meanwhile.
     pub fn cast_capsule(
         &self,
-        ends: [Vec3; 2],
-        radius: f32,
-        motions: [Vec3; 2],
+        capsule: &Capsule,
+        displacements: [Vec3; 2],
         target: TargetMotion,
         filter: &SurfaceFilter<'_>,
-    ) -> Option<WorldSweepHit> {
-        let capsule = capsule(ends, radius);
-        let motions = motions.map(|motion| motion.as_dvec3());
+    ) -> Option<EntitySweepHit> {
+        let capsule = WorldCapsule::from(capsule);
+        let displacements = displacements.map(|displacement| displacement.as_dvec3());
+        // As an obstacle does, so that a climber and its game see the same.
+        let options = CastOptions::from(target).with_tolerance(capsule.sweep_tolerance());
         let hits = self.seen(filter).filter_map(|(entity, surface)| {
-            let hit = surface.in_world().cast_capsule(&capsule, motions, target)?;
+            let space = surface.in_world();
+            let hit = space.cast_capsule(&capsule, displacements, &options)?;
             Some((hit.time, world_sweep_hit(entity, &hit)))
         });
         let earlier = hits.min_by(|(time, a), (other, b)| {
@@ -229,27 +212,41 @@ impl SurfaceQuery<'_, '_> {
         earlier.map(|(_, hit)| hit)
     }
 
-    /// What sticks an entity to a hit's point, its +Y along the skin's outward normal. `None` if that surface or
-    /// triangle is gone.
-    pub fn anchor_at(&self, hit: &WorldHit) -> Option<SurfaceAnchor> {
-        let outward = Quat::from_rotation_arc(Vec3::Y, hit.normal.try_normalize()?);
-        self.anchor_with_rotation(hit, outward)
+    /// What sticks an entity to a hit's point, its +Y along the skin's outward normal.
+    ///
+    /// # Errors
+    /// [`AnchorError`], for a hit of a surface that is gone, of a triangle that was removed, or of another mesh than the
+    /// surface has now.
+    pub fn anchor_at(&self, hit: &EntityHit) -> Result<SurfaceAnchor, AnchorError> {
+        let normal = hit.normal.try_normalize().unwrap_or(Vec3::Y);
+        self.anchor_with_rotation(hit, Quat::from_rotation_arc(Vec3::Y, normal))
     }
 
     /// What sticks an entity to a hit's point, as it is turned in the world now: an arrow in flight.
-    pub fn anchor_with_rotation(&self, hit: &WorldHit, rotation: Quat) -> Option<SurfaceAnchor> {
-        let (entity, surface) = self.surfaces.get(hit.entity).ok()?;
-        let anchor = surface.anchor(hit.triangle, hit.barycentric).ok()?;
-        Some(SurfaceAnchor::new(entity, surface, anchor, rotation))
+    ///
+    /// # Errors
+    /// As [`SurfaceQuery::anchor_at`].
+    pub fn anchor_with_rotation(
+        &self,
+        hit: &EntityHit,
+        rotation: Quat,
+    ) -> Result<SurfaceAnchor, AnchorError> {
+        let surface = self.surface(hit.entity)?;
+        let anchor = surface.anchor_at(SurfacePoint {
+            mesh: hit.mesh,
+            triangle: hit.triangle,
+            barycentric: hit.barycentric,
+        })?;
+        Ok(SurfaceAnchor::new(hit.entity, surface, anchor, rotation))
     }
 
-    /// How an anchored point moves over the last tick of `dt` seconds, in the creature's model space, and where that is;
-    /// `None` if its surface or triangle is gone. The velocity in the world is
-    /// `world_from_model.transform_vector(motion.velocity.as_dvec3())`.
-    pub fn motion(&self, anchor: &SurfaceAnchor, dt: f64) -> Option<(Motion, Similarity)> {
-        let (_, surface) = self.surfaces.get(anchor.surface).ok()?;
-        let motion = surface.motion(&anchor.anchor()?, dt).ok()?;
-        Some((motion, *surface.world_from_model()))
+    /// How an anchored point moves over the last tick of `dt` seconds, in world space.
+    ///
+    /// # Errors
+    /// [`AnchorError`], as for [`SurfaceQuery::anchor_at`], and for a `dt` that is not positive and finite.
+    pub fn motion(&self, anchor: &SurfaceAnchor, dt: f64) -> Result<WorldMotion, AnchorError> {
+        let surface = self.surface(anchor.surface)?;
+        Ok(surface.in_world().motion(&anchor.anchor()?, dt)?)
     }
 
     /// One surface; `None` while it has had no pose that it could take, and is nowhere.
@@ -264,6 +261,12 @@ impl SurfaceQuery<'_, '_> {
         all.filter(|(_, surface)| surface.is_placed())
     }
 
+    fn surface(&self, entity: Entity) -> Result<&PosedSurface, AnchorError> {
+        let found = self.surfaces.get(entity);
+        let (_, surface) = found.map_err(|_| AnchorError::NoSurface(entity))?;
+        Ok(surface)
+    }
+
     fn seen(&self, filter: &SurfaceFilter<'_>) -> impl Iterator<Item = (Entity, &PosedSurface)> {
         self.iter().filter(|(entity, _)| filter.sees(*entity))
     }
@@ -274,9 +277,9 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         max_distance: f32,
         find: impl Fn(&PosedSurface, f64) -> Option<surface::WorldHit>,
-    ) -> Option<WorldHit> {
+    ) -> Option<EntityHit> {
         let mut max_distance = f64::from(max_distance);
-        let mut nearest: Option<(f64, WorldHit)> = None;
+        let mut nearest: Option<(f64, EntityHit)> = None;
         for (entity, surface) in self.seen(filter) {
             let Some(hit) = find(surface, max_distance) else {
                 continue;
@@ -295,12 +298,12 @@ impl SurfaceQuery<'_, '_> {
     }
 }
 
-fn by_distance(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
+fn by_distance(a: &EntityHit, b: &EntityHit) -> std::cmp::Ordering {
     let by_distance = a.distance.total_cmp(&b.distance);
     by_distance.then_with(|| a.entity.cmp(&b.entity))
 }
 
-fn by_distance_and_triangle(a: &WorldHit, b: &WorldHit) -> std::cmp::Ordering {
+fn by_distance_and_triangle(a: &EntityHit, b: &EntityHit) -> std::cmp::Ordering {
     by_distance(a, b).then_with(|| a.triangle.cmp(&b.triangle))
 }
 
@@ -309,19 +312,13 @@ pub(crate) fn in_f64(ray: Ray3d) -> (DVec3, DVec3) {
     (ray.origin.as_dvec3(), ray.direction.as_vec3().as_dvec3())
 }
 
-fn capsule(ends: [Vec3; 2], radius: f32) -> WorldCapsule {
-    WorldCapsule {
-        ends: ends.map(|end| end.as_dvec3()),
-        radius: radius.into(),
-    }
-}
-
-pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> WorldHit {
-    WorldHit {
+pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> EntityHit {
+    EntityHit {
         entity,
         point: hit.point.as_vec3(),
         normal: hit.normal.as_vec3(),
         distance: hit.distance as f32,
+        mesh: hit.mesh,
         triangle: hit.triangle,
         barycentric: hit.barycentric,
         part: hit.part,
@@ -329,12 +326,10 @@ pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> WorldHit {
     }
 }
 
-fn world_sweep_hit(entity: Entity, hit: &surface::WorldSweepHit) -> WorldSweepHit {
-    WorldSweepHit {
-        hit: WorldHit {
-            normal: hit.away.as_vec3(),
-            ..world_hit(entity, &hit.hit)
-        },
+fn world_sweep_hit(entity: Entity, hit: &surface::WorldSweepHit) -> EntitySweepHit {
+    EntitySweepHit {
+        hit: world_hit(entity, &hit.hit),
+        separation_normal: hit.separation_normal.as_vec3(),
         time: hit.time as f32,
         started_inside: hit.started_inside,
         undecided: hit.undecided,

@@ -18,7 +18,7 @@ fn stick(app: &mut bevy_app::App, from: Vec3, toward: Dir3) -> Entity {
     let ray = Ray3d::new(from, toward);
     let ask = move |surfaces: SurfaceQuery| {
         let hit = surfaces.cast_ray(ray, 99.0, &SurfaceFilter::default())?;
-        surfaces.anchor_at(&hit)
+        surfaces.anchor_at(&hit).ok()
     };
     let anchor = app.world_mut().run_system_once(ask).unwrap().unwrap();
     app.world_mut().spawn(anchor).id()

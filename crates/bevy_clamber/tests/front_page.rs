@@ -41,7 +41,7 @@ fn shoot(surfaces: SurfaceQuery, mut commands: Commands, arrows: Query<&SurfaceA
     // The file's fox is some 150 units long, and looks along Z.
     let ray = Ray3d::new(Vec3::new(200.0, 45.0, 0.0), Dir3::NEG_X);
     if let Some(hit) = surfaces.cast_ray(ray, 500.0, &SurfaceFilter::default())
-        && let Some(anchor) = surfaces.anchor_at(&hit)
+        && let Ok(anchor) = surfaces.anchor_at(&hit)
         && arrows.is_empty()
     {
         commands.spawn(anchor);

@@ -8,6 +8,7 @@ use std::any::TypeId;
 
 use bevy_app::{AnimationSystems, App, FixedUpdate, PostUpdate};
 use bevy_asset::Assets;
+use bevy_clamber::core::geometry::Capsule;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
@@ -40,7 +41,7 @@ fn scene() -> (App, Limb, Entity) {
     let ray = Ray3d::new(Vec3::new(9.0, 0.35, 0.05), Dir3::NEG_X);
     let stick = move |surfaces: SurfaceQuery| {
         let hit = surfaces.cast_ray(ray, 99.0, &SurfaceFilter::default())?;
-        surfaces.anchor_at(&hit)
+        surfaces.anchor_at(&hit).ok()
     };
     let mut anchor = app.world_mut().run_system_once(stick).unwrap().unwrap();
     // The point at the tip that moves most.
@@ -163,7 +164,8 @@ fn contacts_lie_on_the_skin_as_it_is_drawn() {
     let (mut app, limb, _) = scene();
     app.add_systems(FixedUpdate, |surfaces: SurfaceQuery| {
         let mut all = Vec::new();
-        surfaces.overlap_sphere(Vec3::Y, 9.0, &SurfaceFilter::default(), &mut all);
+        let ball = Capsule::ball(Vec3::Y, 9.0).unwrap();
+        surfaces.overlap_capsule(&ball, &SurfaceFilter::default(), &mut all);
         assert!(!all.is_empty());
     });
     show(

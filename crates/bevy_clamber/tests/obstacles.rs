@@ -194,7 +194,7 @@ fn interrogate(obstacle: &dyn Obstacle) -> Vec<(String, Vec<Answer>)> {
         let near = obstacle.closest_point(from, reach);
         // The normal of which triangle, where two meet, is not said.
         let near = near.map(|contact| Contact {
-            normal: contact.away(from),
+            normal: contact.separation_normal(from),
             ..contact
         });
         let name = format!("closest to {from} within {reach}");

@@ -27,7 +27,7 @@ macro_rules! use_each {
 
 use_each! { ALWAYS, cfg(all()),
     AnchorLost ClamberPlugins ClamberSystems ColliderStatus ColliderTag PoseTiming PosedSurface SkinnedCollider
-    SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag SurfaceTagger TargetMotion WorldHit
+    SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag SurfaceTagger TargetMotion EntityHit
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }

@@ -7,7 +7,8 @@ mod common;
 mod oracle;
 
 use bevy_app::{App, FixedPostUpdate};
-use bevy_clamber::WorldSweepHit;
+use bevy_clamber::EntitySweepHit;
+use bevy_clamber::core::geometry::Capsule;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
@@ -77,12 +78,20 @@ fn ask<R: Send + Sync + 'static>(
     app.world_mut().run_system_once(system).unwrap()
 }
 
+fn ball(center: Vec3, radius: f32) -> Capsule {
+    Capsule::ball(center, radius).unwrap()
+}
+
+fn rod(a: Vec3, b: Vec3, radius: f32) -> Capsule {
+    Capsule::new(a, b, radius).unwrap()
+}
+
 fn all() -> SurfaceFilter<'static> {
     SurfaceFilter::default()
 }
 
 /// What a query puts into a vector, whatever it held.
-fn every(query: impl Fn(&mut Vec<WorldHit>)) -> Vec<WorldHit> {
+fn every(query: impl Fn(&mut Vec<EntityHit>)) -> Vec<EntityHit> {
     let mut hits = Vec::new();
     query(&mut hits);
     query(&mut hits);
@@ -96,7 +105,7 @@ fn posed(app: &App, limbs: &[Limb]) -> Vec<(Entity, Vec<Corners>)> {
 }
 
 /// A hit says where it is in all its ways.
-fn check_hit(app: &App, hit: &WorldHit, posed: &[(Entity, Vec<Corners>)]) {
+fn check_hit(app: &App, hit: &EntityHit, posed: &[(Entity, Vec<Corners>)]) {
     let surface = app.world().get::<PosedSurface>(hit.entity).unwrap();
     let (_, triangles) = posed.iter().find(|(e, _)| *e == hit.entity).unwrap();
     let source = surface.source_triangle(hit.triangle).unwrap();
@@ -210,8 +219,8 @@ fn nearest_points_and_overlaps() {
         let (closest, sphere, capsule) = ask(&mut app, move |s| {
             (
                 s.closest_point(a, radius, &all()),
-                every(|hits| s.overlap_sphere(a, radius, &all(), hits)),
-                every(|hits| s.overlap_capsule([a, b], radius, &all(), hits)),
+                every(|hits| s.overlap_capsule(&ball(a, radius), &all(), hits)),
+                every(|hits| s.overlap_capsule(&rod(a, b, radius), &all(), hits)),
             )
         });
         let skin: Vec<Corners> = posed.iter().flat_map(|(_, t)| t.clone()).collect();
@@ -288,7 +297,7 @@ fn between([from, to]: [Corners; 2], time: f64) -> Corners {
 /// A sweep's answer against distances at samples of its time.
 fn check_sweep(
     what: &str,
-    hit: Option<&WorldSweepHit>,
+    hit: Option<&EntitySweepHit>,
     radius: f64,
     distance_at: impl Fn(f64) -> f64,
 ) {
@@ -340,10 +349,20 @@ fn casts_and_sweeps() {
         let radius = (0.02 + 0.3 * random.next()) as f32;
         let hits = ask(&mut app, move |s| {
             [
-                s.cast_sphere(a, radius, motions[0], TargetMotion::Still, &all()),
-                s.cast_sphere(a, radius, motions[0], TargetMotion::Moving, &all()),
-                s.cast_capsule([a, b], radius, motions, TargetMotion::Still, &all()),
-                s.cast_capsule([a, b], radius, motions, TargetMotion::Moving, &all()),
+                s.cast_capsule(
+                    &ball(a, radius),
+                    [motions[0]; 2],
+                    TargetMotion::Still,
+                    &all(),
+                ),
+                s.cast_capsule(
+                    &ball(a, radius),
+                    [motions[0]; 2],
+                    TargetMotion::Moving,
+                    &all(),
+                ),
+                s.cast_capsule(&rod(a, b, radius), motions, TargetMotion::Still, &all()),
+                s.cast_capsule(&rod(a, b, radius), motions, TargetMotion::Moving, &all()),
             ]
         });
         let sphere = |time: f64| a.as_dvec3() + motions[0].as_dvec3() * time;
@@ -412,15 +431,25 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
             s.cast_ray(ray, 20.0, &all()).unwrap().entity,
             every(|hits| s.cast_ray_all(ray, 20.0, &all(), hits))[0].entity,
             s.closest_point(at, 9.0, &all()).unwrap().entity,
-            every(|hits| s.overlap_sphere(at, 0.9, &all(), hits))[0].entity,
-            s.cast_sphere(at, 0.1, Vec3::NEG_X, TargetMotion::Still, &all())
-                .unwrap()
-                .hit
-                .entity,
-            s.cast_sphere(at, 0.1, Vec3::NEG_X, TargetMotion::Moving, &all())
-                .unwrap()
-                .hit
-                .entity,
+            every(|hits| s.overlap_capsule(&ball(at, 0.9), &all(), hits))[0].entity,
+            s.cast_capsule(
+                &ball(at, 0.1),
+                [Vec3::NEG_X; 2],
+                TargetMotion::Still,
+                &all(),
+            )
+            .unwrap()
+            .hit
+            .entity,
+            s.cast_capsule(
+                &ball(at, 0.1),
+                [Vec3::NEG_X; 2],
+                TargetMotion::Moving,
+                &all(),
+            )
+            .unwrap()
+            .hit
+            .entity,
         ]
     });
     assert_eq!(first, [entities[0]; 6]);
@@ -463,39 +492,15 @@ fn what_is_not_finite_finds_nothing() {
                 every(|hits| s.cast_ray_all(Ray3d::new(p, Dir3::Y), 9.0, &all(), hits)).is_empty()
             );
             assert_eq!(s.closest_point(p, 9.0, &all()), None);
-            assert!(every(|hits| s.overlap_sphere(p, 9.0, &all(), hits)).is_empty());
-            assert!(every(|hits| s.overlap_capsule([o, p], 9.0, &all(), hits)).is_empty());
-            assert_eq!(
-                s.cast_sphere(p, 9.0, Vec3::Y, TargetMotion::Still, &all()),
-                None
-            );
-            assert_eq!(s.cast_sphere(o, 9.0, p, TargetMotion::Still, &all()), None);
-            assert_eq!(
-                s.cast_capsule([p, o], 9.0, [o, o], TargetMotion::Still, &all()),
-                None
-            );
-            assert_eq!(
-                s.cast_sphere(p, 9.0, Vec3::Y, TargetMotion::Moving, &all()),
-                None
-            );
-            assert_eq!(
-                s.cast_capsule([o, o], 9.0, [o, p], TargetMotion::Moving, &all()),
-                None
-            );
+            for target in [TargetMotion::Still, TargetMotion::Moving] {
+                for way in [[p, o], [o, p]] {
+                    assert_eq!(s.cast_capsule(&ball(o, 9.0), way, target, &all()), None);
+                }
+            }
         }
         for bad in [nan, -1.0, -inf] {
             assert_eq!(ray(o, bad), None);
             assert_eq!(s.closest_point(o, bad, &all()), None);
-            assert!(every(|hits| s.overlap_sphere(o, bad, &all(), hits)).is_empty());
-            assert!(every(|hits| s.overlap_capsule([o, o], bad, &all(), hits)).is_empty());
-            assert_eq!(
-                s.cast_sphere(o, bad, Vec3::Y, TargetMotion::Still, &all()),
-                None
-            );
-            assert_eq!(
-                s.cast_capsule([o, o], bad, [o, o], TargetMotion::Moving, &all()),
-                None
-            );
         }
     });
 }
@@ -503,7 +508,7 @@ fn what_is_not_finite_finds_nothing() {
 #[test]
 fn systems_ask_side_by_side() {
     #[derive(Resource, Default)]
-    struct Found([std::sync::Mutex<Vec<Option<WorldHit>>>; 2]);
+    struct Found([std::sync::Mutex<Vec<Option<EntityHit>>>; 2]);
     fn look<const N: usize>(surfaces: SurfaceQuery, found: Res<Found>) {
         let ray = Ray3d::new(Vec3::new(9.0, 0.53, 0.07), Dir3::NEG_X);
         let hit = surfaces.cast_ray(ray, 30.0, &SurfaceFilter::default());

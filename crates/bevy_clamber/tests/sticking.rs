@@ -27,7 +27,7 @@ fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {
     let ray = Ray3d::new(Vec3::new(9.0, height, 0.05), Dir3::NEG_X);
     let ask = move |surfaces: SurfaceQuery| {
         let hit = surfaces.cast_ray(ray, 99.0, &SurfaceFilter::default())?;
-        surfaces.anchor_at(&hit)
+        surfaces.anchor_at(&hit).ok()
     };
     app.world_mut().run_system_once(ask).unwrap().unwrap()
 }

@@ -16,7 +16,7 @@ use common::{SPIN, animate, app, limb};
 use glam::DVec3;
 
 /// Where a ray from the right, at a height, meets the limb.
-fn meet(app: &mut bevy_app::App, height: f32) -> Option<WorldHit> {
+fn meet(app: &mut bevy_app::App, height: f32) -> Option<EntityHit> {
     let ray = Ray3d::new(Vec3::new(9.0, height, 0.05), Dir3::NEG_X);
     let ask = move |surfaces: SurfaceQuery| surfaces.cast_ray(ray, 20.0, &SurfaceFilter::default());
     app.world_mut().run_system_once(ask).unwrap()

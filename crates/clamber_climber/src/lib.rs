@@ -23,6 +23,8 @@ pub use config::{
 pub use contact::{ClimberContact, ContactPhase};
 pub use error::ClimberError;
 pub use event::{ClimberEvent, Push, StepReport};
+/// The crate whose vectors and quaternions are used here.
+pub use glam;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;
 pub use state::{ClimberMode, ClimberState, MEMORY, Support, TRANSITIONS};

@@ -82,7 +82,7 @@ impl ClimberObstacle {
     /// The first contact of a capsule whose ends move by `ways` relative to this body, which ends where it is now.
     fn meet(&self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<SweepContact> {
         let sum = self.now.radius + capsule.radius;
-        if !is_capsule(capsule) || !ways.iter().all(|way| way.is_finite()) {
+        if !capsule.is_valid() || !ways.iter().all(|way| way.is_finite()) {
             return None;
         }
         let mut time = 0.0;
@@ -109,7 +109,7 @@ impl ClimberObstacle {
                 return Some(SweepContact {
                     time,
                     contact: self.contact(&apart),
-                    away: apart.away,
+                    separation_normal: apart.away,
                     started_inside: step == 0 && gap <= 0.0,
                 });
             }
@@ -117,12 +117,6 @@ impl ClimberObstacle {
         }
         None
     }
-}
-
-/// It is finite, and its radius no less than zero.
-fn is_capsule(capsule: &WorldCapsule) -> bool {
-    let is_finite = capsule.ends.iter().all(|end| end.is_finite());
-    is_finite && capsule.radius >= 0.0 && capsule.radius.is_finite()
 }
 
 /// The nearest points of two axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
@@ -163,22 +157,6 @@ impl Obstacle for ClimberObstacle {
         Some((middle - self.way * 0.5, radius + self.way.length() * 0.5))
     }
 
-    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
-        if max_distance.is_nan() || max_distance < 0.0 || !origin.is_finite() {
-            return None;
-        }
-        let (middle, radius) = self.now.bounding_ball();
-        // As far as it can be met, so that an endless ray has a length.
-        let length = max_distance.min(origin.distance(middle) + radius);
-        let way = direction.try_normalize()? * length;
-        let ball = WorldCapsule::ball(origin, 0.0);
-        let hit = self.cast_capsule(&ball, [way; 2], TargetMotion::Still)?;
-        Some(Contact {
-            distance: hit.time * length,
-            ..hit.contact
-        })
-    }
-
     fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
         let contact = self.contact(&between(&self.now, &WorldCapsule::ball(point, 0.0)));
         let is_within = max_distance >= 0.0 && contact.distance <= max_distance;
@@ -187,7 +165,7 @@ impl Obstacle for ClimberObstacle {
 
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
         let contact = self.contact(&between(&self.now, capsule));
-        if capsule.radius >= 0.0 && contact.distance <= capsule.radius {
+        if capsule.is_valid() && contact.distance <= capsule.radius {
             contacts.push(contact);
         }
     }

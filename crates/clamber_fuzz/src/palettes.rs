@@ -180,7 +180,7 @@ fn check_motions(surface: &SkinnedSurface, bytes: &mut Bytes<'_>) -> usize {
             -1.0,
             f64::NAN,
         ]);
-        match surface.motion(&anchor, dt) {
+        match surface.in_model().motion(&anchor, dt) {
             Ok(motion) => {
                 check_motion(&motion);
                 moved += 1;

@@ -22,7 +22,7 @@ fn sweep_bits(hit: &SweepHit) -> impl PartialEq + use<> {
     (
         (hit.mesh, hit.triangle, hit.part, hit.tag),
         (hit.barycentric.map(f32::to_bits), bits(hit.point)),
-        (bits(hit.normal), bits(hit.surface_normal)),
+        (bits(hit.separation_normal), bits(hit.normal)),
         (hit.time.to_bits(), hit.distance.to_bits()),
         (hit.started_inside, hit.undecided),
     )

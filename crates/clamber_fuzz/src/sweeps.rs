@@ -69,7 +69,7 @@ pub(crate) fn compare(
     let mut swept = Swept::default();
     let usable = tolerance >= 0.0 && tolerance.is_finite() && motions.iter().all(|m| m.is_finite());
     for options in [CastOptions::MOVING, CastOptions::STILL] {
-        let options = options.with_tolerance(tolerance);
+        let options = options.with_tolerance(tolerance.into());
         let found = swept.cast(both, capsule, motions, &options);
         assert!(
             usable || found == 0,
@@ -134,7 +134,7 @@ fn check(hit: &SweepHit, question: &str) {
         "{question}: {hit:?}"
     );
     assert!(hit.point.is_finite(), "{question}: {hit:?}");
-    for normal in [hit.normal, hit.surface_normal] {
+    for normal in [hit.separation_normal, hit.normal] {
         let length = normal.as_dvec3().length();
         assert!((length - 1.0).abs() < 1e-6, "{question}: {hit:?}");
     }

@@ -145,7 +145,8 @@ pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKin
 /// ```
 ///
 /// # Errors
-/// [`GltfErrorKind::Invalid`] for text that is no JSON, and for a word under that key which means nothing.
+/// [`GltfErrorKind::Invalid`] for text that begins with `{` and is no valid JSON, and for an unknown key or value under
+/// `clamber`. Text that does not begin with `{` gives `None`.
 pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
     let ours: Result<Option<MaterialExtras>, _> = find(extras);
     match ours {

@@ -29,7 +29,8 @@ pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
 /// [`load`] with choices.
 ///
 /// # Errors
-/// As [`load`].
+/// As [`load`]. Also [`GltfErrorKind::NoSuchSkin`] for a skin that the file does not have, and for a height
+/// [`GltfErrorKind::BadHeight`] or [`GltfErrorKind::NoHeight`].
 pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
     from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
@@ -37,7 +38,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, G
 /// Loads every creature of a file, in the order of their first skins. A height is given to each of them.
 ///
 /// # Errors
-/// As [`load`], for the first that cannot be loaded.
+/// As [`load_with`], for the first that cannot be loaded.
 pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig>, GltfError> {
     let all = |creatures: Vec<Members>, _: &Contents<'_>, _: &mut Vec<ImportWarning>| Ok(creatures);
     from_path(path.as_ref(), |bytes, files| {
@@ -48,7 +49,7 @@ pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig
 /// Loads from the bytes of a `.glb` or `.gltf` file that has its buffers inside.
 ///
 /// # Errors
-/// As [`load`]; for a file whose buffers are elsewhere, [`GltfErrorKind::Invalid`].
+/// As [`load_with`]; for a file whose buffers are elsewhere, [`GltfErrorKind::Invalid`].
 pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError> {
     let rig = one(bytes, Files::None, options);
     rig.map_err(|kind| GltfError { path: None, kind })
@@ -77,7 +78,7 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError>
 /// ```
 ///
 /// # Errors
-/// As [`load`]. What `resolve` gives as an error is [`GltfErrorKind::Read`].
+/// As [`load_with`]. What `resolve` gives as an error is [`GltfErrorKind::Read`].
 pub fn load_slice_with(
     bytes: &[u8],
     options: &LoadOptions,

@@ -11,9 +11,9 @@ use crate::warning::ImportWarning;
 #[non_exhaustive]
 pub struct Rig {
     /// The joints of the skins first, in the skins' order, then the nodes of rigid meshes, then the
-    /// other nodes that all these hang under.
+    /// other nodes that all these hang under. Node 3 without a name is called `"node 3"`.
     pub skeleton: Skeleton,
-    /// The clips that move the skeleton, in the order of the file.
+    /// The clips that move the skeleton, in the order of the file. Animation 3 without a name is called `"clip 3"`.
     pub clips: Vec<Clip>,
     /// What a climber touches: all meshes that are for collision, as one.
     pub collider: Arc<ColliderMesh>,
@@ -41,7 +41,7 @@ impl Rig {
         }
     }
 
-    /// The first clip of this name.
+    /// The first clip of this name; `"clip 3"` for animation 3 without a name.
     pub fn clip(&self, name: &str) -> Option<&Clip> {
         self.clips.iter().find(|clip| clip.name == name)
     }
@@ -49,7 +49,9 @@ impl Rig {
     /// The meshes to be drawn, as one mesh that can be queried like the collider.
     ///
     /// # Errors
-    /// [`MeshError`] if there are no such meshes.
+    /// [`MeshError`] as [`ColliderMesh::build`] gives it: [`MeshError::InfluenceCount`] if there are no such meshes,
+    /// [`MeshError::NoTriangles`] if none has a triangle with area, [`MeshError::Position`] for a vertex farther than
+    /// 2^99 from the origin, [`MeshError::TooLarge`] for too many vertices.
     pub fn visual_collider(&self) -> Result<ColliderMesh, MeshError> {
         let joints = self.skeleton.joints().len();
         visual::merged(&self.visual, joints)
@@ -63,7 +65,7 @@ pub struct ImportReport {
     /// About the collider mesh.
     pub build: BuildReport,
     /// The factor that [`LoadOptions::with_height`](crate::LoadOptions::with_height) led to; `None` if no height was
-    /// asked for. What else is in the file's units, as a walking speed, is to be multiplied by it.
+    /// asked for. Multiply your own lengths and speeds in file units by it.
     pub scale: Option<f64>,
     /// What was passed over or mended, in the order in which it was found.
     pub warnings: Vec<ImportWarning>,

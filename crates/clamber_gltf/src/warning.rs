@@ -35,7 +35,7 @@ pub enum ImportWarning {
     },
     /// A weak point that hangs under no joint, passed over.
     WeakPointWithoutJoint {
-        /// Name of the node, or its number where it has none.
+        /// Name of the node; `"node 3"` for node 3 without a name.
         node: String,
     },
     /// Meshes without a skin that hang under no joint, passed over.
@@ -94,12 +94,12 @@ pub enum ImportWarning {
     },
     /// An animation that moves nothing of the skeleton, passed over.
     IdleAnimation {
-        /// Its name, or its number where it has none.
+        /// Its name; `"clip 3"` for animation 3 without a name.
         animation: String,
     },
     /// Animation channels that move nothing of the skeleton, or morph targets, passed over.
     IdleChannels {
-        /// Name of the animation, or its number where it has none.
+        /// Name of the animation; `"clip 3"` for animation 3 without a name.
         animation: String,
         /// How many of its channels.
         channels: usize,

@@ -6,7 +6,8 @@ use crate::MoverError;
 /// The shape that is moved: a capsule around a position, with an outer layer that may overlap what it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoverBody {
-    /// Ends of the capsule's segment, from the body's position, metres. Both zero: a ball.
+    /// Ends of the capsule's segment, from the body's position, metres. Both zero: a ball. The first end should be
+    /// zero: ground beside and under the feet, and grips, are looked for around the ball at the position only.
     pub axis: [DVec3; 2],
     /// Of the capsule, metres, positive. The body comes to rest at this distance.
     pub radius: f64,
@@ -58,6 +59,8 @@ impl MoverBody {
         Self::ball(self.radius, self.margin)
     }
 
+    /// Checks the axis, the radius and the margin.
+    ///
     /// # Errors
     /// [`MoverError`] for an axis that is not finite, a radius that is not positive, or a margin that is negative or not
     /// less than the radius.

@@ -59,7 +59,8 @@ impl Mover<'_> {
         None
     }
 
-    /// Whether nothing is between a position and a contact, as everything stands now, but for the last `slack` metres.
+    /// True if nothing is on the line from a position to a contact, with every obstacle as it stands now. The last
+    /// `slack` metres of the line are ignored. True for input that is not finite.
     pub fn can_reach(&mut self, position: DVec3, touch: &Touch, slack: f64) -> bool {
         let way = touch.contact.point - position;
         let length = way.length() - slack;

@@ -64,7 +64,8 @@ pub fn slope(normal: DVec3, up: DVec3) -> f64 {
 }
 
 impl Mover<'_> {
-    /// The ground straight below a position, else the nearest beside it, up to the probe's reach.
+    /// The ground straight below a position, else the nearest beside it, up to the probe's reach, or to a tenth of the
+    /// body's margin if that is more.
     pub fn find_ground(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let probe = &GroundProbe {
             reach: probe.reach.max(probe.least()),
@@ -113,8 +114,8 @@ impl Mover<'_> {
         is_ground.then_some(hit)
     }
 
-    /// Which contact of the last movement holds a body up: level ground, else the least steep of slopes that leave it no
-    /// way down.
+    /// The contact of the last movement that holds the body up: the most level one, if its slope is at most
+    /// `max_slope`, radians, or if the contacts together leave the body no way down. `None` if the body is not held up.
     pub fn holding_up(&self, up: DVec3, max_slope: f64) -> Option<Touch> {
         let best = self.touched().iter().copied().reduce(|best, touch| {
             if touch.normal.dot(up) > best.normal.dot(up) {
@@ -141,9 +142,9 @@ impl Mover<'_> {
         (down.length() < SUPPORTED).then_some(best)
     }
 
-    /// The nearest contact within the margin of a body's ball that is on the same side of the same obstacle as one that
-    /// was met on the way: since then the body has slid along it. Of contacts that are as near the one on the most level
-    /// face, since rounding must not decide on which of two faces it stands.
+    /// The contact that the body has slid to since it touched `met`: the nearest one within the margin of its ball, on
+    /// the same obstacle, whose normal is within 45 degrees of that of `met`. Of contacts that are as near, the one on
+    /// the most level face is taken, since rounding must not decide on which of two faces the body stands.
     pub fn still_underfoot(
         &mut self,
         body: &MoverBody,

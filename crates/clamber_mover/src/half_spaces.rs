@@ -69,12 +69,14 @@ pub struct Projection {
     pub missed: f64,
 }
 
-/// The point nearest to `target` inside all half-spaces. If their intersection is empty, the point that violates the worst
-/// plane least, and of these the nearest.
+/// The point nearest to `target` inside all half-spaces. If their intersection is empty, the point that violates the
+/// worst plane least, and of these the nearest. Overlapping planes within 2e-4 radians of opposite count as having no
+/// intersection.
 ///
 /// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
 /// Where the intersection is empty, what is missed is exact to 1e-12 of that gap, and the point to 1e-8 of it.
-/// The same bits in whatever order the planes come. Planes that are not finite are ignored.
+/// The same bits in whatever order the planes come. Planes that are not finite are ignored. A target that is not finite
+/// is returned as it is, with nothing missed.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
     project_where_it_pays(target, planes, 0.0, STEEPEST)
 }

@@ -14,6 +14,8 @@ mod velocity;
 
 pub use body::MoverBody;
 pub use error::MoverError;
+/// The crate whose vectors and quaternions are used here.
+pub use glam;
 pub use ground::{Ground, GroundProbe, StepUp, slope};
 pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};
 pub use ledge::{Ledge, LedgeProbe};

@@ -136,6 +136,9 @@ impl<'a> Mover<'a> {
     }
 
     /// Everything within `reach` of the body's surface at a position, by ascending obstacle and material.
+    ///
+    /// Of a surface that the body was pressed through, only the nearest of the contacts that face inward are kept:
+    /// turned outward, with a negative distance.
     pub fn overlap(&mut self, body: &MoverBody, position: DVec3, reach: f64) -> &[Touch] {
         let capsule = body.at(position).with_radius(body.radius + reach);
         let pressed = PRESSED * body.core_radius();
@@ -152,7 +155,7 @@ impl<'a> Mover<'a> {
                 let normal = if contact.distance.abs() < ON_FACE * body.radius {
                     contact.normal
                 } else {
-                    contact.away(capsule.nearest_on_axis(contact.point))
+                    contact.separation_normal(capsule.nearest_on_axis(contact.point))
                 };
                 if contact.point.is_finite() && contact.distance.is_finite() && normal.is_finite() {
                     memory.overlaps.push(Touch {
@@ -168,7 +171,8 @@ impl<'a> Mover<'a> {
         &memory.overlaps
     }
 
-    /// The contacts that the last query found; see [`Mover::overlap`].
+    /// The result of the last [`Mover::overlap`]. [`Mover::slide`], [`Mover::find_ground`], [`Mover::still_underfoot`]
+    /// and [`Mover::find_grip`] overwrite it as well.
     pub fn overlaps(&self) -> &[Touch] {
         &self.memory.overlaps
     }
@@ -180,7 +184,8 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// [`Mover::sweep`] among the contacts that count, which are shown in no order.
+    /// [`Mover::sweep`] among chosen contacts: `counts` is called, in any order, with those that could be the first,
+    /// and the ones for which it returns false are passed over.
     pub fn sweep_where(
         &mut self,
         capsule: &WorldCapsule,
@@ -193,9 +198,9 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// Whether a correction of a movement from `start` to `end` would have met nothing on its way over the tick: a step up,
-    /// or a snap down, is looked for among obstacles as they stand at the tick's end, and something may have come by
-    /// before. Overlaps at the start do not count.
+    /// Sweeps the path from `start` to `end`, shifted by `correction`, against moving obstacles: for a step up or a
+    /// snap to the ground, which see only the tick's end. True if nothing is met, and for input that is not finite.
+    /// Overlaps at the start do not count.
     pub fn is_clear_with(
         &mut self,
         body: &MoverBody,
@@ -214,12 +219,17 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// The first contact along a ray, up to a length in metres, with every obstacle as it stands now. `direction` may have
-    /// any length but zero.
+    /// The first contact along a ray, up to a length in metres, which may be infinite, with every obstacle as it stands
+    /// now. `direction` may have any length but zero.
     pub fn cast_ray(&mut self, origin: DVec3, direction: DVec3, length: f64) -> Option<Touch> {
         let direction = direction.try_normalize()?;
         let half = length * 0.5;
-        let middle = origin + direction * half;
+        // An endless ray has no middle.
+        let middle = if half < f64::INFINITY {
+            origin + direction * half
+        } else {
+            origin
+        };
         let near = self.memory.surroundings.near(self.obstacles, middle, half);
         let mut first: Option<Touch> = None;
         for (id, obstacle) in near {
@@ -239,7 +249,8 @@ impl<'a> Mover<'a> {
         first
     }
 
-    /// Whether nothing is in the way of a capsule, with every obstacle as it stands now.
+    /// True if a capsule that moves by `way` meets nothing, with every obstacle as it stands now. True for input that
+    /// is not finite.
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
         self.cast(capsule, way).is_none()
     }

@@ -43,24 +43,24 @@ pub struct Path {
     pub body: MoverBody,
     /// Position a tick ago, in world space.
     pub start: DVec3,
-    /// The body's axis a tick ago, if it turns over the tick: the body's own is that at the tick's end. It ends as it is
-    /// said to, however it is pushed.
+    /// Axis at the start of the tick, from `start`, metres, for a body that turns. The final axis is always
+    /// `body.axis`.
     pub start_axis: [DVec3; 2],
     /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
     pub target: DVec3,
-    /// The way of the body's support, or of the frame that it is in, over the tick, metres. The body goes back
-    /// that far for any gain of room, and beyond only where it pays; a crushed one stays there. So results are the same in
-    /// every frame that moves steadily.
+    /// Displacement over the tick, metres, of the body's support or of the frame that it is in. The solver gives up the
+    /// whole motion relative to it before it accepts an overlap; a crushed body keeps this displacement. With it,
+    /// results are the same in every frame that moves steadily.
     pub frame: DVec3,
     /// Treats slopes that are too steep as vertical walls, so that walking does not climb them.
     pub walking: Option<Walking>,
     /// What the body hangs from.
     pub arm: Option<Arm>,
-    /// What is between start and target.
+    /// Whether the body moves from start to target, or was put at the target.
     pub begin: Begin,
-    /// Its last movement left it too little room ([`Moved::missing_room`] above the margin): it comes out of what it is
-    /// inside of by no more than 30 radii a second, beside what it meets on its way. Pressed through something, it does not
-    /// jump to the other side.
+    /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits how fast the
+    /// body leaves an overlap, to 30 radii a second; pushes by obstacles that it meets on its way come on top. So a
+    /// body that was pressed through something does not jump to the other side.
     pub crushed: bool,
 }
 
@@ -97,13 +97,14 @@ pub struct Arm {
 pub struct Moved {
     /// In world space.
     pub position: DVec3,
-    /// By how much obstacles leave too little room between them, metres; more than the margin crushes.
+    /// Room that is missing between obstacles, metres. Above the margin the body is crushed.
     pub missing_room: f64,
     /// How deep the core is in something, metres.
     pub penetration: f64,
     /// Rounds that it took.
     pub rounds: u32,
-    /// Nothing is on the way from start to position, beside what the body began inside of, or is crushed by.
+    /// Nothing is in the way from start to position, except obstacles that the body began inside of or is crushed by.
+    /// Always true for a body that was placed ([`Begin::Target`]), which is not swept.
     pub is_clear: bool,
 }
 
@@ -174,8 +175,8 @@ impl Path {
 impl Mover<'_> {
     /// Moves a body. [`Mover::touched`] tells what it touches in the end or was kept from entering.
     ///
-    /// A path that is not finite, or of a body that is none, leads nowhere: the body stays at its start, and the way
-    /// is not clear.
+    /// A path that is not finite, or with an invalid body ([`MoverBody::validate`]), leads nowhere: the body stays at
+    /// its start, and the way is not clear.
     pub fn slide(&mut self, path: &Path) -> Moved {
         let mut moved = self.find_way(path);
         if path.crushed && moved.rounds > 0 && path.begin == Begin::Start {

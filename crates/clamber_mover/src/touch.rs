@@ -9,7 +9,8 @@ use glam::DVec3;
 pub struct Touch {
     /// The obstacle.
     pub obstacle: ObstacleId,
-    /// Where and with what; its distance is from the body's axis.
+    /// Where and with what. The distance is from the body's axis; it is negative inside a solid, and negated where the
+    /// body was pressed through thin skin ([`Mover::overlap`](crate::Mover::overlap)).
     pub contact: Contact,
     /// Separation normal: unit vector from the contact to the nearest point of the body's axis. Where the axis is inside
     /// a solid, or was pressed through thin skin, the way out.
@@ -94,7 +95,7 @@ impl Hit {
             touch: Touch {
                 obstacle,
                 contact: sweep.contact,
-                normal: sweep.away,
+                normal: sweep.separation_normal,
                 swept: true,
             },
             time: sweep.time,

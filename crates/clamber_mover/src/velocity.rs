@@ -44,8 +44,8 @@ impl Mover<'_> {
         self.memory.velocities = velocities;
     }
 
-    /// The nearest velocity that leads into nothing that the last movement touched; what goes away by itself may be
-    /// followed. `limit` is one more half-space of velocities to stay in.
+    /// The velocity closest to `velocity` that does not move into any contact of the last movement. Obstacles that
+    /// recede may be followed. `limit` is one more half-space of velocities to stay in.
     ///
     /// Relative to `frame`, the velocity of the support or of the frame that the body is in, never faster than the body and
     /// the fastest of the obstacles together: between half-spaces that close like scissors the nearest velocity has no

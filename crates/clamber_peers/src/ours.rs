@@ -102,7 +102,7 @@ impl Peer for Ours {
 
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3) {
         let anchor = self.surface.anchor(triangle, barycentric);
-        let motion = anchor.and_then(|anchor| self.surface.motion(&anchor, 1.0));
+        let motion = anchor.and_then(|anchor| self.surface.in_model().motion(&anchor, 1.0));
         let placed = self.surface.world_from_model();
         motion.map_or((Vec3::NAN, Vec3::NAN), |motion| {
             let point = placed.transform_point_f32(motion.position).as_vec3();

@@ -1,7 +1,6 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use clamber_surface::SimdLevel;
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
@@ -27,12 +26,11 @@ impl Skin {
 
     pub(crate) fn update(&mut self, palette: &Palette, place: DVec3) -> Result<(), Box<dyn Error>> {
         std::mem::swap(&mut self.positions, &mut self.before);
-        let level = SimdLevel::best();
         if place == DVec3::ZERO {
-            skin_into(&self.mesh, palette.matrices(), level, &mut self.positions)?;
+            skin_into(&self.mesh, palette.matrices(), &mut self.positions)?;
         } else {
             let moved: Vec<Affine> = palette.matrices().iter().map(|m| moved(m, place)).collect();
-            skin_into(&self.mesh, &moved, level, &mut self.positions)?;
+            skin_into(&self.mesh, &moved, &mut self.positions)?;
         }
         Ok(())
     }

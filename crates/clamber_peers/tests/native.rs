@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use clamber_peers::{Peer, Unsupported, all};
 use clamber_scenes::ball::ball;
-use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
@@ -73,7 +72,7 @@ impl Truth {
             .map(|m| Affine::from_f64(&(DAffine3::from_translation(place) * m.to_f64())))
             .collect();
         let mut positions = vec![Vec3::ZERO; mesh.positions().len()];
-        skin_into(mesh, &moved, SimdLevel::best(), &mut positions).unwrap();
+        skin_into(mesh, &moved, &mut positions).unwrap();
         let corners = mesh.triangles().iter();
         Self {
             corners: corners

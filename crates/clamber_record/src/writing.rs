@@ -1,6 +1,5 @@
 use std::io::Write;
 
-use clamber_surface::SimdLevel;
 use clamber_surface::rig::Skeleton;
 use clamber_surface::skin::skin_into;
 use foxglove::Encode;
@@ -153,11 +152,9 @@ impl<W: Write> Writing<W> {
         self.send(self.channels.touched, topics::TOUCHED, now, &touched)?;
         let mut positions = core::mem::take(&mut self.positions);
         let (mesh, matrices) = (&skin.mesh, &taken.matrices);
-        skin_into(mesh, matrices, SimdLevel::best(), &mut positions).map_err(|error| {
-            RecordError::Encode {
-                topic: topics::SKIN,
-                reason: error.to_string(),
-            }
+        skin_into(mesh, matrices, &mut positions).map_err(|error| RecordError::Encode {
+            topic: topics::SKIN,
+            reason: error.to_string(),
         })?;
         let points = self
             .skin

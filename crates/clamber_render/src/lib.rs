@@ -27,6 +27,8 @@ mod text;
 pub use camera::Camera;
 pub use error::RenderError;
 pub use frame::{Drawn, Frame, Light};
+/// The crate whose vectors and quaternions are used here.
+pub use glam;
 pub use gpu::Gpu;
 pub use image::{Gif, Image};
 pub use mesh::{Look, RenderMesh, RenderMeshId, SkinSource};

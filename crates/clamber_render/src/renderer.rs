@@ -95,12 +95,14 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
+    #[doc(hidden)]
     pub fn draw_unread(&mut self, frame: &Frame<'_>) -> Result<(), RenderError> {
         let encoder = self.encoded(frame)?;
         self.submit(encoder, |_| {})
     }
 
     /// Bytes that the last picture took to the device: palettes, places and overlays.
+    #[doc(hidden)]
     pub fn uploaded(&self) -> u64 {
         self.uploaded
     }
@@ -114,6 +116,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
+    #[doc(hidden)]
     pub fn posed_positions(
         &mut self,
         mesh: RenderMeshId,
@@ -153,6 +156,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
+    #[doc(hidden)]
     pub fn pose_unread(
         &mut self,
         mesh: RenderMeshId,

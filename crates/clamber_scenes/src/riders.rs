@@ -120,7 +120,7 @@ fn fits(surface: &SkinnedSurface, body: &Sphere) -> bool {
 }
 
 fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Box<dyn Error>> {
-    let motion = surface.motion(seat, 1.0 / RATE)?;
+    let motion = surface.in_model().motion(seat, 1.0 / RATE)?;
     let above = |radius: f32| Sphere {
         center: motion.position + motion.normal * (radius * (1.0 - DEPTH)),
         radius,

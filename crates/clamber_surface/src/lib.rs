@@ -12,6 +12,9 @@ mod simd;
 pub mod skin;
 pub mod surface;
 
+/// The crate whose vectors and quaternions are used here.
+pub use glam;
+#[doc(hidden)]
 pub use simd::SimdLevel;
 
 #[cfg(test)]

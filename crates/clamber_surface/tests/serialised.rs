@@ -69,7 +69,7 @@ fn maps_and_poses_keep_every_bit() {
 #[test]
 fn ids_and_tags_stay() {
     assert_stays(&(JointId(u32::MAX), VertexId(1), TriangleId(2), PartId(3)));
-    assert_stays(&(IslandId(4), MeshId(u64::MAX), Playback::Loop));
+    assert_stays(&(IslandId(4), MeshId::default(), Playback::Loop));
     let tag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
     assert_stays(&tag.with_user(u32::MAX));
 }

@@ -36,7 +36,7 @@ const ROUNDING: f64 = 0.02;
 /// # let rest = Palette::from_matrices([Affine::IDENTITY]);
 /// let id = ObstacleId(7);
 /// let above = DVec3::new(0.2, 0.2, 1.0);
-/// let hit = Obstacle::closest_point(&creature, above, 2.0).ok_or("no skin")?;
+/// let hit = creature.closest_point(above, 2.0).ok_or("no skin")?;
 /// let mut arrow = Attachment::new(id, &creature, &hit, above);
 ///
 /// creature.advance(&rest, Similarity::from_translation(DVec3::X * 0.5))?;
@@ -79,14 +79,16 @@ pub enum Continuity {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Followed {
-    /// Of the material point, from where it was last followed to where it is now.
+    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`]:
+    /// the motion that the obstacle reports, which starts elsewhere.
     pub motion: PointMotion,
     /// How it came there.
     pub continuity: Continuity,
 }
 
 impl Attachment {
-    /// Fixes something at `place`, in world space, to a contact of an obstacle as it stands now.
+    /// Fixes something at `place`, in world space, to a contact of an obstacle as it stands now. A point that has no
+    /// motion is taken to be at [`Contact::point`], with the identity as its frame.
     pub fn new(
         obstacle: ObstacleId,
         material: &dyn Obstacle,
@@ -98,7 +100,7 @@ impl Attachment {
         Self::with_motion(obstacle, contact, motion.as_ref(), place)
     }
 
-    /// [`Attachment::new`] where the motion of the contact's point is known already.
+    /// [`Attachment::new`] where the motion of the contact's point is known already; `None` if it has none.
     pub fn with_motion(
         obstacle: ObstacleId,
         contact: &Contact,
@@ -139,9 +141,13 @@ impl Attachment {
 
     /// Goes with the material over the tick of `dt` seconds that ends now; call it once a tick.
     ///
-    /// `slack`, metres, is how far the point may be from where it is said to have been before something is wrong: 0.01
-    /// for a person, more than rounding and less than what one sees. `None`, with nothing changed, if the material is
-    /// gone, or is elsewhere although it was not put there: the id names another obstacle now.
+    /// `slack` is the largest allowed distance, metres, between the stored position and the obstacle's previous one:
+    /// 0.01 for a person, more than rounding and less than a player sees. It must be at least 0. A larger distance is
+    /// allowed for an obstacle that was [placed](Continuity::Placed), and up to 8 times its last move
+    /// ([`Continuity::MovedTwice`]).
+    ///
+    /// `None`, with nothing changed, if the material is gone, or if the distance is too large: the id names another
+    /// obstacle now.
     pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<Followed> {
         let mut motion = obstacle.motion(&self.point, dt)?;
         let frame = motion.frame.unwrap_or(self.frame);

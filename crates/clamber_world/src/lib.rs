@@ -11,7 +11,7 @@ pub mod shapes;
 mod surface;
 
 pub use attachment::{Attachment, Continuity, Followed};
-/// What a character is to the world.
+/// The shape that obstacles are queried with.
 pub use clamber_surface::geometry::WorldCapsule;
 /// What a contact's material is made of.
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
@@ -19,6 +19,8 @@ pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 pub use clamber_surface::surface::TargetMotion;
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
+/// The crate whose vectors and quaternions are used here.
+pub use glam;
 pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
 /// The parry whose shapes [`shapes`] speaks of.
 #[cfg(feature = "parry")]

@@ -37,10 +37,11 @@ pub struct MaterialPoint {
 pub struct Contact {
     /// In world space.
     pub point: DVec3,
-    /// Unit normal that points out of the obstacle.
+    /// Unit normal that points out of the obstacle. `RapierTerrain::cast_ray`, and that of avian's terrain, turns the
+    /// normal of a triangle that is hit from behind towards the ray's origin.
     pub normal: DVec3,
-    /// From the query's point or the ray's origin. Negative only inside a solid body: the way out
-    /// is along `normal`, so far.
+    /// Metres, from the query's point, the ray's origin or the capsule's segment. Negative only inside a solid body:
+    /// its magnitude is the way out along `normal`.
     pub distance: f64,
     /// The same point, as part of the obstacle.
     pub material: MaterialPoint,
@@ -51,7 +52,7 @@ pub struct Contact {
 impl Contact {
     /// Unit vector from the contact towards `center`, the point that the query was made for; the
     /// normal where the two coincide, and inside a solid body.
-    pub fn away(&self, center: DVec3) -> DVec3 {
+    pub fn separation_normal(&self, center: DVec3) -> DVec3 {
         if self.distance > 0.0 {
             (center - self.point).normalize_or(self.normal)
         } else {
@@ -68,7 +69,7 @@ pub struct SweepContact {
     /// What is touched, where and how it is at that time; its distance is from the capsule's segment.
     pub contact: Contact,
     /// Unit vector from there towards the capsule's segment.
-    pub away: DVec3,
+    pub separation_normal: DVec3,
     /// They overlap at the start already; the time is 0.
     pub started_inside: bool,
 }
@@ -83,8 +84,8 @@ pub struct PointMotion {
     pub previous_position: DVec3,
     /// Displacement over the tick, per second: never an instantaneous velocity.
     pub velocity: DVec3,
-    /// It may have been put here (a teleport) since the last tick rather than moved. What stands still and cannot tell
-    /// says true. A point that is elsewhere than it was, without having been placed, belongs to another obstacle.
+    /// True if the point may have been teleported. An obstacle that cannot tell a teleport from rest sets it when the
+    /// point did not move. Never true for a point that moved.
     pub placed: bool,
     /// Rotation of the material around the point, from the obstacle's rest to now. `None` where
     /// the material has collapsed and has no direction of its own: the last one known stands.
@@ -98,7 +99,8 @@ pub struct PointMotion {
 }
 
 impl PointMotion {
-    /// Of material that neither turns nor stretches, over a tick of `dt` seconds.
+    /// The motion of material that neither turns nor stretches, over a tick of `dt` seconds. The velocity is zero
+    /// unless `dt` is positive.
     pub fn translated(previous_position: DVec3, position: DVec3, dt: f64) -> Self {
         let way = position - previous_position;
         Self {
@@ -129,8 +131,9 @@ impl PointMotion {
 /// an obstacle to answer faster or better where it can.
 ///
 /// All queries are in world space and take `&self`. They see the obstacle as it stands now, except a cast with
-/// [`TargetMotion::Moving`]. A point or direction that is not finite finds nothing, and neither does a length that is NaN
-/// or negative; lengths may be infinite, except displacements.
+/// [`TargetMotion::Moving`]. A point or direction that is not finite finds nothing, and neither does a length that is
+/// NaN or negative. Ray lengths and the distances of closest-point queries may be infinite; radii and displacements are
+/// finite.
 pub trait Obstacle {
     /// Appends what lies within a capsule: for each triangle or convex body its point nearest to the capsule's segment,
     /// by ascending [`MaterialPoint::key`]. Distances are from the segment.
@@ -142,8 +145,10 @@ pub trait Obstacle {
     /// With [`TargetMotion::Still`] the obstacle stands as it stands now. With [`TargetMotion::Moving`] it moves meanwhile
     /// from where it stood a tick ago to where it stands now: `capsule` is the capsule at the tick's start.
     ///
-    /// The time is never later than the first contact, and at that time the capsule is at most
-    /// [`WorldCapsule::sweep_tolerance`] from touching.
+    /// The time is never later than the first contact. At that time the capsule is at most
+    /// [`WorldCapsule::sweep_tolerance`] from touching. The exception is a contact that the solver could not decide
+    /// ([`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)): it is reported as well, and may be
+    /// farther away. Of several overlaps at the start, the one nearest to the capsule's segment is given, at time 0.
     fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
@@ -155,16 +160,17 @@ pub trait Obstacle {
     /// material is no longer there, or queries no longer see it.
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion>;
 
-    /// Centre and radius of a ball in world space that holds all that queries of this tick can touch; `None` for what
-    /// has no bounds, or does not know them. What is out of its reach is not asked.
+    /// Centre and radius of a ball in world space, metres, that holds everything that queries of this tick can touch.
+    /// `None` if it is unbounded or unknown. Queries outside the ball skip the obstacle.
     fn bounds(&self) -> Option<(DVec3, f64)> {
         None
     }
 
-    /// [`Obstacle::cast_capsule`] among the contacts that count: of each triangle and solid that may be the first to be
-    /// touched its contact is shown to `counts`, in no order. A body that is pressed into one thing still meets the others.
+    /// [`Obstacle::cast_capsule`] among chosen contacts. `counts` is called, in any order, with the contact of each
+    /// triangle or solid that could be the first; contacts for which it returns false are passed over. So a body that
+    /// is pressed into one thing still meets the others.
     ///
-    /// The default shows the first contact alone, which is right for a single solid.
+    /// The default calls `counts` with the first contact alone, which is right for a single solid.
     fn cast_capsule_where(
         &self,
         capsule: &WorldCapsule,
@@ -177,9 +183,10 @@ pub trait Obstacle {
     }
 
     /// The first point along a ray from `origin`, up to `max_distance`. `direction` may have any
-    /// length but zero; distances are in metres along it.
+    /// length but zero; distances are in metres along it. A ray that starts inside a solid hits at distance 0.
     ///
-    /// The default casts a ball of no radius, so its distance is short by at most a micrometre. Without
+    /// The default casts a ball of no radius. Its distance is short by at most 1 micrometre over the sine of the angle
+    /// between ray and surface, and a ray that passes within a micrometre counts as a hit. Without
     /// [`Obstacle::bounds`] it looks no farther than 1,000 km.
     fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
         if max_distance.is_nan() || max_distance < 0.0 || !origin.is_finite() {
@@ -226,8 +233,8 @@ pub trait Obstacle {
         0.0
     }
 
-    /// Which of the obstacle's bodies a material point belongs to, where it is made of several that move apart: a collider
-    /// of a rapier world. Contacts of one body are looked at together. The default says that it is one body.
+    /// Id of the rigid body that owns the point; each collider of a rapier world counts as one. Contacts of one body
+    /// are judged together when a character is pressed through a surface. The default is one body, 0.
     fn body_of(&self, point: &MaterialPoint) -> u64 {
         let _ = point;
         0

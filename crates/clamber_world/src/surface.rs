@@ -2,7 +2,9 @@
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::mesh::TriangleId;
-use clamber_surface::surface::{Anchor, SkinnedSurface, TargetMotion, WorldHit, WorldSweepHit};
+use clamber_surface::surface::{
+    Anchor, CastOptions, SkinnedSurface, TargetMotion, WorldHit, WorldSweepHit,
+};
 use glam::{DQuat, DVec3, Quat};
 
 use crate::{Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, WorldCapsule};
@@ -24,7 +26,7 @@ impl From<WorldSweepHit> for SweepContact {
         Self {
             time: hit.time,
             contact: hit.hit.into(),
-            away: hit.away,
+            separation_normal: hit.separation_normal,
             started_inside: hit.started_inside,
         }
     }
@@ -44,6 +46,24 @@ impl MaterialPoint {
     pub fn triangle(&self) -> Option<TriangleId> {
         u32::try_from(self.key).ok().map(TriangleId)
     }
+
+    /// What sticks to this point of a surface: an arrow in the foot of a climber's hold. `None` if the surface has no such
+    /// triangle, or no longer. A point does not tell which surface it is of: ask the one of its [`Contact`]'s obstacle.
+    pub fn anchor_on(&self, surface: &SkinnedSurface) -> Option<Anchor> {
+        let triangle = self.triangle()?;
+        surface.mesh().part_of(triangle)?;
+        Some(Anchor {
+            mesh: surface.mesh().id(),
+            triangle,
+            barycentric: self.coordinates.map(|weight| weight as f32),
+            frame: Quat::IDENTITY,
+        })
+    }
+}
+
+/// To the tolerance that an obstacle promises.
+fn options(capsule: &WorldCapsule, target: TargetMotion) -> CastOptions {
+    CastOptions::from(target).with_tolerance(capsule.sweep_tolerance())
 }
 
 impl Obstacle for SkinnedSurface {
@@ -74,8 +94,8 @@ impl Obstacle for SkinnedSurface {
         displacements: [DVec3; 2],
         target: TargetMotion,
     ) -> Option<SweepContact> {
-        let space = self.in_world();
-        let hit = space.cast_capsule(capsule, displacements, target);
+        let (space, options) = (self.in_world(), options(capsule, target));
+        let hit = space.cast_capsule(capsule, displacements, &options);
         hit.map(SweepContact::from)
     }
 
@@ -87,33 +107,25 @@ impl Obstacle for SkinnedSurface {
         counts: &mut dyn FnMut(&SweepContact) -> bool,
     ) -> Option<SweepContact> {
         let mut counts = |hit: &WorldSweepHit| counts(&(*hit).into());
-        let space = self.in_world();
-        let hit = space.cast_capsule_where(capsule, displacements, target, &mut counts);
+        let (space, options) = (self.in_world(), options(capsule, target));
+        let hit = space.cast_capsule_where(capsule, displacements, &options, &mut counts);
         hit.map(SweepContact::from)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        let triangle = point.triangle()?;
-        if !self.is_enabled(triangle) {
+        if !self.is_enabled(point.triangle()?) {
             return None;
         }
-        let anchor = Anchor {
-            mesh: self.mesh().id(),
-            triangle,
-            barycentric: point.coordinates.map(|weight| weight as f32),
-            frame: Quat::IDENTITY,
-        };
-        let motion = SkinnedSurface::motion(self, &anchor, dt).ok()?;
-        let world_from_model = self.world_from_model();
-        let spin = world_from_model.rotation * motion.angular_velocity.as_dvec3() * dt;
+        let anchor = point.anchor_on(self)?;
+        let motion = self.in_world().motion(&anchor, dt).ok()?;
+        let spin = motion.angular_velocity * dt;
         let angle = spin.length();
         Some(PointMotion {
-            position: world_from_model.transform_point_f32(motion.position),
-            previous_position: world_from_model.transform_point_f32(motion.previous_position),
-            velocity: world_from_model.transform_vector(motion.velocity.as_dvec3()),
+            position: motion.position,
+            previous_position: motion.previous_position,
+            velocity: motion.velocity,
             placed: self.is_placed(),
-            frame: (!motion.collapsed)
-                .then(|| (world_from_model.rotation * motion.frame.as_dquat()).normalize()),
+            frame: (!motion.collapsed).then_some(motion.frame),
             turn: if angle > 0.0 {
                 rotation_from_axis_angle(spin / angle, angle)
             } else {

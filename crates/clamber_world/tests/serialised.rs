@@ -74,7 +74,7 @@ fn followed(by: f64) -> Followed {
     let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
     let mut skin = SkinnedSurface::new(mesh.into());
     let place = DVec3::new(0.2, 0.3, 0.4);
-    let contact = Obstacle::closest_point(&skin, place, 1.0).unwrap();
+    let contact = skin.closest_point(place, 1.0).unwrap();
     let mut arrow = Attachment::new(ObstacleId(1), &skin, &contact, place);
     let moved = Similarity::from_translation(DVec3::X * by);
     let rest = Palette::from_iter([Affine::IDENTITY]);

@@ -65,7 +65,7 @@ impl Bow<'_, '_> {
     pub fn shoot(&mut self, ray: Ray3d) {
         let anywhere = SurfaceFilter::default();
         if let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere)
-            && let Some(anchor) = self.surfaces.anchor_at(&hit)
+            && let Ok(anchor) = self.surfaces.anchor_at(&hit)
         {
             self.stick(&anchor, hit.point, ray.direction);
         }

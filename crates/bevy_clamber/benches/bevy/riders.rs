@@ -44,7 +44,7 @@ pub(crate) fn over(
         let rider = |index: usize| -> Result<Rider, Box<dyn Error>> {
             let triangle = TriangleId(((index * 2 + 1) * triangles / (2 * riders)) as u32);
             let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25])?;
-            let motion = surface.motion(&anchor, TICK)?;
+            let motion = surface.in_model().motion(&anchor, TICK)?;
             let foot = motion.position + motion.normal * (RADIUS * 0.98);
             Ok(Rider {
                 ends: [foot, foot + motion.normal * (2.0 * HALF)],
@@ -63,6 +63,10 @@ impl Rider {
         self.outward.any_orthonormal_vector() * 0.05 - self.outward * 0.01
     }
 
+    fn body(&self, radius: f32) -> Capsule {
+        Capsule::new(self.ends[0], self.ends[1], radius).unwrap()
+    }
+
     fn middle(&self) -> Vec3 {
         (self.ends[0] + self.ends[1]) * 0.5
     }
@@ -76,18 +80,17 @@ pub(crate) fn answer(
 ) -> usize {
     let mut found = 0;
     for rider in riders {
-        let body = |radius| Capsule::new(rider.ends[0], rider.ends[1], radius).unwrap();
         let space = surface.in_model();
-        space.overlap_capsule(&body(RADIUS + REACH), hits);
+        space.overlap_capsule(&rider.body(RADIUS + REACH), hits);
         found += hits.len();
         let motions = [rider.step(); 2];
-        let swept = space.cast_capsule(&body(RADIUS), motions, &CastOptions::MOVING);
+        let swept = space.cast_capsule(&rider.body(RADIUS), motions, &CastOptions::MOVING);
         found += usize::from(swept.is_some());
         let nearest = space.closest_point(rider.middle(), SIGHT);
         found += usize::from(nearest.is_some());
         let ray = Ray::new(rider.middle(), -rider.outward).unwrap();
         found += usize::from(space.cast_ray(&ray, SIGHT).is_some());
-        found += usize::from(surface.motion(&rider.anchor, TICK).is_ok());
+        found += usize::from(surface.in_model().motion(&rider.anchor, TICK).is_ok());
     }
     found
 }
@@ -118,21 +121,21 @@ pub(crate) fn ask(
     asked: Res<Asked>,
     surfaces: SurfaceQuery,
     mut answers: ResMut<Answers>,
-    mut hits: Local<Vec<WorldHit>>,
+    mut hits: Local<Vec<EntityHit>>,
 ) {
     let all = SurfaceFilter::default();
     answers.0 = 0;
     for (rider, anchor) in &asked.0 {
-        surfaces.overlap_capsule(rider.ends, RADIUS + REACH, &all, &mut hits);
+        surfaces.overlap_capsule(&rider.body(RADIUS + REACH), &all, &mut hits);
         answers.0 += hits.len();
         let motions = [rider.step(); 2];
-        let swept = surfaces.cast_capsule(rider.ends, RADIUS, motions, TargetMotion::Moving, &all);
+        let swept = surfaces.cast_capsule(&rider.body(RADIUS), motions, TargetMotion::Moving, &all);
         answers.0 += usize::from(swept.is_some());
         let nearest = surfaces.closest_point(rider.middle(), SIGHT, &all);
         answers.0 += usize::from(nearest.is_some());
         let inward = Dir3::new_unchecked(-rider.outward);
         let ray = Ray3d::new(rider.middle(), inward);
         answers.0 += usize::from(surfaces.cast_ray(ray, SIGHT, &all).is_some());
-        answers.0 += usize::from(surfaces.motion(anchor, TICK).is_some());
+        answers.0 += usize::from(surfaces.motion(anchor, TICK).is_ok());
     }
 }

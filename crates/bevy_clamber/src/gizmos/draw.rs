@@ -90,13 +90,10 @@ pub(super) fn draw_anchors(
             gizmos.axes(axes, (size * ANCHOR_AXES) as f32);
         }
         let seconds = tick.timestep().as_secs_f64();
-        let motion = anchor
-            .anchor()
-            .and_then(|anchor| surface.motion(&anchor, seconds).ok());
+        let motion = anchor.anchor().ok();
+        let motion = motion.and_then(|anchor| surface.in_world().motion(&anchor, seconds).ok());
         if let (true, Some(motion)) = (show.velocities, motion) {
-            let velocity = motion.velocity.as_dvec3() * VELOCITY_ARROW;
-            let arrow = surface.world_from_model().transform_vector(velocity);
-            let arrow = arrow.as_vec3();
+            let arrow = (motion.velocity * VELOCITY_ARROW).as_vec3();
             // The head of an arrow of no length has no direction.
             if arrow.try_normalize().is_some() {
                 gizmos.arrow(start, start + arrow, VELOCITY);

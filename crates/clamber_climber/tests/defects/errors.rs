@@ -216,7 +216,7 @@ fn of_debris_and_surfaces() {
             let expected = format!("longer than 0 s and finite, found {number} s");
             assert!(text.contains(&expected), "{text}");
         }
-        let found = surface.motion(&anchor, number);
+        let found = surface.in_model().motion(&anchor, number);
         if let Err(error) = found {
             let text = error.to_string();
             let is_short = number > 0.0 && number.is_finite();

@@ -154,7 +154,7 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
                 // A hand's way is free.
                 let reach = hold.contact - state.position;
                 let clear = reach.length() - 0.02;
-                let hit = Obstacle::cast_ray(&plate, state.position, reach, clear);
+                let hit = plate.cast_ray(state.position, reach, clear);
                 assert_eq!(hit, None, "{told}: holds {}", hold.contact);
             }
         }

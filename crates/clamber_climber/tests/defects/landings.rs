@@ -19,7 +19,7 @@ fn lands_only_where_it_is_held_up() {
             for (i, j) in (0..12).flat_map(|i| (0..12).map(move |j| (i, j))) {
                 for gap in [0.02, 0.05, 0.1, 0.2] {
                     let start = v(0.02 + 0.03 * f64::from(i), 0.34 + 0.03 * f64::from(j), 0.0);
-                    let near = Obstacle::closest_point(&block, start, 2.0);
+                    let near = block.closest_point(start, 2.0);
                     if near.is_some_and(|contact| contact.distance < 0.4) {
                         continue;
                     }
@@ -36,7 +36,7 @@ fn lands_only_where_it_is_held_up() {
                     }
                     landings += 1;
                     let place = climber.state().position;
-                    let near = Obstacle::closest_point(&block, place, 5.0);
+                    let near = block.closest_point(place, 5.0);
                     let off = near.map_or(f64::INFINITY, |contact| contact.distance) - 0.4;
                     if off > 0.01 {
                         let told = format!(

@@ -55,7 +55,7 @@ impl Bits {
         for hit in hits {
             self.word(u64::from(hit.triangle.0) + 1);
             self.singles(hit.barycentric);
-            self.positions(&[hit.point, hit.normal, hit.surface_normal]);
+            self.positions(&[hit.point, hit.separation_normal, hit.normal]);
             self.doubles([hit.time, hit.distance]);
             self.word(u64::from(hit.started_inside) + 2 * u64::from(hit.undecided));
         }

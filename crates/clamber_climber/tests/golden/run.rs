@@ -167,6 +167,6 @@ fn ask(surface: &SkinnedSurface, number: u64) -> u64 {
     bits.sweeps(&space.cast_capsule(&capsule, [to - from, Vec3::Y], &moving));
     let triangle = TriangleId((number % surface.mesh().triangles().len() as u64) as u32);
     let anchor = surface.anchor(triangle, [0.5, 0.25, 0.25]).unwrap();
-    bits.motion(&surface.motion(&anchor, TICK).unwrap());
+    bits.motion(&surface.in_model().motion(&anchor, TICK).unwrap());
     bits.finish()
 }

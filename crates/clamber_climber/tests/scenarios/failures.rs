@@ -9,7 +9,6 @@ use core::f64::consts::TAU;
 
 use clamber_climber::ClimberMode::{Falling, Standing};
 use clamber_surface::geometry::Similarity;
-use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::platforms::{chord, on};
@@ -181,7 +180,7 @@ pub(crate) fn unity_875257_no_velocities_of_a_mesh_that_is_posed() {
         let found = stage.obstacles(|obstacles| {
             let (_, obstacle) = obstacles[0];
             let near = velocity * stage.time() + DVec3::Y;
-            let contact = Obstacle::closest_point(obstacle, near, 2.0).unwrap();
+            let contact = obstacle.closest_point(near, 2.0).unwrap();
             obstacle.motion(&contact.material, TICK).unwrap().velocity
         });
         assert!(found.distance(velocity) <= 1e-3, "{played:?}: {found}");

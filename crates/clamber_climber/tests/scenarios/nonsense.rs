@@ -41,7 +41,7 @@ impl Obstacle for Broken<'_> {
     ) -> Option<SweepContact> {
         let mut hit = self.inner.cast_capsule(capsule, displacements, target)?;
         match target {
-            TargetMotion::Still => hit.away = self.bad,
+            TargetMotion::Still => hit.separation_normal = self.bad,
             TargetMotion::Moving => hit.time = self.bad.x,
         }
         Some(hit)

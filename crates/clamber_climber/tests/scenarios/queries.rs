@@ -147,7 +147,7 @@ pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
             assert_eq!(found.len(), 1, "{played:?}: {ends:?}, {truth} away");
             let off = found[0].distance - truth;
             within!(off.abs(), 1e-6, "{played:?}: {ends:?}: off by {off}");
-            let away = found[0].away(capsule.nearest_on_axis(found[0].point));
+            let away = found[0].separation_normal(capsule.nearest_on_axis(found[0].point));
             assert!((away.length() - 1.0).abs() <= 1e-9, "{away}");
         }
     }
@@ -205,12 +205,12 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
                     "{played:?}: {:?}",
                     found[0]
                 );
-                let away = found[0].away(capsule.nearest_on_axis(found[0].point));
+                let away = found[0].separation_normal(capsule.nearest_on_axis(found[0].point));
                 assert!((away.length() - 1.0).abs() <= 1e-5, "{played:?}: {away}");
                 let hit = ask(&stage, |obstacle| {
                     obstacle.cast_capsule(&capsule, [DVec3::X; 2], TargetMotion::Still)
                 });
-                let away = hit.map(|hit| hit.away);
+                let away = hit.map(|hit| hit.separation_normal);
                 let is_unit = away.is_some_and(|away| (away.length() - 1.0).abs() <= 1e-5);
                 assert!(is_unit, "{played:?}: {away:?} of {capsule:?}");
             }
@@ -327,7 +327,7 @@ pub(crate) fn a_solid_that_holds_the_core_shows_the_way_out() {
             found[0]
         );
         assert!(
-            (found[0].away(center) - out).length() <= 1e-5,
+            (found[0].separation_normal(center) - out).length() <= 1e-5,
             "{:?}",
             found[0]
         );

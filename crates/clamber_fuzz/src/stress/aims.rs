@@ -95,8 +95,8 @@ impl<'a> Aims<'a> {
         let capsule = self.capsule(0.15, 0.02);
         let along = [aside; 2];
         let ways = [into, into + aside * 0.5];
-        let still = CastOptions::STILL.with_tolerance(self.tolerance());
-        let moving = CastOptions::MOVING.with_tolerance(self.tolerance());
+        let still = CastOptions::STILL.with_tolerance(self.tolerance().into());
+        let moving = CastOptions::MOVING.with_tolerance(self.tolerance().into());
         questions.extend([
             ("cast through", Question::Cast(through, [into; 2], still)),
             ("cast along", Question::Cast(beside, along, still)),

@@ -68,7 +68,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         } else {
             CastOptions::STILL
         };
-        let options = options.with_tolerance(tolerance);
+        let options = options.with_tolerance(tolerance.into());
         let question = Question::Cast(ball(center, radius), [way; 2], options);
         let mover = Mover {
             start: [center.as_dvec3(); 2],

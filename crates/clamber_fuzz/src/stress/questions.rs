@@ -119,8 +119,8 @@ impl Answer {
                 && (sum - 1.0).abs() < 1e-6
                 && (0.0..=1.0).contains(&hit.time)
                 && hit.point.is_finite()
+                && is_unit(hit.separation_normal)
                 && is_unit(hit.normal)
-                && is_unit(hit.surface_normal)
                 && hit.distance >= 0.0
                 && hit.distance.is_finite()
                 && (!hit.started_inside || hit.time == 0.0);

@@ -72,8 +72,8 @@ pub(super) fn check(
         let exact = place.scale * size * 4e-7 + 8.0 * world;
 
         let point = home.world_from_model().transform_point_f32(near);
-        let here = Obstacle::closest_point(&home, point, f64::INFINITY);
-        let there = Obstacle::closest_point(far, point + away, f64::INFINITY);
+        let here = home.closest_point(point, f64::INFINITY);
+        let there = far.closest_point(point + away, f64::INFINITY);
         let (Some(here), Some(there)) = (here, there) else {
             panic!("nothing is nearest to {point}, {away} out");
         };
@@ -86,7 +86,7 @@ pub(super) fn check(
 
         let target = home.world_from_model().transform_point_f32(skin);
         let along = target - point;
-        if let Some(hit) = Obstacle::cast_ray(far, point + away, along, f64::INFINITY) {
+        if let Some(hit) = far.cast_ray(point + away, along, f64::INFINITY) {
             check_contact(posed, &hit, exact);
             let from = hit.point - (point + away);
             let aside = from.cross(along.normalize_or(DVec3::X)).length();
@@ -127,7 +127,7 @@ fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut
         key: triangle as u64,
         coordinates: weights.map(f64::from),
     };
-    let Some(motion) = Obstacle::motion(posed.surface, &material, TICK) else {
+    let Some(motion) = posed.surface.motion(&material, TICK) else {
         panic!("{material:?} does not move");
     };
     let place = *posed.surface.world_from_model();

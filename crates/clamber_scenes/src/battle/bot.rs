@@ -161,7 +161,7 @@ fn is_calm(climber: &Climber, scene: &RiderScene<'_>) -> bool {
 
 /// Where to walk: towards the end of the patrol, as long as there is skin ahead to walk on.
 fn patrol(climber: &Climber, scene: &RiderScene<'_>) -> DVec3 {
-    let Some(middle) = Obstacle::motion(scene.surface, scene.perch, 1.0) else {
+    let Some(middle) = scene.surface.motion(scene.perch, 1.0) else {
         return DVec3::ZERO;
     };
     let forward = scene.surface.world_from_model().rotation * DVec3::Z;
@@ -177,7 +177,7 @@ fn patrol(climber: &Climber, scene: &RiderScene<'_>) -> DVec3 {
     let up = climber.config().up();
     let feet = position - up * climber.config().body.radius;
     let above = feet + direction * AHEAD + up * STEP;
-    let ground = Obstacle::cast_ray(scene.surface, above, -up, 2.0 * STEP);
+    let ground = scene.surface.cast_ray(above, -up, 2.0 * STEP);
     let is_walkable = ground.is_some_and(|g| g.normal.dot(up) > libm::cos(WALKABLE));
     if level.length() > ARRIVED && is_walkable {
         direction * 0.6

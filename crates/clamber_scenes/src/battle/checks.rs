@@ -121,7 +121,7 @@ impl Watch {
             return None;
         };
         let radius = climber.config().body.radius;
-        if let Some(nearest) = Obstacle::closest_point(surface, center, radius) {
+        if let Some(nearest) = surface.closest_point(center, radius) {
             self.deepest = self.deepest.max(radius - nearest.distance);
         }
         let off = Off::measure(surface, palette, &recorded, center, radius);
@@ -254,7 +254,7 @@ impl Off {
 }
 
 fn touches(surface: &SkinnedSurface, center: DVec3, radius: f64) -> bool {
-    Obstacle::closest_point(surface, center, radius).is_some()
+    surface.closest_point(center, radius).is_some()
 }
 
 /// How far a climber's centre may be from what it stands on or holds, metres.

@@ -29,9 +29,9 @@ impl Moment<'_> {
     /// What happened at a place, the tick, the clip, and the skin nearest to the place with its velocity.
     pub(super) fn describe(&self, what: &str, place: DVec3) -> String {
         let seconds = self.tick as f64 * TICK;
-        let near = Obstacle::closest_point(self.surface, place, NEAR * self.height);
+        let near = self.surface.closest_point(place, NEAR * self.height);
         let skin = near.map_or("no skin near".into(), |near| {
-            let motion = Obstacle::motion(self.surface, &near.material, TICK);
+            let motion = self.surface.motion(&near.material, TICK);
             let speed = motion.map_or(0.0, |motion| motion.velocity.length());
             let (distance, joint) = (near.distance, self.joint(near.material.key));
             format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")

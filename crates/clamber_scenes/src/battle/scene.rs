@@ -224,7 +224,7 @@ impl<'a> Battle<'a> {
         let touched = self.surface.diagnostics();
 
         self.tick += 1;
-        let perch = Obstacle::motion(&self.surface, &self.perch, TICK);
+        let perch = self.surface.motion(&self.perch, TICK);
         let perch = perch.map_or(DVec3::ZERO, |perch| perch.position);
         let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
         let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
@@ -282,7 +282,7 @@ impl<'a> Battle<'a> {
         if self.grounded < GROUNDED_TICKS && !is_lost {
             return Ok(());
         }
-        let Some(perch) = Obstacle::motion(&self.surface, &self.perch, TICK) else {
+        let Some(perch) = self.surface.motion(&self.perch, TICK) else {
             return Ok(());
         };
         let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
@@ -290,7 +290,7 @@ impl<'a> Battle<'a> {
         // Onto the skin that is uppermost there now. At rest relative to the creature as a whole: the perch itself may
         // just be flung about, and would throw the climber away.
         let sky = perch.position + DVec3::Y * (4.0 * self.height);
-        let top = Obstacle::cast_ray(&self.surface, sky, -DVec3::Y, 4.0 * self.height);
+        let top = self.surface.cast_ray(sky, -DVec3::Y, 4.0 * self.height);
         let place = top.map_or(perch.position, |top| top.point);
         let dropped = ClimberState {
             velocity: self.choreography.velocity(),
@@ -483,7 +483,7 @@ fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contac
         for j in -8..=8 {
             let aside = DVec3::new(f64::from(i), 0.0, f64::from(j)) * cell + shift;
             let from = middle + aside + DVec3::Y * (4.0 * height);
-            let Some(hit) = Obstacle::cast_ray(surface, from, -DVec3::Y, 8.0 * height) else {
+            let Some(hit) = surface.cast_ray(from, -DVec3::Y, 8.0 * height) else {
                 continue;
             };
             // Level first; of much the same level the nearer to the middle.

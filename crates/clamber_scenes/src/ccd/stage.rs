@@ -75,7 +75,7 @@ impl Stage {
             Core::Sphere { center, motion } => ([center; 2], [motion; 2]),
             Core::Capsule { ends, motions } => (ends, motions),
         };
-        let options = CastOptions::MOVING.with_tolerance(tolerance);
+        let options = CastOptions::MOVING.with_tolerance(tolerance.into());
         let capsule = Capsule::new(ends[0], ends[1], radius);
         let space = self.surface.in_model();
         let hit = capsule.and_then(|capsule| space.cast_capsule(&capsule, motions, &options));

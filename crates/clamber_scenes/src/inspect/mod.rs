@@ -10,7 +10,6 @@ mod report;
 use std::time::Instant;
 
 use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
-use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Similarity, Sphere};
 use clamber_surface::mesh::{MeshError, PaletteError};
 use clamber_surface::rig::{Palette, Playback, Pose, RigError};
@@ -127,12 +126,7 @@ impl Timings {
         let mesh = &rig.collider;
         self.positions.resize(mesh.positions().len(), Vec3::ZERO);
         let start = Instant::now();
-        skin_into(
-            mesh,
-            palette.matrices(),
-            SimdLevel::best(),
-            &mut self.positions,
-        )?;
+        skin_into(mesh, palette.matrices(), &mut self.positions)?;
         let skinned = Instant::now();
         refit(mesh, &self.positions, &mut self.spheres);
         let refitted = Instant::now();

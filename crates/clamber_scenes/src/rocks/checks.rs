@@ -60,7 +60,7 @@ impl Outcome {
         for rock in scene.rocks() {
             let place = scene.world.bodies[*rock].translation().as_dvec3();
             let high = place.y - valley::height(place.x, place.z);
-            let skin = Obstacle::closest_point(&scene.surface, place, PILE);
+            let skin = scene.surface.closest_point(place, PILE);
             self.on_ground += usize::from(high < PILE);
             self.on_giant += usize::from(high >= PILE && skin.is_some());
             self.deepest = self.deepest.max(depth(&scene.surface, &scene.world, *rock));

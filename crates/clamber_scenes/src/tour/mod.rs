@@ -113,7 +113,7 @@ pub fn climb(
         let body = &climber.config().body;
         let core = climber.body().with_radius(body.radius - body.margin);
         let mut contacts = Vec::new();
-        Obstacle::overlap_capsule(surface, &core, &mut contacts);
+        surface.overlap_capsule(&core, &mut contacts);
         let is_crushed = report
             .events
             .iter()
@@ -133,7 +133,7 @@ fn free_place(stage: &Stage<'_>, route: &Route, config: &ClimberConfig) -> Optio
         let (point, normal) = stage.vertex(*vertex);
         (index, point + normal * (radius + 0.05))
     });
-    places.find(|(_, place)| Obstacle::closest_point(stage.surface(), *place, radius).is_none())
+    places.find(|(_, place)| stage.surface().closest_point(*place, radius).is_none())
 }
 
 impl Outcome {

@@ -6,8 +6,8 @@ use super::triangle::{first_contact_relative, nearest_to_axis};
 /// A capsule whose ends each move on a straight line, over a time from 0 to 1; a sphere where both ends are one point
 /// at both times.
 ///
-/// What the sweeps of a surface do with its triangles, for one triangle of anything else: an own terrain, a mesh of a
-/// rigid body in the body's frame.
+/// The surface's triangle cast, for single triangles of your own geometry: a terrain, or a rigid body's mesh in the
+/// body's frame.
 ///
 /// ```
 /// use clamber_surface::geometry::MovingCapsule;
@@ -18,7 +18,7 @@ use super::triangle::{first_contact_relative, nearest_to_axis};
 /// let triangle = [DVec3::ZERO, DVec3::Z, DVec3::X];
 /// let touch = ball.cast_at_triangle([triangle; 2], 1e-4, 1.0).unwrap();
 /// assert!((touch.time - 0.375).abs() < 1e-4);
-/// assert!((touch.away - DVec3::Y).length() < 1e-6);
+/// assert!((touch.separation_normal - DVec3::Y).length() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingCapsule {
@@ -47,11 +47,10 @@ pub struct TriangleTouch {
     /// From the segment to the point, at that time.
     pub distance: f64,
     /// Unit vector from the point to the segment; where they cross, the triangle's normal.
-    pub away: DVec3,
+    pub separation_normal: DVec3,
     /// They overlap at time 0.
     pub started_inside: bool,
-    /// Neither contact nor its absence could be shown, for rounding or within the steps allowed: no contact before
-    /// the time, but the distance may be larger than promised.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
@@ -83,8 +82,8 @@ impl MovingCapsule {
     /// first three to the last; twice the same for one that stands still.
     ///
     /// Its time is never later than that of the first touch, and if none is found there is none up to `limit`. At
-    /// that time the distance is at most radius and `tolerance`; less than 2^-45 of the lengths involved counts as
-    /// that. The triangle is met from both sides and may have collapsed. `None` if anything is not finite or larger
+    /// that time the distance is at most radius and `tolerance`, unless the touch is
+    /// [undecided](TriangleTouch::undecided); less than 2^-45 of the lengths involved counts as that. The triangle is met from both sides and may have collapsed. `None` if anything is not finite or larger
     /// than 2^100, or if radius or tolerance is negative.
     pub fn cast_at_triangle(
         &self,
@@ -167,7 +166,7 @@ impl MovingCapsule {
             normal,
             on_axis,
             distance: apart.length(),
-            away: away.or(normal).unwrap_or(DVec3::Y),
+            separation_normal: away.or(normal).unwrap_or(DVec3::Y),
             started_inside: false,
             undecided: false,
         }
@@ -252,7 +251,7 @@ mod tests {
             // Point, direction and distance agree with where the segment is then.
             let [a, b] = capsule.at(touch.time);
             let on_axis = a + (b - a) * touch.on_axis;
-            let off = touch.point + touch.away * touch.distance - on_axis;
+            let off = touch.point + touch.separation_normal * touch.distance - on_axis;
             assert!(off.length() < 1e-9, "{round} {touch:?}: {off}");
         }
         assert!(met > 150 && missed > 500, "{met} {missed}");

@@ -19,6 +19,7 @@ impl Sphere {
     /// The sphere about the mean of `points` that holds them all: two passes, as in the thesis
     /// this library grew from (5.2.4, "Collider partitioning"). Not the smallest one: up to twice
     /// its radius. The radius is rounded up, so no point lies outside. `None` without points.
+    #[doc(hidden)]
     pub fn around_mean(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let (sum, count) = points
             .clone()
@@ -36,6 +37,7 @@ impl Sphere {
     /// core-sets for balls"). Its radius is at most 1.13 times the smallest one, seldom more than
     /// 1.02 times. Costs some 66 passes: for rest data, not for every tick. The radius is rounded up,
     /// so no point lies outside. `None` without points.
+    #[doc(hidden)]
     pub fn nearly_smallest(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let around_mean = Self::around_mean(points.clone())?;
         let mut center = widen(around_mean.center);
@@ -60,6 +62,7 @@ impl Sphere {
 
     /// The smallest sphere about `center` that holds all `points`, its radius rounded up: no point
     /// lies outside.
+    #[doc(hidden)]
     pub fn around(center: Vec3, points: impl Iterator<Item = Vec3>) -> Self {
         let farthest_sq = points
             .map(|p| (widen(p) - widen(center)).length_squared())
@@ -75,6 +78,7 @@ impl Sphere {
     }
 
     /// In cubic units of its space.
+    #[doc(hidden)]
     pub fn volume(&self) -> f64 {
         let radius = f64::from(self.radius);
         core::f64::consts::PI * (4.0 / 3.0) * radius * radius * radius

@@ -1,7 +1,9 @@
 use glam::DVec3;
 
-/// All points within a radius of a segment, in world space: what a character is to the world. A ball where both ends are
-/// one point.
+use super::Capsule;
+
+/// All points within a radius of a segment, in world space: the shape that obstacles are queried with. A ball where
+/// both ends are one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorldCapsule {
@@ -9,6 +11,16 @@ pub struct WorldCapsule {
     pub ends: [DVec3; 2],
     /// Metres, not negative.
     pub radius: f64,
+}
+
+impl From<&Capsule> for WorldCapsule {
+    /// The same numbers, of a capsule whose space is the world.
+    fn from(capsule: &Capsule) -> Self {
+        Self {
+            ends: capsule.ends().map(|end| end.as_dvec3()),
+            radius: capsule.radius().into(),
+        }
+    }
 }
 
 impl WorldCapsule {
@@ -23,6 +35,12 @@ impl WorldCapsule {
     /// Both ends are one point.
     pub fn is_ball(&self) -> bool {
         self.ends[0] == self.ends[1]
+    }
+
+    /// Whether all of it is finite and its radius not negative: what queries find nothing for otherwise.
+    pub fn is_valid(&self) -> bool {
+        let is_finite = self.ends.iter().all(|end| end.is_finite());
+        is_finite && (0.0..f64::INFINITY).contains(&self.radius)
     }
 
     /// The same, somewhere else.

@@ -10,10 +10,9 @@ use super::collider::has_area;
 use super::derived::Derived;
 use super::hierarchy::{Hierarchy, STACK};
 use super::joint_balls::JointBalls;
+use super::lineage::Lineage;
 use super::weights::{normalize, weight_of};
-use super::{
-    ColliderMesh, Influence, MeshError, MeshId, Part, PartId, SurfaceTag, TriangleId, VertexId,
-};
+use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
 
@@ -26,8 +25,7 @@ pub struct MeshSource<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Influences of the first vertex, then of the second, and so on; any number for each.
     pub influences: &'a [Influence],
-    /// Where in `influences` those of each vertex end. Empty if every vertex has as many, filled up
-    /// with zero weights.
+    /// End index in `influences` of each vertex. Empty if all vertices have the same count (padded with zero weights).
     pub influence_ends: &'a [u32],
     /// A tag per triangle, or empty for [`SurfaceTag::default`] everywhere.
     pub tags: &'a [SurfaceTag],
@@ -149,7 +147,7 @@ impl ColliderMesh {
                 triangles: source.triangles.len(),
             });
         }
-        mesh.identify();
+        mesh.lineage = Lineage::of(&mesh);
         mesh.assign_parts();
         mesh.cluster();
         let needed = mesh.hierarchy.stack_needed();
@@ -374,7 +372,7 @@ fn unify(keys: &mut [VertexKey], groups: &[CoincidentGroup]) {
 /// A mesh of the distinct vertices, numbered by first appearance, and each given vertex's number.
 fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>) {
     let mut mesh = ColliderMesh {
-        id: MeshId::default(),
+        lineage: Lineage::default(),
         joint_count: source.joint_count,
         positions: Vec::new(),
         influence_start: vec![0],

@@ -7,6 +7,7 @@ use super::clusters::{self, Clusters};
 use super::derived::Derived;
 use super::hierarchy::Hierarchy;
 use super::joint_balls::JointBalls;
+use super::lineage::{Lineage, MeshId};
 use super::weights::WEIGHT_ONE;
 use super::{PaletteError, SurfaceTag};
 use crate::geometry::triangle::scaled_normal;
@@ -36,11 +37,11 @@ macro_rules! id {
 }
 
 id! {
-    /// Index of a vertex of a collider mesh. Never reused, as those of triangles.
+    /// Index of a vertex of a collider mesh. Ids of removed vertices are not used again.
     VertexId
 }
 id! {
-    /// Index of a triangle of a collider mesh. Never reused: a removed triangle's id stays free.
+    /// Index of a triangle of a collider mesh. Ids of removed triangles are not used again.
     TriangleId
 }
 id! {
@@ -52,27 +53,6 @@ id! {
     /// A connected set of triangles of a collider mesh, as [`ColliderMesh::island_of`] numbers them: by their lowest
     /// triangle. Edits number them anew.
     IslandId
-}
-
-/// Which mesh: a fingerprint of its rest data as it was built, the same wherever it is built from the same data. A
-/// copy that is edited keeps it.
-///
-/// Hits and anchors carry it, so that what belongs to one creature is not taken for a point of another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MeshId(pub u64);
-
-impl MeshId {
-    /// By FNV-1a (Fowler, Noll, Vo; RFC 9923), word by word.
-    fn of(mesh: &ColliderMesh) -> Self {
-        let positions = mesh.positions.iter().flat_map(|p| p.to_array());
-        let words = positions.chain(mesh.weights.iter().copied());
-        let words = words.map(f32::to_bits).chain(mesh.joints.iter().copied());
-        let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
-        Self(words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
-            (hash ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3)
-        }))
-    }
 }
 
 /// The triangles that one joint moves most, bounded together.
@@ -91,7 +71,7 @@ pub struct Part {
 /// surfaces through an `Arc`; one that is edited has its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderMesh {
-    pub(super) id: MeshId,
+    pub(super) lineage: Lineage,
     pub(super) joint_count: usize,
     pub(super) positions: Vec<Vec3>,
     /// Influences of vertex v stand at `influence_start[v]..influence_start[v + 1]`.
@@ -120,12 +100,13 @@ pub struct ColliderMesh {
 impl ColliderMesh {
     /// Which mesh it is.
     pub fn id(&self) -> MeshId {
-        self.id
+        self.lineage.id()
     }
 
-    /// Names the mesh after what it was built from.
-    pub(super) fn identify(&mut self) {
-        self.id = MeshId::of(self);
+    /// True if what was found on a mesh of this id means the same here: it is this mesh, or what it was before it was
+    /// edited.
+    pub fn continues(&self, id: MeshId) -> bool {
+        self.lineage.has(id)
     }
 
     /// How many matrices a palette for this mesh has.
@@ -250,6 +231,8 @@ impl ColliderMesh {
             + parts.sum::<usize>()
             + self.clusters.memory()
             + self.hierarchy.memory()
+            + self.joint_balls.memory()
+            + self.lineage.memory()
     }
 
     /// Joints and weights of vertex `v` as slices of equal length.

@@ -15,6 +15,7 @@ use super::collider::has_area;
 use super::derived::Derived;
 use super::hierarchy::{Hierarchy, STACK};
 use super::joint_balls::JointBalls;
+use super::lineage::Lineage;
 use super::weights::{normalize, weight_of};
 use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::rig::JointId;
@@ -84,6 +85,10 @@ impl ColliderMesh {
         }
         self.influence_start.push(self.joints.len() as u32);
         self.radius = vertex.radius;
+        let position = vertex.position.to_array().map(f32::to_bits);
+        let influences = vertex.influences.iter();
+        let influences = influences.flat_map(|(joint, units)| [joint.0, *units]);
+        self.lineage.add(position.into_iter().chain(influences));
         let joints = vertex.influences.iter().map(|(joint, _)| *joint);
         self.joint_balls.hold(vertex.position, joints);
         self.clusters.loose.push(id);
@@ -121,6 +126,7 @@ impl ColliderMesh {
             });
             self.parts.len() - 1
         });
+        self.lineage.add(corners.iter().map(|corner| corner.0));
         self.triangles.push(corners);
         self.tags.push(tag);
         self.parts[part].triangles.push(id);
@@ -192,6 +198,7 @@ impl ColliderMesh {
         }
         let held = self.clusters.held(&part.vertices);
         let (clusters, hierarchy) = build_beside(&self.alone(part), held);
+        // As `hierarchy::collapse` proves of whatever is cut by halves.
         debug_assert!(hierarchy.stack_needed() <= STACK);
         let first = self.clusters.clusters.len() as u32;
         self.hierarchy.append(hierarchy, id, first);
@@ -205,7 +212,7 @@ impl ColliderMesh {
         let number = |v: VertexId| part.vertices.partition_point(|other| *other < v) as u32;
         let corners = part.triangles.iter().map(|t| self.triangles[t.index()]);
         let mut alone = Self {
-            id: self.id,
+            lineage: Lineage::default(),
             joint_count: self.joint_count,
             positions: Vec::with_capacity(part.vertices.len()),
             influence_start: vec![0],

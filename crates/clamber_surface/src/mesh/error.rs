@@ -24,7 +24,9 @@ pub enum PaletteError {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The influences do not divide evenly among the vertices, or there are none.
+    /// The influences do not divide evenly among the vertices, or there are none. With
+    /// [`influence_ends`](crate::mesh::MeshSource::influence_ends): there is not one end per vertex, or the ends do not
+    /// ascend to the number of influences.
     #[error("{influences} influences do not divide among {vertices} vertices")]
     InfluenceCount {
         /// Influences found.

@@ -10,7 +10,7 @@ use crate::rig::JointId;
 /// Rest data for a box around the whole surface.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct JointBalls {
-    /// By ascending joint, of the vertices that it moves; of their weights nothing is asked.
+    /// By ascending joint, of the vertices that it moves, without their weights.
     pub(crate) balls: Vec<(JointId, Summary)>,
     /// The most that one vertex has.
     pub(crate) influences: usize,
@@ -30,10 +30,19 @@ impl JointBalls {
         let moving = joints.filter(|(_, vertices)| !vertices.is_empty());
         Self {
             balls: moving
-                .map(|(joint, vertices)| (joint, summarizer.of_vertices(vertices)))
+                .map(|(joint, vertices)| {
+                    let mut ball = summarizer.of_vertices(vertices);
+                    ball.spans = Vec::new();
+                    (joint, ball)
+                })
                 .collect(),
             influences: mesh.max_influences(),
         }
+    }
+
+    /// In bytes.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&self.balls[..])
     }
 
     /// Grows so as to hold one more vertex, which these joints move. The balls stay where they are.

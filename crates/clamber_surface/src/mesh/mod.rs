@@ -12,16 +12,18 @@ mod edit;
 mod error;
 pub(crate) mod hierarchy;
 mod joint_balls;
+mod lineage;
 mod summary;
 mod tag;
 mod weights;
 
 pub use build::{BuildOptions, BuildReport, Cracks, MeshSource, Winding};
 pub(crate) use collider::check_matrices;
-pub use collider::{ColliderMesh, IslandId, MeshId, Part, PartId, TriangleId, VertexId};
+pub use collider::{ColliderMesh, IslandId, Part, PartId, TriangleId, VertexId};
 pub(crate) use edit::Reclustered;
 pub use error::{MeshError, PaletteError};
 pub(crate) use joint_balls::JointBalls;
+pub use lineage::MeshId;
 #[cfg(test)]
 pub(crate) use summary::Summarizer;
 pub(crate) use summary::Summary;

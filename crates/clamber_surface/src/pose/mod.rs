@@ -59,7 +59,7 @@ impl PosedMesh {
         pose
     }
 
-    /// Makes room for what computes of the mesh's nodes and clusters.
+    /// Grows the caches to the mesh's node and cluster counts.
     fn grow(&mut self, mesh: &ColliderMesh) {
         let (nodes, clusters) = (mesh.hierarchy().nodes.len(), mesh.clusters());
         let rows = clusters.vertices.len() / ROW;

@@ -34,9 +34,9 @@ impl MovingTriangle {
 }
 
 impl ModelSpace<'_> {
-    /// Every triangle that moves within the box from `low` to `high` between the previous pose and the
-    /// current one, both ends included: by [its own box](MovingTriangle::meets_box), so that none is
-    /// missed that enters the box, and some come along that pass it by a corner. In no promised order.
+    /// Every triangle that enters the box from `low` to `high` between the previous pose and the current one, both ends
+    /// included. May include triangles whose [bounding box](MovingTriangle::meets_box), but not the triangle, enters
+    /// the box. In no promised order.
     ///
     /// A box whose `low` is above its `high`, or that is not finite, meets nothing.
     pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(&MovingTriangle)) {

@@ -45,9 +45,9 @@ pub enum TargetMotion {
 pub struct CastOptions {
     /// Whether the skin moves meanwhile.
     pub target: TargetMotion,
-    /// How far from touching counts as a contact, a length in model units. Where none is given, a 4,000th of the radius,
-    /// below what one sees, and at least the steps of f32 at the mesh's size.
-    pub tolerance: Option<f32>,
+    /// How far from touching counts as a contact, in model units; of a cast in the world, in metres. Where none is given, a
+    /// 4,000th of the radius, below what one sees, and at least the steps of f32 at the mesh's size.
+    pub tolerance: Option<f64>,
 }
 
 impl CastOptions {
@@ -63,9 +63,9 @@ impl CastOptions {
         tolerance: None,
     };
 
-    /// With another tolerance, in model units.
+    /// With another tolerance, in model units or, in the world, metres.
     #[must_use]
-    pub const fn with_tolerance(self, tolerance: f32) -> Self {
+    pub const fn with_tolerance(self, tolerance: f64) -> Self {
         Self {
             tolerance: Some(tolerance),
             ..self
@@ -74,8 +74,19 @@ impl CastOptions {
 
     pub(super) fn tolerance_for(&self, capsule: &Capsule, mesh: &ColliderMesh) -> f32 {
         let least = mesh.radius() * f32::EPSILON;
-        self.tolerance
-            .unwrap_or_else(|| (capsule.radius() * 2.5e-4).max(least))
+        match self.tolerance {
+            Some(tolerance) => tolerance as f32,
+            None => (capsule.radius() * 2.5e-4).max(least),
+        }
+    }
+}
+
+impl From<TargetMotion> for CastOptions {
+    fn from(target: TargetMotion) -> Self {
+        Self {
+            target,
+            tolerance: None,
+        }
     }
 }
 
@@ -103,9 +114,10 @@ impl ModelSpace<'_> {
         self.cast(capsule, displacements, options, None)
     }
 
-    /// [`ModelSpace::cast_capsule`] among the contacts that count: of each triangle that may be the first to be touched
-    /// its contact is shown to `counts`, in no order. For a body that is pressed into skin, while other skin is still on
-    /// its way: contacts that [started inside](SweepHit::started_inside) do not count then.
+    /// [`ModelSpace::cast_capsule`] among chosen contacts. `counts` is called, in any order, with the contact of each
+    /// triangle that could be the first; contacts for which it returns false are passed over. A body that is pressed
+    /// into skin so finds other skin: `counts` returns false for contacts that [started
+    /// inside](SweepHit::started_inside).
     pub fn cast_capsule_where(
         &self,
         capsule: &Capsule,

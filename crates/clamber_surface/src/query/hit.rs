@@ -58,9 +58,9 @@ pub struct SweepHit {
     /// The triangle's point, where it is at that time, in model space.
     pub point: Vec3,
     /// Unit vector from there to the capsule's segment; where that lies on the triangle itself, its own normal.
+    pub separation_normal: Vec3,
+    /// Outward unit normal of the deformed triangle at that time; where it has collapsed, the separation's.
     pub normal: Vec3,
-    /// Outward unit normal of the deformed triangle at that time; where it has collapsed, `normal`.
-    pub surface_normal: Vec3,
     /// From the point to the segment, in units of model space.
     pub distance: f64,
     /// The part that the triangle belongs to.
@@ -69,8 +69,7 @@ pub struct SweepHit {
     pub tag: SurfaceTag,
     /// True if they overlap at the start already; the time is 0.
     pub started_inside: bool,
-    /// True if rounding, or the limit of the number of steps, kept it from being shown how near they
-    /// are: they do not touch before `time`, but may be farther than radius and tolerance at it.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
@@ -279,8 +278,8 @@ impl Instance {
             barycentric: round_to_f32(weights).to_array(),
             time: contact.time,
             point: round_to_f32(point),
-            normal: round_to_f32(normal),
-            surface_normal: round_to_f32(outward.unwrap_or(normal)),
+            separation_normal: round_to_f32(normal),
+            normal: round_to_f32(outward.unwrap_or(normal)),
             distance: contact.distance,
             part,
             tag: self.mesh.tags()[triangle.index()],

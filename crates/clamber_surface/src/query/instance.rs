@@ -20,7 +20,7 @@ pub(crate) struct Instance {
     pub(crate) is_still: bool,
     pub(crate) simd_level: SimdLevel,
     pub(crate) part_enabled: Vec<bool>,
-    /// True for removed triangles.
+    /// Per triangle; stays true after the triangle is removed.
     pub(crate) triangle_enabled: Vec<bool>,
     /// How many triangles are not enabled.
     pub(crate) hidden_triangles: usize,

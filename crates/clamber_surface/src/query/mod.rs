@@ -35,7 +35,8 @@ use crate::mesh::{PartId, VertexId};
 /// A surface in its own model space, in f32: queries, and where vertices and parts are. Got from
 /// [`SkinnedSurface::in_model`](crate::surface::SkinnedSurface::in_model).
 ///
-/// Lengths may be infinite; a length that is NaN or negative finds nothing.
+/// Ray lengths and the distances of closest-point queries may be infinite. A length that is NaN or negative finds
+/// nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelSpace<'a> {
     pub(crate) instance: &'a Instance,
@@ -54,7 +55,7 @@ impl ModelSpace<'_> {
     }
 
     /// For every part that has triangles a sphere that holds it as it is posed now, from the palette alone. O(joints of
-    /// the part) each; a mesh's rest data are read when this is first asked.
+    /// the part) each. The first call on a mesh reads all its rest data.
     pub fn part_spheres(&self) -> impl Iterator<Item = (PartId, Sphere)> {
         self.instance.current.part_spheres(&self.instance.mesh)
     }

@@ -26,7 +26,8 @@ impl fmt::Display for JointId {
 /// One joint as it stands at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// For people and for [`Skeleton::find`]; need not be unique.
+    /// For people and for [`Skeleton::find`]; need not be unique. `clamber_gltf` names a node without a name by its
+    /// index: `"node 3"`.
     pub name: String,
     /// The joint that this one hangs under; `None` at a root.
     pub parent: Option<JointId>,

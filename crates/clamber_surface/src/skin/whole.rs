@@ -13,12 +13,12 @@ use crate::simd::SimdLevel;
 /// As [`skin_into`].
 pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, PaletteError> {
     let mut positions = Vec::new();
-    skin_into(mesh, palette, SimdLevel::best(), &mut positions)?;
+    skin_into(mesh, palette, &mut positions)?;
     Ok(positions)
 }
 
-/// [`skin`] into an existing vector, which keeps its memory, on the instruction set given. Positions
-/// come out in model space, in vertex order, each vertex once.
+/// [`skin`] into an existing vector, which keeps its memory. Positions come out in model space, in vertex order, each
+/// vertex once.
 ///
 /// # Errors
 /// [`PaletteError::JointCount`] if the palette has another number of matrices than the mesh has
@@ -26,7 +26,6 @@ pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, Palett
 pub fn skin_into(
     mesh: &ColliderMesh,
     palette: &[Affine],
-    level: SimdLevel,
     positions: &mut Vec<Vec3>,
 ) -> Result<(), PaletteError> {
     if palette.len() != mesh.joint_count() {
@@ -35,7 +34,7 @@ pub fn skin_into(
             found: palette.len(),
         });
     }
-    skin_checked(mesh, palette, level, positions);
+    skin_checked(mesh, palette, SimdLevel::best(), positions);
     Ok(())
 }
 

@@ -113,7 +113,7 @@ fn assert_casts_agree(
     let mut found = 0;
     let (mut hits, mut expected): (Vec<SweepHit>, Vec<SweepHit>) = Default::default();
     for mut options in [CastOptions::STILL, CastOptions::MOVING] {
-        options.tolerance = tolerance.map(|share| capsule.radius() * share);
+        options.tolerance = tolerance.map(|share: f32| f64::from(capsule.radius() * share));
         let case = format!("{capsule:?} {displacements:?} {options:?}");
         let hit = space.cast_capsule(capsule, displacements, &options);
         let wanted = brute_force.cast_capsule(capsule, displacements, &options);
@@ -174,6 +174,8 @@ pub(crate) fn answers(
         swept.append(&mut contacts);
     }
     let near = all.iter().map(|hit| (hit.into(), hit.normal, hit.distance));
-    let met = swept.iter().map(|hit| (hit.into(), hit.normal, hit.time));
+    let met = swept
+        .iter()
+        .map(|hit| (hit.into(), hit.separation_normal, hit.time));
     near.chain(met).collect()
 }

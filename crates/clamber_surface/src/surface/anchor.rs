@@ -2,7 +2,7 @@ use glam::{DQuat, Quat};
 
 use super::deformation::material_frame;
 use super::{SkinnedSurface, SurfaceError};
-use crate::mesh::{MeshId, TriangleId};
+use crate::mesh::{ColliderMesh, MeshId, TriangleId};
 use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
 use crate::rig::rotation_f32;
 
@@ -62,14 +62,14 @@ pub struct Anchor {
 }
 
 impl SkinnedSurface {
-    /// What sticks to the material point of a hit, or to any other, as the surface is posed now.
+    /// Creates an anchor at a hit or any other point of the surface, as it is posed now.
     ///
     /// # Errors
     /// [`SurfaceError::ForeignMesh`] for a point of another mesh, [`SurfaceError::Triangle`] for one whose triangle was
-    /// removed since, [`SurfaceError::Barycentric`] for weights that are none.
+    /// removed since, [`SurfaceError::Barycentric`] for weights that are not finite, negative, or do not add up to 1.
     pub fn anchor_at(&self, point: impl Into<SurfacePoint>) -> Result<Anchor, SurfaceError> {
         let point = point.into();
-        self.check_mesh(point.mesh)?;
+        check_mesh(self.mesh(), point.mesh)?;
         self.anchor(point.triangle, point.barycentric)
     }
 
@@ -97,15 +97,15 @@ impl SkinnedSurface {
             frame: rotation_f32(frame.unwrap_or(DQuat::IDENTITY)),
         })
     }
+}
 
-    /// Refuses what belongs to another mesh.
-    pub(super) fn check_mesh(&self, found: MeshId) -> Result<(), SurfaceError> {
-        let expected = self.mesh().id();
-        if found == expected {
-            Ok(())
-        } else {
-            Err(SurfaceError::ForeignMesh { expected, found })
-        }
+/// Refuses what belongs to another mesh.
+pub(super) fn check_mesh(mesh: &ColliderMesh, found: MeshId) -> Result<(), SurfaceError> {
+    if mesh.continues(found) {
+        Ok(())
+    } else {
+        let expected = mesh.id();
+        Err(SurfaceError::ForeignMesh { expected, found })
     }
 }
 

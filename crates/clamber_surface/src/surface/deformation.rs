@@ -9,8 +9,8 @@ use crate::geometry::{Affine, widen};
 /// rounding. Larger freezes frames of slivers that still have one.
 const COLLAPSED: f64 = 1.0 / (1u32 << 22) as f64;
 
-/// So has one lower than this share of its corners' distance from the origin, 2^-20: skinning
-/// rounds each corner by some 2^-24 of that, which would turn the triangle by a quarter radian.
+/// A triangle lower than this share of its corners' distance from the origin has also collapsed, 2^-20: skinning
+/// rounds each corner by some 2^-24 of that distance, which would turn the triangle by a quarter radian.
 const COLLAPSED_FAR_OUT: f64 = 1.0 / (1u32 << 20) as f64;
 
 /// True if the triangle has no direction of its own.

@@ -3,8 +3,8 @@ use std::sync::atomic::Ordering;
 use super::SkinnedSurface;
 use crate::mesh::TriangleId;
 
-/// What this tick's queries touched. Counts what is distinct, so it does not depend on how threads
-/// interleave.
+/// What this tick's queries touched, the same however threads interleave. Bounds, clusters and vertices count once,
+/// however many queries reach them; `triangles_tested` counts every test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostics {
@@ -12,11 +12,12 @@ pub struct Diagnostics {
     pub bounds_evaluated: usize,
     /// Clusters that queries reached.
     pub clusters_touched: usize,
-    /// Clusters that were skinned: those, or all, where the ticks before touched nearly everything.
+    /// Clusters that were skinned: the touched ones, or all after a tick that touched nearly everything and after
+    /// [`SkinnedSurface::skin_ahead`].
     pub clusters_skinned: usize,
     /// Clusters of the mesh.
     pub clusters: usize,
-    /// Vertices that were skinned with them. One on the border of clusters counts in each.
+    /// Vertices of the skinned clusters. One on the border of clusters counts in each.
     pub vertices_skinned: usize,
     /// Vertices of all clusters, counted so.
     pub vertices: usize,
@@ -34,7 +35,7 @@ pub struct ClusterState<'a> {
     pub triangles: &'a [TriangleId],
     /// Queries reached it.
     pub touched: bool,
-    /// It was skinned: touched, or ahead of queries where the ticks before touched nearly everything.
+    /// It was skinned: because a query reached it, or ahead of queries, as in [`Diagnostics::clusters_skinned`].
     pub skinned: bool,
 }
 

@@ -31,4 +31,4 @@ pub use error::SurfaceError;
 pub use motion::Motion;
 pub use patch::{Patch, PatchChange};
 pub use skinned::SkinnedSurface;
-pub use world::{WorldHit, WorldSpace, WorldSweepHit};
+pub use world::{WorldHit, WorldMotion, WorldSpace, WorldSweepHit};

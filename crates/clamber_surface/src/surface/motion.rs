@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
-use super::anchor::check_barycentric;
+use super::anchor::{check_barycentric, check_mesh};
 use super::deformation::{is_collapsed, material_frame, stretch};
-use super::{Anchor, SkinnedSurface, SurfaceError};
+use super::{Anchor, ModelSpace, SurfaceError};
 use crate::geometry::triangle::{point_at, scaled_normal};
 use crate::geometry::{rotation_vector, round_to_f32, widen};
 use crate::rig::{rotation_f32, rotation_f64};
@@ -18,7 +18,7 @@ pub struct Motion {
     pub position: Vec3,
     /// Where it was a tick ago.
     pub previous_position: Vec3,
-    /// Displacement over the tick, per second.
+    /// Displacement over the tick, model units per second.
     pub velocity: Vec3,
     /// Rotation of the material around the point from rest to now: the rotation nearest to the
     /// triangle's deformation, so that stretch and shear do not turn it. Times a direction given
@@ -38,16 +38,16 @@ pub struct Motion {
     pub stretches: [f32; 2],
 }
 
-impl SkinnedSurface {
-    /// The motion of a material point over a tick of `dt` seconds. Skins three vertices.
+impl ModelSpace<'_> {
+    /// The motion of an anchor over a tick of `dt` seconds. Skins three vertices.
     ///
     /// # Errors
     /// [`SurfaceError::ForeignMesh`], [`SurfaceError::Triangle`] if the triangle does not exist or was removed,
     /// [`SurfaceError::Barycentric`], [`SurfaceError::Tick`] if `dt` is not positive and finite, or
     /// [`SurfaceError::ShortTick`].
     pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<Motion, SurfaceError> {
-        self.check_mesh(anchor.mesh)?;
-        let (triangle, instance) = (anchor.triangle, &self.instance);
+        let (triangle, instance) = (anchor.triangle, self.instance);
+        check_mesh(&instance.mesh, anchor.mesh)?;
         let part = instance
             .mesh
             .part_of(triangle)

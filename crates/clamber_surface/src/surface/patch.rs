@@ -94,8 +94,8 @@ impl Patch {
         self.update_near(surface, low, high, margin, apart)
     }
 
-    /// [`Patch::update`] near a region that fills little of the box around it: `apart` tells how far a
-    /// triangle moves past it, which may be less than it is, and is at most 0 for one that it meets.
+    /// [`Patch::update`] near a region that fills little of its box. `apart` gives a lower bound of the distance
+    /// between the region and a moving triangle, in model units: 0 or less for a triangle that meets the region.
     pub fn update_near(
         &mut self,
         surface: &SkinnedSurface,
@@ -171,8 +171,10 @@ impl Patch {
         &self.previous_positions
     }
 
-    /// Velocities of its vertices over the last tick of `dt` seconds, in the current model frame.
+    /// Velocities of its vertices over the last tick of `dt` seconds, in the current model frame, model units per
+    /// second; zero for a `dt` that is not positive.
     pub fn velocities(&self, dt: f64) -> impl ExactSizeIterator<Item = Vec3> {
+        let dt = if dt > 0.0 { dt } else { f64::INFINITY };
         let pairs = self.positions.iter().zip(&self.previous_positions);
         pairs.map(move |(now, before)| ((now.as_dvec3() - before.as_dvec3()) / dt).as_vec3())
     }

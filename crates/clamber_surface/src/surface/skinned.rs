@@ -63,6 +63,7 @@ impl SkinnedSurface {
 
     /// [`SkinnedSurface::new`] on a given instruction set: for measurements and tests, since the
     /// results are the same.
+    #[doc(hidden)]
     pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
         let mut surface = Self {
             instance: Instance::new(mesh, simd_level),
@@ -79,7 +80,8 @@ impl SkinnedSurface {
     /// everything. That follows from which clusters queries reached, not from how many threads they ran on.
     ///
     /// # Errors
-    /// [`SurfaceError::Palette`] or [`SurfaceError::WorldFromModel`]; the surface is unchanged then.
+    /// [`SurfaceError::Palette`], about the given palette or about the previous one re-expressed in the new model
+    /// frame, or [`SurfaceError::WorldFromModel`]; the surface is unchanged then.
     pub fn advance(
         &mut self,
         palette: &Palette,
@@ -175,6 +177,7 @@ impl SkinnedSurface {
 
     /// Skins everything now and refits every bound to it, where queries would skin and bound what
     /// they touch: the eager way. For comparison; the surface does so by itself where it is faster.
+    #[doc(hidden)]
     pub fn skin_ahead(&mut self) {
         self.instance.current.fill(&self.instance.mesh);
     }
@@ -197,6 +200,7 @@ impl SkinnedSurface {
     }
 
     /// The instruction set that queries run on.
+    #[doc(hidden)]
     pub fn simd_level(&self) -> SimdLevel {
         self.instance.simd_level
     }

@@ -1,6 +1,6 @@
-//! Whether a point is inside a mesh, from the solid angle: the oracle of [`SkinnedSurface::is_inside`].
+//! Whether a point is inside a mesh, from the solid angle: the oracle of [`ModelSpace::is_inside`].
 //!
-//! [`SkinnedSurface::is_inside`]: super::SkinnedSurface::is_inside
+//! [`ModelSpace::is_inside`]: super::ModelSpace::is_inside
 
 use glam::{DVec3, Vec3};
 

@@ -1,16 +1,17 @@
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
-use super::{SkinnedSurface, SurfacePoint};
+use super::motion::Motion;
+use super::{Anchor, SkinnedSurface, SurfaceError, SurfacePoint};
 use crate::geometry::{Capsule, Ray, Similarity, WorldCapsule};
 use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
-use crate::query::{CastOptions, SurfaceHit, SweepHit, TargetMotion};
+use crate::query::{CastOptions, SurfaceHit, SweepHit};
 
 /// A surface in the world, in f64: the queries of [`ModelSpace`](super::ModelSpace) where the creature stands. Got from
 /// [`SkinnedSurface::in_world`].
 ///
 /// Queries go to the model space and come back, so a creature far from the world's origin answers as exactly as one
-/// near it. Lengths may be infinite; a length that is NaN or negative, and a point or direction that is not finite, find
-/// nothing.
+/// near it. Ray lengths and the distances of closest-point queries may be infinite. A radius or displacement that is
+/// infinite, a length that is NaN or negative, and a point or direction that is not finite find nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldSpace<'a> {
     surface: &'a SkinnedSurface,
@@ -47,11 +48,37 @@ pub struct WorldSweepHit {
     /// Share of the motion that was made when they touched, 0..=1.
     pub time: f64,
     /// Unit vector from the point to the capsule's segment; where that lies on the triangle itself, its normal.
-    pub away: DVec3,
+    pub separation_normal: DVec3,
     /// True if they overlap at the start already; the time is 0.
     pub started_inside: bool,
     /// As [`SweepHit::undecided`].
     pub undecided: bool,
+}
+
+/// The motion of an anchor over one tick, in world space: differences of positions over the tick's length, never an
+/// instantaneous velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct WorldMotion {
+    /// Where the point is now.
+    pub position: DVec3,
+    /// Where it was a tick ago.
+    pub previous_position: DVec3,
+    /// Displacement over the tick, metres per second.
+    pub velocity: DVec3,
+    /// Rotation of the material around the point from rest to now, as [`Motion::frame`].
+    pub frame: DQuat,
+    /// Axis times radians per second that turns the frame of a tick ago into the current one, by at most half a turn.
+    pub angular_velocity: DVec3,
+    /// Outward unit normal of the triangle now; of a collapsed triangle, as its frame keeps it.
+    pub normal: DVec3,
+    /// True if the triangle has no area of its own now: frame and normal are remembered ones.
+    pub collapsed: bool,
+    /// Area now over area a tick ago; 1 where it was collapsed.
+    pub area_ratio: f32,
+    /// How much longer the most and the least stretched direction of the triangle became since a tick ago, larger first;
+    /// 1 and 1 where it was collapsed.
+    pub stretches: [f32; 2],
 }
 
 impl From<&WorldHit> for SurfacePoint {
@@ -97,7 +124,7 @@ impl WorldSpace<'_> {
         })
     }
 
-    /// All triangles along a ray, by distance, equal ones by triangle id, appended to `hits`.
+    /// All triangles along a ray, by distance, equal ones by triangle id. `hits` is cleared first.
     pub fn cast_ray_all(
         &self,
         origin: DVec3,
@@ -105,6 +132,7 @@ impl WorldSpace<'_> {
         max_distance: f64,
         hits: &mut Vec<WorldHit>,
     ) {
+        hits.clear();
         if let Some(ray) = self.ray(origin, direction) {
             let (length, mut found) = (self.length(max_distance), Vec::new());
             self.surface
@@ -137,35 +165,76 @@ impl WorldSpace<'_> {
         }
     }
 
+    /// The material point nearest to a capsule's segment, no farther from the capsule than `max_distance`.
+    pub fn closest_to_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        max_distance: f64,
+    ) -> Option<WorldHit> {
+        let (local, space) = (self.capsule(capsule)?, self.surface.in_model());
+        let found = space.closest_to_capsule(&local, self.length(max_distance))?;
+        Some(self.hit(&found.surface, |point| capsule.nearest_on_axis(point)))
+    }
+
+    /// [`ModelSpace::is_inside`](super::ModelSpace::is_inside).
+    pub fn is_inside(&self, point: DVec3) -> bool {
+        let local = self.place().inverse_transform_point_f32(point);
+        self.surface.in_model().is_inside(local)
+    }
+
     /// The first contact of a capsule whose ends each go straight by one of `displacements`, with skin that stands still,
-    /// or that moves over the tick meanwhile: [`ModelSpace::cast_capsule`](super::ModelSpace::cast_capsule), to
-    /// [`WorldCapsule::sweep_tolerance`].
+    /// or that moves over the tick meanwhile: [`ModelSpace::cast_capsule`](super::ModelSpace::cast_capsule), with a
+    /// tolerance in metres.
     pub fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
-        target: TargetMotion,
+        options: &CastOptions,
     ) -> Option<WorldSweepHit> {
-        let (local, displacements, options) = self.cast(capsule, displacements, target)?;
+        let (local, displacements, options) = self.cast(capsule, displacements, options)?;
         let space = self.surface.in_model();
         let hit = space.cast_capsule(&local, displacements, &options)?;
         Some(self.sweep_hit(&hit))
     }
 
-    /// [`WorldSpace::cast_capsule`] among the contacts that count: of each triangle that may be the first to be touched
-    /// its contact is shown to `counts`, in no order.
+    /// [`WorldSpace::cast_capsule`] among chosen contacts. `counts` is called, in any order, with the contact of each
+    /// triangle that could be the first; contacts for which it returns false are passed over.
     pub fn cast_capsule_where(
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
-        target: TargetMotion,
+        options: &CastOptions,
         counts: &mut dyn FnMut(&WorldSweepHit) -> bool,
     ) -> Option<WorldSweepHit> {
-        let (local, displacements, options) = self.cast(capsule, displacements, target)?;
+        let (local, displacements, options) = self.cast(capsule, displacements, options)?;
         let mut counts = |hit: &SweepHit| counts(&self.sweep_hit(hit));
         let space = self.surface.in_model();
         let hit = space.cast_capsule_where(&local, displacements, &options, &mut counts)?;
         Some(self.sweep_hit(&hit))
+    }
+
+    /// The motion of an anchor over a tick of `dt` seconds, in world space. Skins three vertices.
+    ///
+    /// # Errors
+    /// As [`ModelSpace::motion`](super::ModelSpace::motion).
+    pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<WorldMotion, SurfaceError> {
+        let motion = self.surface.in_model().motion(anchor, dt)?;
+        Ok(self.motion_of(&motion))
+    }
+
+    fn motion_of(&self, motion: &Motion) -> WorldMotion {
+        let world_from_model = self.place();
+        WorldMotion {
+            position: world_from_model.transform_point_f32(motion.position),
+            previous_position: world_from_model.transform_point_f32(motion.previous_position),
+            velocity: world_from_model.transform_vector(motion.velocity.as_dvec3()),
+            frame: (world_from_model.rotation * motion.frame.as_dquat()).normalize(),
+            angular_velocity: self.direction(motion.angular_velocity),
+            normal: self.direction(motion.normal),
+            collapsed: motion.collapsed,
+            area_ratio: motion.area_ratio,
+            stretches: motion.stretches,
+        }
     }
 
     fn place(&self) -> &Similarity {
@@ -196,13 +265,13 @@ impl WorldSpace<'_> {
         &self,
         capsule: &WorldCapsule,
         displacements: [DVec3; 2],
-        target: TargetMotion,
+        options: &CastOptions,
     ) -> Option<(Capsule, [Vec3; 2], CastOptions)> {
         let in_model = |v: DVec3| self.place().inverse_transform_vector(v).as_vec3();
-        let tolerance = self.length(capsule.sweep_tolerance());
+        let tolerance = options.tolerance.map(|metres| metres / self.place().scale);
         let options = CastOptions {
-            target,
-            tolerance: Some(tolerance),
+            tolerance,
+            ..*options
         };
         Some((self.capsule(capsule)?, displacements.map(in_model), options))
     }
@@ -224,20 +293,20 @@ impl WorldSpace<'_> {
     }
 
     fn sweep_hit(&self, hit: &SweepHit) -> WorldSweepHit {
-        let away = self.direction(hit.normal).normalize_or(DVec3::Y);
+        let separation_normal = self.direction(hit.separation_normal).normalize_or(DVec3::Y);
         WorldSweepHit {
             hit: WorldHit {
                 mesh: hit.mesh,
                 triangle: hit.triangle,
                 barycentric: hit.barycentric,
                 point: self.place().transform_point_f32(hit.point),
-                normal: self.direction(hit.surface_normal).normalize_or(away),
+                normal: self.direction(hit.normal).normalize_or(separation_normal),
                 distance: hit.distance * self.place().scale,
                 part: hit.part,
                 tag: hit.tag,
             },
             time: hit.time,
-            away,
+            separation_normal,
             started_inside: hit.started_inside,
             undecided: hit.undecided,
         }

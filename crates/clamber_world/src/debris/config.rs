@@ -1,6 +1,6 @@
 use rapier3d::geometry::InteractionGroups;
 
-/// What skin is to debris.
+/// Friction, restitution and collision groups of the skin that debris touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DebrisConfig {
     /// Coefficient of friction, at least 0; rapier takes the mean of both sides'. Higher keeps rocks on

@@ -74,7 +74,7 @@ pub(super) fn keep_out(
         kept.free = false;
         let world_from_model = surface.world_from_model();
         let anchor = surface.anchor_at(&hit).ok()?;
-        let motion = surface.motion(&anchor, dt).ok()?;
+        let motion = surface.in_model().motion(&anchor, dt).ok()?;
         let normal = world_from_model.rotation * outward(&hit, &motion, dt);
         let skin = world_from_model.transform_point_f32(motion.position);
         let touching = touching(world_from_model, &hit, start, shifted);
@@ -94,12 +94,12 @@ pub(super) fn keep_out(
 /// From the skin to the body, now: as they touched, turned as the triangle turned since then; out of the
 /// skin where the body came from behind it.
 fn outward(hit: &SweepHit, motion: &Motion, dt: f64) -> DVec3 {
-    if hit.normal.dot(hit.surface_normal) <= 0.0 {
+    if hit.separation_normal.dot(hit.normal) <= 0.0 {
         return motion.normal.as_dvec3().normalize_or(DVec3::Y);
     }
     let turned = motion.angular_velocity.as_dvec3() * (dt * (1.0 - hit.time));
     let angle = turned.length();
-    let normal = hit.normal.as_dvec3().normalize_or(DVec3::Y);
+    let normal = hit.separation_normal.as_dvec3().normalize_or(DVec3::Y);
     if angle > 0.0 {
         rotation_from_axis_angle(turned / angle, angle) * normal
     } else {
@@ -115,7 +115,7 @@ fn sweep(
 ) -> Option<Option<SweepHit>> {
     let world_from_model = surface.world_from_model();
     let radius = core.radius * SWEPT / world_from_model.scale;
-    let tolerance = (radius * TOLERANCE) as f32;
+    let tolerance = radius * TOLERANCE;
     let radius = radius as f32;
     let start = start.map(|end| world_from_model.inverse_transform_point(end));
     let motions: [Vec3; 2] = std::array::from_fn(|side| {

@@ -25,8 +25,13 @@ use crate::ObstacleId;
 /// A creature that cannot be pushed would drive what it steps on through the ground. Such a body is left
 /// where it is, and the skin passes through it until it is outside again.
 ///
-/// What a body and a creature have to do with each other is kept by the creature's [`ObstacleId`], which must stay the
-/// same from tick to tick. The order of the list changes no result; a creature that leaves the list is forgotten.
+/// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
+/// tick to tick. The order of the list changes no result; a creature that leaves the list is forgotten.
+///
+/// Skin patches are ordinary colliders of the rapier world. A climber that is given the creature and a
+/// [`RapierTerrain`](crate::RapierTerrain) without a filter touches that skin twice. Leave the patches out with
+/// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
+/// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
 ///
 /// Each tick, in this order; the patches belong to the debris, so its hooks must be among those of the
 /// step:
@@ -140,6 +145,9 @@ impl Debris {
 
     /// The body no longer collides with skin; true if it did. Bodies that rapier no longer has leave by
     /// themselves.
+    ///
+    /// The kinematic bodies of its skin patches and their colliders, disabled, stay in rapier's sets for later bodies.
+    /// They stay there when the `Debris` is dropped, colliders that are enabled then included: remove all bodies first.
     pub fn remove(&mut self, body: RigidBodyHandle, colliders: &mut ColliderSet) -> bool {
         let Ok(index) = self.place_of(body) else {
             return false;
@@ -241,7 +249,8 @@ impl Debris {
     /// Where that would press it into something else that does not move, skin passes through it from then on.
     ///
     /// # Errors
-    /// As [`Debris::before_step`].
+    /// As [`Debris::before_step`]. On [`DebrisError::OutOfReach`] earlier bodies have been moved already, and their
+    /// report is lost.
     pub fn after_step(
         &mut self,
         surfaces: &[(ObstacleId, &SkinnedSurface)],

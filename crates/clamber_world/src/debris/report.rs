@@ -4,9 +4,9 @@
 pub struct DebrisReport {
     /// Bodies that had skin near them.
     pub near: u32,
-    /// Bodies that rapier let skin into, and that were put back in front of it.
+    /// Bodies that rapier let skin into, and that were put back in front of it. A body counts once for each creature.
     pub put_back: u32,
     /// Bodies that skin passes through: caught in a closing fold, or between skin and what does not
-    /// move, such as under a foot.
+    /// move, such as under a foot. A body counts once for each creature.
     pub caught: u32,
 }

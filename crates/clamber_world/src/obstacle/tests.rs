@@ -18,7 +18,7 @@ struct Least<'a> {
 
 impl Obstacle for Least<'_> {
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
-        Obstacle::overlap_capsule(self.skin, capsule, contacts);
+        self.skin.overlap_capsule(capsule, contacts);
     }
 
     fn cast_capsule(
@@ -31,7 +31,7 @@ impl Obstacle for Least<'_> {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        Obstacle::motion(self.skin, point, dt)
+        self.skin.motion(point, dt)
     }
 
     fn bounds(&self) -> Option<(DVec3, f64)> {
@@ -84,7 +84,7 @@ fn three_methods_answer_rays_and_nearest_points_as_all_would() {
             for reach in [0.0, 0.3, 3.0, f64::INFINITY] {
                 let (ours, all) = (
                     least.closest_point(point, reach),
-                    Obstacle::closest_point(&skin, point, reach),
+                    skin.closest_point(point, reach),
                 );
                 assert_eq!(
                     ours.map(|contact| contact.distance),
@@ -95,7 +95,7 @@ fn three_methods_answer_rays_and_nearest_points_as_all_would() {
             let direction = random(&mut rng) * 5.0;
             for length in [0.5, 8.0, f64::INFINITY] {
                 let ours = least.cast_ray(point, direction, length);
-                let all = Obstacle::cast_ray(&skin, point, direction, length);
+                let all = skin.cast_ray(point, direction, length);
                 let Some(all) = all else { continue };
                 let ours = ours.expect("a ball of no radius meets what a ray meets");
                 let apart = all.distance - ours.distance;

@@ -4,7 +4,8 @@ use rapier3d::math::Pose;
 /// Where the bodies of a rapier world stood before a step.
 ///
 /// Velocities of bodies are measured as displacements over the tick, so that a character on a
-/// turning platform goes where its spot goes and not along the tangent. Record before each step:
+/// turning platform goes where its spot goes and not along the tangent. Teleport bodies before `record`: one that is
+/// teleported between `record` and a query is swept along the whole way. Record before each step:
 ///
 /// ```
 /// use clamber_world::{BodyPoses, RapierTerrain};

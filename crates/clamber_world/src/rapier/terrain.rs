@@ -44,8 +44,12 @@ fn key_of(handle: ColliderHandle) -> u64 {
 /// without sensors.
 ///
 /// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle,
-/// from both sides; convex shapes are solid. Rays are rapier's own: one that meets an edge between
-/// two of its triangles exactly may slip through.
+/// from both sides; convex shapes are solid. A custom shape without a support map is seen by rays only. Rays are
+/// rapier's own: one that meets an edge between two of its triangles exactly may slip through.
+///
+/// The skin patches of [`Debris`](crate::Debris) are ordinary colliders of the world. Without a filter a climber
+/// touches that skin twice: here, and on the creature itself. [`RapierTerrain::with_filter`] leaves them out, by
+/// [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by [`Debris::triangle_at`](crate::Debris::triangle_at).
 ///
 /// Sweeps see each point of a body go straight from where [`BodyPoses`] has it to where it is: for a body that turns by
 /// an angle in a tick, up to `r (1 - cos(angle / 2))` beside its arc. The first of them in a tick looks once through the
@@ -80,7 +84,7 @@ impl MovedColliders {
 
 impl<'a> RapierTerrain<'a> {
     /// From the sets that an engine owns. `before` tells where bodies stood before the last step;
-    /// without it, nothing of the world moves.
+    /// with an empty one, nothing of the world moves.
     pub fn new(
         bodies: &'a RigidBodySet,
         colliders: &'a ColliderSet,

@@ -7,10 +7,10 @@ use super::sweep::sweep_shape_where;
 use super::{ShapeTouch, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
-/// The first contact of a capsule on its way among many shapes; in whatever order they are met, the same.
+/// The first contact of a moving capsule among many shapes, the same in whatever order they are tried.
 ///
-/// An engine asks its tree for what [may be met](FirstContact::may_meet), and tries that. Boxes, poses and the capsule
-/// are in the engine's own space.
+/// An engine searches its tree for boxes that [may be met](FirstContact::may_meet), and tries their shapes. Boxes,
+/// poses and the capsule are in the engine's own space.
 ///
 /// ```
 /// use clamber_world::WorldCapsule;
@@ -35,8 +35,8 @@ pub struct FirstContact {
 }
 
 impl FirstContact {
-    /// Of none so far; each end of the capsule goes by its own displacement. `None` if anything is not finite or beyond
-    /// 2^100, or the radius negative.
+    /// A search that has tried no shape yet. Each end of the capsule moves by its own displacement. `None` if anything
+    /// is not finite or beyond 2^100, or the radius negative.
     pub fn new(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> Option<Self> {
         let radius = capsule.radius;
         let end = capsule.with_ends_moved(displacements).ends;
@@ -57,12 +57,12 @@ impl FirstContact {
         })
     }
 
-    /// The box around all of the way, and of what it reaches.
+    /// A box around the whole path of the capsule and everything within its reach.
     pub fn bounds(&self) -> Aabb {
         self.reach.bounds()
     }
 
-    /// Whether something that stays within this box may be met before what was met so far, or with it.
+    /// Whether a shape that stays within this box may be met no later than the first contact so far.
     pub fn may_meet(&self, bounds: &Aabb) -> bool {
         self.reach.meets(bounds, self.limit())
     }
@@ -75,7 +75,8 @@ impl FirstContact {
         }
     }
 
-    /// [`FirstContact::meet`] among the contacts that count, which are shown in the engine's space.
+    /// [`FirstContact::meet`] among the contacts for which `counts` returns true. It gets them in the engine's space,
+    /// with the default tag.
     pub fn meet_where(
         &mut self,
         shape: &dyn Shape,
@@ -97,7 +98,8 @@ impl FirstContact {
         }
     }
 
-    /// What was met first, in the world: `origin` is where the engine's own stands in it.
+    /// The first contact, in world space: `origin` is the position of the engine's origin. It carries the default tag;
+    /// the caller sets it.
     pub fn contact(&self, origin: DVec3) -> Option<SweepContact> {
         self.first.map(|first| SweepContact {
             contact: Contact {
@@ -120,7 +122,11 @@ fn precedes(contact: &SweepContact, other: &SweepContact) -> bool {
             distance, material, ..
         } = sweep.contact;
         let first = (sweep.time, distance, material.key);
-        (first, material.coordinates, sweep.away.to_array())
+        (
+            first,
+            material.coordinates,
+            sweep.separation_normal.to_array(),
+        )
     };
     key(contact) < key(other)
 }

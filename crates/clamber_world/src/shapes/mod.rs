@@ -1,4 +1,4 @@
-//! What obstacles share whose engine has parry's shapes: rapier's and avian's answer alike.
+//! Queries of parry's shapes, shared by the obstacles of rapier and avian, which so give the same answers.
 //!
 //! A shape is a set of parts: triangles, met from both sides by the solver of skinned surfaces, and solid convex
 //! shapes. Of parry only the shapes themselves are asked, their trees and their support points; distances, ways out

@@ -7,7 +7,7 @@ use super::{RigidPose, Tick};
 /// Share of coordinates by which a box is off in f32, four times over.
 const LOOSE: f32 = 1e-6;
 
-/// A body that moved over a tick, and a box that holds it all the time: an engine's own boxes may be of its pose now.
+/// A body that moved over a tick, with a box around its whole path: an engine's own box may hold its current pose only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moved {
     /// Where it was and is.

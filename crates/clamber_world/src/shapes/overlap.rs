@@ -22,7 +22,8 @@ pub struct ShapeContact {
 }
 
 impl ShapeContact {
-    /// On the body that `key` names, which stands in a space whose origin is there in the world.
+    /// The contact in world space, on the body that `key` names: `pose` places it in a space whose origin is at
+    /// `origin`. It carries the default tag; the caller sets it.
     pub fn in_world(&self, pose: &RigidPose, origin: DVec3, key: u64) -> Contact {
         Contact {
             point: pose.transform(self.point) + origin,
@@ -85,7 +86,7 @@ fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
     let nearest = still.nearest_of_triangle(corners.map(|corner| corner.as_dvec3()))?;
     Some(ShapeContact {
         point: nearest.point,
-        normal: nearest.normal.unwrap_or(nearest.away),
+        normal: nearest.normal.unwrap_or(nearest.separation_normal),
         distance: nearest.distance,
     })
 }

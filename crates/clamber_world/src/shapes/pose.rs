@@ -57,7 +57,8 @@ impl RigidPose {
     }
 
     /// How a point of the body moves that was placed by `before` a tick of `dt` seconds ago, and by `self` now.
-    /// `origin` is where the engine's own stands in the world. `None` unless `dt` is positive and the pose finite.
+    /// `origin` is where the engine's own stands in the world. `None` unless `dt` is positive and the point's position
+    /// now is finite; `before` is not checked.
     pub fn motion_since(
         &self,
         before: &Self,

@@ -31,7 +31,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Of what comes within `distance` of the capsule's segment.
+    /// The box around everything within `distance` of the capsule's segment.
     pub fn new(path: &MovingCapsule, distance: f64) -> Self {
         let boxes = [path.start, path.end].map(|[a, b]| {
             let (low, high) = (a.min(b), a.max(b));
@@ -45,8 +45,8 @@ impl Reach {
         }
     }
 
-    /// Of what comes within `radius` of a segment that stands still; infinite for all. `None` if an end is not finite
-    /// or beyond 2^100, or the radius NaN or negative.
+    /// The box around everything within `radius` of a segment that stands still. The radius may be infinite. `None` if
+    /// an end is not finite or beyond 2^100, or the radius NaN or negative.
     pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
         let usable = is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0;
         let path = MovingCapsule {

@@ -30,15 +30,13 @@ pub struct ShapeSweep {
 pub struct ShapeTouch {
     /// Share of the way, 0..=1.
     pub time: f64,
-    /// Where the shape is touched, as a point of the shape at rest; and how it is then: normal and distance at that
-    /// time, in the shape's own space.
+    /// The contact point on the shape at rest, with the normal and distance at that time. In the shape's own space.
     pub contact: ShapeContact,
     /// Unit vector from there towards the capsule's segment; the way out where that lies inside of a solid.
-    pub away: DVec3,
+    pub separation_normal: DVec3,
     /// They overlap at the start; the time is 0.
     pub started_inside: bool,
-    /// Neither contact nor its absence could be shown, for rounding or within the steps allowed: no contact before
-    /// the time, but the distance may be larger than promised.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
@@ -47,7 +45,10 @@ impl ShapeTouch {
     /// met does not matter.
     fn precedes(&self, other: &Self) -> bool {
         let key = |touch: &Self| {
-            let place = (touch.contact.point.to_array(), touch.away.to_array());
+            let place = (
+                touch.contact.point.to_array(),
+                touch.separation_normal.to_array(),
+            );
             ((touch.time, touch.contact.distance), place)
         };
         key(self) < key(other)
@@ -56,8 +57,9 @@ impl ShapeTouch {
 
 /// The first contact of a capsule with a shape, up to the time `limit`.
 ///
-/// Never later than the true one, at a distance of at most the capsule's radius and 0.1 mm. Triangles are met from both
-/// sides. `None` if anything is not finite or beyond 2^100, or the radius negative.
+/// Never later than the true one, at a distance of at most the radius plus [`WorldCapsule::sweep_tolerance`], unless it
+/// is [undecided](ShapeTouch::undecided). Triangles are met from both sides. `None` if anything is not finite or beyond
+/// 2^100, or the radius negative.
 pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
     search(shape, sweep, limit, None)
 }
@@ -162,7 +164,7 @@ impl ShapeSweep {
                         normal: pose.rotation * touch.contact.normal,
                         ..touch.contact
                     },
-                    away: pose.rotation * touch.away,
+                    separation_normal: pose.rotation * touch.separation_normal,
                     ..*touch
                 };
                 // Its parts have been asked about one by one.
@@ -195,10 +197,10 @@ impl ShapeSweep {
             time: touch.time,
             contact: ShapeContact {
                 point: a * weights.x + b * weights.y + c * weights.z,
-                normal: touch.normal.unwrap_or(touch.away),
+                normal: touch.normal.unwrap_or(touch.separation_normal),
                 distance: touch.distance,
             },
-            away: touch.away,
+            separation_normal: touch.separation_normal,
             started_inside: touch.started_inside,
             undecided: touch.undecided,
         })
@@ -234,7 +236,7 @@ impl ShapeSweep {
         Some(ShapeTouch {
             time,
             contact,
-            away: contact.normal,
+            separation_normal: contact.normal,
             started_inside: time == 0.0 && contact.distance <= self.path.radius,
             undecided: touch.undecided,
         })
@@ -259,7 +261,7 @@ impl ShapeSweep {
         Some(ShapeTouch {
             time,
             contact,
-            away: normal,
+            separation_normal: normal,
             started_inside: time == 0.0 && contact.distance <= path.radius,
             undecided: false,
         })

@@ -38,10 +38,12 @@ impl Tick {
         }
     }
 
-    /// A touch of such a sweep in the space of the poses, on the body that `key` names.
+    /// A touch of such a sweep in the space of the poses, on the body that `key` names. It carries the default tag; the
+    /// caller sets it.
     pub fn contact(&self, touch: &ShapeTouch, key: u64) -> SweepContact {
-        let away = (self.now.rotation * touch.away).normalize_or(DVec3::Y);
-        let normal = (self.now.rotation * touch.contact.normal).normalize_or(away);
+        let separation_normal =
+            (self.now.rotation * touch.separation_normal).normalize_or(DVec3::Y);
+        let normal = (self.now.rotation * touch.contact.normal).normalize_or(separation_normal);
         let at_rest = touch.contact.point;
         let now = self.now.transform(at_rest);
         let point = match &self.before {
@@ -60,7 +62,7 @@ impl Tick {
                 },
                 tag: SurfaceTag::default(),
             },
-            away,
+            separation_normal,
             started_inside: touch.started_inside,
         }
     }

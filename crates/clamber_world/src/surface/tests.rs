@@ -44,19 +44,21 @@ fn queries_are_in_metres_of_the_world_wherever_the_creature_stands() {
     let (surface, world_from_model) = placed();
     let center = world_from_model.translation;
     let p = center + DVec3::new(1.0, 2.0, 4.0);
-    let closest = Obstacle::closest_point(&surface, p, 5.0).unwrap();
+    let closest = surface.closest_point(p, 5.0).unwrap();
     assert!((closest.distance - 4.0).abs() < 1e-5, "{closest:?}");
     assert!((closest.normal - DVec3::Z).length() < 1e-6, "{closest:?}");
-    assert!((closest.away(p) - DVec3::Z).length() < 1e-6);
-    assert_eq!(Obstacle::closest_point(&surface, p, 3.9), None);
+    assert!((closest.separation_normal(p) - DVec3::Z).length() < 1e-6);
+    assert_eq!(surface.closest_point(p, 3.9), None);
 
-    let hit = Obstacle::cast_ray(&surface, p, DVec3::new(0.0, 0.0, -7.0), 100.0).unwrap();
+    let hit = surface
+        .cast_ray(p, DVec3::new(0.0, 0.0, -7.0), 100.0)
+        .unwrap();
     assert!((hit.distance - 4.0).abs() < 1e-5);
     assert!((hit.point - (p - DVec3::Z * 4.0)).length() < 1e-5);
-    assert_eq!(Obstacle::cast_ray(&surface, p, DVec3::Z, 100.0), None);
+    assert_eq!(surface.cast_ray(p, DVec3::Z, 100.0), None);
 
     let mut contacts = vec![closest];
-    Obstacle::overlap_sphere(&surface, p, 5.0, &mut contacts);
+    surface.overlap_sphere(p, 5.0, &mut contacts);
     assert_eq!(contacts.len(), 3, "appends, and finds both triangles");
     assert!(contacts[1].material.key < contacts[2].material.key);
 }
@@ -65,7 +67,7 @@ fn queries_are_in_metres_of_the_world_wherever_the_creature_stands() {
 fn a_material_point_moves_with_root_and_skin_in_world_units() {
     let (mut surface, before) = placed();
     let p = before.translation + DVec3::new(1.0, 2.0, 0.1);
-    let material = Obstacle::closest_point(&surface, p, 5.0).unwrap().material;
+    let material = surface.closest_point(p, 5.0).unwrap().material;
     let mut lifted = Affine::IDENTITY;
     lifted.rows[1][3] = 0.02;
     let turned = Similarity {
@@ -76,7 +78,7 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
     let dt = 0.1;
     let palette = Palette::from_matrices([lifted]);
     surface.advance(&palette, turned).unwrap();
-    let motion = Obstacle::motion(&surface, &material, dt).unwrap();
+    let motion = surface.motion(&material, dt).unwrap();
 
     let rest = before.inverse_transform_point(p - DVec3::Z * 0.1);
     let expected = turned.transform_point(rest + DVec3::Y * 0.02);
@@ -94,7 +96,7 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
 #[test]
 fn material_that_has_collapsed_has_no_frame() {
     let (mut surface, world_from_model) = placed();
-    let material = Obstacle::closest_point(&surface, world_from_model.translation, 1.0);
+    let material = surface.closest_point(world_from_model.translation, 1.0);
     let material = material.unwrap().material;
     let mut flat = Affine::IDENTITY;
     flat.rows[0][0] = 0.0;
@@ -102,7 +104,7 @@ fn material_that_has_collapsed_has_no_frame() {
         surface
             .advance(&Palette::from_matrices([flat]), world_from_model)
             .unwrap();
-        let motion = Obstacle::motion(&surface, &material, 0.1).unwrap();
+        let motion = surface.motion(&material, 0.1).unwrap();
         assert_eq!(motion.frame, None);
         assert!(motion.velocity.is_finite());
     }
@@ -114,27 +116,25 @@ fn what_is_not_finite_or_gone_finds_nothing() {
     let center = world_from_model.translation;
     let mut contacts = Vec::new();
     for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY)] {
-        assert_eq!(Obstacle::closest_point(&surface, bad, 1.0), None);
-        assert_eq!(Obstacle::cast_ray(&surface, bad, DVec3::X, 1.0), None);
-        assert_eq!(Obstacle::cast_ray(&surface, center, bad, 1.0), None);
-        Obstacle::overlap_sphere(&surface, bad, 1.0, &mut contacts);
+        assert_eq!(surface.closest_point(bad, 1.0), None);
+        assert_eq!(surface.cast_ray(bad, DVec3::X, 1.0), None);
+        assert_eq!(surface.cast_ray(center, bad, 1.0), None);
+        surface.overlap_sphere(bad, 1.0, &mut contacts);
     }
-    assert_eq!(Obstacle::cast_ray(&surface, center, DVec3::ZERO, 1.0), None);
-    Obstacle::overlap_sphere(&surface, center, f64::NAN, &mut contacts);
-    Obstacle::overlap_sphere(&surface, center, -1.0, &mut contacts);
+    assert_eq!(surface.cast_ray(center, DVec3::ZERO, 1.0), None);
+    surface.overlap_sphere(center, f64::NAN, &mut contacts);
+    surface.overlap_sphere(center, -1.0, &mut contacts);
     assert!(contacts.is_empty());
 
-    let material = Obstacle::closest_point(&surface, center, 1.0)
-        .unwrap()
-        .material;
-    assert!(Obstacle::motion(&surface, &material, 0.0).is_none());
+    let material = surface.closest_point(center, 1.0).unwrap().material;
+    assert!(surface.motion(&material, 0.0).is_none());
     let triangle = TriangleId(material.key as u32);
     surface.disable_triangle(triangle).unwrap();
-    assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
+    assert!(surface.motion(&material, 0.1).is_none());
     surface.enable_triangle(triangle).unwrap();
-    assert!(Obstacle::motion(&surface, &material, 0.1).is_some());
+    assert!(surface.motion(&material, 0.1).is_some());
     surface.edit(|edit| edit.remove_triangle(triangle)).unwrap();
-    assert!(Obstacle::motion(&surface, &material, 0.1).is_none());
+    assert!(surface.motion(&material, 0.1).is_none());
 }
 
 #[test]
@@ -173,7 +173,10 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     let met =
         Obstacle::cast_capsule(&surface, &ball, [DVec3::Z * -6.0; 2], TargetMotion::Still).unwrap();
     assert!((met.time - 0.5).abs() < 2e-5, "{met:?}");
-    assert!((met.away - DVec3::Z).length() < 1e-6, "{met:?}");
+    assert!(
+        (met.separation_normal - DVec3::Z).length() < 1e-6,
+        "{met:?}"
+    );
     assert!((met.contact.normal - DVec3::Z).length() < 1e-6, "{met:?}");
     assert!(
         (met.contact.point - at(1.0, 0.0)).length() < 1e-5,
@@ -192,7 +195,7 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
         radius: 0.5,
     };
     let mut contacts = Vec::new();
-    Obstacle::overlap_capsule(&surface, &rod.with_radius(2.01), &mut contacts);
+    surface.overlap_capsule(&rod.with_radius(2.01), &mut contacts);
     assert!(!contacts.is_empty());
     for contact in &contacts {
         let measured = (rod.nearest_on_axis(contact.point) - contact.point).length();
@@ -250,7 +253,7 @@ fn capsules_that_are_not_finite_meet_nothing() {
                 Obstacle::cast_capsule(&surface, &capsule, [DVec3::X; 2], TargetMotion::Moving),
                 None
             );
-            Obstacle::overlap_capsule(&surface, &capsule, &mut contacts);
+            surface.overlap_capsule(&capsule, &mut contacts);
         }
         let by = DVec3::X * bad;
         assert_eq!(
@@ -274,6 +277,6 @@ fn capsules_that_are_not_finite_meet_nothing() {
         Obstacle::cast_capsule(&surface, &negative, [DVec3::X; 2], TargetMotion::Still),
         None
     );
-    Obstacle::overlap_capsule(&surface, &negative, &mut contacts);
+    surface.overlap_capsule(&negative, &mut contacts);
     assert!(contacts.is_empty(), "{contacts:?}");
 }

@@ -48,7 +48,7 @@ impl Broken {
         SweepContact {
             time: f64::NAN,
             contact: self.nonsense(),
-            away: DVec3::NAN,
+            separation_normal: DVec3::NAN,
             started_inside: false,
         }
     }

@@ -54,7 +54,7 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
         );
         // It slides along its side, never off it and never into the other.
         contacts.clear();
-        Obstacle::overlap_sphere(&folded, state.position, 0.5, &mut contacts);
+        folded.overlap_sphere(state.position, 0.5, &mut contacts);
         let distances = contacts.iter().map(|contact| contact.distance);
         let nearest = distances.fold(f64::INFINITY, f64::min);
         println!(

@@ -91,7 +91,7 @@ impl Own {
     fn contact(&self, triangle: usize, touch: &TriangleTouch) -> Contact {
         Contact {
             point: touch.point,
-            normal: touch.normal.unwrap_or(touch.away),
+            normal: touch.normal.unwrap_or(touch.separation_normal),
             distance: touch.distance,
             material: MaterialPoint {
                 key: triangle as u64,
@@ -121,7 +121,7 @@ impl Own {
                 first = Some(SweepContact {
                     time: touch.time,
                     contact: self.contact(triangle, &touch),
-                    away: touch.away,
+                    separation_normal: touch.separation_normal,
                     started_inside: touch.started_inside,
                 });
             }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
@@ -102,7 +101,7 @@ pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
 pub(crate) fn signed_distance(mesh: &ColliderMesh, palette: &Palette, point: DVec3) -> f64 {
     let mut positions = Vec::new();
     // One joint, as the mesh has.
-    let _ = skin_into(mesh, palette.matrices(), SimdLevel::best(), &mut positions);
+    let _ = skin_into(mesh, palette.matrices(), &mut positions);
     let triangles = mesh.triangles().iter();
     let triangles = triangles.map(|t| t.map(|v| positions[v.index()].as_dvec3()));
     let distance = Truth(triangles.collect()).distance(point);

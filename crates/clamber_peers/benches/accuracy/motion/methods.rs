@@ -18,7 +18,7 @@ use super::limb::Course;
 const ROUNDS: usize = 8;
 
 /// How far from touching a sweep ends, metres; what it met is then left by as much.
-const TOLERANCE: f32 = 1e-4;
+const TOLERANCE: f64 = 1e-4;
 
 const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);
 
@@ -173,7 +173,7 @@ impl Body {
         let Some(anchor) = &self.anchor else {
             return Ok(DVec3::ZERO);
         };
-        let motion = self.surface.motion(anchor, dt)?;
+        let motion = self.surface.in_model().motion(anchor, dt)?;
         let (now, before) = (
             motion.position.as_dvec3(),
             motion.previous_position.as_dvec3(),
@@ -194,7 +194,8 @@ impl Body {
         self.surface
             .overlap_sphere(self.center, self.radius, &mut self.contacts);
         let contacts = self.contacts.iter();
-        let contacts = contacts.map(|contact| (contact.away(self.center), contact.distance));
+        let contacts =
+            contacts.map(|contact| (contact.separation_normal(self.center), contact.distance));
         self.center += mean_push_out(contacts, self.radius);
     }
 
@@ -208,7 +209,7 @@ impl Body {
         let mut planes = Vec::with_capacity(self.hits.len());
         for hit in &self.hits {
             let anchor = self.surface.anchor_at(hit)?;
-            let motion = self.surface.motion(&anchor, 1.0)?;
+            let motion = self.surface.in_model().motion(&anchor, 1.0)?;
             let away = (self.center - hit.point.as_dvec3()).normalize_or(hit.normal.as_dvec3());
             // From behind the skin there is no way out ahead.
             if away.dot(hit.normal.as_dvec3()) > 0.0 {
@@ -258,14 +259,14 @@ impl Body {
                 break;
             };
             let anchor = self.surface.anchor_at(&hit)?;
-            let way: Vec3 = self.surface.motion(&anchor, 1.0)?.velocity;
+            let way: Vec3 = self.surface.in_model().motion(&anchor, 1.0)?.velocity;
             let normal = hit.normal.as_dvec3();
             let closing = (way.as_dvec3() - motion).dot(normal);
             if closing <= 0.0 {
                 break;
             }
             // From the contact on it goes with the skin; spread over the tick, so that it is linear.
-            motion += normal * (closing * (1.0 - hit.time) + f64::from(TOLERANCE));
+            motion += normal * (closing * (1.0 - hit.time) + TOLERANCE);
         }
         Ok(motion)
     }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use clamber_scenes::ball::ball;
 use clamber_scenes::giant::giant;
-use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette, Playback};
@@ -79,7 +78,7 @@ impl Set {
         count: usize,
     ) -> Result<Self, Box<dyn Error>> {
         let mut positions = Vec::new();
-        skin_into(mesh, palette.matrices(), SimdLevel::best(), &mut positions)?;
+        skin_into(mesh, palette.matrices(), &mut positions)?;
         let corners = mesh.triangles().iter();
         let truth = corners.map(|t| t.map(|v| positions[v.index()].as_dvec3() + place));
         let truth = Truth(truth.collect());

@@ -110,7 +110,11 @@ fn a_contact_off_its_material_point_is_drift() {
 fn another_material_point_without_input_is_drift() {
     stood(|scene, state| {
         let elsewhere = state.position + normal(&state).any_orthonormal_vector() * 0.5;
-        let nearest = Obstacle::closest_point(scene.battle.surface(), elsewhere, 5.0).unwrap();
+        let nearest = scene
+            .battle
+            .surface()
+            .closest_point(elsewhere, 5.0)
+            .unwrap();
         let mut support = state.support.unwrap();
         (support.attachment.point, support.attachment.contact) = (nearest.material, nearest.point);
         let drift = scene.look(ClimberState {
@@ -149,8 +153,8 @@ fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
         let surface = scene.battle.surface();
         let radius = scene.battle.climber().config().body.radius;
         let aside = state.position + normal(&state).any_orthonormal_vector() * 0.3;
-        let under = Obstacle::closest_point(surface, aside, 5.0).unwrap();
-        let place = under.point + under.away(aside) * radius;
+        let under = surface.closest_point(aside, 5.0).unwrap();
+        let place = under.point + under.separation_normal(aside) * radius;
         scene.look(moved(state, place - state.position));
         let watch = &scene.watch;
         assert!(watch.stands_off > MAX_STANDS_OFF, "{}", watch.stands_off);

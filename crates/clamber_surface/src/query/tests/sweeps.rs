@@ -164,8 +164,8 @@ fn a_hit_tells_when_where_and_which_way() {
         hit.point.distance(Vec3::new(1.5, 0.5, 0.0)) < 1e-3,
         "{hit:?}"
     );
-    assert!(hit.normal.distance(Vec3::Y) < 1e-3, "{hit:?}");
-    assert!(hit.surface_normal.dot(Vec3::Y) > 0.99, "{hit:?}");
+    assert!(hit.separation_normal.distance(Vec3::Y) < 1e-3, "{hit:?}");
+    assert!(hit.normal.dot(Vec3::Y) > 0.99, "{hit:?}");
     let gap = hit.distance - 0.25;
     assert!((0.0..=0.25 * 2.5e-4).contains(&gap), "{hit:?}");
     assert!(!hit.started_inside && !hit.undecided, "{hit:?}");
@@ -178,7 +178,7 @@ fn a_hit_tells_when_where_and_which_way() {
         .cast_capsule(&inside, [Vec3::Y; 2], &CastOptions::STILL)
         .unwrap();
     assert!(
-        hit.normal.y < -0.99 && hit.surface_normal.y > 0.99,
+        hit.separation_normal.y < -0.99 && hit.normal.y > 0.99,
         "{hit:?}"
     );
     // What does not move and touches nothing meets nothing.
@@ -205,7 +205,7 @@ fn an_overlap_at_the_start_is_a_contact_at_once_with_the_nearest_triangle() {
             .unwrap();
         assert!(hit.started_inside, "{hit:?}");
         assert_eq!((hit.time, hit.triangle), (0.0, nearest.triangle), "{hit:?}");
-        assert!(hit.normal.y > 0.99, "{hit:?}");
+        assert!(hit.separation_normal.y > 0.99, "{hit:?}");
     }
     // The core itself crosses the skin: the skin's own normal.
     let stick = capsule(Vec3::new(1.5, -0.1, 0.0), Vec3::new(1.5, 1.0, 0.0), 0.01);
@@ -214,7 +214,7 @@ fn an_overlap_at_the_start_is_a_contact_at_once_with_the_nearest_triangle() {
         .cast_capsule(&stick, [Vec3::X; 2], &CastOptions::STILL)
         .unwrap();
     assert!(hit.started_inside && hit.distance == 0.0, "{hit:?}");
-    assert!(hit.normal.y > 0.99, "{hit:?}");
+    assert!(hit.separation_normal.y > 0.99, "{hit:?}");
 }
 
 #[test]
@@ -289,7 +289,7 @@ fn what_is_no_number_finds_nothing() {
             space.cast_capsule_all(&ball, displacements, &CastOptions::MOVING, &mut hits);
             assert_eq!(hits, []);
         }
-        let fine = CastOptions::MOVING.with_tolerance(bad);
+        let fine = CastOptions::MOVING.with_tolerance(bad.into());
         assert_eq!(cast([Vec3::X; 2], fine), None);
     }
     assert_eq!(
@@ -348,6 +348,6 @@ fn a_mirrored_tube_has_its_outside_outside() {
         .in_model()
         .cast_capsule(&sphere, [Vec3::NEG_Y * 4.0; 2], &CastOptions::STILL)
         .unwrap();
-    assert!(hit.surface_normal.y > 0.99, "{hit:?}");
+    assert!(hit.normal.y > 0.99, "{hit:?}");
     assert!(hit.triangle < TriangleId(surface.mesh().triangles().len() as u32));
 }

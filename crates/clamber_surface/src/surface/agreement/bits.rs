@@ -99,7 +99,7 @@ impl Bits for SweepHit {
         self.triangle.append_to(bits);
         self.barycentric.append_to(bits);
         [self.time, self.distance].append_to(bits);
-        [self.point, self.normal, self.surface_normal].append_to(bits);
+        [self.point, self.separation_normal, self.normal].append_to(bits);
         self.part.append_to(bits);
         self.tag.append_to(bits);
         [self.started_inside, self.undecided].append_to(bits);

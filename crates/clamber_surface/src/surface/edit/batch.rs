@@ -32,8 +32,8 @@ impl<'a> SurfaceEdit<'a> {
     /// queries do not see it. A tick ago it stood where the palette of that tick would have had it.
     ///
     /// # Errors
-    /// [`SurfaceError::Mesh`] for a position, a joint or weights that a build would refuse, and
-    /// [`SurfaceError::Palette`] if a matrix of now or of a tick ago could move something so far from
+    /// [`SurfaceError::Mesh`] for a position, a joint or weights that a build would refuse, and for too many vertices
+    /// or influences ([`MeshError::TooLarge`](crate::mesh::MeshError::TooLarge)); [`SurfaceError::Palette`] if a matrix of now or of a tick ago could move something so far from
     /// the mesh's origin beyond 2^100.
     pub fn add_vertex(
         &mut self,
@@ -55,7 +55,8 @@ impl<'a> SurfaceEdit<'a> {
     ///
     /// # Errors
     /// [`SurfaceError::Vertex`] if a vertex does not exist or was removed, [`SurfaceError::Mesh`] if the
-    /// triangle has no area at rest.
+    /// triangle has no area at rest, or for too many triangles
+    /// ([`MeshError::TooLarge`](crate::mesh::MeshError::TooLarge)).
     pub fn add_triangle(
         &mut self,
         corners: [VertexId; 3],

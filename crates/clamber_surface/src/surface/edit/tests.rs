@@ -115,25 +115,25 @@ fn anchors_on_removed_triangles_report_it() {
     let corners = surface.mesh().triangles()[5];
     let weights = [0.2, 0.3, 0.5];
     let [gone, kept] = [5, 40].map(|t| surface.anchor(TriangleId(t), weights).unwrap());
-    let before = surface.motion(&kept, 0.1).unwrap();
-    assert!(surface.motion(&gone, 0.1).is_ok());
+    let before = surface.in_model().motion(&kept, 0.1).unwrap();
+    assert!(surface.in_model().motion(&gone, 0.1).is_ok());
     surface
         .edit(|edit| edit.remove_triangle(TriangleId(5)))
         .unwrap();
     let refused = Err(SurfaceError::Triangle(TriangleId(5)));
-    assert_eq!(surface.motion(&gone, 0.1), refused);
-    assert_eq!(surface.motion(&kept, 0.1), Ok(before));
+    assert_eq!(surface.in_model().motion(&gone, 0.1), refused);
+    assert_eq!(surface.in_model().motion(&kept, 0.1), Ok(before));
     // The same triangle again is another one.
     let again = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
     assert_ne!(again, Ok(TriangleId(5)));
-    assert_eq!(surface.motion(&gone, 0.1), refused);
+    assert_eq!(surface.in_model().motion(&gone, 0.1), refused);
     let anew = surface.anchor(again.unwrap(), weights).unwrap();
-    assert!(surface.motion(&anew, 0.1).is_ok());
+    assert!(surface.in_model().motion(&anew, 0.1).is_ok());
     // Removed with a vertex.
     let corner = corners[0];
     surface.edit(|edit| edit.remove_vertex(corner)).unwrap();
     let refused = Err(SurfaceError::Triangle(anew.triangle));
-    assert_eq!(surface.motion(&anew, 0.1), refused);
+    assert_eq!(surface.in_model().motion(&anew, 0.1), refused);
     assert_eq!(surface.in_model().position(corner), None);
     assert_eq!(surface.in_model().previous_position(corner), None);
 }

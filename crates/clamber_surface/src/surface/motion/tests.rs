@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::{Affine, Ray, Similarity, rotation_from_axis_angle};
 use crate::rig::Palette;
+use crate::surface::SkinnedSurface;
 use crate::surface::deformation::frame_of;
 use crate::testing::{bend, rigid, tube};
 
@@ -35,7 +36,7 @@ fn a_rigid_turn_is_finite_displacement_and_exact_rotation() {
     surface
         .advance(&rigid(JOINTS, turn, DVec3::X), Similarity::IDENTITY)
         .unwrap();
-    let motion = surface.motion(&anchor, dt).unwrap();
+    let motion = surface.in_model().motion(&anchor, dt).unwrap();
     let expected = turn * widen(motion.previous_position) + DVec3::X;
     assert!((widen(motion.position) - expected).length() < 1e-6);
     let velocity = (expected - widen(motion.previous_position)) / dt;
@@ -56,9 +57,9 @@ fn a_moving_root_moves_the_point_in_the_current_model_frame() {
         translation: DVec3::new(0.0, 0.5, 0.0),
     };
     let palette = bend(JOINTS, DVec3::Y, 0.0);
-    let before = surface.motion(&anchor, 1.0).unwrap().position;
+    let before = surface.in_model().motion(&anchor, 1.0).unwrap().position;
     surface.advance(&palette, turned).unwrap();
-    let motion = surface.motion(&anchor, 1.0).unwrap();
+    let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     assert_eq!(motion.position, before);
     let previous_in_world = turned.transform_point_f32(motion.previous_position);
     assert!((previous_in_world - widen(before)).length() < 1e-6);
@@ -73,7 +74,7 @@ fn stretches_and_area_of_pure_scale() {
     surface
         .advance(&scaled(2.0, 1.0, 1.5), Similarity::IDENTITY)
         .unwrap();
-    let motion = surface.motion(&anchor, 1.0).unwrap();
+    let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     // The top of the tube lies nearly in the XZ plane.
     assert!((motion.stretches[0] - 2.0).abs() < 0.02, "{motion:?}");
     assert!((motion.stretches[1] - 1.5).abs() < 0.05, "{motion:?}");
@@ -110,15 +111,18 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
     surface
         .advance(&rigid(JOINTS, turn, DVec3::ZERO), Similarity::IDENTITY)
         .unwrap();
-    let motion = surface.motion(&anchor, 0.1).unwrap();
+    let motion = surface.in_model().motion(&anchor, 0.1).unwrap();
     surface
         .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
         .unwrap();
     // Even an anchor that was not kept fresh has the frame of a tick ago.
-    assert_eq!(surface.motion(&anchor, 0.1).unwrap().frame, motion.frame);
+    assert_eq!(
+        surface.in_model().motion(&anchor, 0.1).unwrap().frame,
+        motion.frame
+    );
     anchor.frame = motion.frame;
     for _ in 0..2 {
-        let held = surface.motion(&anchor, 0.1).unwrap();
+        let held = surface.in_model().motion(&anchor, 0.1).unwrap();
         assert_eq!(held.frame, motion.frame);
         assert!((held.normal - motion.normal).length() < 1e-3, "{held:?}");
         assert!(held.velocity.is_finite() && held.angular_velocity.is_finite());
@@ -167,7 +171,7 @@ fn an_anchor_follows_bending_skin_at_fixed_corner_weights() {
     for step in 0..100 {
         let palette = bend(JOINTS, DVec3::Z, f64::from(step) * 0.01);
         surface.advance(&palette, Similarity::IDENTITY).unwrap();
-        let motion = surface.motion(&anchor, 1.0 / 60.0).unwrap();
+        let motion = surface.in_model().motion(&anchor, 1.0 / 60.0).unwrap();
         let corners = surface.instance.corners(anchor.triangle).map(widen);
         let by_hand: DVec3 = (0..3)
             .map(|k| corners[k] * f64::from(anchor.barycentric[k]))
@@ -189,26 +193,26 @@ fn bad_anchors_and_ticks_are_refused() {
     let surface = surface();
     let good = anchor(&surface);
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(surface.motion(&good, dt).is_err(), "{dt}");
+        assert!(surface.in_model().motion(&good, dt).is_err(), "{dt}");
     }
     let mut moved = surface.clone();
     moved
         .advance(&bend(JOINTS, DVec3::Z, 0.1), Similarity::IDENTITY)
         .unwrap();
-    assert!(moved.motion(&good, 1e-300).is_err());
+    assert!(moved.in_model().motion(&good, 1e-300).is_err());
     for barycentric in [[0.5, 0.6, 0.1], [f32::NAN, 0.5, 0.5], [-0.5, 1.0, 0.5]] {
         assert!(surface.anchor(good.triangle, barycentric).is_err());
         let bad = Anchor {
             barycentric,
             ..good
         };
-        assert!(surface.motion(&bad, 1.0).is_err());
+        assert!(surface.in_model().motion(&bad, 1.0).is_err());
     }
     let nowhere = Anchor {
         triangle: crate::mesh::TriangleId(1 << 30),
         ..good
     };
-    assert!(surface.motion(&nowhere, 1.0).is_err());
+    assert!(surface.in_model().motion(&nowhere, 1.0).is_err());
 }
 
 #[test]
@@ -235,7 +239,7 @@ fn ratios_beyond_f32_are_its_largest_number() {
             .advance(&scaled(size, size, size), Similarity::IDENTITY)
             .unwrap();
     }
-    let motion = surface.motion(&anchor, 1.0).unwrap();
+    let motion = surface.in_model().motion(&anchor, 1.0).unwrap();
     assert_eq!(motion.area_ratio, f32::MAX);
     assert_eq!(motion.stretches, [f32::MAX; 2]);
 }

@@ -76,14 +76,14 @@ fn convex_shapes_are_solid() {
     let contact = terrain.closest_point(inside, 1.0).unwrap();
     assert!((contact.distance + 0.2).abs() < 1e-6, "{contact:?}");
     assert!(
-        (contact.away(inside) - DVec3::X).length() < 1e-6,
+        (contact.separation_normal(inside) - DVec3::X).length() < 1e-6,
         "{contact:?}"
     );
     let outside = DVec3::new(0.0, 3.0, 0.0);
     let contact = terrain.closest_point(outside, 10.0).unwrap();
     assert!((contact.distance - 2.0).abs() < 1e-6, "{contact:?}");
     assert!(
-        (contact.away(outside) - DVec3::Y).length() < 1e-6,
+        (contact.separation_normal(outside) - DVec3::Y).length() < 1e-6,
         "{contact:?}"
     );
 }

@@ -139,7 +139,7 @@ fn overlaps_are_the_same() {
             for case in 0..20 {
                 let capsule = capsule(&mut rng, origin);
                 let (mut of_skin, mut of_body) = (Vec::new(), Vec::new());
-                Obstacle::overlap_capsule(&both.surface, &capsule, &mut of_skin);
+                both.surface.overlap_capsule(&capsule, &mut of_skin);
                 both.terrain().overlap_capsule(&capsule, &mut of_body);
                 // A body's contacts are sorted by place, skin's by triangle.
                 for contacts in [&mut of_skin, &mut of_body] {
@@ -188,12 +188,19 @@ impl Tally {
                 apart <= 1e-4 + 1e-5,
                 "{input:?}: {met:?} is {apart} from touching"
             );
-            assert!((met.away.length() - 1.0).abs() < 1e-6, "{input:?}: {met:?}");
+            assert!(
+                (met.separation_normal.length() - 1.0).abs() < 1e-6,
+                "{input:?}: {met:?}"
+            );
             assert!((0.0..=1.0).contains(&met.time), "{input:?}: {met:?}");
             assert!(!met.started_inside || met.time == 0.0, "{input:?}: {met:?}");
         }
         // A gap that closes slowly takes long to close by the tolerance.
-        let slowness = |met: &SweepContact| (met.away.dot(way) / way.length()).abs().max(1e-9);
+        let slowness = |met: &SweepContact| {
+            (met.separation_normal.dot(way) / way.length())
+                .abs()
+                .max(1e-9)
+        };
         match (skin, body) {
             (Some(skin), Some(body)) => {
                 self.met += 1;
@@ -311,7 +318,7 @@ fn sweeps_of_what_turns_are_the_same() {
                         assert!(b.contact.distance <= reach, "{capsule:?} {by:?}: {b:?}");
                         let axis = capsule.with_ends_moved(by.map(|end| end * b.time));
                         let apart = axis.nearest_on_axis(b.contact.point) - b.contact.point;
-                        let seen = apart - b.away * b.contact.distance;
+                        let seen = apart - b.separation_normal * b.contact.distance;
                         assert!(seen.length() < 1e-6, "{capsule:?} {by:?}: {seen} {b:?}");
                     }
                     (None, None) => {}

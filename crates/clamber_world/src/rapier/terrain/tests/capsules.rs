@@ -86,7 +86,10 @@ fn falling_ball_meets_every_kind_of_shape() {
             .unwrap();
         assert_eq!(cast, swept, "{name}");
         assert!((cast.time - 0.375).abs() < 3e-5, "{name}: {cast:?}");
-        assert!((cast.away - DVec3::Y).length() < 1e-6, "{name}: {cast:?}");
+        assert!(
+            (cast.separation_normal - DVec3::Y).length() < 1e-6,
+            "{name}: {cast:?}"
+        );
         assert!(
             (cast.contact.distance - 0.5).abs() < 1e-4,
             "{name}: {cast:?}"
@@ -134,7 +137,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
         .cast_capsule(&at(-0.4), [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
     assert!((met.time - 0.5).abs() < 2e-4, "{met:?}");
-    assert!(!met.started_inside && (met.away - DVec3::X).length() < 1e-6);
+    assert!(!met.started_inside && (met.separation_normal - DVec3::X).length() < 1e-6);
     assert!((met.contact.point.x + 0.7).abs() < 1e-4, "{met:?}");
     let dt = 1.0 / 60.0;
     let motion = moving.terrain().motion(&met.contact.material, dt).unwrap();
@@ -207,7 +210,10 @@ fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
             .unwrap();
         let expected = (0.9 - radius - 0.0005) / 1.6667;
         assert!((met.time - expected).abs() < 1e-4, "{radius}: {met:?}");
-        assert!((met.away - DVec3::X).length() < 1e-6, "{radius}: {met:?}");
+        assert!(
+            (met.separation_normal - DVec3::X).length() < 1e-6,
+            "{radius}: {met:?}"
+        );
         assert_eq!(
             moving
                 .terrain()
@@ -275,7 +281,10 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
     // Where the box was, not where it is.
     assert!((met.contact.distance + 0.2).abs() < 1e-6, "{met:?}");
-    assert!((met.away - DVec3::Y).length() < 1e-9, "{met:?}");
+    assert!(
+        (met.separation_normal - DVec3::Y).length() < 1e-9,
+        "{met:?}"
+    );
     assert!((met.contact.point - DVec3::Y).length() < 1e-6, "{met:?}");
     let now = rod.moved(DVec3::X * 5.0);
     assert!(
@@ -393,7 +402,7 @@ fn the_order_in_which_bodies_were_made_does_not_matter() {
             contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
             // Handles differ, as bodies were made in another order.
             let shown = |contact: crate::Contact| (contact.point, contact.normal, contact.distance);
-            let sweep = |met: SweepContact| (met.time, shown(met.contact), met.away);
+            let sweep = |met: SweepContact| (met.time, shown(met.contact), met.separation_normal);
             let contacts: Vec<_> = contacts.into_iter().map(shown).collect();
             (swept.map(sweep), cast.map(sweep), contacts)
         });
