@@ -28,12 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &raft)];
         climber.step(&ClimberInput::default(), &obstacles, 1.0 / 60.0)?;
     }
-    let contact = climber
-        .state()
-        .support
-        .ok_or("fell off")?
-        .attachment
-        .contact;
+    let contact = climber.state().support.ok_or("fell off")?.attachment.point;
     println!("lifted to {:.3} m", contact.y);
     assert!((contact.y - (1.5 + contact.x / 4.0)).abs() < 1e-5);
     Ok(())

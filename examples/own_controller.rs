@@ -77,7 +77,7 @@ impl Controller {
         let followed = ground.follow(mover.obstacle(ground.obstacle)?, DT, SLACK)?;
         self.base = followed.motion.velocity;
         self.ground = Some(ground);
-        Some(ground.place())
+        Some(ground.position())
     }
 
     fn walk(&mut self, mover: &mut Mover<'_>, place: DVec3, walk: DVec3) {
@@ -182,7 +182,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // How far it went over the skin, by where the skin alone would have carried it.
         if let (Some(mut ground), Some(_)) = (ground, player.ground) {
             ground.follow(&skin, DT, SLACK).ok_or("the skin is gone")?;
-            let went = player.position.distance(ground.place());
+            let went = player.position.distance(ground.position());
             rode += 1;
             if walk != DVec3::ZERO {
                 walked += went;

@@ -152,7 +152,7 @@ impl Overlays {
         }
         let support = battle.climber().state().support;
         let support = support.filter(|support| support.attachment.obstacle == CREATURE);
-        if let Some(motion) = support.and_then(|support| motion(&support.attachment.point)) {
+        if let Some(motion) = support.and_then(|support| motion(&support.attachment.material)) {
             show(motion, 4.5, MAGENTA, MAGENTA);
         }
     }
@@ -161,7 +161,7 @@ impl Overlays {
         let radius = battle.climber().config().body.radius;
         self.sweep(over, &self.climber, radius, eye, WHITE);
         if let Some(support) = battle.climber().state().support {
-            dot(over, support.attachment.contact, eye, 1.0, VERMILION);
+            dot(over, support.attachment.point, eye, 1.0, VERMILION);
         }
         let world = battle.world();
         for (trail, rock) in self.rocks.iter().zip(battle.rocks().bodies()) {
@@ -381,13 +381,13 @@ fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     let Some(support) = support.filter(|support| support.attachment.obstacle == CREATURE) else {
         return;
     };
-    let triangle = support.attachment.point.triangle();
+    let triangle = support.attachment.material.triangle();
     if let Some(corners) = triangle.and_then(|triangle| posed(battle.surface(), triangle)) {
         over.triangle(corners, [0.1, 1.0, 0.3, 0.55]);
         let [a, b, c] = corners;
         over.path(&[a, b, c, a], 3.0, [0.1, 1.0, 0.3, 1.0]);
     }
-    over.sphere(support.attachment.contact, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
+    over.sphere(support.attachment.point, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
 }
 
 /// Of the largest ball in a rock.
@@ -446,7 +446,7 @@ fn state(battle: &Battle<'_>) -> String {
         None if state.support.is_none() => verb(state.mode).to_owned(),
         None => format!("{} the ground", verb(state.mode)),
         Some(support) => {
-            let triangle = support.attachment.point.triangle();
+            let triangle = support.attachment.material.triangle();
             let part = triangle.and_then(|triangle| mesh.part_of(triangle));
             let joint = part.map(|part| mesh.parts()[part.index()].joint.0 as usize);
             let joints = battle.creature().skeleton.joints();
@@ -465,7 +465,7 @@ fn state(battle: &Battle<'_>) -> String {
             )
         }
     };
-    let motion = on_skin.and_then(|support| surface.motion(&support.attachment.point, TICK));
+    let motion = on_skin.and_then(|support| surface.motion(&support.attachment.material, TICK));
     let speeds = match motion {
         Some(motion) => format!(
             "speed    {:5.2} m/s over the skin\nskin     {:5.2} m/s",

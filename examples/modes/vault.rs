@@ -83,7 +83,7 @@ impl CustomMode for Vault {
             return context.let_go();
         };
         let (body, base) = (context.body(), context.base_velocity());
-        let to_top = wall.attachment.contact - context.position();
+        let to_top = wall.attachment.point - context.position();
         if -to_top.dot(heading) > body.radius {
             return context.fall(base + heading * context.config().ground.walk_speed);
         }

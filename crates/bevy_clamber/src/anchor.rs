@@ -53,8 +53,8 @@ impl SurfaceAnchor {
             mesh: anchor.mesh,
             attachment: Attachment {
                 obstacle: Self::obstacle_of(entity),
-                point: MaterialPoint::on_triangle(anchor.triangle, anchor.barycentric),
-                contact: here.unwrap_or_default(),
+                material: MaterialPoint::on_triangle(anchor.triangle, anchor.barycentric),
+                point: here.unwrap_or_default(),
                 frame: skin,
                 offset: DVec3::ZERO,
             },
@@ -74,7 +74,7 @@ impl SurfaceAnchor {
     /// # Errors
     /// [`AnchorError::NoSkin`] if the attachment was changed to a point of something else.
     pub fn anchor(&self) -> Result<Anchor, AnchorError> {
-        let point = &self.attachment.point;
+        let point = &self.attachment.material;
         Ok(Anchor {
             mesh: self.mesh,
             triangle: point.triangle().ok_or(AnchorError::NoSkin)?,
@@ -90,14 +90,14 @@ impl SurfaceAnchor {
         let motion = surface.in_world().motion(&self.anchor().ok()?, 1.0).ok()?;
         let attachment = &mut self.attachment;
         attachment.obstacle = Self::obstacle_of(self.surface);
-        attachment.contact = motion.position;
+        attachment.point = motion.position;
         if !motion.collapsed {
             attachment.frame = motion.frame;
         }
         let rotation: DQuat = (attachment.frame * self.rotation.as_dquat()).normalize();
         Some(DAffine3::from_rotation_translation(
             rotation,
-            attachment.place(),
+            attachment.position(),
         ))
     }
 }
@@ -206,7 +206,7 @@ fn place(anchor: &mut SurfaceAnchor, surfaces: &Query<&PosedSurface>) -> Option<
     let surface = surfaces.get(anchor.surface).ok()?;
     surface
         .mesh()
-        .part_of(anchor.attachment.point.triangle()?)?;
+        .part_of(anchor.attachment.material.triangle()?)?;
     let Some(drawn) = surface.as_drawn() else {
         return Some(None);
     };

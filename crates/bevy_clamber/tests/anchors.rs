@@ -55,7 +55,7 @@ fn an_anchor_lies_on_the_skin_as_it_is_drawn() {
             for _ in 0..(3.0 * rate) as usize {
                 app.update();
                 let mut expected = glam::DVec3::ZERO;
-                for (corner, weight) in corners.iter().zip(anchor.attachment.point.coordinates) {
+                for (corner, weight) in corners.iter().zip(anchor.attachment.material.coordinates) {
                     expected += drawn(&app, &limb, vertex_of(*corner)) * weight;
                 }
                 let found = app

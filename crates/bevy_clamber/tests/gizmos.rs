@@ -45,7 +45,7 @@ fn scene() -> (App, Limb, Entity) {
     };
     let mut anchor = app.world_mut().run_system_once(stick).unwrap().unwrap();
     // The point at the tip that moves most.
-    anchor.attachment.point.key = u64::from(tip(&app, &limb).0);
+    anchor.attachment.material.key = u64::from(tip(&app, &limb).0);
     let arrow = app.world_mut().spawn(anchor).id();
     (app, limb, arrow)
 }

@@ -38,7 +38,7 @@ fn on_skin(app: &App, limb: &Limb, anchor: &SurfaceAnchor) -> (DVec3, DVec3) {
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];
     let [a, b, c] = corners.map(|corner| posed[corner.index()]);
-    let [u, v, w] = anchor.attachment.point.coordinates;
+    let [u, v, w] = anchor.attachment.material.coordinates;
     (a * u + b * v + c * w, (b - a).cross(c - a).normalize())
 }
 

@@ -24,7 +24,7 @@ pub enum ClimberEvent {
     },
     /// What supports it moved otherwise than once since the last step: the creature was advanced twice, or the climber
     /// was stepped twice. Sweeps saw only the last move.
-    MovedTwice {
+    MovedRepeatedly {
         /// The obstacle.
         obstacle: ObstacleId,
     },

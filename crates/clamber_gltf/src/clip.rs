@@ -39,11 +39,11 @@ pub(crate) fn load(
             }
         }
         if channels.is_empty() {
-            warnings.push(ImportWarning::IdleAnimation { animation: name });
+            warnings.push(ImportWarning::UnusedAnimation { animation: name });
             continue;
         }
         if passed_over > 0 {
-            warnings.push(ImportWarning::IdleChannels {
+            warnings.push(ImportWarning::UnusedChannels {
                 animation: name.clone(),
                 channels: passed_over,
             });

@@ -80,7 +80,7 @@ pub(crate) fn all(
     let bare = creatures.iter().filter(|c| c.meshes.is_empty());
     let idle_skins: usize = bare.map(|creature| creature.skins.len()).sum();
     if idle_skins > 0 {
-        warnings.push(ImportWarning::IdleSkins { skins: idle_skins });
+        warnings.push(ImportWarning::UnusedSkins { skins: idle_skins });
     }
     creatures.retain(|creature| !creature.meshes.is_empty());
     creatures

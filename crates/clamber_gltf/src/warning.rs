@@ -44,7 +44,7 @@ pub enum ImportWarning {
         meshes: usize,
     },
     /// Skins that deform no mesh.
-    IdleSkins {
+    UnusedSkins {
         /// How many.
         skins: usize,
     },
@@ -93,12 +93,12 @@ pub enum ImportWarning {
         names: Vec<String>,
     },
     /// An animation that moves nothing of the skeleton, passed over.
-    IdleAnimation {
+    UnusedAnimation {
         /// Its name; `"clip 3"` for animation 3 without a name.
         animation: String,
     },
     /// Animation channels that move nothing of the skeleton, or morph targets, passed over.
-    IdleChannels {
+    UnusedChannels {
         /// Name of the animation; `"clip 3"` for animation 3 without a name.
         animation: String,
         /// How many of its channels.
@@ -111,8 +111,8 @@ impl ImportWarning {
     pub(crate) fn bytes(&self) -> usize {
         let held = match self {
             Self::WeakPointWithoutJoint { node: text }
-            | Self::IdleAnimation { animation: text }
-            | Self::IdleChannels {
+            | Self::UnusedAnimation { animation: text }
+            | Self::UnusedChannels {
                 animation: text, ..
             } => text.len(),
             Self::OtherCreatures { skins, .. } => size_of_val(skins.as_slice()),
@@ -162,7 +162,7 @@ impl fmt::Display for ImportWarning {
                 f,
                 "passed over meshes without a skin that hang under no joint: {meshes}"
             ),
-            Self::IdleSkins { skins } => write!(f, "skins that deform no mesh: {skins}"),
+            Self::UnusedSkins { skins } => write!(f, "skins that deform no mesh: {skins}"),
             Self::OtherCreatures { skins, others } => write!(
                 f,
                 "took the creature of {}; other creatures passed over: {others}",
@@ -194,11 +194,11 @@ impl fmt::Display for ImportWarning {
             Self::UnreadAttributes { names } => {
                 write!(f, "attributes that were not read: {}", names.join(", "))
             }
-            Self::IdleAnimation { animation } => write!(
+            Self::UnusedAnimation { animation } => write!(
                 f,
                 "animation {animation:?} moves nothing of the skeleton; passed over"
             ),
-            Self::IdleChannels {
+            Self::UnusedChannels {
                 animation,
                 channels,
             } => write!(

@@ -70,8 +70,8 @@ pub struct Projection {
 }
 
 /// The point nearest to `target` inside all half-spaces. If their intersection is empty, the point that violates the
-/// worst plane least, and of these the nearest. Overlapping planes within 2e-4 radians of opposite count as having no
-/// intersection.
+/// worst plane least, and of these the nearest. Planes that leave no room between them and are within 2e-4 radians of
+/// opposite count as having no intersection.
 ///
 /// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
 /// Where the intersection is empty, what is missed is exact to 1e-12 of that gap, and the point to 1e-8 of it.

@@ -462,9 +462,9 @@ impl From<&Support> for Held {
         let attachment = &support.attachment;
         Self {
             obstacle: attachment.obstacle.0,
-            key: attachment.point.key,
-            coordinates: DVec3::from_array(attachment.point.coordinates).into(),
-            contact: attachment.contact.into(),
+            key: attachment.material.key,
+            coordinates: DVec3::from_array(attachment.material.coordinates).into(),
+            contact: attachment.point.into(),
             offset: attachment.offset.into(),
             normal: support.normal.into(),
             face: support.face.into(),
@@ -485,11 +485,11 @@ impl From<Held> for Support {
         Self {
             attachment: Attachment {
                 obstacle: ObstacleId(held.obstacle),
-                point: MaterialPoint {
+                material: MaterialPoint {
                     key: held.key,
                     coordinates: DVec3::from(held.coordinates).to_array(),
                 },
-                contact: held.contact.into(),
+                point: held.contact.into(),
                 offset: held.offset.into(),
                 frame: held.frame.into(),
             },

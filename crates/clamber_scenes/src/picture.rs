@@ -120,7 +120,7 @@ impl Posture {
         let (up, position) = (config.up(), state.position);
         let contact = state
             .support
-            .map_or(position, |support| support.attachment.contact);
+            .map_or(position, |support| support.attachment.point);
         let across = state.heading.cross(up).normalize_or(DVec3::X);
         let standing = |along: DVec3, hands: DVec3| {
             let middle = position + along * (0.72 - config.body.radius);

@@ -42,7 +42,7 @@ const ROUNDING: f64 = 0.02;
 /// creature.advance(&rest, Similarity::from_translation(DVec3::X * 0.5))?;
 /// let followed = arrow.follow(&creature, 1.0 / 60.0, 0.01).ok_or("the skin is gone")?;
 /// assert_eq!(followed.motion.velocity, DVec3::X * 30.0);
-/// assert!(arrow.place().distance(above + DVec3::X * 0.5) < 1e-6);
+/// assert!(arrow.position().distance(above + DVec3::X * 0.5) < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,12 +51,12 @@ pub struct Attachment {
     /// The obstacle.
     pub obstacle: ObstacleId,
     /// The point of its material.
-    pub point: MaterialPoint,
+    pub material: MaterialPoint,
     /// Where that point was when it was last followed, in world space.
-    pub contact: DVec3,
+    pub point: DVec3,
     /// The frame of the material then; where the skin collapses it stays.
     pub frame: DQuat,
-    /// From the contact to the attached thing, metres, in the frame of the material.
+    /// From the point to the attached thing, metres, in the frame of the material.
     pub offset: DVec3,
 }
 
@@ -71,7 +71,7 @@ pub enum Continuity {
     Placed,
     /// It moved several times since it was last followed, as if a creature was advanced twice in one tick. The motion
     /// covers all of it; sweeps against the obstacle cover only its last move.
-    MovedTwice,
+    MovedRepeatedly,
 }
 
 /// Where an [`Attachment`] was carried.
@@ -91,12 +91,12 @@ impl Attachment {
     /// motion is taken to be at [`Contact::point`], with the identity as its frame.
     pub fn new(
         obstacle: ObstacleId,
-        material: &dyn Obstacle,
+        touched: &dyn Obstacle,
         contact: &Contact,
         place: DVec3,
     ) -> Self {
         // The frame and the place of a point do not depend on how long the tick was.
-        let motion = material.motion(&contact.material, 1.0);
+        let motion = touched.motion(&contact.material, 1.0);
         Self::with_motion(obstacle, contact, motion.as_ref(), place)
     }
 
@@ -113,16 +113,16 @@ impl Attachment {
         let position = motion.map_or(contact.point, |motion| motion.position);
         Self {
             obstacle,
-            point: contact.material,
-            contact: position,
+            material: contact.material,
+            point: position,
             frame,
             offset: frame.conjugate() * (place - position),
         }
     }
 
     /// Where the attached thing is, in world space.
-    pub fn place(&self) -> DVec3 {
-        self.contact + self.offset_in_world()
+    pub fn position(&self) -> DVec3 {
+        self.point + self.offset_in_world()
     }
 
     /// [`Attachment::offset`] in world space.
@@ -134,7 +134,7 @@ impl Attachment {
     #[must_use]
     pub fn moved_to(&self, place: DVec3) -> Self {
         Self {
-            offset: self.frame.conjugate() * (place - self.contact),
+            offset: self.frame.conjugate() * (place - self.point),
             ..*self
         }
     }
@@ -144,14 +144,14 @@ impl Attachment {
     /// `slack` is the largest allowed distance, metres, between the stored position and the obstacle's previous one:
     /// 0.01 for a person, more than rounding and less than a player sees. It must be at least 0. A larger distance is
     /// allowed for an obstacle that was [placed](Continuity::Placed), and up to 8 times its last move
-    /// ([`Continuity::MovedTwice`]).
+    /// ([`Continuity::MovedRepeatedly`]).
     ///
     /// `None`, with nothing changed, if the material is gone, or if the distance is too large: the id names another
     /// obstacle now.
     pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<Followed> {
-        let mut motion = obstacle.motion(&self.point, dt)?;
+        let mut motion = obstacle.motion(&self.material, dt)?;
         let frame = motion.frame.unwrap_or(self.frame);
-        let gap = motion.previous_position.distance(self.contact);
+        let gap = motion.previous_position.distance(self.point);
         let step = motion.position.distance(motion.previous_position);
         let continuity = if gap <= slack * ROUNDING || motion.placed && gap <= slack {
             Continuity::Moved
@@ -161,24 +161,24 @@ impl Attachment {
             if gap > slack.max(MOST_MOVES * step) {
                 return None;
             }
-            motion.previous_position = self.contact;
-            motion.velocity = (motion.position - self.contact) / dt;
+            motion.previous_position = self.point;
+            motion.velocity = (motion.position - self.point) / dt;
             motion.turn = (frame * self.frame.conjugate()).normalize();
             if gap >= PART * step {
-                Continuity::MovedTwice
+                Continuity::MovedRepeatedly
             } else {
                 Continuity::Moved
             }
         };
         self.frame = frame;
-        self.contact = motion.position;
+        self.point = motion.position;
         Some(Followed { motion, continuity })
     }
 
     /// Whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
-        let point = DVec3::from_array(self.point.coordinates);
-        let vectors = [self.contact, self.offset, point];
+        let point = DVec3::from_array(self.material.coordinates);
+        let vectors = [self.point, self.offset, point];
         vectors.iter().all(|v| v.is_finite()) && self.frame.is_finite()
     }
 }

@@ -35,11 +35,11 @@ fn rotation(rng: &mut fastrand::Rng) -> DQuat {
 fn attachment(rng: &mut fastrand::Rng) -> Attachment {
     Attachment {
         obstacle: ObstacleId(rng.u64(..)),
-        point: MaterialPoint {
+        material: MaterialPoint {
             key: rng.u64(..),
             coordinates: vector(rng).to_array(),
         },
-        contact: vector(rng),
+        point: vector(rng),
         frame: rotation(rng),
         offset: vector(rng),
     }
@@ -95,7 +95,7 @@ fn attachments_and_their_motion_keep_every_bit() {
     let ways = [
         Continuity::Moved,
         Continuity::Placed,
-        Continuity::MovedTwice,
+        Continuity::MovedRepeatedly,
     ];
     for round in 0..300 {
         let held: Held = (

@@ -14,9 +14,9 @@ impl ClimberState {
         if let Some(support) = &self.support {
             let attachment = &support.attachment;
             hash.word(attachment.obstacle.0);
-            hash.word(attachment.point.key);
-            hash.vector(DVec3::from_array(attachment.point.coordinates));
-            hash.vector(attachment.contact);
+            hash.word(attachment.material.key);
+            hash.vector(DVec3::from_array(attachment.material.coordinates));
+            hash.vector(attachment.point);
             hash.vector(attachment.offset);
             hash.vector(support.normal);
             hash.vector(support.face);

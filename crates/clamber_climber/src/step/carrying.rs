@@ -57,9 +57,9 @@ impl Tick<'_> {
         };
         let motion = followed.motion;
         let was_placed = followed.continuity == Continuity::Placed;
-        if followed.continuity == Continuity::MovedTwice {
+        if followed.continuity == Continuity::MovedRepeatedly {
             let obstacle = support.attachment.obstacle;
-            self.event(ClimberEvent::MovedTwice { obstacle });
+            self.event(ClimberEvent::MovedRepeatedly { obstacle });
         }
         let velocity_before = self.state.support_velocity.filter(|_| !was_placed);
         self.feel(&motion, was_placed);
@@ -127,7 +127,7 @@ impl Tick<'_> {
             },
             velocity_before: Some(motion.velocity),
             start: self.began,
-            position: attachment.place(),
+            position: attachment.position(),
             swept: true,
         });
     }

@@ -149,9 +149,9 @@ impl Tick<'_> {
         let attachment = &support.attachment;
         self.contacts.push(ClimberContact {
             obstacle: attachment.obstacle,
-            material: attachment.point,
+            material: attachment.material,
             tag: support.tag,
-            position: attachment.contact,
+            position: attachment.point,
             normal: support.normal_in_world(),
             closing_speed: 0.0,
             phase,

@@ -57,7 +57,7 @@ impl Tick<'_> {
         };
         let attachment = support.attachment;
         if self.has_flown {
-            if self.is_pushed(attachment.obstacle, &attachment.point) {
+            if self.is_pushed(attachment.obstacle, &attachment.material) {
                 // It will go otherwise than it went, which is no shake.
                 self.state.support_velocity = None;
             }
@@ -65,13 +65,17 @@ impl Tick<'_> {
         }
         let (obstacle, gravity) = (attachment.obstacle, self.config.gravity);
         let down = gravity.normalize_or_zero();
-        if self.mover.push_response(obstacle, &attachment.point, down) == 0.0 {
+        if self
+            .mover
+            .push_response(obstacle, &attachment.material, down)
+            == 0.0
+        {
             return;
         }
         self.report.pushes.push(Push {
             obstacle,
-            material: attachment.point,
-            point: attachment.contact,
+            material: attachment.material,
+            point: attachment.point,
             impulse: gravity * (self.config.body.mass * self.dt()),
         });
     }
@@ -81,7 +85,7 @@ impl Tick<'_> {
         let is_underfoot = self.state.mode == ClimberMode::Standing
             && self.config.slope(touch.normal) <= self.standing_slope();
         let is_support = self.attachment().is_some_and(|attachment| {
-            let material = (attachment.obstacle, attachment.point.key);
+            let material = (attachment.obstacle, attachment.material.key);
             material == (touch.obstacle, touch.contact.material.key)
         });
         is_underfoot || is_support

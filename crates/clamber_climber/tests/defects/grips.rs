@@ -148,14 +148,14 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
                     continue;
                 };
                 let hold = support.attachment;
-                let apart = (hold.contact - middle).abs();
+                let apart = (hold.point - middle).abs();
                 let is_behind = hold.obstacle == ObstacleId(0) && apart.x < 1.98 && apart.y < 1.98;
-                assert!(!is_behind, "{told}: holds {}", hold.contact);
+                assert!(!is_behind, "{told}: holds {}", hold.point);
                 // A hand's way is free.
-                let reach = hold.contact - state.position;
+                let reach = hold.point - state.position;
                 let clear = reach.length() - 0.02;
                 let hit = plate.cast_ray(state.position, reach, clear);
-                assert_eq!(hit, None, "{told}: holds {}", hold.contact);
+                assert_eq!(hit, None, "{told}: holds {}", hold.point);
             }
         }
     }

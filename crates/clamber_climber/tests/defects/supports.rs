@@ -117,7 +117,7 @@ fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports
     // Its tick of losing is one of falling.
     let time = DT * reports.len() as f64;
     let fallen = 0.5 * 9.81 * time * time;
-    let from = held.place().y;
+    let from = held.position().y;
     assert!(
         (from - state.position.y - fallen).abs() < 0.05,
         "{told}, {on:?}: fell from {from} to {}, free fall is {fallen}",

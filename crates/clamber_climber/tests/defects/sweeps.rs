@@ -218,7 +218,7 @@ fn legs_that_swing_go_through_no_plate() {
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
     for hz in [30.0, 60.0, 480.0] {
         let base = hung(hz, &beam);
-        let pivot = base.state().support.unwrap().attachment.contact;
+        let pivot = base.state().support.unwrap().attachment.point;
         let top = pivot.y - 1.32;
         for half in [0.03, 0.15, 0.5] {
             let size = Vec3::new(half as f32, 1.0, 2.0);
@@ -271,7 +271,7 @@ fn legs_that_are_thrown_ahead_go_through_no_plate() {
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
     for hz in [30.0, 60.0, 480.0] {
         let base = hung(hz, &beam);
-        let pivot = base.state().support.unwrap().attachment.contact;
+        let pivot = base.state().support.unwrap().attachment.point;
         let top = pivot.y - 1.35;
         for speed in [3.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
             let mut through = 0;

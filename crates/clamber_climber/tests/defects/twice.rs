@@ -10,7 +10,7 @@ use crate::scene::{DT, STONE, cuboid, moved, placed};
 use crate::stage::IDLE;
 
 fn is_moved_twice(event: &ClimberEvent) -> bool {
-    matches!(event, ClimberEvent::MovedTwice { .. })
+    matches!(event, ClimberEvent::MovedRepeatedly { .. })
 }
 
 fn rider() -> Climber {

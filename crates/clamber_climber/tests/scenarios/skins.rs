@@ -39,7 +39,7 @@ fn material(run: &Run) -> DVec3 {
     let motion = run.stage.obstacles(|obstacles| {
         obstacles[0]
             .1
-            .motion(&support.attachment.point, run.stage.dt)
+            .motion(&support.attachment.material, run.stage.dt)
     });
     motion.unwrap().position
 }
@@ -58,12 +58,12 @@ pub(crate) fn breathing_ground_carries_for_a_minute() {
             config,
             DVec3::new(1.0, 0.0, 0.6),
         );
-        let point = run.state().support.unwrap().attachment.point;
+        let point = run.state().support.unwrap().attachment.material;
         for tick in 0..3600 {
             run.step(&IDLE);
             let support = run.state().support.unwrap();
             assert_eq!(
-                support.attachment.point, point,
+                support.attachment.material, point,
                 "{name}, tick {tick}: steps off its point"
             );
             let away = run.position().distance(material(&run));
@@ -82,12 +82,12 @@ pub(crate) fn a_foot_keeps_its_share_of_a_triangle_that_stretches() {
     };
     let rest = DVec3::new(1.1, 0.0, 0.7);
     let mut run = on(skin(&plain(), |_| 1.0, stretches), jolt(), rest);
-    let point = run.state().support.unwrap().attachment.point;
+    let point = run.state().support.unwrap().attachment.material;
     for tick in 0..600 {
         run.step(&IDLE);
         let support = run.state().support.unwrap();
         assert_eq!(
-            support.attachment.point, point,
+            support.attachment.material, point,
             "tick {tick}: barycentric coordinates changed"
         );
         let expected = stretches(run.stage.time()).transform_point3(rest);

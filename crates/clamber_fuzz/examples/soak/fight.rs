@@ -30,7 +30,7 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
             panic!("tick {tick}: {error}");
         }
         let state = battle.climber().state();
-        let support = state.support.map(|support| support.attachment.contact);
+        let support = state.support.map(|support| support.attachment.point);
         let finite = state.position.is_finite()
             && state.velocity.is_finite()
             && support.is_none_or(|contact| contact.is_finite());

@@ -27,11 +27,11 @@ fn everything() -> (ClimberState, ClimberInput) {
         support: Some(Support {
             attachment: Attachment {
                 obstacle: ObstacleId(u64::MAX - 7),
-                point: MaterialPoint {
+                material: MaterialPoint {
                     key: 1 << 60,
                     coordinates: coordinates.to_array(),
                 },
-                contact,
+                point: contact,
                 offset,
                 frame: DQuat::from_xyzw(next(), next(), next(), next()),
             },
@@ -135,9 +135,9 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
         list.extend(all(v));
     }
     if let Some(support) = &mut state.support {
-        list.extend(&mut support.attachment.point.coordinates);
+        list.extend(&mut support.attachment.material.coordinates);
         for v in [
-            &mut support.attachment.contact,
+            &mut support.attachment.point,
             &mut support.attachment.offset,
             &mut support.normal,
             &mut support.face,

@@ -17,7 +17,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
             Level::Warning,
             format!("lost its footing on obstacle {}", from.obstacle.0),
         ),
-        ClimberEvent::MovedTwice { obstacle } => (
+        ClimberEvent::MovedRepeatedly { obstacle } => (
             Level::Warning,
             format!(
                 "obstacle {} moved several times since the last step",

@@ -55,7 +55,7 @@ impl Scene {
         let mut support = entity("support", CREATURE);
         // A support on another obstacle has a key of its own meaning, which may name a triangle by chance:
         // only one that the contact lies on counts.
-        let key = state.support.map(|support| support.attachment.point.key);
+        let key = state.support.map(|support| support.attachment.material.key);
         let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
         let tint = color(0.9, 0.1, 0.1, 1.0);
@@ -169,15 +169,15 @@ fn from_z_to(to: DVec3) -> DQuat {
 fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
         let support = taken.state.support?;
-        let triangle = usize::try_from(support.attachment.point.key).ok()?;
+        let triangle = usize::try_from(support.attachment.material.key).ok()?;
         let corners = mesh.triangles().get(triangle)?;
         let mut position = DVec3::ZERO;
-        for (corner, weight) in corners.iter().zip(support.attachment.point.coordinates) {
+        for (corner, weight) in corners.iter().zip(support.attachment.material.coordinates) {
             position += positions.get(corner.index())?.as_dvec3() * weight;
         }
         let in_world = taken.world_from_model.transform_point(position);
         Some(
-            in_world.distance(support.attachment.contact)
+            in_world.distance(support.attachment.point)
                 < 0.01 * taken.world_from_model.scale.max(1.0),
         )
     };

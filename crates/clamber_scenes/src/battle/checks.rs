@@ -98,14 +98,14 @@ impl Watch {
         if holds || watched.climbs {
             self.recorded = None;
             let support = support?;
-            let place = reference_position(surface, palette, &support.attachment.point);
+            let place = reference_position(surface, palette, &support.attachment.material);
             let place = place.unwrap_or(DVec3::INFINITY);
             if center.distance(place) > reach(climber) {
                 self.out_of_reach += 1;
                 self.faults
                     .note(OUT_OF_REACH, || moment.describe("out of reach", center));
             }
-            let drift = support.attachment.contact.distance(place);
+            let drift = support.attachment.point.distance(place);
             if drift > MAX_DRIFT {
                 let what = format!("hold {drift:.1e} m from its material point");
                 self.faults.note(DRIFT, || moment.describe(&what, center));
@@ -117,7 +117,7 @@ impl Watch {
             return None;
         };
         let Some(recorded) = self.recorded else {
-            self.recorded = Some(support.attachment.point);
+            self.recorded = Some(support.attachment.material);
             return None;
         };
         let radius = climber.config().body.radius;
@@ -125,7 +125,7 @@ impl Watch {
             self.deepest = self.deepest.max(radius - nearest.distance);
         }
         let off = Off::measure(surface, palette, &recorded, center, radius);
-        let contact = support.attachment.contact.distance(off.point);
+        let contact = support.attachment.point.distance(off.point);
         let drift = contact.max(off.sunk);
         if drift > MAX_DRIFT {
             let what = format!(
@@ -134,7 +134,7 @@ impl Watch {
             );
             self.faults.note(DRIFT, || moment.describe(&what, center));
             // A point that is lost is lost once. A creep that is not yet a fault adds up.
-            self.recorded = Some(support.attachment.point);
+            self.recorded = Some(support.attachment.material);
             return Some(drift);
         }
         self.pushed_off = self.pushed_off.max(off.pushed);

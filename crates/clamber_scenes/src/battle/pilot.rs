@@ -116,7 +116,7 @@ impl Pilot {
         let on_creature = state
             .support
             .filter(|support| support.attachment.obstacle == CREATURE)
-            .and_then(|support| support.attachment.point.triangle());
+            .and_then(|support| support.attachment.material.triangle());
         match (state.mode, on_creature) {
             (ClimberMode::Tumbling, _) => {
                 self.free = seconds;

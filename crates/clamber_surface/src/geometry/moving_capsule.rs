@@ -83,8 +83,9 @@ impl MovingCapsule {
     ///
     /// Its time is never later than that of the first touch, and if none is found there is none up to `limit`. At
     /// that time the distance is at most radius and `tolerance`, unless the touch is
-    /// [undecided](TriangleTouch::undecided); less than 2^-45 of the lengths involved counts as that. The triangle is met from both sides and may have collapsed. `None` if anything is not finite or larger
-    /// than 2^100, or if radius or tolerance is negative.
+    /// [undecided](TriangleTouch::undecided); less than 2^-45 of the lengths involved counts as that. The triangle is
+    /// met from both sides and may have collapsed. `None` if anything is not finite or larger than 2^100, or if radius
+    /// or tolerance is negative.
     pub fn cast_at_triangle(
         &self,
         corners: [[DVec3; 3]; 2],

@@ -236,7 +236,7 @@ impl<'a> RapierTerrain<'a> {
         if self.bodies.get(body)?.position() == before {
             return None;
         }
-        Some(pose_of(before).then(&pose_of(collider.position_wrt_parent()?)))
+        Some(pose_of(before).compose(&pose_of(collider.position_wrt_parent()?)))
     }
 
     fn moved(&self) -> &MovedColliders {

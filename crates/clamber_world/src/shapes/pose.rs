@@ -27,9 +27,9 @@ impl RigidPose {
         }
     }
 
-    /// This pose after `inner`.
+    /// The product `self * inner`: a point goes through `inner` first.
     #[must_use]
-    pub fn then(&self, inner: &Self) -> Self {
+    pub fn compose(&self, inner: &Self) -> Self {
         Self {
             rotation: self.rotation * inner.rotation,
             translation: self.transform(inner.translation),

@@ -156,7 +156,7 @@ impl ShapeSweep {
                     },
                     before: self
                         .before
-                        .map(|before| pose.inverse().then(&before.then(&pose))),
+                        .map(|before| pose.inverse().compose(&before.compose(&pose))),
                 };
                 let outer = |touch: &ShapeTouch| ShapeTouch {
                     contact: ShapeContact {

@@ -34,7 +34,9 @@ impl Tick {
                 end: local(capsule.with_ends_moved(displacements).ends),
                 radius: capsule.radius,
             },
-            before: self.before.map(|before| self.now.inverse().then(&before)),
+            before: self
+                .before
+                .map(|before| self.now.inverse().compose(&before)),
         }
     }
 

@@ -70,7 +70,7 @@ pub(super) fn note(
         }
         let mut pose = RigidPose::new(rotation.0, position.0);
         if let Some(on_body) = on_body.filter(|_| of.body != entity) {
-            pose = pose.then(&RigidPose::new(on_body.rotation, on_body.translation));
+            pose = pose.compose(&RigidPose::new(on_body.rotation, on_body.translation));
         }
         let bounds = collider.shape_scaled().compute_aabb(&in_f32(&pose));
         let bounds = bounds.loosened(LOOSE);

@@ -139,7 +139,7 @@ fn states_that_no_climber_can_be_in_are_refused() {
         with_support(|support| support.normal.y = f64::INFINITY),
         with_support(|support| support.face.y = f64::INFINITY),
         with_support(|support| support.attachment.frame.w = f64::NAN),
-        with_support(|support| support.attachment.point.coordinates[1] = f64::NAN),
+        with_support(|support| support.attachment.material.coordinates[1] = f64::NAN),
     ] {
         let refused = climber.restore(state);
         assert_eq!(refused, Err(ClimberError::NotFinite("state")), "{state:?}");

@@ -66,7 +66,7 @@ fn lands_on_the_point_that_is_underfoot_not_on_the_one_that_it_met_first() {
         step_on(&mut climber, &ground, &IDLE);
         let state = climber.state();
         if let Some(support) = state.support {
-            let off = support.attachment.contact - (state.position - DVec3::Y * 0.4);
+            let off = support.attachment.point - (state.position - DVec3::Y * 0.4);
             assert!(off.length() < 1e-5, "tick {tick}: {off}");
             return;
         }
@@ -89,7 +89,7 @@ fn lands_on_ground_that_turns_and_touches_it() {
             }
             let state = climber.state();
             if let Some(support) = state.support {
-                let off = support.attachment.contact.distance(state.position) - 0.4;
+                let off = support.attachment.point.distance(state.position) - 0.4;
                 assert!(off.abs() < 2e-5, "{x}, {turning}, tick {tick}: {off}");
                 break;
             }

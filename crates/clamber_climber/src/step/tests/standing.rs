@@ -26,7 +26,7 @@ fn standing_is_carried_to_the_material_point_without_lag() {
         assert!(off < 1e-5, "tick {tick}: {off}");
         let now = climber.state().support.unwrap();
         assert_eq!(
-            now.attachment.point, support.attachment.point,
+            now.attachment.material, support.attachment.material,
             "anchored anew at tick {tick}"
         );
     }
@@ -49,8 +49,8 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
         pushed += report.pushed_out.length();
         let state = climber.state();
         assert_eq!(
-            state.support.unwrap().attachment.point,
-            support.attachment.point
+            state.support.unwrap().attachment.material,
+            support.attachment.material
         );
         // It slides along its side, never off it and never into the other.
         contacts.clear();
@@ -61,7 +61,7 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
             "{tick} {nearest} {}",
             state
                 .position
-                .distance(state.support.unwrap().attachment.contact)
+                .distance(state.support.unwrap().attachment.point)
         );
         assert!((nearest - 0.4).abs() < 2e-5, "tick {tick}: {nearest}");
     }
@@ -92,7 +92,7 @@ fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
             "tick {tick}: {state:?}"
         );
         if let Some(support) = state.support {
-            let off = (state.position - support.attachment.contact) * DVec3::new(1.0, 0.0, 1.0);
+            let off = (state.position - support.attachment.point) * DVec3::new(1.0, 0.0, 1.0);
             // Round the edge it leans by up to the steepest slope, and what it is pushed before it looks anew.
             let most = if state.position.x < 20.0 { 0.06 } else { 0.36 };
             assert!(off.length() < most, "tick {tick}: {state:?}");

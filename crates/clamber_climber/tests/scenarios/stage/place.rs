@@ -76,7 +76,7 @@ impl Place {
 
     fn attachment(&self, attachment: Attachment) -> Attachment {
         Attachment {
-            contact: self.point(attachment.contact),
+            point: self.point(attachment.point),
             offset: attachment.offset * self.scale,
             ..attachment
         }

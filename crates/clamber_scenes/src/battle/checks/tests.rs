@@ -96,7 +96,7 @@ fn a_rider_that_stands_where_it_stood_has_no_fault() {
 fn a_contact_off_its_material_point_is_drift() {
     stood(|scene, state| {
         let mut support = state.support.unwrap();
-        support.attachment.contact += normal(&state).any_orthonormal_vector() * 2e-4;
+        support.attachment.point += normal(&state).any_orthonormal_vector() * 2e-4;
         let drift = scene.look(ClimberState {
             support: Some(support),
             ..state
@@ -116,7 +116,7 @@ fn another_material_point_without_input_is_drift() {
             .closest_point(elsewhere, 5.0)
             .unwrap();
         let mut support = state.support.unwrap();
-        (support.attachment.point, support.attachment.contact) = (nearest.material, nearest.point);
+        (support.attachment.material, support.attachment.point) = (nearest.material, nearest.point);
         let drift = scene.look(ClimberState {
             support: Some(support),
             ..state

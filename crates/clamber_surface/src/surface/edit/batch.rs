@@ -33,8 +33,8 @@ impl<'a> SurfaceEdit<'a> {
     ///
     /// # Errors
     /// [`SurfaceError::Mesh`] for a position, a joint or weights that a build would refuse, and for too many vertices
-    /// or influences ([`MeshError::TooLarge`](crate::mesh::MeshError::TooLarge)); [`SurfaceError::Palette`] if a matrix of now or of a tick ago could move something so far from
-    /// the mesh's origin beyond 2^100.
+    /// or influences ([`MeshError::TooLarge`](crate::mesh::MeshError::TooLarge)); [`SurfaceError::Palette`] if a matrix
+    /// of now or of a tick ago could move something so far from the mesh's origin beyond 2^100.
     pub fn add_vertex(
         &mut self,
         position: Vec3,
