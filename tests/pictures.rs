@@ -172,7 +172,7 @@ fn a_rigs_meshes_are_ready_for_the_renderer() {
     let mut rig = clamber::gltf::load(clamber_scenes::giant::path()).unwrap();
     let tinted = rig.visual[0].positions.len();
     rig.visual[0].colors = vec![[0.5, 1.0, 0.0, 1.0]; tinted];
-    let sources: Vec<_> = clamber::visual_meshes(&rig).collect();
+    let sources: Vec<_> = clamber::render::visual_meshes(&rig).collect();
     assert_eq!(sources.len(), rig.visual.len());
     for (source, mesh) in sources.iter().zip(&rig.visual) {
         let source = source.source();

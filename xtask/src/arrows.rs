@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 13] = [
         &["clamber_surface", "clamber_world", "clamber_mover"],
     ),
     ("clamber_gltf", &["clamber_surface"]),
-    ("clamber_render", &["clamber_surface"]),
+    ("clamber_render", &["clamber_surface", "clamber_gltf"]),
     (
         "clamber_record",
         &["clamber_surface", "clamber_world", "clamber_climber"],

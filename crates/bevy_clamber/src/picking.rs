@@ -23,6 +23,7 @@ use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SurfacePick {
     /// The collider's triangle.
     pub triangle: TriangleId,

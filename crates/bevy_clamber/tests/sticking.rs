@@ -10,7 +10,9 @@ use std::time::Duration;
 
 use bevy_app::{AnimationSystems, App, PostUpdate, Update};
 use bevy_asset::Assets;
+use bevy_clamber::AnchorError;
 use bevy_clamber::core::mesh::TriangleId;
+use bevy_clamber::core::surface::SurfaceError;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
@@ -284,6 +286,46 @@ fn what_sticks_stays_when_the_same_skin_is_built_anew() {
         assert!(apart.length() < 1e-5, "{round} {apart}");
     }
     assert!(app.world().resource::<Lost>().0.is_empty());
+}
+
+#[test]
+fn a_hit_of_skin_that_is_no_more_sticks_nothing() {
+    let mut app = app(60.0);
+    let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
+    let ray = Ray3d::new(Vec3::new(9.0, 1.7, 0.05), Dir3::NEG_X);
+    let ask = move |surfaces: SurfaceQuery| surfaces.cast_ray(ray, 99.0, &SurfaceFilter::default());
+    let hit = app.world_mut().run_system_once(ask).unwrap().unwrap();
+    let stick = move |surfaces: SurfaceQuery| surfaces.anchor_at(&hit);
+    let anchor = app.world_mut().run_system_once(stick).unwrap().unwrap();
+    assert_eq!(anchor.mesh, hit.mesh);
+    // The same triangles of another shape.
+    let handle = app.world().get::<Mesh3d>(limb.mesh).unwrap().0.clone();
+    let mut other = common::limb_mesh();
+    other.scale_by(Vec3::new(1.5, 1.0, 1.5));
+    let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
+    meshes.insert(&handle, other).unwrap();
+    for _ in 0..6 {
+        app.update();
+    }
+    let refused = app.world_mut().run_system_once(stick).unwrap().unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            AnchorError::Surface(SurfaceError::ForeignMesh { found, .. }) if found == hit.mesh
+        ),
+        "{refused}"
+    );
+    let motion = move |surfaces: SurfaceQuery| surfaces.motion(&anchor, 0.1);
+    let refused = app
+        .world_mut()
+        .run_system_once(motion)
+        .unwrap()
+        .unwrap_err();
+    assert!(matches!(refused, AnchorError::Surface(_)), "{refused}");
+    app.world_mut().entity_mut(limb.root).despawn();
+    app.update();
+    let gone = app.world_mut().run_system_once(stick).unwrap().unwrap_err();
+    assert_eq!(gone, AnchorError::NoSurface(limb.mesh));
 }
 
 #[test]

@@ -7,9 +7,6 @@
     doc = "clamber without some of its features; its front page is that of all features."
 )]
 
-#[cfg(all(feature = "gltf", feature = "render"))]
-mod visual;
-
 #[doc(inline)]
 pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
@@ -24,14 +21,12 @@ pub use clamber_record as record;
 #[doc(inline)]
 pub use clamber_render as render;
 #[doc(hidden)]
-pub use clamber_surface::measure;
+pub use clamber_surface::{SimdLevel, measure};
 #[doc(inline)]
-pub use clamber_surface::{SimdLevel, geometry, mesh, rig, skin, surface};
+pub use clamber_surface::{geometry, mesh, rig, skin, surface};
 #[doc(inline)]
 pub use clamber_world as world;
 pub use glam;
-#[cfg(all(feature = "gltf", feature = "render"))]
-pub use visual::{VisualSource, visual_meshes};
 
 /// What most programs need: `use clamber::prelude::*;`. No name in it is one of rapier's prelude: both can be imported
 /// whole. [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose) and

@@ -3,6 +3,7 @@ use glam::DVec3;
 
 /// Something that touched a climber in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClimberContact {
     /// The obstacle.
     pub obstacle: ObstacleId,
@@ -23,6 +24,7 @@ pub struct ClimberContact {
 
 /// In which phase of a tick something touched a climber.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ContactPhase {
     /// The climber wanted to stay where its support carries it: this was in the way there, or struck it.
     Carried,

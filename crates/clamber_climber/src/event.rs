@@ -5,6 +5,7 @@ use crate::ClimberMode;
 
 /// Something that happened in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ClimberEvent {
     /// Came down on something that can be stood on.
     Landed {
@@ -116,6 +117,7 @@ pub enum ClimberEvent {
 /// both to one speed; what it runs into likewise, but at most [`BodyConfig::push_force`](crate::BodyConfig::push_force).
 /// Several that are pushed at once share that. No push comes of a jump, or of its feet as it begins to walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Push {
     /// To what.
     pub obstacle: ObstacleId,
@@ -129,6 +131,7 @@ pub struct Push {
 
 /// What a step did, beside the new state.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct StepReport {
     /// In the order in which they happened; empty in most ticks, and then without memory.
     pub events: Vec<ClimberEvent>,

@@ -354,3 +354,6 @@ fn turn_outward(touches: &mut Vec<Touch>, of_body: Range<usize>, [pressed, as_ne
         });
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -168,7 +168,13 @@ impl Path {
     fn is_finite(&self) -> bool {
         let [a, b] = self.start_axis;
         let vectors = [self.start, self.target, self.frame, a, b];
-        vectors.iter().all(|v| v.is_finite()) && self.body.validate().is_ok()
+        let arm = self
+            .arm
+            .is_none_or(|arm| arm.pivot.is_finite() && arm.length.is_finite());
+        let walking = self
+            .walking
+            .is_none_or(|walking| walking.up.is_finite() && walking.max_slope.is_finite());
+        vectors.iter().all(|v| v.is_finite()) && arm && walking && self.body.validate().is_ok()
     }
 }
 

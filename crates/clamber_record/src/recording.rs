@@ -16,6 +16,7 @@ const LARGEST: u64 = 1 << 30;
 
 /// How a recording ends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Ending {
     /// As its recorder finished it.
     Whole,
@@ -43,6 +44,7 @@ impl fmt::Display for Ending {
 
 /// One tick as it was recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedTick {
     /// Its number.
     pub tick: u64,
@@ -60,6 +62,7 @@ pub struct RecordedTick {
 
 /// What a scene needs to go on from a tick.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedSnapshot {
     /// The tick, with the climber's state at its end.
     pub tick: RecordedTick,

@@ -18,6 +18,7 @@ pub struct Replayed {
 
 /// The first tick at which a replay is not what was recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// As recorded.
     pub recorded: RecordedTick,

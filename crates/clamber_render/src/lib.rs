@@ -23,6 +23,8 @@ mod renderer;
 mod skinning;
 mod target;
 mod text;
+#[cfg(feature = "gltf")]
+mod visual;
 
 pub use camera::Camera;
 pub use error::RenderError;
@@ -36,3 +38,5 @@ pub use overlay::{Color, Overlay};
 pub use paint::Paint;
 pub use renderer::Renderer;
 pub use text::TextSize;
+#[cfg(feature = "gltf")]
+pub use visual::{VisualSource, visual_meshes};

@@ -3,7 +3,8 @@
 use clamber_climber::{Climber, ClimberMode};
 use clamber_gltf::Rig;
 use clamber_render::{
-    Camera, Drawn, Light, Look, Paint, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
+    Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
+    visual_meshes,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
@@ -202,29 +203,9 @@ pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
 /// # Errors
 /// [`RenderError`].
 pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<RenderMeshId>, RenderError> {
-    let mut meshes = Vec::new();
-    for visual in &rig.visual {
-        let mut paint = Paint::new(visual.positions.len());
-        for primitive in &visual.primitives {
-            let material = primitive.material.map(|index| &rig.materials[index]);
-            let [r, g, b, _] = material.map_or([1.0; 4], |material| material.base_color);
-            let look = primitive.tag.kind.into();
-            paint.add(&primitive.triangles, [r, g, b], &visual.colors, look);
-        }
-        meshes.push(renderer.add_mesh(&RenderMesh {
-            positions: &visual.positions,
-            normals: &visual.normals,
-            colors: &paint.colors,
-            looks: &paint.looks,
-            triangles: &paint.triangles,
-            skin: Some(SkinSource {
-                influences: &visual.influences,
-                ends: &visual.influence_ends,
-                joint_count: rig.skeleton.joints().len(),
-            }),
-        })?);
-    }
-    Ok(meshes)
+    visual_meshes(rig)
+        .map(|mesh| renderer.add_mesh(&mesh.source()))
+        .collect()
 }
 
 /// A collider itself, in one colour.

@@ -183,7 +183,8 @@ pub trait Obstacle {
     }
 
     /// The first point along a ray from `origin`, up to `max_distance`. `direction` may have any
-    /// length but zero; distances are in metres along it. A ray that starts inside a solid hits at distance 0.
+    /// length but zero; distances are in metres along it. A ray that starts inside a solid hits at distance 0; its
+    /// normal need not point out.
     ///
     /// The default casts a ball of no radius. Its distance is short by at most 1 micrometre over the sine of the angle
     /// between ray and surface, and a ray that passes within a micrometre counts as a hit. Without

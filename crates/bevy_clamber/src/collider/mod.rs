@@ -59,6 +59,7 @@ impl SkinnedCollider {
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(opaque)]
 #[reflect(Component, Default, Clone, Debug)]
+#[non_exhaustive]
 pub enum ColliderStatus {
     /// For mesh, inverse bind poses, `Mesh3d` or `SkinnedMesh`.
     #[default]

@@ -29,6 +29,7 @@ pub struct TooManyJoints(pub usize);
 /// many as Bevy has, renormalised. Meshes that are for collision only are not among them: see
 /// [`Rig::collider`] for these.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RigAssets {
     rig: Arc<Rig>,
     inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
@@ -46,6 +47,7 @@ struct RigMesh {
 
 /// The entities of a creature.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SpawnedRig {
     /// Above all others: despawning it takes all away. Has [`RigJoints`]; moving it moves the creature.
     pub root: Entity,

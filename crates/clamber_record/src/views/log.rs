@@ -70,6 +70,8 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
             Level::Error,
             "an obstacle answered with numbers that are not finite: nothing happened".to_owned(),
         ),
+        // One that is newer than this list.
+        other => (Level::Info, format!("{other:?}")),
     };
     Log {
         timestamp: Some(timestamp(nanoseconds)),

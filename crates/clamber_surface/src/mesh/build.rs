@@ -39,6 +39,7 @@ pub struct MeshSource<'a> {
 
 /// What to do with vertices that coincide at rest but follow their joints differently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Cracks {
     /// Keep them apart and count them: the surface can gape there when posed.
     #[default]
@@ -49,6 +50,7 @@ pub enum Cracks {
 
 /// Which side of the triangles is outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Winding {
     /// As given.
     #[default]

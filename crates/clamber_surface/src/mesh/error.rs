@@ -27,7 +27,10 @@ pub enum MeshError {
     /// The influences do not divide evenly among the vertices, or there are none. With
     /// [`influence_ends`](crate::mesh::MeshSource::influence_ends): there is not one end per vertex, or the ends do not
     /// ascend to the number of influences.
-    #[error("{influences} influences do not divide among {vertices} vertices")]
+    #[error(
+        "{influences} influences do not fit {vertices} vertices: each needs as many as the others, or \
+         `influence_ends` one ascending end for each"
+    )]
     InfluenceCount {
         /// Influences found.
         influences: usize,

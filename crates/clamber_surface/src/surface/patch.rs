@@ -58,6 +58,7 @@ pub struct Patch {
 
 /// What an update did to a [`Patch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PatchChange {
     /// The same triangles, and no position differs by a bit from the update before, now or a tick ago.
     Same,

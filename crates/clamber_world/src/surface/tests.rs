@@ -91,6 +91,17 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
     assert!((heading - expected).length() < 1e-5, "{heading}");
     let frame = motion.frame.unwrap();
     assert!((frame * DVec3::Y - turned.rotation * DVec3::Y).length() < 1e-5);
+
+    // The same, asked as an anchor.
+    let anchor = material.anchor_on(&surface).unwrap();
+    let anchored = surface.in_world().motion(&anchor, dt).unwrap();
+    assert_eq!(anchored.position, motion.position);
+    assert_eq!(anchored.velocity, motion.velocity);
+    let nowhere = MaterialPoint {
+        key: 99,
+        ..material
+    };
+    assert_eq!(nowhere.anchor_on(&surface), None);
 }
 
 #[test]

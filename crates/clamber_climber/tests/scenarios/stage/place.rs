@@ -82,14 +82,12 @@ impl Place {
         }
     }
 
-    pub(crate) fn report(&self, report: StepReport) -> StepReport {
+    pub(crate) fn report(&self, mut report: StepReport) -> StepReport {
         let events = report.events.into_iter();
-        StepReport {
-            events: events.map(|event| self.event(event)).collect(),
-            pushed_out: report.pushed_out * self.scale,
-            penetration: report.penetration * self.scale,
-            ..report
-        }
+        report.events = events.map(|event| self.event(event)).collect();
+        report.pushed_out *= self.scale;
+        report.penetration *= self.scale;
+        report
     }
 
     fn event(&self, event: ClimberEvent) -> ClimberEvent {

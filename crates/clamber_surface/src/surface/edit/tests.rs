@@ -11,8 +11,9 @@ use self::sound::{assert_poses_hold, assert_sound, bits};
 use super::*;
 use crate::SimdLevel;
 use crate::geometry::Similarity;
-use crate::mesh::{Influence, SurfaceTag, VertexId};
+use crate::mesh::{Influence, SurfaceKind, SurfaceTag, VertexId};
 use crate::rig::JointId;
+use crate::surface::Anchor;
 use crate::surface::agreement::answers;
 use crate::testing::{bend, direction, point, tube};
 use glam::{DVec3, Vec3};
@@ -204,4 +205,52 @@ fn a_closure_that_panics_leaves_a_surface_that_answers() {
     assert_sound(surface.mesh(), "after a panic");
     let mut rng = fastrand::Rng::with_seed(96);
     crate::surface::agreement::assert_queries_agree(&surface, &mut rng, 50);
+}
+
+#[test]
+fn points_hold_on_every_mesh_that_goes_on_from_theirs_and_on_no_other() {
+    let original = bent(4, 8);
+    let before = original.anchor(TriangleId(3), [0.2, 0.3, 0.5]).unwrap();
+    // A copy with a scab, whose tip stands at a height.
+    let with_scab = |height: f32| {
+        let mut copy = bent(4, 8);
+        let scab = copy.edit(|edit| {
+            let tip = edit.add_vertex(Vec3::Y * height, &rigid(0)).unwrap();
+            let corners = [VertexId(0), VertexId(1), tip];
+            edit.add_triangle(corners, SurfaceTag::default()).unwrap()
+        });
+        let anchor = copy.anchor(scab, [0.2, 0.3, 0.5]).unwrap();
+        (copy, anchor)
+    };
+    let (high, on_high) = with_scab(3.0);
+    let (low, on_low) = with_scab(2.0);
+    let (again, _) = with_scab(3.0);
+    let holds = |surface: &SkinnedSurface, anchor: &Anchor| {
+        let moved = surface.in_model().motion(anchor, 0.1);
+        assert_eq!(moved.is_ok(), surface.anchor_at(anchor).is_ok());
+        match moved {
+            Ok(_) => true,
+            Err(SurfaceError::ForeignMesh { expected, found }) => {
+                assert_eq!((expected, found), (surface.mesh().id(), anchor.mesh));
+                false
+            }
+            Err(error) => panic!("{error}"),
+        }
+    };
+    // The same triangle by number, elsewhere: taken for one of its own before edits counted.
+    assert_eq!(on_high.triangle, on_low.triangle);
+    assert!(holds(&high, &on_high) && holds(&low, &on_low) && holds(&again, &on_high));
+    assert!(!holds(&high, &on_low) && !holds(&low, &on_high) && !holds(&original, &on_high));
+    for surface in [&original, &high, &low, &again] {
+        assert!(holds(surface, &before));
+    }
+    // What changes no triangle's meaning changes no id.
+    let mut tagged = with_scab(3.0).0;
+    tagged.edit(|edit| {
+        edit.set_tag(TriangleId(0), SurfaceTag::new(SurfaceKind::Stone))
+            .unwrap();
+        edit.remove_triangle(TriangleId(1)).unwrap();
+    });
+    assert_eq!(tagged.mesh().id(), high.mesh().id());
+    assert!(holds(&tagged, &on_high));
 }

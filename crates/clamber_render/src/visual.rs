@@ -1,5 +1,6 @@
 use clamber_gltf::{Rig, VisualMesh};
-use clamber_render::{Paint, RenderMesh, SkinSource};
+
+use crate::{Paint, RenderMesh, SkinSource};
 
 /// A mesh of a rig, as a renderer takes it.
 #[derive(Clone, Debug)]
@@ -10,7 +11,7 @@ pub struct VisualSource<'a> {
 }
 
 impl VisualSource<'_> {
-    /// For [`Renderer::add_mesh`](clamber_render::Renderer::add_mesh).
+    /// For [`Renderer::add_mesh`](crate::Renderer::add_mesh).
     pub fn source(&self) -> RenderMesh<'_> {
         RenderMesh {
             positions: &self.mesh.positions,
@@ -29,15 +30,14 @@ impl VisualSource<'_> {
 
 /// The visual meshes of a rig for a renderer, in the rig's order: colours of vertices times base colours of
 /// materials, and the look of each surface's kind. A vertex that several materials share has the last one's.
-/// With the features `gltf` and `render`.
 ///
 /// ```no_run
-/// use clamber::render::{Gpu, Renderer};
+/// use clamber_render::{Gpu, Renderer, visual_meshes};
 ///
-/// let rig = clamber::gltf::load("creature.glb")?;
+/// let rig = clamber_gltf::load("creature.glb")?;
 /// let mut renderer = Renderer::new(Gpu::new()?, 640, 360)?;
 /// let mut meshes = Vec::new();
-/// for visual in clamber::visual_meshes(&rig) {
+/// for visual in visual_meshes(&rig) {
 ///     meshes.push(renderer.add_mesh(&visual.source())?);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
