@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 use super::JointTable;
 use super::joint_table::Joint;
 use crate::geometry::{round_up_to_f32, widen};
-use crate::mesh::{JointBalls, Summary};
+use crate::mesh::{JointBall, JointBalls};
 
 /// Axis-aligned, in model space. Empty, `min` above `max`, for a mesh without vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -62,8 +62,8 @@ impl Lost {
 
 fn box_of(balls: &JointBalls, table: &JointTable, lost: &Lost) -> RootBox {
     let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (joint, rest) in &balls.balls {
-        let joint = &table.joints()[joint.index()];
+    for rest in &balls.balls {
+        let joint = &table.joints()[rest.joint.index()];
         let (center, radius) = (
             image(joint, widen(rest.ball.center)),
             radius(joint, rest, lost),
@@ -78,7 +78,7 @@ fn box_of(balls: &JointBalls, table: &JointTable, lost: &Lost) -> RootBox {
     }
 }
 
-fn radius(joint: &Joint, rest: &Summary, lost: &Lost) -> f64 {
+fn radius(joint: &Joint, rest: &JointBall, lost: &Lost) -> f64 {
     let (stretch, shift) = (f64::from(joint.stretch), f64::from(joint.shift));
     let lost = lost.relative * (stretch * f64::from(rest.reach) + shift) + lost.underflow;
     let radius = stretch * f64::from(rest.ball.radius) + lost;
@@ -192,7 +192,7 @@ mod tests {
                 &root_box(&balls, &table),
                 &format!("{case}"),
             );
-            for (_, rest) in &mut balls.balls {
+            for rest in &mut balls.balls {
                 (rest.ball.center, rest.ball.radius) = (mesh.positions()[0], 0.0);
             }
             let nothing = Lost {

@@ -300,6 +300,7 @@ pub(crate) fn check_matrices(
 }
 
 /// False for NaN.
+#[inline]
 fn keeps(matrix: &Affine, radius: f32) -> bool {
     // As all creatures do: three by three products of such numbers, and three more, are less.
     let usual = |x: &f32| x.abs() < USUAL_COORDINATE;

@@ -3,15 +3,25 @@
 
 use glam::Vec3;
 
-use super::summary::{Summarizer, Summary};
+use super::summary::{Summarizer, Summary, reach_of};
 use super::{ColliderMesh, VertexId};
+use crate::geometry::Sphere;
 use crate::rig::JointId;
+
+/// The ball of the vertices that a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointBall {
+    pub(crate) joint: JointId,
+    pub(crate) ball: Sphere,
+    /// The largest distance of a vertex or of the ball's centre from the mesh's origin, rounded up.
+    pub(crate) reach: f32,
+}
 
 /// Rest data for a box around the whole surface.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct JointBalls {
-    /// By ascending joint, of the vertices that it moves, without their weights.
-    pub(crate) balls: Vec<(JointId, Summary)>,
+    /// By ascending joint.
+    pub(crate) balls: Vec<JointBall>,
     /// The most that one vertex has.
     pub(crate) influences: usize,
 }
@@ -31,9 +41,8 @@ impl JointBalls {
         Self {
             balls: moving
                 .map(|(joint, vertices)| {
-                    let mut ball = summarizer.of_vertices(vertices);
-                    ball.spans = Vec::new();
-                    (joint, ball)
+                    let Summary { ball, reach, .. } = summarizer.of_vertices(vertices);
+                    JointBall { joint, ball, reach }
                 })
                 .collect(),
             influences: mesh.max_influences(),
@@ -49,13 +58,20 @@ impl JointBalls {
     pub(super) fn hold(&mut self, position: Vec3, joints: impl ExactSizeIterator<Item = JointId>) {
         self.influences = self.influences.max(joints.len());
         for joint in joints {
-            match self.balls.binary_search_by_key(&joint, |(known, _)| *known) {
-                Ok(place) => self.balls[place].1.hold(position),
-                Err(place) => {
-                    let ball = Summary::default().bound(&[position]);
-                    self.balls.insert(place, (joint, ball));
-                }
-            }
+            let place = self.balls.binary_search_by_key(&joint, |known| known.joint);
+            let place = place.unwrap_or_else(|place| {
+                let ball = Sphere {
+                    center: position,
+                    radius: 0.0,
+                };
+                let reach = 0.0;
+                self.balls.insert(place, JointBall { joint, ball, reach });
+                place
+            });
+            let JointBall { ball, reach, .. } = &mut self.balls[place];
+            let grown = Sphere::around(ball.center, [position].into_iter());
+            ball.radius = ball.radius.max(grown.radius);
+            *reach = reach.max(reach_of(position));
         }
     }
 }

@@ -22,10 +22,9 @@ pub(crate) use collider::check_matrices;
 pub use collider::{ColliderMesh, IslandId, Part, PartId, TriangleId, VertexId};
 pub(crate) use edit::Reclustered;
 pub use error::{MeshError, PaletteError};
-pub(crate) use joint_balls::JointBalls;
+pub(crate) use joint_balls::{JointBall, JointBalls};
 pub use lineage::MeshId;
 #[cfg(test)]
 pub(crate) use summary::Summarizer;
-pub(crate) use summary::Summary;
 pub use tag::{SurfaceKind, SurfaceTag};
 pub use weights::{Influence, normalize_influences};

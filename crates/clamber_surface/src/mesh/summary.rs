@@ -94,13 +94,6 @@ impl Summary {
         self
     }
 
-    /// Grows a bounded ball so as to hold one more vertex. Its centre stays where it is.
-    pub(crate) fn hold(&mut self, position: Vec3) {
-        let grown = Sphere::around(self.ball.center, [position].into_iter());
-        self.ball.radius = self.ball.radius.max(grown.radius);
-        self.reach = self.reach.max(reach_of(position));
-    }
-
     /// How much each joint moves the vertices, by ascending joint.
     pub(crate) fn intervals(&self) -> Vec<WeightInterval> {
         let mut spans = self.spans.clone();
@@ -131,7 +124,8 @@ impl Summary {
 }
 
 /// At least the distance from the mesh's origin.
-fn reach_of(position: Vec3) -> f32 {
+/// The distance of a rest position from the mesh's origin, rounded up.
+pub(super) fn reach_of(position: Vec3) -> f32 {
     round_up_to_f32(widen(position).length() * (1.0 + 1e-15))
 }
 

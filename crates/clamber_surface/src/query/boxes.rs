@@ -56,7 +56,7 @@ impl ModelSpace<'_> {
                 let near = broad::near_box(&instance.spheres(poses, node), sides);
                 (near, [0.0; LANES])
             },
-            |cluster, limit| {
+            &mut |cluster, limit| {
                 if posed.visit(cluster) {
                     for triangle in posed.enabled(posed.in_box(sides)) {
                         let [previous, current] = posed.corners(triangle);

@@ -24,17 +24,50 @@ const LONG: f32 = (1u64 << 60) as f32;
 /// One bit a lane.
 pub(super) type LaneMask = u8;
 
+#[inline(always)]
 fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
-    let mut found = 0;
-    for lane in 0..LANES {
-        found |= LaneMask::from(test(lane)) << lane;
+    // Integers as wide as the numbers compared: else the compiler takes vectors apart.
+    let mut bits = [0u32; LANES];
+    for (lane, bit) in bits.iter_mut().enumerate() {
+        *bit = if test(lane) { 1 << lane } else { 0 };
     }
-    found
+    bits.into_iter().fold(0, |found, bit| found | bit) as LaneMask
+}
+
+/// Lanes that hold something within the probe's reach, before it moves.
+pub(super) fn near<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> LaneMask {
+    let (distance_sq, lost) = from_core(spheres, probe);
+    let mut reach_sq = [0.0; LANES];
+    for lane in 0..LANES {
+        let reach = spheres.radius[lane] + probe.reach + lost[lane];
+        reach_sq[lane] = reach * reach * (1.0 + SLACK);
+    }
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must touch")]
+    lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
 }
 
 /// Per lane at most the distance from a probe's core, before it moves, to what the sphere holds; 0 of capsules for all that
 /// are [`LONG`] away or beside a segment that long, since where a product overflows, any place along it may come out.
 pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> [f32; LANES] {
+    let (distance_sq, lost) = from_core(spheres, probe);
+    let mut found = [0.0; LANES];
+    for (lane, found) in found.iter_mut().enumerate() {
+        let apart = distance_sq[lane].sqrt();
+        let apart = if apart < SQUARE_OVERFLOWS {
+            apart
+        } else {
+            SQUARE_OVERFLOWS
+        };
+        let gap = apart * (1.0 - SLACK) - spheres.radius[lane] * (1.0 + SLACK) - lost[lane];
+        *found = if gap > 0.0 { gap } else { 0.0 };
+    }
+    found
+}
+
+/// Squares of the distances of centres from a probe's core, before it moves, and what rounding may have added to the
+/// distances: infinity from [`LONG`] on.
+#[inline(always)]
+fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANES], [f32; LANES]) {
     let [a, b] = probe.segment();
     let axis = b - a;
     let length_sq = axis.length_squared();
@@ -43,16 +76,15 @@ pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> 
     } else {
         0.0
     };
-    let size = axis.x.abs() + axis.y.abs() + axis.z.abs();
-    let mut found = [0.0; LANES];
-    for (lane, found) in found.iter_mut().enumerate() {
+    let size = taxicab(axis);
+    let [mut distance_sq, mut lost] = [[0.0; LANES]; 2];
+    for lane in 0..LANES {
         let mut dx = spheres.x[lane] - a.x;
         let mut dy = spheres.y[lane] - a.y;
         let mut dz = spheres.z[lane] - a.z;
-        let mut lost = 0.0;
         if N == 2 {
             let apart = dx.abs() + dy.abs() + dz.abs() + size;
-            lost = SLACK * if apart < LONG { apart } else { f32::INFINITY };
+            lost[lane] = SLACK * if apart < LONG { apart } else { f32::INFINITY };
             let along = (dx * axis.x + dy * axis.y + dz * axis.z) * inverse;
             let along = if along > 0.0 { along } else { 0.0 };
             let along = if along < 1.0 { along } else { 1.0 };
@@ -61,21 +93,14 @@ pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> 
             dy -= axis.y * along;
             dz -= axis.z * along;
         }
-        let apart = (dx * dx + dy * dy + dz * dz).sqrt();
-        let apart = if apart < SQUARE_OVERFLOWS {
-            apart
-        } else {
-            SQUARE_OVERFLOWS
-        };
-        let gap = apart * (1.0 - SLACK) - spheres.radius[lane] * (1.0 + SLACK) - lost;
-        *found = if gap > 0.0 { gap } else { 0.0 };
+        distance_sq[lane] = dx * dx + dy * dy + dz * dz;
     }
-    found
+    (distance_sq, lost)
 }
 
 /// Lanes no farther than `reach`.
-pub(super) fn within(distances: &[f32; LANES], reach: f64) -> LaneMask {
-    lanes(|lane| f64::from(distances[lane]) <= reach)
+pub(super) fn within(distances: &[f32; LANES], reach: f32) -> LaneMask {
+    lanes(|lane| distances[lane] <= reach)
 }
 
 /// Lanes whose sphere a ray meets within `limit`, and per lane at most the distance along the ray to

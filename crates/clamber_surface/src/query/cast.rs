@@ -250,7 +250,7 @@ impl Instance {
             self.mesh.hierarchy(),
             1.0,
             |node, limit| broad::along(&self.spheres(poses, node), sweep, round_up_to_f32(limit)),
-            |cluster, mut limit| {
+            &mut |cluster, mut limit| {
                 if !posed.visit(cluster) {
                     return Some(limit);
                 }

@@ -6,7 +6,7 @@ use super::instance::Instance;
 use super::probe::{BLUR, Probe, with_probe};
 use super::traverse::traverse;
 use super::{CapsuleHit, ModelSpace, SurfaceHit, broad, length, root};
-use crate::geometry::Capsule;
+use crate::geometry::{Capsule, round_up_to_f32};
 
 impl ModelSpace<'_> {
     /// The material point nearest to `point`, no farther than `max_distance`. Of a point that is not finite there is
@@ -44,11 +44,11 @@ impl Instance {
             self.mesh.hierarchy(),
             reach + blur,
             |node, limit| {
-                let [spheres] = self.spheres([&self.current], node);
+                let spheres = self.current.spheres(&self.mesh, node);
                 let distances = broad::distances(&spheres, probe);
-                (broad::within(&distances, limit), distances)
+                (broad::within(&distances, round_up_to_f32(limit)), distances)
             },
-            |cluster, limit| {
+            &mut |cluster, limit| {
                 if !posed.visit(cluster) {
                     return Some(limit);
                 }

@@ -7,6 +7,7 @@ use super::probe::{Probe, with_probe};
 use super::traverse::traverse;
 use super::{ModelSpace, SurfaceHit, broad, root};
 use crate::geometry::Capsule;
+use crate::mesh::hierarchy::LANES;
 
 impl ModelSpace<'_> {
     /// Every triangle within the capsule, each with its own point closest to the capsule's segment,
@@ -39,12 +40,11 @@ impl Instance {
         traverse::<false>(
             self.mesh.hierarchy(),
             reach,
-            |node, limit| {
-                let [spheres] = self.spheres([&self.current], node);
-                let distances = broad::distances(&spheres, probe);
-                (broad::within(&distances, limit), distances)
+            |node, _| {
+                let spheres = self.current.spheres(&self.mesh, node);
+                (broad::near(&spheres, &reaching), [0.0; LANES])
             },
-            |cluster, limit| {
+            &mut |cluster, limit| {
                 if !posed.visit(cluster) {
                     return Some(limit);
                 }

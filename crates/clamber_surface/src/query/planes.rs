@@ -44,28 +44,51 @@ impl<const P: usize> Planes<P> {
             .map(|v| v.abs().max_element())
             .into_iter()
             .fold(radius, f32::max);
-        let limit = |normal: Vec3, ends: [Vec3; 2]| {
-            let core = f32::max(normal.dot(ends[0]), normal.dot(ends[1]));
-            // The last term is for products that underflow.
-            let limit = core + radius + SLACK * size + f32::MIN_POSITIVE;
-            if size < LARGEST { limit } else { f32::INFINITY }
-        };
-        let first = normals.map(|normal| limit(normal, [Vec3::ZERO, axis]));
-        let last = normals.map(|normal| limit(normal, [motions[0], axis + motions[1]]));
-        let mut limits = [first; P];
-        if P == 1 {
-            for (limit, last) in limits[0].iter_mut().zip(last) {
-                *limit = limit.max(last);
-            }
+        // The last term is for products that underflow.
+        let beside = radius + SLACK * size + f32::MIN_POSITIVE;
+        let beside = if size < LARGEST {
+            beside
         } else {
+            f32::INFINITY
+        };
+        let (start, end) = ([0.0; PLANES], along(&normals, motions[0]));
+        let (mut first, mut last) = (start, end);
+        if N == 2 {
+            first = larger(start, along(&normals, axis));
+            last = larger(end, along(&normals, axis + motions[1]));
+        }
+        let mut limits = [if P == 1 { larger(first, last) } else { first }; P];
+        if P == 2 {
             limits[P - 1] = last;
+        }
+        for limit in limits.as_flattened_mut() {
+            *limit += beside;
         }
         Self {
             origin: origin.to_array(),
-            normals: std::array::from_fn(|axis| normals.map(|normal| normal[axis])),
+            normals,
             limits,
         }
     }
+}
+
+/// How far a vector goes along each normal.
+#[inline(always)]
+fn along(normals: &[[f32; PLANES]; 3], v: Vec3) -> [f32; PLANES] {
+    let mut found = [0.0; PLANES];
+    for (plane, found) in found.iter_mut().enumerate() {
+        *found = normals[0][plane] * v.x + normals[1][plane] * v.y + normals[2][plane] * v.z;
+    }
+    found
+}
+
+#[inline(always)]
+fn larger(a: [f32; PLANES], b: [f32; PLANES]) -> [f32; PLANES] {
+    let mut found = a;
+    for (found, b) in found.iter_mut().zip(b) {
+        *found = if *found > b { *found } else { b };
+    }
+    found
 }
 
 /// From the core to the target where they are nearest, about: any direction will do.
@@ -92,20 +115,26 @@ fn share(numerator: f64, denominator: f64) -> f64 {
     }
 }
 
-/// Unit vectors about one: itself, and others that are tilted away from it.
-fn about(facing: Vec3) -> [Vec3; PLANES] {
+/// Unit vectors about one, by coordinate: itself, and others that are tilted away from it.
+fn about(facing: Vec3) -> [[f32; PLANES]; 3] {
     let (across, up) = facing.any_orthonormal_pair();
-    let tilted = |[cos, sin]: [f32; 2], aside: Vec3| facing * cos + aside * sin;
-    let slanted = |x: f32, y: f32| across * x + up * y;
     let half_root_3 = 0.866_025_4;
-    [
-        facing,
-        tilted(NEAR, across),
-        tilted(NEAR, -across),
-        tilted(NEAR, up),
-        tilted(NEAR, -up),
-        tilted(FAR, up),
-        tilted(FAR, slanted(half_root_3, -0.5)),
-        tilted(FAR, slanted(-half_root_3, -0.5)),
-    ]
+    // Along itself, across and up.
+    let parts = [
+        [1.0, 0.0, 0.0],
+        [NEAR[0], NEAR[1], 0.0],
+        [NEAR[0], -NEAR[1], 0.0],
+        [NEAR[0], 0.0, NEAR[1]],
+        [NEAR[0], 0.0, -NEAR[1]],
+        [FAR[0], 0.0, FAR[1]],
+        [FAR[0], half_root_3 * FAR[1], -0.5 * FAR[1]],
+        [FAR[0], -half_root_3 * FAR[1], -0.5 * FAR[1]],
+    ];
+    let mut normals = [[0.0; PLANES]; 3];
+    for (axis, normals) in normals.iter_mut().enumerate() {
+        for (normal, [along, aside, above]) in normals.iter_mut().zip(parts) {
+            *normal = facing[axis] * along + across[axis] * aside + up[axis] * above;
+        }
+    }
+    normals
 }

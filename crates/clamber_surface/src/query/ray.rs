@@ -81,10 +81,10 @@ impl Instance {
             self.mesh.hierarchy(),
             limit,
             |node, limit| {
-                let [spheres] = self.spheres([&self.current], node);
+                let spheres = self.current.spheres(&self.mesh, node);
                 broad::along_ray(&spheres, ray, round_up_to_f32(limit))
             },
-            |cluster, mut limit| {
+            &mut |cluster, mut limit| {
                 if !posed.visit(cluster) {
                     return Some(limit);
                 }

@@ -13,85 +13,52 @@ pub(super) fn traverse<const NEAREST_FIRST: bool>(
     hierarchy: &Hierarchy,
     mut limit: f64,
     mut bounds: impl FnMut(u32, f64) -> (LaneMask, [f32; LANES]),
-    mut leaf: impl FnMut(u32, f64) -> Option<f64>,
+    leaf: &mut dyn FnMut(u32, f64) -> Option<f64>,
 ) {
-    let mut stack = Stack::<NEAREST_FIRST>::new();
+    // Nodes and clusters still to be visited, with their keys where those matter; a mesh whose hierarchy asks for more
+    // room was not built. No struct: the count stays in a register so, and keys that nobody reads cost nothing.
+    let (mut children, mut keys) = ([0; STACK], [0.0f32; STACK]);
     for root in std::iter::once(0).chain(hierarchy.further_roots()) {
-        stack.push((0.0, Child::Node(root).packed()));
-        while let Some((key, child)) = stack.pop() {
+        children[0] = Child::Node(root).packed();
+        if NEAREST_FIRST {
+            keys[0] = 0.0;
+        }
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
             // What is as far as the best one stays: it may have a smaller id.
-            if NEAREST_FIRST && f64::from(key) > limit {
+            if NEAREST_FIRST && f64::from(keys[count]) > limit {
                 continue;
             }
-            match Child::unpacked(child) {
+            let index = match Child::unpacked(children[count]) {
+                Child::Node(index) => index,
                 Child::Cluster(cluster) => match leaf(cluster, limit) {
-                    Some(nearer) => limit = nearer,
+                    Some(nearer) => {
+                        limit = nearer;
+                        continue;
+                    }
                     None => return,
                 },
-                Child::Node(index) => {
-                    let node = &hierarchy.nodes[index as usize];
-                    let (near, keys) = bounds(index, limit);
-                    let near = near & node.lane_mask();
-                    let first = stack.count;
-                    for lane in each_lane(near) {
-                        let child = node.children[lane];
-                        if NEAREST_FIRST {
-                            stack.insert(first, (keys[lane], child));
-                        } else {
-                            stack.push((0.0, child));
-                        }
+            };
+            let node = &hierarchy.nodes[index as usize];
+            let (near, child_keys) = bounds(index, limit);
+            let first = count;
+            for lane in each_lane(near & node.lane_mask()) {
+                let mut place = count;
+                if NEAREST_FIRST {
+                    // Below those of smaller keys, which are visited before it.
+                    let key = child_keys[lane];
+                    while place > first && keys[place - 1].total_cmp(&key).is_lt() {
+                        keys[place] = keys[place - 1];
+                        children[place] = children[place - 1];
+                        place -= 1;
                     }
+                    keys[place] = key;
                 }
+                children[place] = node.children[lane];
+                count += 1;
             }
         }
-    }
-}
-
-/// Nodes and clusters still to be visited, with their keys where those matter. A mesh whose hierarchy asks for more
-/// room was not built.
-struct Stack<const WITH_KEYS: bool> {
-    /// Two arrays: the compiler drops the keys where they are not read.
-    keys: [f32; STACK],
-    children: [u32; STACK],
-    count: usize,
-}
-
-impl<const WITH_KEYS: bool> Stack<WITH_KEYS> {
-    fn new() -> Self {
-        Self {
-            keys: [0.0; STACK],
-            children: [0; STACK],
-            count: 0,
-        }
-    }
-
-    fn push(&mut self, (key, child): (f32, u32)) {
-        self.keys[self.count] = key;
-        self.children[self.count] = child;
-        self.count += 1;
-    }
-
-    /// Pushes below the entries from `first` on that have smaller keys, which are so popped before it.
-    fn insert(&mut self, first: usize, (key, child): (f32, u32)) {
-        let mut place = self.count;
-        while place > first && self.keys[place - 1].total_cmp(&key).is_lt() {
-            self.keys[place] = self.keys[place - 1];
-            self.children[place] = self.children[place - 1];
-            place -= 1;
-        }
-        self.keys[place] = key;
-        self.children[place] = child;
-        self.count += 1;
-    }
-
-    fn pop(&mut self) -> Option<(f32, u32)> {
-        self.count = self.count.checked_sub(1)?;
-        let key = if WITH_KEYS {
-            self.keys[self.count]
-        } else {
-            0.0
-        };
-        Some((key, self.children[self.count]))
     }
 }
 
