@@ -88,7 +88,7 @@ impl Field {
         cells.push(
             &format!("{name}: sweep / cast"),
             sweep / cast,
-            Bound::Most(3.0),
+            Bound::Least(1.3),
         );
         cells.value(&format!("{name}: cast, first of its tick, us"), first_cast);
         cells.value(

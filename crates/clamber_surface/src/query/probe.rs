@@ -181,6 +181,7 @@ impl<const N: usize> Sweep<N> {
     }
 
     /// The box around all that it reaches on its way, rounded outwards.
+    #[inline]
     pub(super) fn bounds(&self) -> [[f32; 3]; 2] {
         let origin = widen(self.core.origin);
         let ends = self.core.start.iter().chain(&self.core.end);
