@@ -32,7 +32,8 @@ impl Obstacle for Ball {
         // A ball that moves straight on: the smaller root of a quadratic.
         let (from, way) = (capsule.ends[0] - self.0, displacements[0]);
         let (a, b) = (way.length_squared(), from.dot(way));
-        let c = from.length_squared() - (1.0 + capsule.radius).powi(2);
+        let reach = 1.0 + capsule.radius;
+        let c = from.length_squared() - reach * reach;
         let time = (-b - (b * b - a * c).sqrt()) / a;
         let mut found = Vec::new();
         self.overlap_capsule(

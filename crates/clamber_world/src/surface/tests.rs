@@ -6,7 +6,7 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
-use crate::{Obstacle, TargetMotion, WorldCapsule};
+use crate::{MaterialPoint, Obstacle, TargetMotion, WorldCapsule};
 
 /// A level square of side 2 around the model's origin, on one joint.
 fn square() -> SkinnedSurface {
