@@ -340,7 +340,7 @@ fn casts_and_sweeps() {
     let travelled = moving.iter().map(|[a, b]| (a[0] - b[0]).length());
     assert!(travelled.fold(0.0, f64::max) > 0.1);
     let mut random = Random(3);
-    let mut found = [0; 4];
+    let (mut found, mut apart) = ([0; 4], 0);
     for case in 0..400 {
         let [a, b] = [random.vector(3.0), random.vector(3.0)].map(|p| p.as_vec3());
         let b = a + (b - a) * 0.2;
@@ -398,8 +398,21 @@ fn casts_and_sweeps() {
         for (count, hit) in found.iter_mut().zip(&hits) {
             *count += usize::from(hit.is_some());
         }
+        for hit in hits[..2]
+            .iter()
+            .flatten()
+            .filter(|hit| hit.hit.distance > 0.01)
+        {
+            let center = sphere(hit.time.into()).as_vec3();
+            let aside = (center - hit.hit.point).normalize();
+            let off = (aside - hit.separation_normal).length();
+            assert!(off < 2e-3, "{case}: {aside} {hit:?}");
+            // The skin's own: they differ beside edges and on the inside.
+            apart += usize::from(aside.dot(hit.hit.normal) < 0.99);
+        }
     }
-    println!("hits: {found:?} of 400");
+    println!("hits: {found:?} of 400, {apart} aside");
+    assert!(apart > 20, "{apart}");
     assert!(found.iter().all(|count| *count > 40), "{found:?}");
 }
 

@@ -51,6 +51,9 @@ impl MoverMemory {
     }
 }
 
+/// Half of a ray from whose length on it counts as endless, metres.
+const LONGEST: f64 = 1e150;
+
 /// One tick's view of the world, through which a body is moved and looks around.
 ///
 /// Obstacles already stand where they are at the tick's end. Nothing here remembers anything from one call to the next
@@ -224,13 +227,14 @@ impl<'a> Mover<'a> {
     pub fn cast_ray(&mut self, origin: DVec3, direction: DVec3, length: f64) -> Option<Touch> {
         let direction = direction.try_normalize()?;
         let half = length * 0.5;
-        // An endless ray has no middle.
-        let middle = if half < f64::INFINITY {
-            origin + direction * half
+        // An endless ray has no middle, and neither has one whose squares overflow.
+        let (middle, reach) = if half < LONGEST {
+            (origin + direction * half, half)
         } else {
-            origin
+            (origin, half + f64::INFINITY)
         };
-        let near = self.memory.surroundings.near(self.obstacles, middle, half);
+        let surroundings = &mut self.memory.surroundings;
+        let near = surroundings.near(self.obstacles, middle, reach);
         let mut first: Option<Touch> = None;
         for (id, obstacle) in near {
             let Some(contact) = obstacle.cast_ray(origin, direction, length) else {
@@ -245,6 +249,10 @@ impl<'a> Mover<'a> {
                     swept: true,
                 });
             }
+        }
+        if reach == f64::INFINITY {
+            // Else everything was near for the rest of the tick.
+            surroundings.forget();
         }
         first
     }

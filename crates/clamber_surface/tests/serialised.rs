@@ -8,9 +8,12 @@
 )]
 
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::mesh::{IslandId, MeshId, PartId, TriangleId, VertexId};
-use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, IslandId, MeshSource, PartId, SurfaceKind, SurfaceTag,
+    TriangleId, VertexId,
+};
 use clamber_surface::rig::{Joint, JointId, Palette, Playback, Pose, Skeleton, Transform};
+use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use serde_json::{from_str, json, to_string};
 
@@ -69,9 +72,51 @@ fn maps_and_poses_keep_every_bit() {
 #[test]
 fn ids_and_tags_stay() {
     assert_stays(&(JointId(u32::MAX), VertexId(1), TriangleId(2), PartId(3)));
-    assert_stays(&(IslandId(4), MeshId::default(), Playback::Loop));
+    assert_stays(&(IslandId(4), Playback::Loop));
     let tag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
     assert_stays(&tag.with_user(u32::MAX));
+}
+
+#[test]
+fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
+    let made = || {
+        let source = MeshSource {
+            positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
+            triangles: &[[0, 1, 2]],
+            influences: &[Influence {
+                joint: JointId(0),
+                weight: 1.0,
+            }; 3],
+            joint_count: 1,
+            ..MeshSource::default()
+        };
+        let (mesh, _) = ColliderMesh::build(&source, &BuildOptions::default()).unwrap();
+        let mut surface = SkinnedSurface::new(mesh.into());
+        let added = surface.edit(|edit| {
+            let tip = edit.add_vertex(Vec3::Z, source.influences.split_at(1).0)?;
+            edit.add_triangle([VertexId(0), VertexId(1), tip], SurfaceTag::default())
+        });
+        (surface, added.unwrap())
+    };
+    let (surface, added) = made();
+    let on_added = surface.anchor(added, [0.25, 0.25, 0.5]).unwrap();
+    let on_built = surface.anchor(TriangleId(0), [0.25, 0.25, 0.5]).unwrap();
+    assert_ne!(on_added.mesh, on_built.mesh);
+    let (again, _) = made();
+    for anchor in [on_added, on_built] {
+        assert_stays(&anchor);
+        let read: Anchor = from_str(&to_string(&anchor).unwrap()).unwrap();
+        let moved = again.in_model().motion(&read, 0.1).unwrap();
+        let expected = surface.in_model().motion(&anchor, 0.1).unwrap();
+        assert_eq!(moved.position, expected.position);
+        // Each half of the id counts.
+        for half in ["added", "fingerprint"] {
+            let mut written = serde_json::to_value(anchor).unwrap();
+            written["mesh"][half] = json!(7);
+            let other: Anchor = serde_json::from_value(written).unwrap();
+            assert!(again.in_model().motion(&other, 0.1).is_err(), "{half}");
+        }
+    }
 }
 
 /// Of two joints: one that is posed by a skeleton knows where its joints are.

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 0.02;
 
 /// Something fixed to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
 ///
-/// A small plain value that survives any deformation. [`Attachment::follow`] it once a tick; [`Attachment::place`] is
+/// A small plain value that survives any deformation. [`Attachment::follow`] it once a tick; [`Attachment::position`] is
 /// where the attached thing is then.
 ///
 /// ```

@@ -47,17 +47,15 @@ impl MaterialPoint {
         u32::try_from(self.key).ok().map(TriangleId)
     }
 
-    /// What sticks to this point of a surface: an arrow in the foot of a climber's hold. `None` if the surface has no such
-    /// triangle, or no longer. A point does not tell which surface it is of: ask the one of its [`Contact`]'s obstacle.
+    /// What sticks to this point of a surface, as it is posed now: a splinter where a foot stands. `None` if the surface has
+    /// no such triangle, or no longer, or if the weights are none. A point does not tell which surface it is of: ask the
+    /// one that its contact was found on.
     pub fn anchor_on(&self, surface: &SkinnedSurface) -> Option<Anchor> {
-        let triangle = self.triangle()?;
-        surface.mesh().part_of(triangle)?;
-        Some(Anchor {
-            mesh: surface.mesh().id(),
-            triangle,
-            barycentric: self.coordinates.map(|weight| weight as f32),
-            frame: Quat::IDENTITY,
-        })
+        surface.anchor(self.triangle()?, self.weights()).ok()
+    }
+
+    fn weights(&self) -> [f32; 3] {
+        self.coordinates.map(|weight| weight as f32)
     }
 }
 
@@ -113,10 +111,17 @@ impl Obstacle for SkinnedSurface {
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
-        if !self.is_enabled(point.triangle()?) {
+        let triangle = point.triangle()?;
+        if !self.is_enabled(triangle) {
             return None;
         }
-        let anchor = point.anchor_on(self)?;
+        // Its frame is asked for only where the skin has one.
+        let anchor = Anchor {
+            mesh: self.mesh().id(),
+            triangle,
+            barycentric: point.weights(),
+            frame: Quat::IDENTITY,
+        };
         let motion = self.in_world().motion(&anchor, dt).ok()?;
         let spin = motion.angular_velocity * dt;
         let angle = spin.length();

@@ -77,7 +77,7 @@ impl Bow<'_, '_> {
         else {
             return;
         };
-        let Some(anchor) = there.anchor() else {
+        let Ok(anchor) = there.anchor() else {
             return;
         };
         let rotation = Quat::from_rotation_arc(Vec3::Y, -*direction);

@@ -105,8 +105,8 @@ fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports
     });
     let lost = lost.unwrap_or_else(|| panic!("{told}, {on:?}: not lost in a tick: {events:?}"));
     assert_eq!(
-        (lost.obstacle, lost.point),
-        (held.obstacle, held.point),
+        (lost.obstacle, lost.material),
+        (held.obstacle, held.material),
         "{told}, {on:?}: what was lost"
     );
     let all: Vec<_> = events.into_iter().copied().collect();
@@ -297,8 +297,8 @@ fn events_carry_the_attachment_that_was_lost() {
                     seen[index] = true;
                     let from = from.unwrap_or_else(|| panic!("{on:?} {way} tick {k}: {event:?}"));
                     assert_eq!(
-                        (from.obstacle, from.point),
-                        (held.obstacle, held.point),
+                        (from.obstacle, from.material),
+                        (held.obstacle, held.material),
                         "{on:?} {way} tick {k}: {event:?}"
                     );
                 }

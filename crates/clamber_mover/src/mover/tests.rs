@@ -67,7 +67,7 @@ fn an_endless_ray_meets_what_is_far_along_any_axis() {
             let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(3), &ball)];
             let mut memory = MoverMemory::default();
             let mut mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();
-            for length in [f64::INFINITY, f64::MAX, 2.0 * distance] {
+            for length in [f64::INFINITY, f64::MAX, 1e160, 1e200, 2.0 * distance] {
                 let met = mover.cast_ray(DVec3::ZERO, direction, length);
                 let off = met.map(|met| met.contact.distance - (distance - 1.0));
                 let is_there = off.is_some_and(|off| off.abs() < 1e-5);

@@ -103,6 +103,11 @@ impl ColliderMesh {
         self.lineage.id()
     }
 
+    /// Which mesh it was when a triangle was added, or built: what a hit on it carries.
+    pub(crate) fn id_of(&self, triangle: TriangleId) -> MeshId {
+        self.lineage.id_of(triangle)
+    }
+
     /// True if what was found on a mesh of this id means the same here: it is this mesh, or what it was before it was
     /// edited.
     pub fn continues(&self, id: MeshId) -> bool {

@@ -88,7 +88,8 @@ impl ColliderMesh {
         let position = vertex.position.to_array().map(f32::to_bits);
         let influences = vertex.influences.iter();
         let influences = influences.flat_map(|(joint, units)| [joint.0, *units]);
-        self.lineage.add(position.into_iter().chain(influences));
+        self.lineage
+            .add_vertex(position.into_iter().chain(influences));
         let joints = vertex.influences.iter().map(|(joint, _)| *joint);
         self.joint_balls.hold(vertex.position, joints);
         self.clusters.loose.push(id);
@@ -126,7 +127,7 @@ impl ColliderMesh {
             });
             self.parts.len() - 1
         });
-        self.lineage.add(corners.iter().map(|corner| corner.0));
+        self.lineage.add_triangle(corners);
         self.triangles.push(corners);
         self.tags.push(tag);
         self.parts[part].triangles.push(id);

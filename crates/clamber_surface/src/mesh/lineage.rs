@@ -1,11 +1,11 @@
-use super::ColliderMesh;
+use super::{ColliderMesh, TriangleId, VertexId};
 
 /// Which mesh: a fingerprint of its positions, influences and triangles as they were built, and of each vertex and
 /// triangle that was added since. The same wherever the same is built and added in the same order; tags do not count.
 ///
-/// Hits and anchors carry it, so that what belongs to one creature is not taken for a point of another. What was found
-/// before an edit still holds after it, on every copy that goes on from there; what was found after it holds only where
-/// the same was added.
+/// Hits and anchors carry that of the mesh as it was when their triangle was added, so that what belongs to one creature
+/// is not taken for a point of another: a point on a triangle that was built holds on every copy, however it is edited;
+/// one on a triangle that an edit added holds where the same was added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshId {
@@ -19,6 +19,10 @@ pub struct MeshId {
 pub(super) struct Lineage {
     /// As it was built, and after each vertex and triangle that was added.
     fingerprints: Vec<u64>,
+    /// How many triangles were built.
+    built: usize,
+    /// Of each triangle that was added, which fingerprint followed.
+    added: Vec<u64>,
 }
 
 impl Lineage {
@@ -32,13 +36,27 @@ impl Lineage {
         let words = words.chain(mesh.triangles.iter().flatten().map(|corner| corner.0));
         Self {
             fingerprints: vec![fold(0xcbf2_9ce4_8422_2325, words)],
+            built: mesh.triangles.len(),
+            added: Vec::new(),
         }
     }
 
     pub(super) fn id(&self) -> MeshId {
+        self.id_after(self.fingerprints.len().saturating_sub(1) as u64)
+    }
+
+    /// The mesh's id when a triangle was added, or built.
+    pub(super) fn id_of(&self, triangle: TriangleId) -> MeshId {
+        let added = triangle.index().checked_sub(self.built);
+        let added = added.and_then(|added| self.added.get(added));
+        self.id_after(added.copied().unwrap_or_default())
+    }
+
+    fn id_after(&self, added: u64) -> MeshId {
+        let fingerprint = self.fingerprints.get(added as usize);
         MeshId {
-            added: self.fingerprints.len().saturating_sub(1) as u64,
-            fingerprint: self.fingerprints.last().copied().unwrap_or_default(),
+            added,
+            fingerprint: fingerprint.copied().unwrap_or_default(),
         }
     }
 
@@ -48,13 +66,18 @@ impl Lineage {
         added.and_then(|added| self.fingerprints.get(added)) == Some(&id.fingerprint)
     }
 
-    /// A vertex or a triangle was added.
-    pub(super) fn add(&mut self, words: impl Iterator<Item = u32>) {
-        self.fingerprints.push(fold(self.id().fingerprint, words));
+    pub(super) fn add_vertex(&mut self, words: impl Iterator<Item = u32>) {
+        let next = fold(self.id().fingerprint, words);
+        self.fingerprints.push(next);
+    }
+
+    pub(super) fn add_triangle(&mut self, corners: [VertexId; 3]) {
+        self.add_vertex(corners.iter().map(|corner| corner.0));
+        self.added.push(self.id().added);
     }
 
     pub(super) fn memory(&self) -> usize {
-        size_of_val(&self.fingerprints[..])
+        size_of_val(&self.fingerprints[..]) + size_of_val(&self.added[..])
     }
 }
 

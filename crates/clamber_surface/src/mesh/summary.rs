@@ -123,7 +123,6 @@ impl Summary {
     }
 }
 
-/// At least the distance from the mesh's origin.
 /// The distance of a rest position from the mesh's origin, rounded up.
 pub(super) fn reach_of(position: Vec3) -> f32 {
     round_up_to_f32(widen(position).length() * (1.0 + 1e-15))

@@ -1,8 +1,7 @@
 //! A query against the eight spheres of a node, in f32.
 //!
 //! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and
-//! written so that NaN and infinity, from coordinates whose squares overflow, touch. Squares that
-//! underflow do no harm, since every sphere has a radius of at least 2^-56.
+//! written so that NaN touches, and an infinity that says nothing of what is near. Squares that underflow do no harm, since every sphere has a radius of at least 2^-56.
 
 use glam::Vec3;
 

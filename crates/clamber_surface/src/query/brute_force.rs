@@ -120,7 +120,7 @@ impl<'a> BruteForce<'a> {
         let mut earliest = Earliest::default();
         let tolerance = options.tolerance_for(capsule, &self.instance.mesh);
         with_probe!(capsule, displacements, probe => {
-            let sweep = Sweep::new(probe, tolerance)?;
+            let sweep = Sweep::new(probe, tolerance?)?;
             self.contacts(&sweep, options.target, |first| earliest.offer(first));
             earliest.hit(self.instance, &sweep)
         })
@@ -137,7 +137,7 @@ impl<'a> BruteForce<'a> {
         hits.clear();
         let tolerance = options.tolerance_for(capsule, &self.instance.mesh);
         with_probe!(capsule, displacements, probe => {
-            if let Some(sweep) = Sweep::new(probe, tolerance) {
+            if let Some(sweep) = tolerance.and_then(|tolerance| Sweep::new(probe, tolerance)) {
                 self.contacts(&sweep, options.target, |first| {
                     hits.extend(self.instance.sweep_hit(&sweep, first));
                 });

@@ -72,11 +72,13 @@ impl CastOptions {
         }
     }
 
-    pub(super) fn tolerance_for(&self, capsule: &Capsule, mesh: &ColliderMesh) -> f32 {
+    /// `None` if it is negative or NaN.
+    pub(super) fn tolerance_for(&self, capsule: &Capsule, mesh: &ColliderMesh) -> Option<f32> {
         let least = mesh.radius() * f32::EPSILON;
         match self.tolerance {
-            Some(tolerance) => tolerance as f32,
-            None => (capsule.radius() * 2.5e-4).max(least),
+            Some(tolerance) if tolerance >= 0.0 => Some(tolerance as f32),
+            Some(_) => None,
+            None => Some((capsule.radius() * 2.5e-4).max(least)),
         }
     }
 }
@@ -136,7 +138,7 @@ impl ModelSpace<'_> {
         counts: Option<&mut dyn FnMut(&SweepHit) -> bool>,
     ) -> Option<SweepHit> {
         let instance = self.instance;
-        let tolerance = options.tolerance_for(capsule, &instance.mesh);
+        let tolerance = options.tolerance_for(capsule, &instance.mesh)?;
         with_probe!(capsule, displacements, probe => {
             let sweep = Sweep::new(probe, tolerance)?;
             if instance.moves(options.target) {
@@ -159,7 +161,9 @@ impl ModelSpace<'_> {
     ) {
         hits.clear();
         let instance = self.instance;
-        let tolerance = options.tolerance_for(capsule, &instance.mesh);
+        let Some(tolerance) = options.tolerance_for(capsule, &instance.mesh) else {
+            return;
+        };
         with_probe!(capsule, displacements, probe => {
             let Some(sweep) = Sweep::new(probe, tolerance) else {
                 return;

@@ -235,7 +235,7 @@ impl Instance {
             .outward_normal(corners, part)
             .unwrap_or_else(|| (widen(origin) - point).try_normalize().unwrap_or(DVec3::Y));
         SurfaceHit {
-            mesh: self.mesh.id(),
+            mesh: self.mesh.id_of(triangle),
             triangle,
             barycentric: round_to_f32(found.barycentric).to_array(),
             point: round_to_f32(point),
@@ -273,7 +273,7 @@ impl Instance {
         let apart = apart.filter(|_| contact.distance > size * ALL_BUT_TOUCHING);
         let normal = apart.or(outward).unwrap_or(DVec3::Y);
         Some(SweepHit {
-            mesh: self.mesh.id(),
+            mesh: self.mesh.id_of(triangle),
             triangle,
             barycentric: round_to_f32(weights).to_array(),
             time: contact.time,

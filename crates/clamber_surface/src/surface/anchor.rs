@@ -44,8 +44,8 @@ impl From<&CapsuleHit> for SurfacePoint {
 
 /// A material point: it stays where it is on the skin, whatever the skin does.
 ///
-/// A small plain value. It is tied to a triangle id, so it holds for every surface that shares the
-/// mesh.
+/// A small plain value. It is tied to a triangle, so it holds for every surface whose mesh has that: see
+/// [`MeshId`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor {
@@ -91,7 +91,7 @@ impl SkinnedSurface {
         let rest = mesh.rest_corners(triangle);
         let frame = material_frame(rest, instance.corners(triangle), matrix);
         Ok(Anchor {
-            mesh: mesh.id(),
+            mesh: mesh.id_of(triangle),
             triangle,
             barycentric,
             frame: rotation_f32(frame.unwrap_or(DQuat::IDENTITY)),

@@ -12,8 +12,7 @@ pub struct Diagnostics {
     pub bounds_evaluated: usize,
     /// Clusters that queries reached.
     pub clusters_touched: usize,
-    /// Clusters that were skinned: the touched ones, or all after a tick that touched nearly everything and after
-    /// [`SkinnedSurface::skin_ahead`].
+    /// Clusters that were skinned: the touched ones, or all after a tick that touched nearly everything.
     pub clusters_skinned: usize,
     /// Clusters of the mesh.
     pub clusters: usize,

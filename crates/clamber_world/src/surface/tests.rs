@@ -3,7 +3,7 @@ use std::sync::Arc;
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
 use clamber_surface::rig::{JointId, Palette};
-use clamber_surface::surface::SkinnedSurface;
+use clamber_surface::surface::{CastOptions, SkinnedSurface};
 use glam::{DVec3, Vec3};
 
 use crate::{MaterialPoint, Obstacle, TargetMotion, WorldCapsule};
@@ -290,4 +290,110 @@ fn capsules_that_are_not_finite_meet_nothing() {
     );
     surface.overlap_capsule(&negative, &mut contacts);
     assert!(contacts.is_empty(), "{contacts:?}");
+}
+
+#[test]
+fn both_spaces_say_the_same() {
+    let (mut surface, before) = placed();
+    let turned = Similarity {
+        rotation: rotation_from_axis_angle(DVec3::X, 0.3) * before.rotation,
+        ..before
+    };
+    let mut bent = Affine::IDENTITY;
+    bent.rows[0][1] = 0.2;
+    surface
+        .advance(&Palette::from_matrices([bent]), turned)
+        .unwrap();
+    let (world, model) = (surface.in_world(), surface.in_model());
+    let scale = turned.scale;
+    assert!((scale - 1.0).abs() > 0.1, "{scale}");
+    let place = |p: Vec3| turned.transform_point_f32(p);
+    let aim = |v: Vec3| turned.rotation * v.as_dvec3();
+    let close = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-5 * scale, "{a} {b}");
+    let above = Vec3::new(0.2, 2.0, 0.1);
+    let displacement = Vec3::new(0.1, -3.0, 0.0);
+    let (rod, radius) = ([above, above + Vec3::X], 0.25f32);
+    let local = clamber_surface::geometry::Capsule::new(rod[0], rod[1], radius).unwrap();
+    let capsule = WorldCapsule {
+        ends: rod.map(place),
+        radius: f64::from(radius) * scale,
+    };
+
+    let found = world.closest_to_capsule(&capsule, 5.0 * scale).unwrap();
+    let expected = model.closest_to_capsule(&local, 5.0).unwrap().surface;
+    close(found.point, place(expected.point));
+    assert!((found.distance - expected.distance * scale).abs() < 1e-5 * scale);
+    assert!(world.closest_to_capsule(&capsule, 0.5 * scale).is_none());
+    assert_eq!(world.is_inside(place(above)), model.is_inside(above));
+
+    let mut hits = vec![found; 3];
+    world.cast_ray_all(place(above), aim(Vec3::NEG_Y), 9.0 * scale, &mut hits);
+    assert_eq!(hits.len(), 1, "cleared first");
+    world.cast_ray_all(DVec3::NAN, DVec3::X, 9.0, &mut hits);
+    assert!(hits.is_empty());
+
+    // From above and from below, to a tolerance that can be seen.
+    for (start, way) in [
+        (above, displacement),
+        (Vec3::new(0.2, -2.0, 0.1), -displacement),
+    ] {
+        let ball = clamber_surface::geometry::Capsule::ball(start, radius).unwrap();
+        for tolerance in [1e-4, 0.1] {
+            let options = CastOptions::STILL.with_tolerance(tolerance);
+            let expected = model.cast_capsule(&ball, [way; 2], &options).unwrap();
+            let options = options.with_tolerance(tolerance * scale);
+            let ball = WorldCapsule::ball(place(start), f64::from(radius) * scale);
+            let ways = [turned.transform_vector(way.as_dvec3()); 2];
+            let found = world.cast_capsule(&ball, ways, &options).unwrap();
+            assert!(
+                (found.time - expected.time).abs() < 1e-5,
+                "{found:?} {expected:?}"
+            );
+            close(found.hit.point, place(expected.point));
+            close(
+                found.separation_normal * scale,
+                aim(expected.separation_normal) * scale,
+            );
+            close(found.hit.normal * scale, aim(expected.normal) * scale);
+            // The skin's own is the same from either side, the other one points to where the ball comes from.
+            let sides = found.separation_normal.dot(found.hit.normal);
+            assert!(
+                sides * f64::from(start.y) * f64::from(expected.normal.y) > 0.9,
+                "{found:?}"
+            );
+        }
+    }
+    // Beside an edge the ball is not above the skin.
+    let aside = Vec3::new(1.2, 1.0, 0.0);
+    let ball = WorldCapsule::ball(place(aside), 0.5 * scale);
+    let down = [turned.transform_vector(DVec3::NEG_Y * 2.0); 2];
+    let found = world
+        .cast_capsule(&ball, down, &CastOptions::STILL)
+        .unwrap();
+    assert!(
+        found.separation_normal.dot(found.hit.normal) < 0.99,
+        "{found:?}"
+    );
+
+    let anchor = surface.anchor_at(&found).unwrap();
+    let (moved, expected) = (
+        world.motion(&anchor, 0.1).unwrap(),
+        model.motion(&anchor, 0.1).unwrap(),
+    );
+    close(moved.position, place(expected.position));
+    close(moved.previous_position, place(expected.previous_position));
+    close(moved.velocity, aim(expected.velocity) * scale);
+    close(moved.angular_velocity, aim(expected.angular_velocity));
+    close(moved.normal, aim(expected.normal));
+    let heading = moved.frame * DVec3::Z;
+    close(
+        heading,
+        turned.rotation * (expected.frame.as_dquat() * DVec3::Z),
+    );
+    assert_eq!(moved.collapsed, expected.collapsed);
+    assert_eq!(
+        (moved.area_ratio, moved.stretches),
+        (expected.area_ratio, expected.stretches)
+    );
+    assert!(moved.angular_velocity.length() > 1.0 && moved.area_ratio > 0.5);
 }

@@ -260,7 +260,7 @@ impl Body {
             };
             let anchor = self.surface.anchor_at(&hit)?;
             let way: Vec3 = self.surface.in_model().motion(&anchor, 1.0)?.velocity;
-            let normal = hit.normal.as_dvec3();
+            let normal = hit.separation_normal.as_dvec3();
             let closing = (way.as_dvec3() - motion).dot(normal);
             if closing <= 0.0 {
                 break;

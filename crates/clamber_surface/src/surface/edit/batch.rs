@@ -10,8 +10,8 @@ use crate::surface::{SkinnedSurface, SurfaceError};
 
 /// Changes of triangles, vertices and tags that belong together; see [`SkinnedSurface::edit`].
 ///
-/// Ids of what was removed are never used again, so endless edits take some 40 bytes for each vertex
-/// and some 20 for each triangle that there ever was.
+/// Ids of what was removed are never used again, so endless edits take some 50 bytes for each vertex
+/// and some 40 for each triangle that there ever was.
 #[derive(Debug)]
 pub struct SurfaceEdit<'a> {
     surface: &'a mut SkinnedSurface,

@@ -10,7 +10,7 @@ use self::model::Model;
 use self::sound::{assert_poses_hold, assert_sound, bits};
 use super::*;
 use crate::SimdLevel;
-use crate::geometry::Similarity;
+use crate::geometry::{Ray, Similarity};
 use crate::mesh::{Influence, SurfaceKind, SurfaceTag, VertexId};
 use crate::rig::JointId;
 use crate::surface::Anchor;
@@ -241,8 +241,17 @@ fn points_hold_on_every_mesh_that_goes_on_from_theirs_and_on_no_other() {
     assert_eq!(on_high.triangle, on_low.triangle);
     assert!(holds(&high, &on_high) && holds(&low, &on_low) && holds(&again, &on_high));
     assert!(!holds(&high, &on_low) && !holds(&low, &on_high) && !holds(&original, &on_high));
+    // What was built means the same on all, whenever it was found.
+    let after = high.anchor(TriangleId(3), [0.2, 0.3, 0.5]).unwrap();
+    let down = Ray::new(Vec3::new(2.05, 5.0, 0.03), Vec3::NEG_Y).unwrap();
+    let hit = high.in_model().cast_ray(&down, 10.0).unwrap();
+    let at_hit = high.anchor_at(&hit).unwrap();
     for surface in [&original, &high, &low, &again] {
-        assert!(holds(surface, &before));
+        assert!(
+            [before, after, at_hit]
+                .iter()
+                .all(|built| holds(surface, built))
+        );
     }
     // What changes no triangle's meaning changes no id.
     let mut tagged = with_scab(3.0).0;
