@@ -109,7 +109,7 @@ fn creatures(effort: &Effort) -> Result<Vec<Creature>, Box<dyn Error>> {
 /// Criterion's part: one tick of each method, over the poses in turn.
 fn measure(criterion: &mut Criterion, subject: &Subject) -> Result<(), Box<dyn Error>> {
     let mut group = criterion.benchmark_group(subject.label());
-    let mut workspace = Workspace::default();
+    let mut workspace = Workspace::new(subject);
     let poses = subject.between()?;
     for method in METHODS {
         let mut turn = poses.iter().cycle();

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use clamber::geometry::Sphere;
+use clamber::geometry::{Similarity, Sphere};
 use clamber::mesh::PartId;
 use clamber::rig::Palette;
 use clamber::skin::skin_into;
+use clamber::surface::SkinnedSurface;
 use clamber_scenes::part_bounds::{BoundingCapsule, BoundingVolume, JointMaps, NodeBounds};
 use glam::Vec3;
 
@@ -19,7 +20,9 @@ pub(crate) enum Source {
     Refitted,
     PaletteHull,
     PaletteInterval,
-    /// The smaller of both.
+    /// As the library bounds parts itself: spheres, eight at a time in f32.
+    Surface,
+    /// Capsules by hull or weight interval, whichever is smaller.
     Palette,
 }
 
@@ -27,8 +30,6 @@ pub(crate) enum Source {
 pub(crate) enum Shape {
     Sphere,
     Capsule,
-    /// Whichever has the smaller volume.
-    Smaller,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,25 +42,45 @@ const fn method(source: Source, shape: Shape) -> Method {
     Method { source, shape }
 }
 
-pub(crate) const METHODS: [Method; 9] = [
+pub(crate) const METHODS: [Method; 8] = [
     method(Source::Precomputed, Shape::Sphere),
     method(Source::Precomputed, Shape::Capsule),
     method(Source::Refitted, Shape::Sphere),
     method(Source::Refitted, Shape::Capsule),
     method(Source::PaletteHull, Shape::Sphere),
     method(Source::PaletteInterval, Shape::Sphere),
-    method(Source::Palette, Shape::Sphere),
+    method(Source::Surface, Shape::Sphere),
     method(Source::Palette, Shape::Capsule),
-    method(Source::Palette, Shape::Smaller),
 ];
 
 /// Memory that ticks use again.
-#[derive(Default)]
 pub(crate) struct Workspace {
+    surface: SkinnedSurface,
     maps: JointMaps,
     positions: Vec<Vec3>,
     /// The result, by part.
     pub(crate) volumes: Vec<Option<BoundingVolume>>,
+}
+
+impl Workspace {
+    pub(crate) fn new(subject: &Subject) -> Self {
+        Self {
+            surface: SkinnedSurface::new(subject.creature.collider.clone()),
+            maps: JointMaps::default(),
+            positions: Vec::new(),
+            volumes: Vec::new(),
+        }
+    }
+
+    /// A tick of the surface, and its spheres.
+    fn ask(&mut self, palette: &Palette) {
+        let advanced = self.surface.advance(palette, Similarity::IDENTITY);
+        assert_eq!(advanced, Ok(()));
+        self.volumes.resize(self.surface.mesh().parts().len(), None);
+        for (part, sphere) in self.surface.in_model().part_spheres() {
+            self.volumes[part.index()] = Some(BoundingVolume::Sphere(sphere));
+        }
+    }
 }
 
 impl Method {
@@ -72,6 +93,7 @@ impl Method {
         match self.source {
             Source::Precomputed => self.place(subject, palette, workspace),
             Source::Refitted => self.refit(subject, palette, workspace),
+            Source::Surface => workspace.ask(palette),
             _ => self.derive(subject, palette, workspace),
         }
     }
@@ -109,12 +131,10 @@ impl Method {
     fn derive(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
         workspace.maps.update(palette);
         let maps = &workspace.maps;
-        let volume = |node: &NodeBounds| match (self.source, self.shape) {
-            (Source::PaletteHull, _) => BoundingVolume::Sphere(node.hull(maps)),
-            (Source::PaletteInterval, _) => BoundingVolume::Sphere(node.weight_interval(maps)),
-            (_, Shape::Sphere) => BoundingVolume::Sphere(node.sphere(maps)),
-            (_, Shape::Capsule) => BoundingVolume::Capsule(node.capsule(maps)),
-            (_, Shape::Smaller) => node.volume(maps),
+        let volume = |node: &NodeBounds| match self.source {
+            Source::PaletteHull => BoundingVolume::Sphere(node.hull(maps)),
+            Source::PaletteInterval => BoundingVolume::Sphere(node.weight_interval(maps)),
+            _ => BoundingVolume::Capsule(node.capsule(maps)),
         };
         let parts = (0..subject.bounds.part_count() as u32).map(PartId);
         let volumes = parts.map(|part| subject.bounds.node(part).map(volume));
@@ -135,6 +155,7 @@ impl fmt::Display for Source {
             Self::Refitted => "refitted",
             Self::PaletteHull => "palette, hull",
             Self::PaletteInterval => "palette, weight interval",
+            Self::Surface => "surface",
             Self::Palette => "palette",
         })
     }
@@ -145,7 +166,6 @@ impl fmt::Display for Shape {
         f.write_str(match self {
             Self::Sphere => "sphere",
             Self::Capsule => "capsule",
-            Self::Smaller => "smaller",
         })
     }
 }

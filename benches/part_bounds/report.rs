@@ -96,7 +96,7 @@ impl Report {
         budget: Duration,
     ) {
         let mesh = &subject.creature.collider;
-        let mut workspace = Workspace::default();
+        let mut workspace = Workspace::new(subject);
         let mut shares = Vec::new();
         let mut checked = 0;
         let outside = kinds.each_ref().map(|poses| {

@@ -312,17 +312,18 @@ fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
     const COLOR: Color = [0.2, 0.8, 1.0, 0.5];
     let mesh = battle.surface().mesh();
     let root = battle.surface().world_from_model();
-    let bounds = PartBounds::new(mesh);
-    let mut maps = JointMaps::default();
-    maps.update(battle.palette());
-    let parts = (0..bounds.part_count() as u32).map(PartId);
-    for node in parts.filter_map(|part| bounds.node(part)) {
-        if kind == OverlayKind::Spheres {
-            let sphere = node.sphere(&maps);
+    if kind == OverlayKind::Spheres {
+        for (_, sphere) in battle.surface().in_model().part_spheres() {
             let center = root.transform_point_f32(sphere.center);
             over.sphere(center, f64::from(sphere.radius) * root.scale, 1.0, COLOR);
         }
-        if kind == OverlayKind::Capsules {
+    }
+    if kind == OverlayKind::Capsules {
+        let bounds = PartBounds::new(mesh);
+        let mut maps = JointMaps::default();
+        maps.update(battle.palette());
+        let parts = (0..bounds.part_count() as u32).map(PartId);
+        for node in parts.filter_map(|part| bounds.node(part)) {
             let capsule = node.capsule(&maps);
             let [a, b] = [capsule.a, capsule.b].map(|end| root.transform_point_f32(end));
             over.capsule(a, b, f64::from(capsule.radius) * root.scale, 1.0, COLOR);

@@ -1,4 +1,5 @@
-//! Any query of any surface, edited at will: the answer of brute force, bit for bit, and nothing of what is no length.
+//! Any query of any surface, edited at will: the answer of brute force, bit for bit; a length that is NaN
+//! or negative finds nothing.
 
 use std::sync::Arc;
 

@@ -69,7 +69,7 @@ pub enum GltfErrorKind {
     /// Not glTF 2.0: broken JSON, a broken container, or an index that points nowhere.
     #[error("not a valid glTF 2.0 file: {reason}")]
     Format {
-        /// What is wrong with it.
+        /// Why.
         reason: String,
     },
     /// An object of the file breaks the specification.
@@ -77,7 +77,7 @@ pub enum GltfErrorKind {
     Invalid {
         /// Which object, by kind and index or name.
         object: String,
-        /// What is wrong with it.
+        /// Why.
         reason: String,
     },
     /// The file has no such skin.

@@ -4,7 +4,7 @@ use std::path::{Component, Path};
 
 use base64::Engine;
 
-/// Decodes what follows `data:`.
+/// Decodes a data URI, without its `data:`.
 pub(crate) fn decode_data(data: &str) -> Result<Vec<u8>, String> {
     let (kind, payload) = data
         .split_once(',')

@@ -107,7 +107,7 @@ pub enum ImportWarning {
 }
 
 impl ImportWarning {
-    /// About what it takes in memory, bytes.
+    /// Its size in memory, about, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let held = match self {
             Self::WeakPointWithoutJoint { node: text }

@@ -48,7 +48,7 @@ pub(crate) fn load(
     Ok(weak_points)
 }
 
-/// The radius of the ball whose volume is that of a node's unit ball at rest.
+/// A node's scale at rest: the geometric mean along its axes, so that a unit ball keeps its volume.
 fn radius_of(model_from_node: &DAffine3) -> f32 {
     libm::cbrt(model_from_node.matrix3.determinant().abs()) as f32
 }

@@ -143,8 +143,8 @@ impl Mover<'_> {
     }
 
     /// The contact that the body has slid to since it touched `met`: the nearest one within the margin of its ball, on
-    /// the same obstacle, whose normal is within 45 degrees of that of `met`. Of contacts that are as near, the one on
-    /// the most level face is taken, since rounding must not decide on which of two faces the body stands.
+    /// the same obstacle, with a normal within 45 degrees of `met`'s. Of equally near contacts the one on the most level
+    /// face is taken, since rounding must not decide on which of two faces the body stands.
     pub fn still_underfoot(
         &mut self,
         body: &MoverBody,

@@ -225,13 +225,16 @@ impl<'a> Mover<'a> {
     /// The first contact along a ray, up to a length in metres, which may be infinite, with every obstacle as it stands
     /// now. `direction` may have any length but zero.
     pub fn cast_ray(&mut self, origin: DVec3, direction: DVec3, length: f64) -> Option<Touch> {
+        if length.is_nan() || length < 0.0 {
+            return None;
+        }
         let direction = direction.try_normalize()?;
         let half = length * 0.5;
         // An endless ray has no middle, and neither has one whose squares overflow.
         let (middle, reach) = if half < LONGEST {
             (origin + direction * half, half)
         } else {
-            (origin, half + f64::INFINITY)
+            (origin, f64::INFINITY)
         };
         let surroundings = &mut self.memory.surroundings;
         let near = surroundings.near(self.obstacles, middle, reach);

@@ -33,7 +33,7 @@ fn load(options: &LoadOptions) -> Rig {
     load_slice(&three().glb(), options).unwrap()
 }
 
-/// The collider's tags, which are those of what is drawn.
+/// The collider's tags. The visual meshes have the same.
 fn tags(rig: &Rig) -> Vec<SurfaceTag> {
     let seen = rig.visual_collider().unwrap();
     assert_eq!(seen.tags(), rig.collider.tags());

@@ -1,11 +1,15 @@
+use std::cell::Cell;
+
 use super::*;
 use crate::{Arm, Path, Walking};
 
-/// A ball of 1 m that says where it is, so that it is left out where nothing is near.
-struct Ball(DVec3);
+/// A ball of 1 m that says where it is, so that it is left out where nothing is near; and how often it was asked what
+/// overlaps it.
+struct Ball(DVec3, Cell<usize>);
 
 impl Obstacle for Ball {
     fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        self.1.set(self.1.get() + 1);
         let nearest = capsule.nearest_on_axis(self.0);
         let normal = (nearest - self.0).normalize_or(DVec3::Y);
         let distance = nearest.distance(self.0) - 1.0;
@@ -63,7 +67,7 @@ impl Obstacle for Ball {
 fn an_endless_ray_meets_what_is_far_along_any_axis() {
     for direction in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
         for distance in [5.0, 5e4] {
-            let ball = Ball(direction * distance);
+            let ball = Ball(direction * distance, Cell::new(0));
             let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(3), &ball)];
             let mut memory = MoverMemory::default();
             let mut mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();
@@ -76,6 +80,14 @@ fn an_endless_ray_meets_what_is_far_along_any_axis() {
             assert_eq!(mover.cast_ray(DVec3::ZERO, direction, f64::NAN), None);
             assert_eq!(mover.cast_ray(DVec3::ZERO, -direction, f64::INFINITY), None);
             assert_eq!(mover.cast_ray(DVec3::ZERO, direction, -1.0), None);
+            // Afterwards what is near is asked for what it touches, and what is far is left out again.
+            mover.cast_ray(DVec3::ZERO, direction, f64::INFINITY);
+            for (place, is_asked) in [(ball.0, true), (DVec3::ZERO, false)] {
+                ball.1.set(0);
+                mover.overlap(&MoverBody::ball(0.4, 0.01), place, 0.1);
+                assert_eq!(ball.1.get() > 0, is_asked, "{distance} {place}");
+                mover.cast_ray(DVec3::ZERO, direction, f64::INFINITY);
+            }
         }
     }
 }

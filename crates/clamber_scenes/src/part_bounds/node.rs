@@ -6,7 +6,7 @@ use clamber_surface::rig::JointId;
 use glam::{DVec3, Vec3};
 
 use super::joint_maps::JointMaps;
-use super::{BoundingCapsule, BoundingVolume, round_up_to_f32};
+use super::{BoundingCapsule, round_up_to_f32};
 
 /// How much one joint moves the vertices of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,23 +74,6 @@ impl NodeBounds {
         self.inflated(maps, self.weight_interval_ball(maps))
     }
 
-    /// The smaller of [`NodeBounds::hull`] and [`NodeBounds::weight_interval`].
-    pub fn sphere(&self, maps: &JointMaps) -> Sphere {
-        let interval = self.weight_interval_ball(maps);
-        // One joint has one image: nothing is smaller.
-        let ball = if self.intervals.len() == 1 {
-            interval
-        } else {
-            let hull = self.hull_ball(maps);
-            if hull.radius < interval.radius {
-                hull
-            } else {
-                interval
-            }
-        };
-        self.inflated(maps, ball)
-    }
-
     /// A capsule that holds the skinned vertices, in model space, from the rest capsule by weight
     /// intervals or hull, whichever gives the smaller radius.
     pub fn capsule(&self, maps: &JointMaps) -> BoundingCapsule {
@@ -120,12 +103,6 @@ impl NodeBounds {
             b,
             radius: round_up_to_f32(radius + rounding),
         }
-    }
-
-    /// [`NodeBounds::sphere`] or [`NodeBounds::capsule`]: what has the smaller volume, the sphere
-    /// where they are equal.
-    pub fn volume(&self, maps: &JointMaps) -> BoundingVolume {
-        BoundingVolume::smaller(self.sphere(maps), self.capsule(maps))
     }
 
     fn hull_ball(&self, maps: &JointMaps) -> Ball {

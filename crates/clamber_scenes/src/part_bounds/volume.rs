@@ -4,7 +4,7 @@ use clamber_surface::geometry::Sphere;
 
 use super::BoundingCapsule;
 
-/// What bounds a part: a sphere, or a capsule where that is smaller.
+/// What bounds a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoundingVolume {
     /// A ball.
@@ -14,15 +14,6 @@ pub enum BoundingVolume {
 }
 
 impl BoundingVolume {
-    /// The one with the smaller volume; the sphere where they are equal.
-    pub fn smaller(sphere: Sphere, capsule: BoundingCapsule) -> Self {
-        if capsule.volume() < sphere.volume() {
-            Self::Capsule(capsule)
-        } else {
-            Self::Sphere(sphere)
-        }
-    }
-
     /// True if `point` lies inside, by f64 arithmetic.
     pub fn contains(&self, point: Vec3) -> bool {
         match self {

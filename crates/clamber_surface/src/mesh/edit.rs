@@ -85,11 +85,7 @@ impl ColliderMesh {
         }
         self.influence_start.push(self.joints.len() as u32);
         self.radius = vertex.radius;
-        let position = vertex.position.to_array().map(f32::to_bits);
-        let influences = vertex.influences.iter();
-        let influences = influences.flat_map(|(joint, units)| [joint.0, *units]);
-        self.lineage
-            .add_vertex(position.into_iter().chain(influences));
+        self.lineage.add_vertex(vertex.position, &vertex.influences);
         let joints = vertex.influences.iter().map(|(joint, _)| *joint);
         self.joint_balls.hold(vertex.position, joints);
         self.clusters.loose.push(id);

@@ -1,4 +1,7 @@
+use glam::Vec3;
+
 use super::{ColliderMesh, TriangleId, VertexId};
+use crate::rig::JointId;
 
 /// Which mesh: a fingerprint of its positions, influences and triangles as they were built, and of each vertex and
 /// triangle that was added since. The same wherever the same is built and added in the same order; tags do not count.
@@ -66,16 +69,24 @@ impl Lineage {
         added.and_then(|added| self.fingerprints.get(added)) == Some(&id.fingerprint)
     }
 
-    pub(super) fn add_vertex(&mut self, words: impl Iterator<Item = u32>) {
+    pub(super) fn add_vertex(&mut self, position: Vec3, influences: &[(JointId, u32)]) {
+        let position = position.to_array().map(f32::to_bits);
+        let influences = influences.iter();
+        let influences = influences.flat_map(|(joint, units)| [joint.0, *units]);
+        self.extend(position.into_iter().chain(influences));
+    }
+
+    pub(super) fn add_triangle(&mut self, corners: [VertexId; 3]) {
+        self.extend(corners.iter().map(|corner| corner.0));
+        self.added.push(self.id().added);
+    }
+
+    fn extend(&mut self, words: impl Iterator<Item = u32>) {
         let next = fold(self.id().fingerprint, words);
         self.fingerprints.push(next);
     }
 
-    pub(super) fn add_triangle(&mut self, corners: [VertexId; 3]) {
-        self.add_vertex(corners.iter().map(|corner| corner.0));
-        self.added.push(self.id().added);
-    }
-
+    /// In bytes.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.fingerprints[..]) + size_of_val(&self.added[..])
     }

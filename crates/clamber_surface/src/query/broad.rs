@@ -1,7 +1,8 @@
 //! A query against the eight spheres of a node, in f32.
 //!
-//! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and
-//! written so that NaN touches, and an infinity that says nothing of what is near. Squares that underflow do no harm, since every sphere has a radius of at least 2^-56.
+//! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and NaN touches. A
+//! distance whose square overflows is beyond any reach whose square does not. Squares that underflow do no harm, since
+//! every sphere has a radius of at least 2^-56.
 
 use glam::Vec3;
 

@@ -134,12 +134,13 @@ impl WorldSpace<'_> {
     ) {
         hits.clear();
         if let Some(ray) = self.ray(origin, direction) {
-            let (length, mut found) = (self.length(max_distance), Vec::new());
-            self.surface
-                .in_model()
-                .cast_ray_all(&ray, length, &mut found);
-            hits.extend(found.iter().map(|hit| self.hit(hit, |_| origin)));
+            let (length, space) = (self.length(max_distance), self.surface.in_model());
+            space.visit_ray(&ray, length, |hit| hits.push(self.hit(&hit, |_| origin)));
         }
+        hits.sort_unstable_by(|a, b| {
+            let by_distance = a.distance.total_cmp(&b.distance);
+            by_distance.then_with(|| a.triangle.cmp(&b.triangle))
+        });
     }
 
     /// The material point nearest to `point`, no farther than `max_distance`.

@@ -17,7 +17,7 @@ use super::limb::Course;
 /// Sweeps, and rounds over speculative planes, in a tick.
 const ROUNDS: usize = 8;
 
-/// How far from touching a sweep ends, metres; what it met is then left by as much.
+/// The distance from touching at which a sweep ends, metres; afterwards the sphere is moved away by as much.
 const TOLERANCE: f64 = 1e-4;
 
 const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);

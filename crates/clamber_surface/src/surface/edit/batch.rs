@@ -10,8 +10,8 @@ use crate::surface::{SkinnedSurface, SurfaceError};
 
 /// Changes of triangles, vertices and tags that belong together; see [`SkinnedSurface::edit`].
 ///
-/// Ids of what was removed are never used again, so endless edits take some 50 bytes for each vertex
-/// and some 40 for each triangle that there ever was.
+/// Ids of what was removed are never used again, so memory grows by some tens of bytes with each vertex
+/// and each triangle that is added.
 #[derive(Debug)]
 pub struct SurfaceEdit<'a> {
     surface: &'a mut SkinnedSurface,
