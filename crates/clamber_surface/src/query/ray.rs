@@ -41,30 +41,23 @@ impl ModelSpace<'_> {
     /// that share it. `hits` is cleared first and keeps its memory.
     pub fn cast_ray_all(&self, ray: &Ray, max_distance: f32, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
-        self.visit_ray(ray, max_distance, |hit| hits.push(hit));
-        sort_by_distance(hits);
-    }
-
-    /// [`ModelSpace::cast_ray_all`] for callers with a place of their own for the hits, in no order.
-    pub(crate) fn visit_ray(
-        &self,
-        ray: &Ray,
-        max_distance: f32,
-        mut visit: impl FnMut(SurfaceHit),
-    ) {
         let Some(limit) = length(max_distance) else {
             return;
         };
-        let instance = self.instance;
-        instance.visit_ray(ray, limit, |posed, triangle, found| {
-            let nearest = FoundPoint {
-                triangle: posed.id(triangle),
-                found,
-            };
-            let [corners] = posed.corners(triangle);
-            visit(instance.hit(nearest, posed.part(), corners, ray.origin()));
-            Some(limit)
-        });
+        self.instance
+            .visit_ray(ray, limit, |posed, triangle, found| {
+                let nearest = FoundPoint {
+                    triangle: posed.id(triangle),
+                    found,
+                };
+                let [corners] = posed.corners(triangle);
+                let hit = self
+                    .instance
+                    .hit(nearest, posed.part(), corners, ray.origin());
+                hits.push(hit);
+                Some(limit)
+            });
+        sort_by_distance(hits);
     }
 }
 

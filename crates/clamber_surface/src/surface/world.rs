@@ -134,13 +134,12 @@ impl WorldSpace<'_> {
     ) {
         hits.clear();
         if let Some(ray) = self.ray(origin, direction) {
-            let (length, space) = (self.length(max_distance), self.surface.in_model());
-            space.visit_ray(&ray, length, |hit| hits.push(self.hit(&hit, |_| origin)));
+            // In the order of the model's distances, so that the first is the one of `cast_ray`.
+            let (length, mut found) = (self.length(max_distance), Vec::new());
+            let space = self.surface.in_model();
+            space.cast_ray_all(&ray, length, &mut found);
+            hits.extend(found.iter().map(|hit| self.hit(hit, |_| origin)));
         }
-        hits.sort_unstable_by(|a, b| {
-            let by_distance = a.distance.total_cmp(&b.distance);
-            by_distance.then_with(|| a.triangle.cmp(&b.triangle))
-        });
     }
 
     /// The material point nearest to `point`, no farther than `max_distance`.
