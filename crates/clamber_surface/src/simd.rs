@@ -11,7 +11,6 @@ use fearless_simd::Level;
 ///
 /// let levels = SimdLevel::available();
 /// assert_eq!(levels[0], SimdLevel::best());
-/// assert_eq!(levels.last().map(|level| level.name()), Some("scalar"));
 /// ```
 #[derive(Clone, Copy)]
 pub struct SimdLevel(Level);
@@ -22,32 +21,32 @@ impl SimdLevel {
         Self(Level::new())
     }
 
-    /// All of them, the widest first, plain scalar code last.
+    /// All of them, the widest first. Scalar code comes last where there is no other, or with the feature
+    /// `scalar`.
     pub fn available() -> Vec<Self> {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let mut levels: Vec<Level> = [
+        let simd = [
             best.as_avx512().map(Level::Avx512),
             best.as_avx2().map(Level::Avx2),
             best.as_sse4_2().map(Level::Sse4_2),
             best.as_sse2().map(Level::Sse2),
         ]
         .into_iter()
-        .flatten()
-        .collect();
+        .flatten();
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let mut levels: Vec<Level> = Some(best)
-            .filter(|level| !level.is_fallback())
-            .into_iter()
-            .collect();
-        levels.push(Level::fallback());
-        levels.into_iter().map(Self).collect()
+        let simd = Some(best).filter(|level| !level.is_fallback());
+        #[cfg(any(test, feature = "scalar"))]
+        let scalar = Some(Level::fallback());
+        #[cfg(not(any(test, feature = "scalar")))]
+        let scalar = Some(best).filter(|level| level.is_fallback());
+        simd.into_iter().chain(scalar).map(Self).collect()
     }
 
     /// As it is commonly called.
     pub fn name(&self) -> &'static str {
         match self.0 {
-            Level::Fallback(_) => "scalar",
+            level if level.is_fallback() => "scalar",
             #[cfg(target_arch = "aarch64")]
             Level::Neon(_) => "NEON",
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

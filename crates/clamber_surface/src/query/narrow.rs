@@ -300,7 +300,7 @@ fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Surviv
     let mut found = Survivors([0; MAX_TRIANGLES / BLOCK]);
     for (bits, CornerBlock(slots)) in found.0.iter_mut().zip(corners) {
         // Without a byte shuffle, looking codes up one by one is faster.
-        *bits = if matches!(simd.level(), Level::Fallback(_)) || lacks_shuffle(simd.level()) {
+        *bits = if simd.level().is_fallback() || lacks_shuffle(simd.level()) {
             one_by_one(slots, codes)
         } else {
             let (low, high) = codes.split_at(MAX_SLOTS / 2);
