@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::instance::Instance;
 use super::probe::Sweep;
-use crate::geometry::triangle::{Contact, TrianglePoint, point_at};
+use crate::geometry::triangle::{Contact, TrianglePoint, point_at, widened};
 use crate::geometry::{Capsule, round_to_f32, widen};
 use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
 
@@ -222,6 +222,7 @@ pub(super) fn capsule_hit(capsule: &Capsule, surface: SurfaceHit) -> CapsuleHit 
 impl Instance {
     /// Completes a hit on a triangle with the given posed corners. `origin` is where the query looked
     /// from.
+    #[inline(always)]
     pub(super) fn hit(
         &self,
         nearest: FoundPoint,
@@ -258,8 +259,8 @@ impl Instance {
             contact,
         } = first;
         let part = self.mesh.part_of(triangle)?;
-        let mut corners = start.map(widen);
-        for (corner, end) in corners.iter_mut().zip(end.map(widen)) {
+        let mut corners = widened(start);
+        for (corner, end) in corners.iter_mut().zip(widened(end)) {
             *corner += (end - *corner) * contact.time;
         }
         let [a, b, c] = corners;

@@ -89,6 +89,7 @@ impl Instance {
     }
 
     /// The outward unit normal of a posed triangle; `None` if it has no area.
+    #[inline]
     pub(crate) fn outward_normal(&self, corners: [Vec3; 3], part: PartId) -> Option<DVec3> {
         let normal = scaled_normal(corners).try_normalize()?;
         Some(if self.is_mirrored(part) {

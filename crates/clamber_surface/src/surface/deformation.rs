@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 
-use crate::geometry::triangle::scaled_normal;
-use crate::geometry::{Affine, widen};
+use crate::geometry::Affine;
+use crate::geometry::triangle::{scaled_normal, widened};
 
 /// A triangle lower than this share of its longest edge has collapsed, 2^-22: its direction is
 /// rounding. Larger freezes frames of slivers that still have one.
@@ -15,7 +15,7 @@ const COLLAPSED_FAR_OUT: f64 = 1.0 / (1u32 << 20) as f64;
 
 /// True if the triangle has no direction of its own.
 pub(super) fn is_collapsed(corners: [Vec3; 3]) -> bool {
-    let [a, b, c] = corners.map(widen);
+    let [a, b, c] = widened(corners);
     let longest_sq = (b - a)
         .length_squared()
         .max((c - b).length_squared())
@@ -52,7 +52,7 @@ impl Flattened {
         if is_collapsed(corners) {
             return None;
         }
-        let [a, b, c] = corners.map(widen);
+        let [a, b, c] = widened(corners);
         let along = (b - a).try_normalize()?;
         let normal = scaled_normal(corners).try_normalize()?;
         let across = normal.cross(along);
@@ -114,6 +114,6 @@ pub(super) fn stretch(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
 }
 
 fn longest_edge(corners: [Vec3; 3]) -> f64 {
-    let [a, b, c] = corners.map(widen);
+    let [a, b, c] = widened(corners);
     (b - a).length().max((c - b).length()).max((a - c).length())
 }
