@@ -5,6 +5,8 @@
 //! panic is a finding.** `fuzz/` hands them to libFuzzer; `tests/seeded.rs` runs them on seeded
 //! random bytes, with the other tests.
 //!
+//! [`ccd`] holds sweeps against exact answers, of files and of what `clamber_oracle` constructs.
+//!
 //! [`stress`] makes cases that are hard in known ways, at sizes as creatures have them. `cargo xtask soak` runs all of it
 //! for as long as it is told.
 
@@ -12,6 +14,7 @@
 
 mod builder;
 mod bytes;
+pub mod ccd;
 mod import;
 mod mesh;
 mod palettes;

@@ -13,7 +13,6 @@
 //! - [`inspect`]: what an import found, and how the creature fares in motion.
 //! - [`measure`]: tables, quantiles and yardsticks for benches.
 //! - [`part_bounds`]: spheres and capsules about parts in any pose, in f64.
-//! - [`ccd`]: continuous collision queries with exact answers, and proofs of what sweeps claim.
 //! - [`tour`]: a bot climbs from a creature's foot to its head.
 //! - [`closed`]: is a mesh closed, and which side of it is inside?
 //! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
@@ -22,7 +21,6 @@
 pub mod ball;
 pub mod battle;
 pub mod beast;
-pub mod ccd;
 pub mod closed;
 mod creature;
 pub mod giant;

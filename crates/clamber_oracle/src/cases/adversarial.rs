@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::Case;
 use super::place::{across, direction, point, turned};
-use crate::ccd::pair::{Core, MovingPair};
+use crate::{Core, MovingPair};
 
 /// What is hard about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,30 +1,22 @@
-//! Continuous collision queries from files, each with its exact answer, put to the library's sweeps.
+//! Continuous collision queries with exact answers, put to the library's sweeps: from files, or one by one ([`Stage`]).
 //!
-//! A vertex becomes a sphere and an edge a capsule; the face, or the other edge as a collapsed face, is a
-//! surface's triangle. A query is moved near the origin in exact arithmetic, rounded to f32, and asked
-//! with a radius that is larger than the rounding by far: so what touches must be found. What is found
-//! is judged by the points as they are.
+//! What is found in a file's queries is judged by the points as they are there, in rational numbers.
 
 mod error;
-mod file;
 mod options;
-mod query;
 mod report;
+mod stage;
 
 use std::time::Duration;
 
+use clamber_oracle::exact::{Apart, Claim, Last, Motion, number};
+use clamber_oracle::queries::{FileQuery, read_queries};
 use indicatif::{ProgressBar, ProgressStyle};
 
-pub use error::{CcdError, RowError};
-pub use file::{parse_queries, read_queries};
+pub use error::CcdError;
 pub use options::CcdOptions;
-pub use query::{CcdQuery, QueryKind};
 pub use report::CcdReport;
-
-use super::certificate::{Apart, Last, Motion};
-use super::exact::number;
-use super::stage::Stage;
-use super::verdict::Claim;
+pub use stage::{Answer, CAP, Stage};
 
 /// Asks all queries of all files.
 ///
@@ -68,7 +60,7 @@ impl CcdReport {
     ///
     /// # Panics
     /// If the time is not in 0..=1.
-    pub fn count(&mut self, query: &CcdQuery, claim: &Claim) {
+    pub fn count(&mut self, query: &FileQuery, claim: &Claim) {
         let verdict = claim.check(&query.rounded(), query.tolerance());
         self.queries += 1;
         self.late += usize::from(verdict.is_late());

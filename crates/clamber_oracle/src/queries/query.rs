@@ -2,8 +2,8 @@ use dashu::rational::Relaxed;
 use glam::Vec3;
 
 use super::error::RowError;
-use crate::ccd::exact::{Exact, exact, minus, rounded};
-use crate::ccd::pair::{Core, ExactPair, MovingPair};
+use crate::exact::{Exact, ExactPair, exact, minus, rounded};
+use crate::{Core, MovingPair};
 
 /// What a query is between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum QueryKind {
 
 /// A query in rational numbers, and its answer.
 #[derive(Clone, Debug)]
-pub struct CcdQuery {
+pub struct FileQuery {
     kind: QueryKind,
     /// At both times: the vertex and the face, or the ends of one edge and of the other. Relative to the
     /// first point at time 0.
@@ -36,7 +36,7 @@ const REACH: f64 = 1e-5;
 /// coordinate is larger than the extent, so each point is off by sqrt(3) 2^-24 at most, on both sides.
 const ROUNDED: f64 = 2.2e-7;
 
-impl CcdQuery {
+impl FileQuery {
     /// Of points in the files' order.
     pub(super) fn new(
         kind: QueryKind,

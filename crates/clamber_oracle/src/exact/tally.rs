@@ -1,9 +1,5 @@
-use super::{Case, Known};
-use crate::ccd::stage::Answer;
-use crate::ccd::verdict::Claim;
-
-/// Most steps that the library takes for a triangle; what has none to show by then is to be flagged.
-pub const CAP: u32 = 256;
+use super::verdict::Claim;
+use crate::cases::{Case, Known};
 
 /// False answers that are kept to be shown.
 const SHOWN: usize = 3;
@@ -25,30 +21,16 @@ pub struct Tally {
     pub undecided: usize,
     /// Of these, those that are.
     pub undecided_far: usize,
-    /// Answers that took as many steps as there may be.
-    pub capped: usize,
-    /// Most steps of any.
-    pub most_steps: u32,
     /// The first false answers.
     pub shown: Vec<String>,
 }
 
 impl Tally {
-    /// Counts an answer of the library.
+    /// Counts a claim, and whether it is true.
     ///
     /// # Panics
-    /// If a number of the case or the answer is not finite.
-    pub fn count(&mut self, case: &Case, known: Known, answer: &Answer) {
-        self.capped += usize::from(answer.steps >= CAP);
-        self.most_steps = self.most_steps.max(answer.steps);
-        self.judge(case, known, &answer.claim());
-    }
-
-    /// Counts what anyone claims.
-    ///
-    /// # Panics
-    /// As [`Tally::count`].
-    pub fn judge(&mut self, case: &Case, known: Known, claim: &Claim) {
+    /// If a number of the case or the claim is not finite, or its time not in 0..=1.
+    pub fn count(&mut self, case: &Case, known: Known, claim: &Claim) {
         let verdict = claim.check(&case.pair, case.tolerance);
         let known_late = match known {
             Known::Touches(touch) => claim.time.is_none_or(|time| time > touch),

@@ -7,7 +7,7 @@
 
 use std::path::PathBuf;
 
-use clamber_scenes::ccd::queries::{CcdOptions, run};
+use clamber_fuzz::ccd::{CcdOptions, run};
 use clamber_scenes::test_data;
 
 /// How many files and queries the test data has.

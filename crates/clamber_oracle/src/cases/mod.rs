@@ -1,15 +1,13 @@
-//! Moving pairs to put to a sweep, and counts of what it answers.
+//! Moving pairs to put to a sweep: hard ones, and such of which something is known.
 
 mod adversarial;
 mod constructed;
 mod place;
-mod tally;
 
 pub use adversarial::{KINDS, Kind, adversarial};
 pub use constructed::{Known, constructed};
-pub use tally::{CAP, Tally};
 
-use super::pair::MovingPair;
+use crate::MovingPair;
 
 /// A pair, and how near a sweep has to come.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use clamber_oracle::queries::parse_queries;
+
 use super::*;
 
 /// A vertex that falls from 1 through a face at 0 to -1, in fractions; and one that stops above it.
@@ -17,14 +19,14 @@ const EDGES: &str = "\
     -1,2,1,1,0,1,0\n1,2,1,1,0,1,0\n0,1,0,1,-1,2,0\n0,1,0,1,1,2,0\n\
     -1,2,1,9,0,1,0\n1,2,1,9,0,1,0\n0,1,0,1,-1,2,0\n0,1,0,1,1,2,0\n";
 
-fn queries() -> [[CcdQuery; 2]; 2] {
+fn queries() -> [[FileQuery; 2]; 2] {
     [("vertex-face", VERTICES), ("edge-edge", EDGES)].map(|(kind, rows)| {
         let read = parse_queries(Path::new(kind), rows).unwrap();
         read.try_into().unwrap()
     })
 }
 
-fn count(query: &CcdQuery, time: Option<f64>) -> CcdReport {
+fn count(query: &FileQuery, time: Option<f64>) -> CcdReport {
     let mut report = CcdReport::default();
     let claim = Claim {
         time,

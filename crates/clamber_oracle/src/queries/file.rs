@@ -7,9 +7,9 @@ use std::path::Path;
 use dashu::integer::IBig;
 use dashu::rational::Relaxed;
 
-use super::error::{CcdError, RowError};
-use super::query::{CcdQuery, QueryKind};
-use crate::ccd::exact::Exact;
+use super::error::{QueryFileError, RowError};
+use super::query::{FileQuery, QueryKind};
+use crate::exact::Exact;
 
 /// Rows of a query.
 const ROWS: usize = 8;
@@ -17,9 +17,9 @@ const ROWS: usize = 8;
 /// The queries of a file, whose path holds `edge-edge` or `vertex-face`.
 ///
 /// # Errors
-/// [`CcdError`] if the file cannot be read, the path holds neither, or a row is not as it should be.
-pub fn read_queries(file: &Path) -> Result<Vec<CcdQuery>, CcdError> {
-    let text = std::fs::read_to_string(file).map_err(|source| CcdError::Read {
+/// [`QueryFileError`] if the file cannot be read, the path holds neither, or a row is not as it should be.
+pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
+    let text = std::fs::read_to_string(file).map_err(|source| QueryFileError::Read {
         file: file.to_owned(),
         source,
     })?;
@@ -30,11 +30,11 @@ pub fn read_queries(file: &Path) -> Result<Vec<CcdQuery>, CcdError> {
 ///
 /// # Errors
 /// As [`read_queries`].
-pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<CcdQuery>, CcdError> {
-    let kind = kind_of(file).ok_or_else(|| CcdError::Kind {
+pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<FileQuery>, QueryFileError> {
+    let kind = kind_of(file).ok_or_else(|| QueryFileError::Kind {
         file: file.to_owned(),
     })?;
-    let of_row = |line: usize, reason: RowError| CcdError::Row {
+    let of_row = |line: usize, reason: RowError| QueryFileError::Row {
         file: file.to_owned(),
         line,
         reason,
@@ -45,7 +45,7 @@ pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<CcdQuery>, CcdError>
     }
     let (whole, rest) = rows.as_chunks::<ROWS>();
     if !rest.is_empty() {
-        return Err(CcdError::Rows {
+        return Err(QueryFileError::Rows {
             file: file.to_owned(),
             rows: rows.len(),
         });
@@ -58,7 +58,7 @@ pub fn parse_queries(file: &Path, text: &str) -> Result<Vec<CcdQuery>, CcdError>
             return Err(of_row(line + other, RowError::LabelDiffers));
         }
         let points = rows.each_ref().map(|(point, _)| point.clone());
-        let query = CcdQuery::new(kind, points, touches, line);
+        let query = FileQuery::new(kind, points, touches, line);
         queries.push(query.map_err(|reason| of_row(line, reason))?);
     }
     Ok(queries)
@@ -114,7 +114,7 @@ fn parse_number(column: usize, over: &str, under: &str) -> Result<Relaxed, RowEr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ccd::exact::number;
+    use crate::exact::number;
 
     const ROW: &str = "1,2,-3,4,162259276829213363391578010288128,1,1\n";
 

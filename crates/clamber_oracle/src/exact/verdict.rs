@@ -1,6 +1,6 @@
 use super::certificate::{Apart, Last, Motion};
-use super::exact::number;
-use super::pair::MovingPair;
+use super::number::number;
+use crate::MovingPair;
 
 /// What a sweep says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]

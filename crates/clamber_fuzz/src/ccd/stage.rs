@@ -1,14 +1,16 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use clamber_oracle::exact::Claim;
+use clamber_oracle::{Core, MovingPair};
 use clamber_surface::geometry::{Affine, Capsule, Similarity};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceError, SweepHit};
 use glam::Vec3;
 
-use super::pair::{Core, MovingPair};
-use super::verdict::Claim;
+/// Most steps that the library takes for a triangle; what has none to show by then is to be flagged.
+pub const CAP: u32 = 256;
 
 /// A surface of one triangle, each corner on a joint of its own whose matrix puts it anywhere: so the
 /// library's sweeps meet any moving triangle, its corners exactly as given.

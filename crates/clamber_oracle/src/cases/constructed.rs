@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Case;
-use crate::ccd::pair::{Core, MovingPair};
+use crate::{Core, MovingPair};
 
 /// What is known of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,9 +14,10 @@ use std::cell::LazyCell;
 use dashu::rational::Relaxed;
 use glam::DVec3;
 
-use super::exact::{Exact, dot, length_sq, minus, number, rounded};
+use super::number::{Exact, dot, length_sq, minus, number, rounded};
 use super::nearest::{Nearest, nearest};
-use super::pair::{ExactPair, MovingPair};
+use super::pair::ExactPair;
+use crate::MovingPair;
 
 /// Stretches that a proof may take; what has one takes far fewer.
 const STRETCHES: usize = 20_000;

@@ -1,8 +1,9 @@
 //! Certificates on motions whose first contact is known, and against distances at many times.
 
-use super::super::pair::Core;
-use super::*;
 use glam::Vec3;
+
+use super::*;
+use crate::Core;
 
 const FLOOR: [Vec3; 3] = [
     Vec3::new(-5.0, 0.0, -5.0),

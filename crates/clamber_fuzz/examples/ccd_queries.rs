@@ -1,15 +1,15 @@
 //! The sweeps against files of continuous collision queries whose exact answers are known.
 //!
 //! `ccd_queries FILE.csv...`; `--help` describes the files. How answers are judged is in
-//! `clamber_scenes::ccd::queries`.
+//! `clamber_fuzz::ccd`.
 
 use std::process::ExitCode;
 
-use clamber_scenes::ccd::queries::{self, CcdOptions};
+use clamber_fuzz::ccd::{self, CcdOptions};
 
 fn main() -> ExitCode {
     let options = CcdOptions::from_command_line();
-    let report = match queries::run(&options) {
+    let report = match ccd::run(&options) {
         Ok(report) => report,
         Err(error) => {
             eprintln!("ccd_queries: {error}");

@@ -6,8 +6,9 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber_scenes::ccd::cases::{Known, Tally, constructed};
-use clamber_scenes::ccd::{Claim, Stage};
+use clamber_fuzz::ccd::Stage;
+use clamber_oracle::cases::{Known, constructed};
+use clamber_oracle::exact::{Claim, Tally};
 
 fn answers(cases: u32, seed: u64) -> Tally {
     let mut rng = fastrand::Rng::with_seed(seed);
@@ -16,7 +17,7 @@ fn answers(cases: u32, seed: u64) -> Tally {
     for _ in 0..cases {
         let (case, known) = constructed(&mut rng);
         let answer = stage.sweep(&case.pair, case.tolerance).unwrap();
-        tally.count(&case, known, &answer);
+        tally.count(&case, known, &answer.claim());
     }
     tally
 }
@@ -41,7 +42,7 @@ fn changed(change: impl Fn(f64) -> Option<f64>) -> Tally {
             time: answer.claim().time.and_then(&change),
             undecided: false,
         };
-        tally.judge(&case, known, &claim);
+        tally.count(&case, known, &claim);
     }
     tally
 }
@@ -65,7 +66,7 @@ fn a_sweep_with_three_times_the_tolerance_is_found_out() {
         let (case, known) = constructed(&mut rng);
         let answer = stage.sweep(&case.pair, case.tolerance * 3.0).unwrap();
         invented += usize::from(known == Known::Misses && answer.hit.is_some());
-        tally.count(&case, known, &answer);
+        tally.count(&case, known, &answer.claim());
     }
     assert!(tally.late == 0 && tally.too_far > 100, "{tally:?}");
     assert!(invented > 20, "{invented} {tally:?}");

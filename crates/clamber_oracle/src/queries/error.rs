@@ -1,13 +1,11 @@
 use std::path::PathBuf;
 
-use clamber_surface::mesh::MeshError;
-use clamber_surface::surface::SurfaceError;
 use thiserror::Error;
 
-/// Why queries cannot be read or asked.
+/// Why queries cannot be read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum CcdError {
+pub enum QueryFileError {
     /// A file cannot be read.
     #[error("{}: {source}", .file.display())]
     Read {
@@ -40,19 +38,6 @@ pub enum CcdError {
         /// How many rows it has.
         rows: usize,
     },
-    /// The library refuses a query.
-    #[error("{}:{line}: {source}", .file.display())]
-    Surface {
-        /// The file's path.
-        file: PathBuf,
-        /// Number of the query's first row, from 1.
-        line: usize,
-        /// Why.
-        source: SurfaceError,
-    },
-    /// The triangle to ask makes no mesh.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
 }
 
 /// What is wrong with a row.

@@ -1,0 +1,28 @@
+use std::path::PathBuf;
+
+use clamber_oracle::queries::QueryFileError;
+use clamber_surface::mesh::MeshError;
+use clamber_surface::surface::SurfaceError;
+use thiserror::Error;
+
+/// Why queries cannot be read or asked.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CcdError {
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] QueryFileError),
+    /// The library refuses a query.
+    #[error("{}:{line}: {source}", .file.display())]
+    Surface {
+        /// The file's path.
+        file: PathBuf,
+        /// Number of the query's first row, from 1.
+        line: usize,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// The triangle to ask makes no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}

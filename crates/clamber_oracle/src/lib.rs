@@ -1,0 +1,12 @@
+#![doc = include_str!("../README.md")]
+
+pub mod cases;
+#[cfg(feature = "exact")]
+pub mod exact;
+mod pair;
+#[cfg(feature = "exact")]
+pub mod queries;
+
+/// The crate whose vectors are used here.
+pub use glam;
+pub use pair::{Core, MovingPair};
