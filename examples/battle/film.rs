@@ -18,7 +18,7 @@ use crate::{CameraKind, FilmOptions};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-const TICKS_A_SECOND: u64 = 60;
+const TICKS_A_SECOND: f64 = 60.0;
 
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
@@ -38,7 +38,7 @@ pub(crate) struct Film {
     gif: Option<Gif>,
     raw: bool,
     /// Pictures a second.
-    rate: u32,
+    rate: f64,
     /// Ticks before the first.
     from: u32,
     tick: u32,
@@ -56,10 +56,11 @@ impl Film {
         let creature = add_visual(&mut renderer, &load(path)?)?;
         let stage = Stage::new(&mut renderer, creature)?;
         if let Some(folder) = &film.frames {
-            std::fs::create_dir_all(folder)?;
+            let failed = |error| format!("{}: {error}", folder.display());
+            std::fs::create_dir_all(folder).map_err(failed)?;
         }
         let gif = film.gif.as_ref().map(|path| {
-            let delay = (100.0 / f64::from(film.rate)).round() as u16;
+            let delay = (100.0 / film.rate).round() as u16;
             Gif::create(path, film.width / 2, film.rows / 2, delay)
         });
         Ok(Self {
@@ -87,9 +88,11 @@ impl Film {
         self.overlays.watch(battle);
         let camera = self.follow(battle);
         // As many in each second as are asked for, however they divide its ticks.
-        let rate = u64::from(self.rate);
-        let phase = |since: u32| u64::from(since) * rate % TICKS_A_SECOND;
-        if tick < self.from || phase(tick - self.from) >= rate {
+        if tick < self.from {
+            return Ok(());
+        }
+        let due = f64::from(tick - self.from) * self.rate / TICKS_A_SECOND;
+        if due < f64::from(self.taken) {
             return Ok(());
         }
         if self.rocks.is_empty() {

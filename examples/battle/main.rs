@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
-use clap::Parser;
+use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
 /// A climber climbs a giant of stone and fur from the ground to its head, or rides on a creature, while it stomps,
 /// shakes and is struck by rocks. Prints what came of it, checks it, and writes a summary and a timeline.
@@ -28,43 +28,67 @@ struct Options {
 /// How the battle is filmed.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Filming, with --features render")]
+#[command(group = ArgGroup::new("pictures").multiple(true))]
 struct FilmOptions {
     /// Folder for pictures: 00000.png, 00001.png and so on.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "pictures")]
     frames: Option<PathBuf>,
 
     /// File for a moving picture of half the size.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "pictures")]
     gif: Option<PathBuf>,
 
     /// Writes pictures to standard output, bare: four bytes a pixel, red, green, blue, opacity.
-    #[arg(long)]
+    #[arg(long, group = "pictures")]
     raw: bool,
 
     /// Where the camera is.
-    #[arg(long, value_enum, default_value = "orbit")]
+    #[arg(long, value_enum, default_value = "orbit", requires = "pictures")]
     camera: CameraKind,
 
     /// What is drawn over the pictures, with commas between.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT", requires = "pictures")]
     overlay: Vec<OverlayKind>,
 
-    /// Pictures for a second of the battle.
-    #[arg(long, value_name = "COUNT", default_value_t = 15)]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=60))]
-    rate: u32,
+    /// Pictures for a second of the battle, from 0.01 to 60: 0.25 is one in four seconds.
+    #[arg(long, value_name = "COUNT", default_value_t = 15.0, requires = "pictures")]
+    #[arg(value_parser = rate, allow_negative_numbers = true)]
+    rate: f64,
 
     /// Seconds of the battle that pass before filming begins.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "pictures")]
+    #[arg(value_parser = from, allow_negative_numbers = true)]
     from: f64,
 
     /// Pixels along a row.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1280)]
+    #[arg(long, value_name = "PIXELS", default_value_t = 1280, requires = "pictures")]
     width: u32,
 
     /// Rows of pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 720)]
+    #[arg(long, value_name = "PIXELS", default_value_t = 720, requires = "pictures")]
     rows: u32,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.01..=60.0).contains(&number) => Ok(number),
+        Ok(_) => Err("must be from 0.01 to 60".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn from(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=1e6).contains(&number) => Ok(number),
+        Ok(_) => Err("must be from 0 to 1000000".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+impl FilmOptions {
+    fn is_wanted(&self) -> bool {
+        self.frames.is_some() || self.gif.is_some() || self.raw
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -101,6 +125,13 @@ enum OverlayKind {
 
 fn main() -> ExitCode {
     let options = Options::parse();
+    let (from, seconds) = (options.film.from, options.battle.seconds());
+    if options.film.is_wanted() && from > seconds {
+        let reason = format!("nothing to film: the battle ends after {seconds} s, and --from is {from}");
+        Options::command()
+            .error(ErrorKind::ValueValidation, reason)
+            .exit();
+    }
     let summary = match run(&options) {
         Ok(summary) => summary,
         Err(error) => {
@@ -108,7 +139,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let table = format!("{summary}  written to {}", options.battle.out.display());
+    let table = format!("{summary}  written to {}", written(&options));
     if options.film.raw {
         // Standard output has the pictures.
         eprintln!("{table}");
@@ -123,12 +154,21 @@ fn main() -> ExitCode {
     }
 }
 
+/// Where all results are, by path.
+fn written(options: &Options) -> String {
+    let (battle, film) = (&options.battle, &options.film);
+    let asked = [&battle.record, &film.frames, &film.gif];
+    let paths = std::iter::once(&battle.out).chain(asked.into_iter().flatten());
+    let paths: Vec<String> = paths.map(|path| path.display().to_string()).collect();
+    paths.join(", ")
+}
+
 fn run(options: &Options) -> Result<Summary, BattleError> {
-    let film = &options.film;
-    if film.frames.is_none() && film.gif.is_none() && !film.raw {
-        return battle::run(&options.battle);
+    if options.film.is_wanted() {
+        filmed(options)
+    } else {
+        battle::run(&options.battle)
     }
-    filmed(options)
 }
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]

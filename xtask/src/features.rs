@@ -1,8 +1,9 @@
-//! Every crate alone, with no features, and with each of its features alone, without warnings; all together
-//! are linted in another step. With each feature that is not on in the tests of the workspace, the library's tests
-//! too. Here dependencies that declare a newer Rust than ours are refused.
+//! The library of every crate alone, as its users build it: with no features, and with each of its features alone,
+//! without warnings. What only its tests depend on is left out, so that it turns no feature on; tests, benches and
+//! examples, and all features together, are linted in another step. With each feature that is not on in the tests of the
+//! workspace, the library's tests too. Here dependencies that declare a newer Rust than ours are refused.
 
-use cargo_metadata::Metadata;
+use cargo_metadata::{Metadata, Package, Target, TargetKind};
 
 use crate::build::selected;
 use crate::peers;
@@ -22,7 +23,8 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
             *name != "default" && !peers::left_out(&format!("{}/{name}", package.name))
         };
         let features = || package.features.keys().filter(here);
-        let lint = ["clippy", "--quiet", "-p", &package.name, "--all-targets"];
+        let target = target(package);
+        let lint = ["clippy", "--quiet", "-p", &package.name, target];
         let bare = ["--no-default-features"];
         let strict = ["--", "-D", "warnings"];
         cargo(&[&lint[..], &bare, &strict].concat())?;
@@ -43,4 +45,14 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// What of a package is built: its library, or its program if it has none.
+fn target(package: &Package) -> &'static str {
+    let is_library = |target: &Target| target.kind.contains(&TargetKind::Lib);
+    if package.targets.iter().any(is_library) {
+        "--lib"
+    } else {
+        "--bins"
+    }
 }

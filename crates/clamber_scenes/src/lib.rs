@@ -25,6 +25,7 @@ pub mod closed;
 mod creature;
 pub mod giant;
 pub mod inspect;
+mod json;
 pub mod measure;
 pub mod part_bounds;
 #[cfg(feature = "render")]

@@ -9,6 +9,7 @@ use super::checks::{
     OUT_OF_REACH, PUSH_OUT, PUSHED_OFF, ROCKS_INSIDE, STANDS_OFF,
 };
 use super::{Battle, BattleError, BattleOptions, Story};
+use crate::json::number;
 use crate::measure::quantile;
 
 /// Largest share of a ride's ticks that may be spent off the creature: one in ten.
@@ -24,6 +25,7 @@ pub struct Check {
     /// What was looked at.
     pub name: &'static str,
     /// What was found.
+    #[serde(serialize_with = "number")]
     pub found: f64,
     /// What it may be at most.
     pub at_most: f64,
@@ -154,8 +156,8 @@ impl Summary {
             checks.push(check(FALLS, f64::from(watch.falls), 0.0));
         }
         if !rides && options.is_whole() {
-            let arrived = battle.arrived().unwrap_or(f64::INFINITY);
-            checks.push(check("seconds to the top", arrived, options.seconds()));
+            let missed = if battle.arrived().is_some() { 0.0 } else { 1.0 };
+            checks.push(check("never at the top", missed, 0.0));
             // A creature from a file need not have a clip that shakes and one that stomps.
             if options.creature.is_none() {
                 checks.push(check("modes never seen", never as f64, 0.0));

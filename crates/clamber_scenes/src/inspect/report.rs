@@ -5,6 +5,8 @@ use clamber_gltf::Rig;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 use serde::Serialize;
 
+use crate::json::number;
+
 /// What the import found, and what was measured. Lengths are in the file's metres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Inspection {
@@ -23,6 +25,7 @@ pub struct Inspection {
     /// The most influences of one vertex.
     pub max_influences: usize,
     /// The largest difference from 1 of a vertex's weights as given.
+    #[serde(serialize_with = "number")]
     pub worst_weight_error: f64,
     /// Names and lengths of the clips.
     pub clips: Vec<ClipLine>,
@@ -41,6 +44,7 @@ pub struct Inspection {
     /// Poses that all below was measured in.
     pub poses: usize,
     /// Worst error of a skinned coordinate against f64, as a share of the stated bound.
+    #[serde(serialize_with = "number")]
     pub skinning_error_share: f64,
     /// Hits of the queries, lazy and skinned ahead, that were compared with brute force.
     pub query_hits: usize,
@@ -62,6 +66,7 @@ pub struct ClipLine {
     /// Its name.
     pub name: String,
     /// Its length.
+    #[serde(serialize_with = "number")]
     pub seconds: f64,
 }
 
@@ -73,6 +78,7 @@ pub struct WeakPointLine {
     /// The joint that it is on.
     pub joint: String,
     /// What it takes.
+    #[serde(serialize_with = "number")]
     pub hit_points: f64,
     /// True if the creature dies of it.
     pub major: bool,
@@ -82,8 +88,10 @@ pub struct WeakPointLine {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distances {
     /// Half of the places are at most so far.
+    #[serde(serialize_with = "number")]
     pub median_m: f64,
     /// The farthest of these places.
+    #[serde(serialize_with = "number")]
     pub worst_m: f64,
 }
 
