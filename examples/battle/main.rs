@@ -47,25 +47,51 @@ struct FilmOptions {
     camera: CameraKind,
 
     /// What is drawn over the pictures, with commas between.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT", requires = "pictures")]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "WHAT",
+        requires = "pictures"
+    )]
     overlay: Vec<OverlayKind>,
 
     /// Pictures for a second of the battle, from 0.01 to 60: 0.25 is one in four seconds.
-    #[arg(long, value_name = "COUNT", default_value_t = 15.0, requires = "pictures")]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 15.0,
+        requires = "pictures"
+    )]
     #[arg(value_parser = rate, allow_negative_numbers = true)]
     rate: f64,
 
     /// Seconds of the battle that pass before filming begins.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "pictures")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        requires = "pictures"
+    )]
     #[arg(value_parser = from, allow_negative_numbers = true)]
     from: f64,
 
     /// Pixels along a row.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1280, requires = "pictures")]
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 1280,
+        requires = "pictures"
+    )]
     width: u32,
 
     /// Rows of pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 720, requires = "pictures")]
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 720,
+        requires = "pictures"
+    )]
     rows: u32,
 }
 
@@ -127,7 +153,8 @@ fn main() -> ExitCode {
     let options = Options::parse();
     let (from, seconds) = (options.film.from, options.battle.seconds());
     if options.film.is_wanted() && from > seconds {
-        let reason = format!("nothing to film: the battle ends after {seconds} s, and --from is {from}");
+        let reason =
+            format!("nothing to film: the battle ends after {seconds} s, and --from is {from}");
         Options::command()
             .error(ErrorKind::ValueValidation, reason)
             .exit();

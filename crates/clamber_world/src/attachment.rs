@@ -45,6 +45,12 @@ const ROUNDING: f64 = 0.02;
 /// assert!(arrow.position().distance(above + DVec3::X * 0.5) < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// It does not know a creature's mesh: whoever saves it keeps [`ColliderMesh::id`] beside it, and asks
+/// [`ColliderMesh::continues`] before it is followed on what was loaded.
+///
+/// [`ColliderMesh::id`]: clamber_surface::mesh::ColliderMesh::id
+/// [`ColliderMesh::continues`]: clamber_surface::mesh::ColliderMesh::continues
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attachment {

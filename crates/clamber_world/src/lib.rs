@@ -6,6 +6,7 @@ mod debris;
 mod obstacle;
 #[cfg(feature = "rapier")]
 mod rapier;
+mod rigid_pose;
 #[cfg(feature = "parry")]
 pub mod shapes;
 mod surface;
@@ -30,3 +31,4 @@ pub use rapier::{BodyPoses, RapierTerrain, apply_push};
 /// The rapier that [`RapierTerrain`] speaks to.
 #[cfg(feature = "rapier")]
 pub use rapier3d;
+pub use rigid_pose::RigidPose;

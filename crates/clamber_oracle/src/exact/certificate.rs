@@ -14,8 +14,8 @@ use std::cell::LazyCell;
 use dashu::rational::Relaxed;
 use glam::DVec3;
 
-use super::number::{Exact, dot, length_sq, minus, number, rounded};
 use super::nearest::{Nearest, nearest};
+use super::number::{Exact, dot, length_sq, minus, number, rounded};
 use super::pair::ExactPair;
 use crate::MovingPair;
 

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use glam::Vec3;
 
 use super::{ColliderMesh, TriangleId, VertexId};
@@ -9,12 +11,45 @@ use crate::rig::JointId;
 /// Hits and anchors carry that of the mesh as it was when their triangle was added, so that what belongs to one creature
 /// is not taken for a point of another: a point on a triangle that was built holds on every copy, however it is edited;
 /// one on a triangle that an edit added holds where the same was added.
+///
+/// As text, and so in save games, it is 16 hexadecimal digits and, after edits, `+` and how many vertices and triangles
+/// they added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshId {
     /// How many vertices and triangles were added.
     added: u64,
     fingerprint: u64,
+}
+
+impl fmt::Display for MeshId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.fingerprint)?;
+        if self.added > 0 {
+            write!(f, "+{}", self.added)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for MeshId {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for MeshId {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::Error;
+        let text = <std::borrow::Cow<'de, str>>::deserialize(deserializer)?;
+        let (fingerprint, added) = text.split_once('+').unwrap_or((&text, "0"));
+        let id = Self {
+            added: added.parse().map_err(D::Error::custom)?,
+            fingerprint: u64::from_str_radix(fingerprint, 16).map_err(D::Error::custom)?,
+        };
+        Ok(id)
+    }
 }
 
 /// All ids that a mesh has had.

@@ -56,8 +56,9 @@ pub struct Anchor {
     /// Weights of its corners: not negative, sum 1.
     pub barycentric: [f32; 3],
     /// The rotation of the material around the point from rest to now, in model space, as it was
-    /// last known. Stands in where the triangle has collapsed; store
-    /// [`crate::surface::Motion::frame`] here each tick to keep it fresh.
+    /// last known. It stands in where the triangle collapses, and matters nowhere else: whose skin may collapse stores
+    /// [`Motion::frame`](crate::surface::Motion::frame), which
+    /// [`ModelSpace::motion`](crate::surface::ModelSpace::motion) gives, here in each tick.
     pub frame: Quat,
 }
 

@@ -23,7 +23,7 @@ pub enum SurfaceError {
     #[error("the length of a tick must be long enough for velocities that fit in f32, found {0}")]
     ShortTick(f64),
     /// A hit or anchor belongs to another mesh.
-    #[error("the point lies on mesh {found:?}, not on {expected:?}")]
+    #[error("the point lies on mesh {found}, not on {expected}")]
     ForeignMesh {
         /// The surface's.
         expected: MeshId,

@@ -13,11 +13,11 @@ use rapier3d::pipeline::{PhysicsWorld, QueryFilter, QueryPipeline};
 use super::BodyPoses;
 use super::push::push_response;
 use crate::shapes::{
-    FirstContact, Moved, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape,
-    sort_contacts,
+    FirstContact, Moved, Reach, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
 use crate::{
-    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, PointMotion, RigidPose, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;

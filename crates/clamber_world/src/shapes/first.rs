@@ -14,7 +14,8 @@ use crate::{Contact, SweepContact, WorldCapsule};
 ///
 /// ```
 /// use clamber_world::WorldCapsule;
-/// use clamber_world::shapes::{FirstContact, RigidPose, Tick};
+/// use clamber_world::RigidPose;
+/// use clamber_world::shapes::{FirstContact, Tick};
 /// use clamber_world::parry3d::shape::Ball;
 /// use glam::{DQuat, DVec3};
 ///

@@ -2,7 +2,8 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
 use parry3d::shape::Shape;
 
-use super::{RigidPose, Tick};
+use super::Tick;
+use crate::RigidPose;
 
 /// Share of coordinates by which a box is off in f32, four times over.
 const LOOSE: f32 = 1e-6;

@@ -3,10 +3,10 @@ use clamber_surface::mesh::SurfaceTag;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
-use super::RigidPose;
 use super::convex::{Convex, MovingConvex};
 use super::parts::{Part, visit_parts};
 use super::reach::Reach;
+use crate::RigidPose;
 use crate::{Contact, MaterialPoint};
 
 /// Where a shape is touched, in its own space.

@@ -3,8 +3,8 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, TraversalAction};
 use parry3d::shape::{HeightField, Shape, TypedShape};
 
-use super::RigidPose;
 use super::convex::Convex;
+use crate::RigidPose;
 
 /// What shapes are made of.
 pub(super) enum Part<'a> {

@@ -2,11 +2,12 @@ use clamber_surface::geometry::MovingCapsule;
 use glam::{DVec3, Vec3};
 use parry3d::shape::Shape;
 
+use super::ShapeContact;
 use super::convex::{Convex, MovingConvex};
 use super::overlap::{half_space, solid};
 use super::parts::{Part, visit_parts};
 use super::reach::{Reach, is_usable, is_usable_radius};
-use super::{RigidPose, ShapeContact};
+use crate::RigidPose;
 use crate::WorldCapsule;
 
 /// [`WorldCapsule::sweep_tolerance`] by the radius alone.

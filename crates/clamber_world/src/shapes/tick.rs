@@ -2,7 +2,8 @@ use clamber_surface::geometry::MovingCapsule;
 use clamber_surface::mesh::SurfaceTag;
 use glam::DVec3;
 
-use super::{RigidPose, ShapeSweep, ShapeTouch};
+use super::{ShapeSweep, ShapeTouch};
+use crate::RigidPose;
 use crate::{Contact, MaterialPoint, SweepContact, WorldCapsule};
 
 /// Where a body stood a tick ago and stands now.

@@ -5,7 +5,7 @@ use avian3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use avian3d::parry::math::Pose;
 use avian3d::prelude::{Collider, ColliderOf, ColliderTransform, Position, RigidBody, Rotation};
 use bevy_ecs::prelude::*;
-use clamber_world::shapes::RigidPose;
+use clamber_world::RigidPose;
 
 /// Metres that bounds are too large, so that none is missed by rounding.
 const LOOSE: f32 = 1e-3;

@@ -6,10 +6,11 @@ use bevy_math::{Dir3, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::SurfaceTag;
 use clamber_world::shapes::{
-    FirstContact, Reach, RigidPose, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
+    FirstContact, Reach, Tick, closest_by_overlap, holds, overlap_shape, sort_contacts,
 };
 use clamber_world::{
-    Contact, MaterialPoint, Obstacle, PointMotion, SweepContact, TargetMotion, WorldCapsule,
+    Contact, MaterialPoint, Obstacle, PointMotion, RigidPose, SweepContact, TargetMotion,
+    WorldCapsule,
 };
 use glam::DVec3;
 

@@ -2,7 +2,7 @@ use clamber_surface::geometry::slerp;
 use glam::DVec3;
 
 use super::Convex;
-use crate::shapes::RigidPose;
+use crate::RigidPose;
 
 /// A solid over a tick: each of its points goes on a straight line from where a pose puts it at time 0 to where it is in
 /// the solid's own space at time 1. What is rounded around the core stays as it is.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::shapes::RigidPose;
+use crate::RigidPose;
 
 const TOLERANCE: f64 = 1e-4;
 

@@ -1,9 +1,27 @@
-use glam::{DQuat, DVec3, Quat};
-use parry3d::math::Vector;
+use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::PointMotion;
 
 /// A rigid pose in f64: engines round their own in f32 with every product.
+///
+/// An obstacle that moves and turns keeps two of them, of the last tick and of this one, and material points in the
+/// body's own space; [`RigidPose::motion_since`] is its [`Obstacle::motion`](crate::Obstacle::motion):
+///
+/// ```
+/// use clamber_world::RigidPose;
+/// use clamber_world::glam::{DQuat, DVec3};
+///
+/// let before = RigidPose::IDENTITY;
+/// let now = RigidPose {
+///     rotation: DQuat::from_rotation_y(0.1),
+///     translation: DVec3::X * 0.5,
+/// };
+/// let local = DVec3::new(0.0, 1.0, 2.0);
+/// let motion = now.motion_since(&before, local, DVec3::ZERO, 1.0 / 60.0).unwrap();
+/// assert_eq!(motion.previous_position, local);
+/// assert_eq!(motion.position, now.transform(local));
+/// assert!(motion.turn.angle_between(now.rotation) < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidPose {
     /// A unit quaternion.
@@ -20,7 +38,7 @@ impl RigidPose {
     };
 
     /// From an engine's pose; the rotation is normalised.
-    pub fn new(rotation: Quat, translation: Vector) -> Self {
+    pub fn new(rotation: Quat, translation: Vec3) -> Self {
         Self {
             rotation: rotation.as_dquat().normalize(),
             translation: translation.as_dvec3(),
