@@ -110,11 +110,19 @@ fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
         let expected = surface.in_model().motion(&anchor, 0.1).unwrap();
         assert_eq!(moved.position, expected.position);
         // Each half of the id counts.
-        for half in ["added", "fingerprint"] {
+        let id = anchor.mesh.to_string();
+        let (fingerprint, added) = id.split_once('+').unwrap_or((&id, "0"));
+        let of_mesh = |text: &str| {
             let mut written = serde_json::to_value(anchor).unwrap();
-            written["mesh"][half] = json!(7);
-            let other: Anchor = serde_json::from_value(written).unwrap();
-            assert!(again.in_model().motion(&other, 0.1).is_err(), "{half}");
+            written["mesh"] = json!(text);
+            serde_json::from_value::<Anchor>(written)
+        };
+        for other in [format!("{fingerprint}+7"), format!("7+{added}")] {
+            let read = of_mesh(&other).unwrap();
+            assert!(again.in_model().motion(&read, 0.1).is_err(), "{other}");
+        }
+        for none in ["", "x", "1+", "1+x", "11112222333344445"] {
+            assert!(of_mesh(none).is_err(), "{none:?}");
         }
     }
 }
