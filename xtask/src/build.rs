@@ -13,7 +13,7 @@ use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 const FEATURES: &str = "\
     bevy_clamber/avian,bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,\
     bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,\
-    clamber/record,clamber/render,clamber_climber/serde";
+    clamber/record,clamber/render,clamber_climber/serde,clamber_oracle/exact,clamber_surface/scalar";
 
 /// The whole workspace, with [`FEATURES`] and the peers whose libraries are here.
 pub(crate) fn selection() -> Vec<&'static str> {
