@@ -13,3 +13,18 @@ pub(crate) fn number<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok
         serializer.serialize_str(&number.to_string())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_is_null() {
+        #[derive(serde::Serialize)]
+        struct One(#[serde(serialize_with = "number")] f64);
+        let written = |number| serde_json::to_string(&One(number)).unwrap();
+        assert_eq!(written(0.5), "0.5");
+        assert_eq!(written(f64::INFINITY), "\"inf\"");
+        assert_eq!(written(f64::NAN), "\"NaN\"");
+    }
+}

@@ -111,18 +111,25 @@ fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
         assert_eq!(moved.position, expected.position);
         // Each half of the id counts.
         let id = anchor.mesh.to_string();
-        let (fingerprint, added) = id.split_once('+').unwrap_or((&id, "0"));
+        let (fingerprint, _) = id.split_once('+').unwrap_or((&id, ""));
         let of_mesh = |text: &str| {
             let mut written = serde_json::to_value(anchor).unwrap();
             written["mesh"] = json!(text);
             serde_json::from_value::<Anchor>(written)
         };
-        for other in [format!("{fingerprint}+7"), format!("7+{added}")] {
+        for other in [
+            format!("{fingerprint}+7"),
+            id.replace(fingerprint, "0000000000000007"),
+        ] {
             let read = of_mesh(&other).unwrap();
             assert!(again.in_model().motion(&read, 0.1).is_err(), "{other}");
         }
-        for none in ["", "x", "1+", "1+x", "11112222333344445"] {
+        for none in ["", "x", "7", "000000000000000G", "00000000000000007"] {
             assert!(of_mesh(none).is_err(), "{none:?}");
+        }
+        for end in ["+", "+x", "+0", "+07", "++7", "+-7"] {
+            let none = format!("{fingerprint}{end}");
+            assert!(of_mesh(&none).is_err(), "{none:?}");
         }
     }
 }

@@ -87,8 +87,8 @@ pub struct PointMotion {
     /// True if the point may have been teleported. An obstacle that cannot tell a teleport from rest sets it when the
     /// point did not move. Never true for a point that moved.
     pub placed: bool,
-    /// Rotation of the material around the point, from the obstacle's rest to now: of a rigid body, its rotation. `None` where
-    /// the material has collapsed and has no direction of its own: the last one known stands.
+    /// Rotation of the material around the point, from the obstacle's rest to now: of a rigid body, its rotation. `None`
+    /// where the material has collapsed and has no direction of its own: the last one known stands.
     pub frame: Option<DQuat>,
     /// Rotation of the frame over the tick, in world space: `now * before⁻¹`.
     pub turn: DQuat,
@@ -148,10 +148,10 @@ pub trait Obstacle {
     /// from where it stood a tick ago to where it stands now: `capsule` is the capsule at the tick's start.
     ///
     /// The time is never later than the first contact. At that time the capsule is at most
-    /// [`WorldCapsule::sweep_tolerance`] from touching; what is as near at the start and only goes away from there need not be
-    /// reported. The exception is a contact that the obstacle's own solver cannot decide, as that of skinned
-    /// surfaces ([`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided)): it is reported as well, and may
-    /// be farther away. Of several overlaps at the start, the one nearest to the capsule's segment is given, at time 0.
+    /// [`WorldCapsule::sweep_tolerance`] from touching. A capsule that starts as near, does not overlap, and only moves away
+    /// may be left out. A contact that the obstacle's solver cannot decide, as
+    /// [`SweepHit::undecided`](clamber_surface::surface::SweepHit::undecided) on skin, is reported as well, and may be
+    /// farther away. Of several overlaps at the start, the one nearest to the capsule's segment is given, at time 0.
     fn cast_capsule(
         &self,
         capsule: &WorldCapsule,

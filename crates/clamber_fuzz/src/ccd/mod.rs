@@ -1,6 +1,6 @@
 //! Continuous collision queries with exact answers, put to the library's sweeps: from files, or one by one ([`Stage`]).
 //!
-//! What is found in a file's queries is judged by the points as they are there, in rational numbers.
+//! Answers to a file's queries are judged in rational numbers, by the points as the file has them.
 
 mod error;
 mod options;

@@ -1,4 +1,4 @@
-//! Moving pairs to put to a sweep: hard ones, and such of which something is known.
+//! Moving pairs for sweeps to answer: hard ones, and ones whose answer is known in part.
 
 mod adversarial;
 mod constructed;

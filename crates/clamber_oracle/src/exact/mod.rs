@@ -1,4 +1,4 @@
-//! Distances in rational numbers, and proofs of what is claimed of things that move.
+//! Distances in rational numbers, and proofs that a sweep's answer is right or wrong.
 
 mod certificate;
 mod nearest;

@@ -66,7 +66,6 @@ pub struct ClipLine {
     /// Its name.
     pub name: String,
     /// Its length.
-    #[serde(serialize_with = "number")]
     pub seconds: f64,
 }
 
@@ -78,7 +77,6 @@ pub struct WeakPointLine {
     /// The joint that it is on.
     pub joint: String,
     /// What it takes.
-    #[serde(serialize_with = "number")]
     pub hit_points: f64,
     /// True if the creature dies of it.
     pub major: bool,

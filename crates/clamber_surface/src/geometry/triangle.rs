@@ -35,7 +35,7 @@ pub(crate) struct TrianglePoint {
     pub(crate) distance: f64,
 }
 
-/// Corners in f64. Spelled out: through an array's `map` they take a way by memory that stalls a query's many hits.
+/// Corners in f64. Not by an array's `map`: that goes through memory here, and stalls queries with many hits.
 #[inline(always)]
 pub(crate) fn widened([a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
     [widen(a), widen(b), widen(c)]

@@ -44,11 +44,11 @@ impl<'de> serde::Deserialize<'de> for MeshId {
         use serde::de::Error;
         let text = <std::borrow::Cow<'de, str>>::deserialize(deserializer)?;
         let (fingerprint, added) = text.split_once('+').unwrap_or((&text, "0"));
-        let id = Self {
-            added: added.parse().map_err(D::Error::custom)?,
-            fingerprint: u64::from_str_radix(fingerprint, 16).map_err(D::Error::custom)?,
-        };
-        Ok(id)
+        let numbers = (added.parse().ok()).zip(u64::from_str_radix(fingerprint, 16).ok());
+        let id = numbers.map(|(added, fingerprint)| Self { added, fingerprint });
+        // Written in one way only.
+        id.filter(|id| id.to_string() == text)
+            .ok_or_else(|| D::Error::custom(format_args!("{text:?} is no mesh id")))
     }
 }
 

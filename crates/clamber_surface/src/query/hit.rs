@@ -222,6 +222,7 @@ pub(super) fn capsule_hit(capsule: &Capsule, surface: SurfaceHit) -> CapsuleHit 
 impl Instance {
     /// Completes a hit on a triangle with the given posed corners. `origin` is where the query looked
     /// from.
+    // Called, it would be handed its arguments through memory, once for every hit of an overlap.
     #[inline(always)]
     pub(super) fn hit(
         &self,

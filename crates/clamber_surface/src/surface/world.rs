@@ -64,8 +64,8 @@ pub struct WorldMotion {
     pub position: DVec3,
     /// Where it was a tick ago.
     pub previous_position: DVec3,
-    /// Displacement over the tick, metres per second. Places are rounded to f32 in model space, so that over a tick of
-    /// 1/60 s it differs by some 1e-5 of the distance from the model's origin from what the places in f64 say.
+    /// Displacement over the tick, metres per second. Like both places it is rounded to f32 in model space, by itself: it
+    /// is near to their difference over the tick, and not equal to it.
     pub velocity: DVec3,
     /// Rotation of the material around the point from rest to now, in world space: [`Motion::frame`], and then the
     /// surface's own rotation.
