@@ -54,23 +54,22 @@ const ALLOWED: [(&str, &[&str]); 14] = [
             "clamber_oracle",
         ],
     ),
-    ("clamber_peers", &["clamber_surface"]),
+    ("clamber_benches", &[]),
     ("xtask", &[]),
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 8] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 7] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
+    ("clamber_benches", "clamber"),
+    ("clamber_benches", "clamber_scenes"),
     ("clamber_fuzz", "clamber_scenes"),
-    ("clamber_peers", "clamber_climber"),
-    ("clamber_peers", "clamber_scenes"),
-    ("clamber_peers", "clamber_world"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
 ];
 
-/// Crates outside the workspace that only one crate of it may know, beside the one that holds peers against ours.
+/// Crates outside the workspace that only one crate of it may know.
 const KEPT_TO: [(&str, &str); 9] = [
     ("avian3d", "bevy_clamber"),
     ("rapier3d", "clamber_world"),
@@ -82,9 +81,6 @@ const KEPT_TO: [(&str, &str); 9] = [
     ("foxglove", "clamber_record"),
     ("prost", "clamber_record"),
 ];
-
-/// May know any peer.
-const PEERS: &str = "clamber_peers";
 
 /// All that the core may depend on outside the workspace.
 const CORE: (&str, &[&str]) = (
@@ -120,8 +116,7 @@ pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
                 }
                 let kept = KEPT_TO.iter().find(|(engine, _)| *engine == to);
                 let core = name == CORE.0 && !for_tests;
-                kept.is_none_or(|(_, owner)| *owner == name || name == PEERS)
-                    && (!core || CORE.1.contains(&to))
+                kept.is_none_or(|(_, owner)| *owner == name) && (!core || CORE.1.contains(&to))
             };
             if !fine {
                 wrong.push(format!("{name} must not depend on {to}"));

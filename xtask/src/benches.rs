@@ -13,6 +13,13 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     // By name: all of them would be the libraries' tests as well.
     let named = benches.flat_map(|bench| ["--bench", bench.name.as_str()]);
     let named: Vec<&str> = named.collect();
-    let test = ["test", "--quiet"];
-    cargo(&[&test[..], &selection(), &named, &["--", "--test"]].concat())
+    cargo(
+        &[
+            &["test", "--quiet"][..],
+            &selection(),
+            &named,
+            &["--", "--test"],
+        ]
+        .concat(),
+    )
 }

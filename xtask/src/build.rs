@@ -6,22 +6,30 @@ use std::collections::{BTreeMap, BTreeSet};
 use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Message, Metadata, TargetKind};
 
-use crate::peers;
 use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 
 /// What is not on by default but needed by an example, a test or a bench, or only adds to what there is.
 const FEATURES: &str = "\
     bevy_clamber/avian,bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,\
-    bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,\
-    clamber/record,clamber/render,clamber_climber/serde,clamber_oracle/exact,clamber_surface/scalar";
+    bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,clamber/record,clamber/render,\
+    clamber_benches/record,clamber_benches/render,clamber_climber/serde,clamber_oracle/exact";
 
-/// The whole workspace, with [`FEATURES`] and the peers whose libraries are here.
+/// The golden runs and the main examples as released, and SIMD levels down to scalar code. Here, since scalar code with
+/// overflow checks takes as long to compile as all other levels together, and there are none in sums of floats.
+pub(crate) const RELEASED: [&str; 8] = [
+    "-p",
+    "clamber",
+    "-p",
+    "clamber_climber",
+    "-p",
+    "clamber_surface",
+    "--features",
+    "clamber/record,clamber_surface/scalar",
+];
+
+/// The whole workspace, with [`FEATURES`].
 pub(crate) fn selection() -> Vec<&'static str> {
-    let mut selection = vec!["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES];
-    for peer in peers::installed() {
-        selection.extend(["--features", peer]);
-    }
-    selection
+    vec!["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES]
 }
 
 /// The features that are on with [`selection`], as `package/feature`: those named, those on by default, and what
@@ -31,7 +39,7 @@ pub(crate) fn selected(metadata: &Metadata) -> BTreeSet<String> {
     let default = packages
         .iter()
         .map(|package| format!("{}/default", package.name));
-    let named = FEATURES.split(',').chain(peers::installed());
+    let named = FEATURES.split(',');
     let mut next: Vec<String> = named.map(str::to_owned).chain(default).collect();
     let mut selected = BTreeSet::new();
     while let Some(feature) = next.pop() {
@@ -50,7 +58,7 @@ pub(crate) fn selected(metadata: &Metadata) -> BTreeSet<String> {
     selected
 }
 
-/// Builds examples; gives their binaries by name. `which` are cargo's words: `--examples` for all.
+/// Builds all examples of a selection, or those that it names; gives their binaries by name.
 pub(crate) fn examples(which: &[&str]) -> Result<BTreeMap<String, Utf8PathBuf>, String> {
     let build = [
         "build",
@@ -58,7 +66,11 @@ pub(crate) fn examples(which: &[&str]) -> Result<BTreeMap<String, Utf8PathBuf>, 
         "--message-format",
         "json-render-diagnostics",
     ];
-    let messages = cargo_output(&[&build[..], &selection(), which].concat())?;
+    let all: &[&str] = match which.contains(&"--example") {
+        true => &[],
+        false => &["--examples"],
+    };
+    let messages = cargo_output(&[&build[..], which, all].concat())?;
     let mut examples = BTreeMap::new();
     for message in Message::parse_stream(messages.as_bytes()) {
         let message = message.map_err(|error| format!("what cargo says of its build: {error}"))?;

@@ -1,5 +1,5 @@
-//! Every example once, briefly, as built for tests; the main one also as released and recorded, with equal
-//! results, and what was recorded fought again.
+//! Every example once, briefly, as built for tests; the main one also filmed, and with options that it has to refuse.
+//! As released and recorded, with equal results, it is a golden run.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use cargo_metadata::Metadata;
 use cargo_metadata::camino::{Utf8Path, Utf8PathBuf};
 
 use crate::build;
-use crate::run::program;
+use crate::run::{note_skipped, program, refuses};
 
 /// What an example cannot do without.
 const ARGUMENTS: [(&str, &[&str]); 4] = [
@@ -27,6 +27,16 @@ const ARGUMENTS: [(&str, &[&str]); 4] = [
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];
 
+/// Options of a battle that cannot be meant, which it refuses before it fights.
+const REFUSED: [&[&str]; 6] = [
+    &["--rate", "0", "--frames", "target/none"],
+    &["--from", "nan", "--frames", "target/none"],
+    &["--seconds", "1", "--from", "99", "--frames", "target/none"],
+    &["--camera", "chase"],
+    &["--overlay", "joints"],
+    &["--frames", "Cargo.toml/none"],
+];
+
 /// A vertex that falls through a face, in the form of the query files.
 const QUERY: &str = "\
     1,4,1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
@@ -34,7 +44,7 @@ const QUERY: &str = "\
 
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     let queries = query_files(metadata)?;
-    let examples = build::examples(&["--examples"])?;
+    let examples = build::examples(&build::selection())?;
     for (name, binary) in &examples {
         if ["battle", "replay"].contains(&name.as_str()) {
             continue;
@@ -45,27 +55,32 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
         let files: Vec<&str> = files.filter(|_| name == "ccd_queries").collect();
         program(binary, &[arguments, &files].concat())?;
     }
-    let released = build::examples(&["--release", "--example", "battle", "--example", "replay"])?;
-    let slow = battle_hash(metadata, find(&examples, "battle")?, &[])?;
+    let battle = find(&examples, "battle")?;
+    for arguments in REFUSED {
+        refuses(battle, arguments)?;
+    }
+    let hash = battle_hash(metadata, battle, &[])?;
+    film(metadata, battle, &hash)
+}
+
+/// The battle as released has the hash that it has as built for tests, recorded or not; what one build recorded is fought
+/// again by the other.
+pub(crate) fn compare_builds(metadata: &Metadata) -> Result<(), String> {
+    let tested = build::examples(&build::selection())?;
+    let released = ["--release", "--example", "battle", "--example", "replay"];
+    let released = build::examples(&[&released[..], &build::RELEASED].concat())?;
     let fast = battle_hash(metadata, find(&released, "battle")?, &[])?;
-    if slow != fast {
+    let recording = metadata.target_directory.join("xtask-battle.mcap");
+    let recorded = ["--record", recording.as_str()];
+    let recorded = battle_hash(metadata, find(&tested, "battle")?, &recorded)?;
+    if recorded != fast {
         return Err(format!(
-            "the battle's hash is {slow} in the development profile, {fast} in release"
+            "the battle's hash is {fast} in release, and {recorded} as built for tests and recorded"
         ));
     }
     println!("   battle: hash {fast} in both profiles");
     let folder = metadata.target_directory.join("xtask-climb");
     program(find(&released, "battle")?, &["--out", folder.as_str()])?;
-    let recording = metadata.target_directory.join("xtask-battle.mcap");
-    let recorded = ["--record", recording.as_str()];
-    let recorded = battle_hash(metadata, find(&examples, "battle")?, &recorded)?;
-    if recorded != fast {
-        return Err(format!(
-            "the battle's hash is {fast}, and {recorded} when it is recorded"
-        ));
-    }
-    film(metadata, find(&released, "battle")?, &fast)?;
-    // Recorded in the development profile, fought again as released.
     let replay = find(&released, "replay")?;
     program(replay, &[recording.as_str()])?;
     program(replay, &[recording.as_str(), "--from", "200"])
@@ -83,7 +98,9 @@ fn find<'a>(
 /// graphics device, says that it does not.
 fn film(metadata: &Metadata, battle: &Utf8Path, hash: &str) -> Result<(), String> {
     if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() {
-        println!("   SKIPPED: no battle is filmed without CLAMBER_REQUIRE_GPU");
+        let line = "SKIPPED film of a battle: no Vulkan, install mesa-vulkan-drivers";
+        println!("   {line}");
+        note_skipped(line);
         return Ok(());
     }
     let frames = metadata.target_directory.join("xtask-frames");

@@ -86,8 +86,6 @@ fn document() -> Result<(), String> {
     let doc = [
         "doc",
         "--workspace",
-        "--exclude",
-        "clamber_peers",
         "--no-deps",
         "--all-features",
         IGNORE_RUST_VERSION,

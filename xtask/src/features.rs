@@ -6,7 +6,6 @@
 use cargo_metadata::{Metadata, Package, Target, TargetKind};
 
 use crate::build::selected;
-use crate::peers;
 use crate::run::{IGNORE_RUST_VERSION, cargo};
 
 /// Features that bring in crates which declare a newer Rust than ours, and build on ours.
@@ -19,10 +18,7 @@ const NEWER_RUST: [&str; 3] = [
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
     let selected = selected(metadata);
     for package in metadata.workspace_packages() {
-        let here = |name: &&String| {
-            *name != "default" && !peers::left_out(&format!("{}/{name}", package.name))
-        };
-        let features = || package.features.keys().filter(here);
+        let features = || package.features.keys().filter(|name| *name != "default");
         let target = target(package);
         let lint = ["clippy", "--quiet", "-p", &package.name, target];
         let bare = ["--no-default-features"];

@@ -1,32 +1,38 @@
-//! The fixed runs whose hashes are known, optimised, and for the very processor at hand: compilers then pick other
-//! instructions. The tests of the workspace run the one without rapier as they are built.
+//! The fixed runs whose hashes are known, in other builds than that of the tests: compilers then pick other
+//! instructions.
 
 use cargo_metadata::Metadata;
 
+use crate::build;
+use crate::examples;
 use crate::run::cargo;
 
+/// As released, at all SIMD levels, which the core's own tests hold against each other as well; and a battle as released,
+/// fought again from a recording of the other build.
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
-    let run = ["-p", "clamber_climber", "--test", "golden"];
-    cargo(&[&["test", "--release"][..], &run].concat())?;
-    // Apart, or each of the two would have the other's dependencies built anew.
+    let run = [&["test", "--release"][..], &build::RELEASED].concat();
+    cargo(&[&run[..], &["--lib", "--test", "golden"]].concat())?;
+    examples::compare_builds(metadata)
+}
+
+/// Not optimised, and for the very processor at hand; the second with rapier, whose instructions depend on the processor
+/// unless it is told otherwise.
+pub(crate) fn other_builds(metadata: &Metadata) -> Result<(), String> {
+    let test = ["test", "-p", "clamber_climber", "--test", "golden"];
+    let plain = "profile.dev.opt-level=0";
+    // Apart, or each of these builds would have the other's dependencies built anew.
+    let folder = metadata.target_directory.join("plain");
+    cargo(
+        &[
+            &test[..],
+            &["--config", plain, "--target-dir", folder.as_str()],
+        ]
+        .concat(),
+    )?;
     let folder = metadata.target_directory.join("native");
     let native = "build.rustflags=[\"-C\", \"target-cpu=native\"]";
-    let native = [
-        "test",
-        "--release",
-        "--target-dir",
-        folder.as_str(),
-        "--config",
-        native,
-    ];
-    // rapier's instructions depend on the processor, unless it is told otherwise.
-    let battle = [
-        "-p",
-        "clamber",
-        "--features",
-        "clamber/deterministic",
-        "--test",
-        "golden_battle",
-    ];
-    cargo(&[&native[..], &run, &battle].concat())
+    let battle = ["-p", "clamber", "--features", "clamber/deterministic"];
+    let native = ["--release", "--config", native];
+    let folder = ["--target-dir", folder.as_str(), "--test", "golden_battle"];
+    cargo(&[&test[..], &native, &battle, &folder].concat())
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask ci` runs what CI runs, for a person as well: tests, the golden run in other builds, format, lints, each
-//! feature, documentation, examples, benches, dependency arrows, packages.
+//! `cargo xtask ci` runs what CI runs, for a person as well: tests, golden runs, format, lints, each feature,
+//! documentation, examples, benches, dependency arrows, packages. `cargo xtask nightly` runs what takes hours.
 
 mod app;
 mod arrows;
@@ -10,17 +10,19 @@ mod face;
 mod features;
 mod golden;
 mod modules;
+mod nightly;
 mod packages;
 mod peers;
 mod run;
 mod soak;
+mod steps;
 
 use std::process::ExitCode;
-use std::time::Instant;
 
-use cargo_metadata::{Metadata, MetadataCommand};
+use cargo_metadata::MetadataCommand;
 use clap::{Parser, Subcommand};
 use run::{IGNORE_RUST_VERSION, cargo};
+use steps::Step;
 
 /// Tasks of this workspace.
 #[derive(Parser)]
@@ -35,6 +37,13 @@ enum Task {
     /// Everything that CI checks; goes on after a failure and lists
     /// them all at the end. Takes some minutes on a cold target.
     Ci {
+        /// Run only the steps whose name contains this.
+        #[arg(long, value_name = "NAME")]
+        only: Option<String>,
+    },
+    /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
+    /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
+    Nightly {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
@@ -62,37 +71,24 @@ enum Task {
     },
 }
 
-/// A step of `ci`: what it is called and what it does.
-type Step = (&'static str, fn(&Metadata) -> Result<(), String>);
-
 const STEPS: [Step; 11] = [
     ("tests", |_| {
-        peers::check()?;
+        // The command of the front page; then all that it leaves out.
+        cargo(&["test"])?;
         cargo(&[&["test"][..], &build::selection()].concat())
     }),
     ("golden", golden::run),
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("lints", |_| {
-        let lint = ["clippy", "--all-targets", "--quiet"];
-        let all = [
-            "--workspace",
-            "--exclude",
-            "clamber_peers",
-            "--all-features",
-        ];
-        let strict = ["--", "-D", "warnings"];
-        cargo(&[&lint[..], &all, &[IGNORE_RUST_VERSION], &strict].concat())?;
-        let installed = peers::installed().join(",");
-        let peers = ["-p", "clamber_peers", "--features", &installed];
-        cargo(&[&lint[..], &peers, &strict].concat())
+        let lint = ["clippy", "--all-targets", "--quiet", "--workspace"];
+        let all = ["--all-features", IGNORE_RUST_VERSION];
+        cargo(&[&lint[..], &all, &["--", "-D", "warnings"]].concat())
     }),
     ("features", features::check),
     ("documentation", |_| {
         let doc = [
             "doc",
             "--workspace",
-            "--exclude",
-            "clamber_peers",
             "--no-deps",
             "--all-features",
             IGNORE_RUST_VERSION,
@@ -128,45 +124,20 @@ fn main() -> ExitCode {
         eprintln!("{root}: {error}");
         return ExitCode::FAILURE;
     }
-    let only = match task {
-        Task::Ci { only } => only,
-        Task::App => return ended(app::check()),
-        Task::Face => return ended(face::store(&metadata)),
+    match task {
+        Task::Ci { only } => steps::run(&STEPS, &metadata, only.as_deref()),
+        Task::Nightly { only } => steps::run(&nightly::STEPS, &metadata, only.as_deref()),
+        Task::App => ended(app::check()),
+        Task::Face => ended(face::store(&metadata)),
         Task::Soak {
             minutes,
             seed,
             case,
-        } => return ended(soak::run(minutes, seed, case.as_deref())),
-    };
-    let mut failures = Vec::new();
-    let mut ran = 0;
-    for (name, step) in STEPS {
-        if only.as_deref().is_some_and(|only| !name.contains(only)) {
-            continue;
-        }
-        println!("== {name}");
-        ran += 1;
-        let start = Instant::now();
-        if let Err(reason) = step(&metadata) {
-            eprintln!("{name} FAILED: {reason}");
-            failures.push(name);
-        }
-        println!("   {name}: {:.0} s", start.elapsed().as_secs_f64());
-    }
-    if ran == 0 {
-        let names = STEPS.map(|(name, _)| name).join(", ");
-        eprintln!("no step has such a name; there are {names}");
-        ExitCode::FAILURE
-    } else if failures.is_empty() {
-        println!("{ran} of {} steps ran, all passed", STEPS.len());
-        ExitCode::SUCCESS
-    } else {
-        eprintln!("failed: {}", failures.join(", "));
-        ExitCode::FAILURE
+        } => ended(soak::run(minutes, seed, case.as_deref())),
     }
 }
 
-/// What a task other than `ci` came to.
+/// The exit code of a task without steps.
 fn ended(came: Result<(), String>) -> ExitCode {
     match came {
         Ok(()) => ExitCode::SUCCESS,

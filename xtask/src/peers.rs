@@ -1,53 +1,52 @@
-//! Libraries that peers need: of those that Debian packages, what is installed is built, and on CI all of it must be.
+//! `peers`, a workspace of its own: other libraries, whose answers and times are held against ours. Of those that Debian
+//! packages, what is installed is built.
 
 use std::path::Path;
 
-/// Features, where their headers are, and in which package.
+use crate::run::cargo;
+
+const MANIFEST: [&str; 3] = ["--locked", "--manifest-path", "peers/Cargo.toml"];
+
+/// Features, where their headers are, and in which package. Jolt and PhysX, which cargo compiles, take minutes in each
+/// profile: they are run by hand, as `peers/README.md` says.
 const LIBRARIES: [(&str, &str, &str); 3] = [
-    (
-        "clamber_peers/bullet",
-        "/usr/include/bullet",
-        "libbullet-dev",
-    ),
-    (
-        "clamber_peers/embree",
-        "/usr/include/embree3",
-        "libembree-dev",
-    ),
-    ("clamber_peers/fcl", "/usr/include/fcl", "libfcl-dev"),
+    ("bullet", "/usr/include/bullet", "libbullet-dev"),
+    ("embree", "/usr/include/embree3", "libembree-dev"),
+    ("fcl", "/usr/include/fcl", "libfcl-dev"),
 ];
 
-/// Features whose libraries cargo compiles: Jolt and PhysX take minutes in each profile, for one peer each. They are run
-/// by hand, as `crates/clamber_peers/README.md` says.
-const COMPILED: [&str; 2] = ["clamber_peers/jolt", "clamber_peers/physx"];
-
-/// The features whose libraries are here.
-pub(crate) fn installed() -> Vec<&'static str> {
-    let here = LIBRARIES
-        .iter()
-        .filter(|(_, headers, _)| Path::new(headers).exists());
-    here.map(|(feature, ..)| *feature).collect()
-}
-
-/// True for a feature, `package/feature`, that is not built: its library is not here, or takes minutes to compile.
-pub(crate) fn left_out(feature: &str) -> bool {
-    let known = LIBRARIES.iter().any(|(known, ..)| *known == feature);
-    COMPILED.contains(&feature) || known && !installed().contains(&feature)
-}
-
-/// Says what is missing; on CI that is an error.
+/// Format, lints, tests, and each bench briefly; fails if a library is missing, after it has checked the rest.
 pub(crate) fn check() -> Result<(), String> {
-    let missing = LIBRARIES
+    let here = |(_, headers, _): &&(&str, &str, &str)| Path::new(headers).exists();
+    let installed: Vec<&str> = LIBRARIES
         .iter()
-        .filter(|(_, headers, _)| !Path::new(headers).exists());
+        .filter(here)
+        .map(|(name, ..)| *name)
+        .collect();
+    let installed = installed.join(",");
+    let features = ["--features", &installed];
+    cargo(&["fmt", "--manifest-path", MANIFEST[2], "--check"])?;
+    let strict = ["--", "-D", "warnings"];
+    cargo(
+        &[
+            &["clippy", "--all-targets", "--quiet"][..],
+            &MANIFEST,
+            &features,
+            &strict,
+        ]
+        .concat(),
+    )?;
+    cargo(&[&["test"][..], &MANIFEST, &features].concat())?;
+    let brief = ["--benches", "--", "--test"];
+    cargo(&[&["test"][..], &MANIFEST, &features, &brief].concat())?;
+    let missing = LIBRARIES.iter().filter(|library| !here(library));
     let missing: Vec<&str> = missing.map(|(.., package)| *package).collect();
     if missing.is_empty() {
-        return Ok(());
+        Ok(())
+    } else {
+        Err(format!(
+            "peers are left out: apt-get install {}",
+            missing.join(" ")
+        ))
     }
-    let missing = format!("peers are left out: apt-get install {}", missing.join(" "));
-    if std::env::var_os("CI").is_some() {
-        return Err(missing);
-    }
-    eprintln!("WARNING: {missing}");
-    Ok(())
 }

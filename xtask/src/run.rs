@@ -1,12 +1,39 @@
 //! Commands.
 
+use std::io::{BufRead, BufReader, IsTerminal};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use cargo_metadata::camino::Utf8Path;
 
 /// Where all features are built: those of `bevy_clamber` that speak to other engines bring in Bevy's umbrella crate,
 /// which declares a newer Rust than ours and builds on ours.
 pub(crate) const IGNORE_RUST_VERSION: &str = "--ignore-rust-version";
+
+/// How a line on standard error begins by which a test says that it did nothing, and why.
+const SKIPPED: &str = "SKIPPED";
+
+/// The lines with [`SKIPPED`] of all commands so far.
+static SKIPPED_LINES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Keeps a line for the summary if it says that something was skipped.
+pub(crate) fn note_skipped(line: &str) {
+    if line.starts_with(SKIPPED) {
+        let mut lines = SKIPPED_LINES.lock().unwrap_or_else(PoisonError::into_inner);
+        lines.push(line.to_owned());
+    }
+}
+
+/// What was skipped so far, each line once.
+pub(crate) fn skipped() -> Vec<String> {
+    let mut lines = SKIPPED_LINES
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clone();
+    lines.sort();
+    lines.dedup();
+    lines
+}
 
 /// Runs cargo; an error if it fails.
 pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
@@ -16,10 +43,24 @@ pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
 /// Runs cargo with environment variables.
 pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
     println!("   cargo {}", arguments.join(" "));
-    let status = command(arguments)
-        .envs(variables.iter().copied())
-        .status()
-        .map_err(|error| format!("cannot start cargo: {error}"))?;
+    let failed = |error: std::io::Error| format!("cannot run cargo: {error}");
+    let mut command = command(arguments);
+    command.envs(variables.iter().copied());
+    if std::io::stderr().is_terminal() {
+        command.env("CARGO_TERM_COLOR", "always");
+    }
+    let mut child = command.stderr(Stdio::piped()).spawn().map_err(failed)?;
+    for line in child
+        .stderr
+        .take()
+        .into_iter()
+        .flat_map(|pipe| BufReader::new(pipe).split(b'\n'))
+    {
+        let line = String::from_utf8_lossy(&line.map_err(failed)?).into_owned();
+        eprintln!("{line}");
+        note_skipped(&line);
+    }
+    let status = child.wait().map_err(failed)?;
     if status.success() {
         Ok(())
     } else {
@@ -85,6 +126,24 @@ pub(crate) fn program(binary: &Utf8Path, arguments: &[&str]) -> Result<(), Strin
             arguments.join(" ")
         ))
     }
+}
+
+/// Runs a program that must end with an error of its own, exit code 1 or 2, and say why.
+pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str]) -> Result<(), String> {
+    let name = binary.file_name().unwrap_or(binary.as_str());
+    println!("   {name} {} (refused)", arguments.join(" "));
+    let output = Command::new(binary)
+        .args(arguments)
+        .output()
+        .map_err(|error| format!("cannot start {binary}: {error}"))?;
+    let is_refused = matches!(output.status.code(), Some(1 | 2)) && !output.stderr.is_empty();
+    if is_refused {
+        return Ok(());
+    }
+    let (arguments, status) = (arguments.join(" "), output.status);
+    Err(format!(
+        "`{binary} {arguments}` should be refused with a reason; it ended with {status}"
+    ))
 }
 
 fn command(arguments: &[&str]) -> Command {

@@ -6,6 +6,7 @@
 //! - [`resample`]: any mesh at any number of vertices.
 //! - [`Creature`]: what a scene needs of a creature, from code or from a file.
 //! - [`riders`]: what riders on a walking giant ask in a tick.
+//! - [`controllers`]: thirty scenes on moving ground, for any character controller.
 //! - [`rocks`]: rocks on a shaking giant.
 //! - [`valley`]: terrain to walk in.
 //! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
@@ -22,6 +23,7 @@ pub mod ball;
 pub mod battle;
 pub mod beast;
 pub mod closed;
+pub mod controllers;
 mod creature;
 pub mod giant;
 pub mod inspect;

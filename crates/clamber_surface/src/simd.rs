@@ -36,9 +36,9 @@ impl SimdLevel {
         .flatten();
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         let simd = Some(best).filter(|level| !level.is_fallback());
-        #[cfg(any(test, feature = "scalar"))]
+        #[cfg(feature = "scalar")]
         let scalar = Some(Level::fallback());
-        #[cfg(not(any(test, feature = "scalar")))]
+        #[cfg(not(feature = "scalar"))]
         let scalar = Some(best).filter(|level| level.is_fallback());
         simd.into_iter().chain(scalar).map(Self).collect()
     }
@@ -91,5 +91,16 @@ impl fmt::Debug for SimdLevel {
 impl fmt::Display for SimdLevel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+#[cfg(all(test, feature = "scalar"))]
+mod tests {
+    use super::SimdLevel;
+
+    #[test]
+    fn scalar_code_is_the_last_level() {
+        let levels = SimdLevel::available();
+        assert_eq!(levels.last().map(SimdLevel::name), Some("scalar"));
     }
 }

@@ -32,9 +32,8 @@ fn assert_golden(level: SimdLevel, threads: usize) {
 
 #[test]
 fn the_run_has_the_same_bits_at_every_simd_level() {
-    let levels = SimdLevel::available();
-    assert_eq!(levels.last().map(SimdLevel::name), Some("scalar"));
-    for level in levels {
+    // Scalar code is among them with the feature `scalar` of `clamber_surface`, which CI turns on.
+    for level in SimdLevel::available() {
         assert_golden(level, 1);
     }
 }

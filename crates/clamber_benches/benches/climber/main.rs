@@ -1,0 +1,229 @@
+//! What does a climber's tick cost, beside rapier's character controller that stands on a mesh held still?
+//!
+//! The giant of 6,054 vertices walks; one climber stands on it, another climbs from its foot to its head. rapier's
+//! `KinematicCharacterController` stands on the same mesh in the giant's first pose, which is never posed again: it is told
+//! of no motion, and nothing is skinned for it. Ours skins what it touches. All take turns, tick by tick; one thread, medians.
+//!
+//! And what a thousand climbers on ten giants of 10,000 vertices in a valley take of two cores: of five two stand, one walks,
+//! two climb.
+//!
+//! And what a tick costs in which walls close in on a climber and crush it, beside one in which it has room.
+//!
+//! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
+//!
+//! `cargo bench -p clamber_benches --bench climber`; brief with `-- --test`.
+
+mod crowd;
+mod crushed;
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clamber::prelude::*;
+use clamber::world::rapier3d::control::{CharacterLength, KinematicCharacterController};
+use clamber::world::rapier3d::math::{Pose3, Vector};
+use clamber::world::rapier3d::parry::query::DefaultQueryDispatcher;
+use clamber::world::rapier3d::parry::shape::Ball;
+use clamber::world::rapier3d::pipeline::QueryFilter;
+use clamber::world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
+use clamber_scenes::giant;
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::tour::{self, Motion as Walks, RATE, Stage, Ways};
+use glam::DVec3;
+
+const DT: f64 = 1.0 / RATE;
+
+/// Metres, and its clips as they are: as the climbing tours have it.
+const HEIGHT: (f64, f64) = (20.0, 1.0);
+
+const GIANT: ObstacleId = ObstacleId(1);
+
+/// Ticks that a climber has to land, and that rapier's controller has.
+const SETTLE: u32 = 600;
+
+fn main() -> ExitCode {
+    match run(is_brief()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    let ticks = if brief { 30 } else { 1_800 };
+    let creature = giant::giant()?;
+    let mut stage = Stage::new(&creature, HEIGHT, Walks::Walk)?;
+    stage.place(0.0)?;
+    let mut still = Still::new(&stage)?;
+    let mut times: [Vec<f64>; 3] = Default::default();
+
+    let mut stands = landed(&mut stage)?;
+    for tick in 1..=ticks {
+        let input = ClimberInput::default();
+        times[0].push(timed(&mut stage, tick, &mut stands, &input)?);
+        times[1].push(still.step());
+    }
+    if stands.state().mode != ClimberMode::Standing {
+        return Err("the climber stands no more".into());
+    }
+    let ways = Ways::new(&creature)?;
+    let route = ways.climb(16).ok_or("no way up the giant")?;
+    stage.place(0.0)?;
+    let (foot, normal) = stage.vertex(route.waypoints[0]);
+    let mut climbs = Climber::new(tour::config(), foot + normal * 0.45)?;
+    let (mut next, mut made, mut climbed) = (0, 0.0, 0);
+    for tick in 1..=ticks {
+        if next >= route.waypoints.len() {
+            break;
+        }
+        climbed = tick;
+        let position = climbs.state().position;
+        let target = stage.vertex(route.waypoints[next]).0;
+        let toward = target - position;
+        next += usize::from(toward.length() < 0.9 || tick % 240 == 0);
+        let input = ClimberInput {
+            climb: toward.normalize_or(DVec3::Y),
+            grip: true,
+            ..ClimberInput::default()
+        };
+        let time = timed(&mut stage, tick, &mut climbs, &input)?;
+        if climbs.state().mode == ClimberMode::Holding {
+            times[2].push(time);
+            made += climbs.state().position.distance(position);
+        }
+        times[1].push(still.step());
+    }
+    if !still.is_grounded {
+        return Err("rapier's character does not stand".into());
+    }
+    let share = 100.0 * times[2].len() as f64 / f64::from(climbed);
+    cells.value("climbing: ticks that it holds on and climbs, %", share);
+    cells.value("climbing: way made, with what carries it, m", made);
+    let [standing, controller, climbing] = times.map(|mut times| quantile(&mut times, 0.5));
+    cells.value("standing on the walking giant, us", standing);
+    cells.value("climbing on it, us", climbing);
+    cells.value(
+        "rapier's controller standing on it held still, us",
+        controller,
+    );
+    let name = "standing / rapier's controller";
+    cells.push(name, standing / controller, Bound::Most(1.5));
+    let name = "climbing / rapier's controller";
+    cells.push(name, climbing / controller, Bound::Most(4.0));
+    crushed::measure(if brief { 1 } else { 10 }, &mut cells)?;
+    if brief {
+        crowd::measure((2, 2_000, 10), 3, &mut cells)?;
+    } else {
+        crowd::measure((10, 10_000, 1_000), 300, &mut cells)?;
+    }
+    cells.finish("climber", brief)
+}
+
+/// Microseconds of a climber's tick.
+fn timed(
+    stage: &mut Stage<'_>,
+    tick: u32,
+    climber: &mut Climber,
+    input: &ClimberInput,
+) -> Result<f64, Box<dyn Error>> {
+    stage.advance(f64::from(tick) * DT)?;
+    let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(GIANT, stage.surface())];
+    let start = Instant::now();
+    climber.step_with(input, &obstacles, &StepRules::gripping(&|_, _| true), DT)?;
+    Ok(start.elapsed().as_secs_f64() * 1e6)
+}
+
+/// A climber on the giant's top.
+fn landed(stage: &mut Stage<'_>) -> Result<Climber, Box<dyn Error>> {
+    let mut climber = Climber::new(ClimberConfig::walker(), above(stage)?)?;
+    for _ in 0..SETTLE {
+        stage.place(0.0)?;
+        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(GIANT, stage.surface())];
+        climber.step(&ClimberInput::default(), &obstacles, DT)?;
+        if climber.state().mode == ClimberMode::Standing {
+            return Ok(climber);
+        }
+    }
+    Err("the climber does not land on the giant".into())
+}
+
+/// Over the giant's highest point.
+fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
+    let (middle, radius) = stage
+        .surface()
+        .bounding_ball()
+        .ok_or("a giant without skin")?;
+    let top = middle + DVec3::Y * radius;
+    let ray = stage.surface().cast_ray(top, -DVec3::Y, 2.0 * radius);
+    Ok(ray.ok_or("nothing below")?.point + DVec3::Y * 0.5)
+}
+
+/// rapier's controller on the giant as it was.
+struct Still {
+    world: PhysicsWorld,
+    controller: KinematicCharacterController,
+    shape: Ball,
+    pose: Pose3,
+    is_grounded: bool,
+}
+
+impl Still {
+    fn new(stage: &Stage<'_>) -> Result<Self, Box<dyn Error>> {
+        let surface = stage.surface();
+        let mut positions = Vec::new();
+        surface.skin_all(&mut positions);
+        let place = surface.world_from_model();
+        let points = positions
+            .iter()
+            .map(|p| place.transform_point_f32(*p).as_vec3())
+            .collect();
+        let triangles = surface.mesh().triangles();
+        let triangles = triangles
+            .iter()
+            .map(|corners| corners.map(|v| v.0))
+            .collect();
+        let mut world = PhysicsWorld::default();
+        world
+            .colliders
+            .insert(ColliderBuilder::trimesh(points, triangles)?);
+        world.step();
+        let mut still = Self {
+            world,
+            controller: KinematicCharacterController {
+                offset: CharacterLength::Absolute(0.01),
+                ..KinematicCharacterController::default()
+            },
+            shape: Ball::new(0.4),
+            pose: Pose3::from_translation(above(stage)?.as_vec3()),
+            is_grounded: false,
+        };
+        for _ in 0..SETTLE {
+            still.step();
+        }
+        Ok(still)
+    }
+
+    /// A tick of falling by what gravity adds in it, microseconds.
+    fn step(&mut self) -> f64 {
+        let queries = self.world.broad_phase.as_query_pipeline(
+            &DefaultQueryDispatcher,
+            &self.world.bodies,
+            &self.world.colliders,
+            QueryFilter::default(),
+        );
+        let down = -Vector::Y * (9.81 * DT * DT) as f32;
+        let start = Instant::now();
+        let (dt, shape, pose) = (DT as f32, &self.shape, &self.pose);
+        let moved = self
+            .controller
+            .move_shape(dt, &queries, shape, pose, down, |_| {});
+        let time = start.elapsed().as_secs_f64() * 1e6;
+        self.pose.translation += moved.translation;
+        self.is_grounded = moved.grounded;
+        time
+    }
+}

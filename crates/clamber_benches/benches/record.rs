@@ -1,0 +1,178 @@
+//! What does it cost to record a battle, and how large does the file get?
+//!
+//! Two battles of the same options take turns, tick by tick: one is recorded to a file, one not. A tick is pose,
+//! climber and rocks, without what the scene checks. Prints a table and writes it to
+//! `target/measure/record.csv`: name, value, bound, holds.
+//!
+//! `cargo bench -p clamber_benches --features record --bench record`; brief with `-- --test`.
+
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clamber::record::{RecordOptions, Recorder, RecordingInfo, TickView};
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder, TICK};
+use clamber_scenes::giant::giant;
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+
+fn main() -> ExitCode {
+    match run(is_brief()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    // A machine's first megabytes of file cache may cost ten times what later ones do.
+    let warm = std::env::temp_dir().join(format!("clamber-warm-{}", std::process::id()));
+    std::fs::write(&warm, vec![1; 40_000_000])?;
+    std::fs::remove_file(&warm)?;
+    let no_views = RecordOptions {
+        transforms_every: 0,
+        skin_every: 0,
+        ..RecordOptions::default()
+    };
+    for rocks in [24, 0] {
+        let name = format!("{rocks} rocks");
+        measure(&name, rocks, RecordOptions::default(), brief, &mut cells)?;
+        let name = format!("{rocks} rocks, only what a replay needs");
+        measure(&name, rocks, no_views, brief, &mut cells)?;
+    }
+    cells.finish("record", brief)
+}
+
+fn measure(
+    name: &str,
+    rocks: u32,
+    how: RecordOptions,
+    brief: bool,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let creature = giant()?;
+    let options = BattleOptions::ride(rocks, 1);
+    let battle = || Battle::new(&creature, &options);
+    let (mut plain, mut recorded) = (battle()?, battle()?);
+    let path = std::env::temp_dir().join(format!("clamber-record-{}.mcap", std::process::id()));
+    let file = BufWriter::new(File::create(&path)?);
+    let mut recorder = BattleRecorder::new(file, &recorded, &options, how)?;
+    let ticks = if brief { 120 } else { 3600 };
+    let mut costs = Vec::new();
+    recorder.tick(&recorded)?;
+    for tick in 0..ticks {
+        let intent = options.input_at(tick);
+        // By turns, since the second finds warm caches.
+        if tick.is_multiple_of(2) {
+            plain.step(intent)?;
+            recorded.step(intent)?;
+        } else {
+            recorded.step(intent)?;
+            plain.step(intent)?;
+        }
+        let start = Instant::now();
+        recorder.tick(&recorded)?;
+        costs.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    recorder.finish()?;
+    let bytes = std::fs::metadata(&path)?.len() as f64;
+    std::fs::remove_file(&path)?;
+    if plain.recording().hash() != recorded.recording().hash() {
+        return Err("the battle that was recorded is not the one that was not".into());
+    }
+    let (without, beside) = (tick_us(&plain), tick_us(&recorded));
+    let recording = mean(&costs);
+    cells.value(&format!("{name}: a tick, us, mean"), without);
+    cells.value(
+        &format!("{name}: a tick that is recorded, us, mean"),
+        beside + recording,
+    );
+    cells.value(&format!("{name}: of that, recording"), recording);
+    // By what is due: the rarer one is, the more goes with it.
+    let kinds = [
+        ("state and input only", 1, 4),
+        ("with transforms", 4, 30),
+        ("with the skin", 30, 60),
+        ("with a chunk to write", 60, u64::MAX),
+    ];
+    let viewed = how.skin_every > 0;
+    for (what, every, but) in kinds.into_iter().filter(|_| viewed) {
+        let due = (1..).zip(&costs).filter(|(tick, _)| {
+            u64::is_multiple_of(*tick, every) && !u64::is_multiple_of(*tick, but)
+        });
+        let mut due: Vec<f64> = due.map(|(_, cost)| *cost).collect();
+        let median = quantile(&mut due, 0.5);
+        cells.value(&format!("{name}: recording, us, median, {what}"), median);
+    }
+    let written = writer_us(&recorded, &options, how, ticks)?;
+    let what = format!("{name}: to write one tick again and again, us a tick");
+    cells.value(&what, written);
+    let share = Bound::Most(0.05);
+    cells.push(
+        &format!("{name}: recording / a tick"),
+        recording / without,
+        share,
+    );
+    let minute = bytes * 3600.0 / ticks as f64 / 1e6;
+    cells.push(&format!("{name}: MB a minute"), minute, Bound::Most(50.0));
+    Ok(())
+}
+
+/// What the thread that writes takes for a tick, the last one again and again: the game copies it and waits.
+fn writer_us(
+    battle: &Battle<'_>,
+    options: &BattleOptions,
+    how: RecordOptions,
+    ticks: u64,
+) -> Result<f64, Box<dyn Error>> {
+    let info = RecordingInfo {
+        creature: battle.creature().name.clone(),
+        creature_fingerprint: 0,
+        tick_seconds: TICK,
+        climber: *battle.climber().config(),
+        settings: options.to_settings()?,
+        version: RecordingInfo::VERSION.to_owned(),
+    };
+    let skeleton = &battle.creature().skeleton;
+    let path = std::env::temp_dir().join(format!("clamber-writer-{}.mcap", std::process::id()));
+    let mut recorder = Recorder::create(&path, &info, skeleton, how)?;
+    let snapshot = battle.snapshot().to_json()?;
+    let start = Instant::now();
+    for tick in 0..ticks {
+        recorder.tick(&TickView {
+            tick,
+            input: battle.input(),
+            state: battle.climber().state(),
+            report: battle.report(),
+            surface: battle.surface(),
+            palette: battle.palette(),
+            scene_fingerprint: 0,
+        })?;
+        if tick.is_multiple_of(60) {
+            recorder.snapshot(&snapshot)?;
+        }
+    }
+    recorder.finish()?;
+    let all = start.elapsed().as_secs_f64();
+    std::fs::remove_file(&path)?;
+    Ok(all * 1e6 / ticks as f64)
+}
+
+/// Pose, climber and rocks, without what the scene checks.
+fn tick_us(battle: &Battle<'_>) -> f64 {
+    let own: Vec<f64> = battle
+        .recording()
+        .samples()
+        .iter()
+        .map(|s| s.microseconds)
+        .collect();
+    mean(&own) + mean(battle.rocks().times())
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

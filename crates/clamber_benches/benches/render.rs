@@ -1,0 +1,209 @@
+//! What do pictures cost: frames a second of the battle, what goes to the device for each, and skinning there
+//! beside ours?
+//!
+//! Here `skin_all` skins positions, on one thread; the device poses normals as well, and its time begins with the
+//! palette's upload. Prints a table and writes it to `target/measure/render.csv`: name, value, bound, holds. On
+//! Mesa's software Vulkan, where the processor does the work of a GPU, times say little of one. Without any
+//! graphics adapter it says so and measures nothing.
+//!
+//! `cargo bench -p clamber_benches --features render --bench render`; brief with `-- --test`.
+
+#[path = "../../clamber_render/tests/common/mod.rs"]
+#[expect(clippy::panic, reason = "a test's helpers may fail like the test")]
+mod common;
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use clamber::prelude::*;
+use clamber::render::{Frame, Gpu, Overlay, RenderError, Renderer};
+use clamber_scenes::Creature;
+use clamber_scenes::battle::{Battle, BattleOptions};
+use clamber_scenes::giant::{self, giant, giant_of};
+use clamber_scenes::measure::{Bound, Cells, is_brief, median_us, quantile};
+use clamber_scenes::picture::{Stage, add_collider, add_visual, light, orbit};
+
+/// Pixels along a row, and rows.
+const SIZE: [u32; 2] = [1280, 720];
+
+/// Grey stone, which no number depends on.
+const COLOR: [f32; 3] = [0.3; 3];
+
+/// How much is measured.
+struct Effort {
+    brief: bool,
+    frames: u32,
+    vertices: &'static [usize],
+    each: Duration,
+}
+
+fn main() -> ExitCode {
+    let brief = is_brief();
+    let effort = Effort {
+        brief,
+        frames: if brief { 3 } else { 60 },
+        vertices: if brief {
+            &[20_000]
+        } else {
+            &[30_000, 100_000, 500_000]
+        },
+        each: Duration::from_millis(if brief { 20 } else { 2_000 }),
+    };
+    match run(&effort) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
+    let Some(gpu) = common::gpu("render") else {
+        return Ok(());
+    };
+    let mut cells = Cells::default();
+    measure_frames(gpu, effort, &mut cells)?;
+    let mut creatures = vec![giant()?];
+    for vertices in effort.vertices {
+        creatures.push(giant_of(*vertices)?);
+    }
+    let mut bytes = None;
+    for creature in &creatures {
+        let found = measure_bytes(creature, bytes, &mut cells)?;
+        bytes = bytes.or(Some(found));
+    }
+    for creature in &creatures {
+        measure_skinning(creature, effort, &mut cells)?;
+    }
+    cells.finish("render", effort.brief)
+}
+
+/// Giant, ground and climber, from tick to tick; the tick itself is not counted.
+fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
+    let creature = giant()?;
+    let options = BattleOptions::ride(0, 1);
+    let height = options.height();
+    let [width, rows] = SIZE;
+    let what = format!("battle of {width} x {rows} on {}", gpu.name());
+    let mut renderer = Renderer::new(gpu, width, rows)?;
+    let seen = add_visual(&mut renderer, &giant::rig()?)?;
+    let stage = Stage::new(&mut renderer, seen)?;
+    // What a frame costs for the first time is not counted.
+    let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {
+        let mut battle = Battle::new(&creature, &options)?;
+        let mut times = Vec::new();
+        for tick in 0..=effort.frames {
+            battle.step(options.input_at(tick.into()))?;
+            let frame = Frame {
+                camera: orbit(&battle, height, 0.6),
+                light: light(&battle, height),
+                drawn: stage.drawn(&battle, battle.palette()),
+                overlay: Overlay::default(),
+            };
+            let start = Instant::now();
+            draw(&mut renderer, &frame)?;
+            times.push(start.elapsed().as_secs_f64());
+        }
+        let uploaded = renderer.uploaded() as f64;
+        Ok::<_, Box<dyn Error>>((1.0 / quantile(&mut times[1..], 0.5), uploaded))
+    };
+    let (left, uploaded) = measure(&|renderer, frame| {
+        renderer.draw_unread(frame)?;
+        renderer.gpu().wait()
+    })?;
+    let (read, _) = measure(&|renderer, frame| renderer.draw(frame).map(drop))?;
+    cells.value(&format!("{what}: frames a second, left there"), left);
+    cells.value(&format!("{what}: frames a second, read back"), read);
+    cells.value("bytes to the device for each of these frames", uploaded);
+    Ok(())
+}
+
+/// What one frame of a creature takes to the device: no more than that of the creature with the fewest vertices.
+fn measure_bytes(
+    creature: &Creature,
+    most: Option<f64>,
+    cells: &mut Cells,
+) -> Result<f64, Box<dyn Error>> {
+    let options = BattleOptions::ride(0, 1);
+    let height = options.height();
+    let battle = Battle::new(creature, &options)?;
+    let mut renderer = Renderer::new(Gpu::new()?, 64, 64)?;
+    let mesh = add_collider(&mut renderer, &creature.collider, COLOR)?;
+    let stage = Stage::new(&mut renderer, vec![mesh])?;
+    renderer.draw(&Frame {
+        camera: orbit(&battle, height, 0.6),
+        light: light(&battle, height),
+        drawn: stage.drawn(&battle, battle.palette()),
+        overlay: Overlay::default(),
+    })?;
+    let uploaded = renderer.uploaded() as f64;
+    let vertices = creature.collider.positions().len();
+    let bound = most.map_or(Bound::None, Bound::Most);
+    let name = format!("bytes to the device for a frame, {vertices} vertices");
+    cells.push(&name, uploaded, bound);
+    if most.is_some_and(|most| uploaded > most) {
+        return Err("a frame takes more to the device the more vertices there are".into());
+    }
+    Ok(uploaded)
+}
+
+fn measure_skinning(
+    creature: &Creature,
+    effort: &Effort,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let mesh = &creature.collider;
+    let name = format!("skinning {} vertices", mesh.positions().len());
+    let palettes = poses(creature)?;
+    let mut turn = palettes.iter().cycle();
+    let mut next = || turn.next().unwrap_or(&palettes[0]);
+
+    let mut surface = SkinnedSurface::new(mesh.clone());
+    let mut positions = Vec::new();
+    let mut failure: Result<(), Box<dyn Error>> = Ok(());
+    let mut keep = |result: Result<(), Box<dyn Error>>| {
+        if result.is_err() {
+            failure = result;
+        }
+    };
+    let here = median_us(effort.each, || {
+        let advanced = surface.advance(next(), Similarity::IDENTITY);
+        keep(advanced.map_err(Into::into));
+        surface.skin_all(&mut positions);
+    });
+
+    let mut renderer = Renderer::new(Gpu::new()?, 16, 16)?;
+    let id = add_collider(&mut renderer, mesh, COLOR)?;
+    let there = median_us(effort.each, || {
+        let posed = renderer.pose_unread(id, next());
+        keep(
+            posed
+                .and_then(|()| renderer.gpu().wait())
+                .map_err(Into::into),
+        );
+    });
+    let read = median_us(effort.each, || {
+        let posed = renderer.posed_positions(id, next());
+        keep(posed.map(drop).map_err(Into::into));
+    });
+    failure?;
+    cells.value(&format!("{name}: skin_all, us"), here);
+    cells.value(&format!("{name}: on the device, us"), there);
+    cells.value(&format!("{name}: on the device and read back, us"), read);
+    cells.value(&format!("{name}: skin_all / on the device"), here / there);
+    Ok(())
+}
+
+/// A walk, tick by tick.
+fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
+    let walk = creature.clip_like(&["walk"]);
+    let walk = walk.ok_or("the giant cannot walk")?;
+    let rest = creature.skeleton.rest_pose();
+    let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
+        let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
+        Ok(creature.skeleton.palette(&pose)?)
+    };
+    (0..60).map(pose).collect()
+}

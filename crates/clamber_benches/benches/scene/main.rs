@@ -1,0 +1,371 @@
+//! What does a scene pay for what it does not need?
+//!
+//! Valleys with 1, 10 and 100 walking giants of 10,000 vertices, each posed by a clip of its own phase, and 0 to 1,000
+//! climbers on up to three of them, who stand or walk, with the valley and all giants as obstacles. A tick of it, beside
+//! the same with everything skinned; how much of the skin a tick touches; a hundred giants with riders on one beside
+//! that one alone; a thousand riders on two cores beside one. Ways take turns, tick by tick, in one process; times are
+//! medians.
+//!
+//! Of two cores there are the fastest tenths of ticks too: where the host gives its cores to other machines as well, a
+//! tick on both waits for the slower one, and its median is the host's. What that median can be at best stands beside
+//! it: two scenes with nothing in common that is written to, one after the other and at once.
+//!
+//! Prints a table and writes it to `target/measure/scene.csv`: name, value, bound, holds. Fails if riders end anywhere
+//! else when everything is skinned, or on two cores.
+//!
+//! `cargo bench -p clamber_benches --bench scene`; brief with `-- --test`.
+
+mod herd;
+mod riders;
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clamber::world::rapier3d::prelude::PhysicsWorld;
+use clamber::world::{BodyPoses, Obstacle, ObstacleId, RapierTerrain};
+use clamber_scenes::giant::giant_of;
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::{Creature, valley};
+use herd::{Herd, Skinning};
+use riders::Riders;
+
+/// Giants that are ridden, at most.
+const FEW: usize = 3;
+
+/// Ticks before any is timed: climbers land.
+const SETTLE: usize = 20;
+
+struct Effort {
+    brief: bool,
+    vertices: usize,
+    giants: &'static [usize],
+    riders: &'static [usize],
+    ticks: usize,
+}
+
+const FULL: Effort = Effort {
+    brief: false,
+    vertices: 10_000,
+    giants: &[1, 10, 100],
+    riders: &[0, 1, 100, 1_000],
+    ticks: 120,
+};
+
+const BRIEF: Effort = Effort {
+    brief: true,
+    vertices: 2_000,
+    giants: &[1, 4],
+    riders: &[0, 5],
+    ticks: 3,
+};
+
+fn main() -> ExitCode {
+    match run(if is_brief() { &BRIEF } else { &FULL }) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    let creature = giant_of(effort.vertices)?;
+    let world = valley::world();
+    for &giants in effort.giants {
+        for &riders in effort.riders {
+            valley_of(&creature, &world, giants, riders, effort.ticks, &mut cells)?;
+        }
+    }
+    let most = effort.giants.iter().copied().max().unwrap_or(1);
+    for &riders in effort.riders.iter().filter(|riders| **riders > 0) {
+        on_one(&creature, &world, most, riders, effort.ticks, &mut cells)?;
+    }
+    let riders = effort.riders.iter().copied().max().unwrap_or(1);
+    on_two_cores(&creature, &world, most, riders, effort.ticks, &mut cells)?;
+    cells.finish("scene", effort.brief)
+}
+
+/// The valley, then the giants.
+fn obstacles<'a>(
+    terrain: &'a RapierTerrain<'a>,
+    herd: &'a Herd,
+) -> Vec<(ObstacleId, &'a (dyn Obstacle + Sync))> {
+    let ground = (ObstacleId(0), terrain as &(dyn Obstacle + Sync));
+    let giants = herd.giants.iter().enumerate().map(|(index, giant)| {
+        let id = ObstacleId(index as u64 + 1);
+        (id, &giant.surface as &(dyn Obstacle + Sync))
+    });
+    std::iter::once(ground).chain(giants).collect()
+}
+
+/// A herd, its riders, and what a tick of both took.
+struct Scene<'a> {
+    herd: Herd,
+    riders: Riders,
+    world: &'a PhysicsWorld,
+    /// Microseconds of the giants' poses: of the first ones, of the others, and of the riders.
+    times: [Vec<f64>; 3],
+}
+
+impl<'a> Scene<'a> {
+    fn new(
+        creature: &Creature,
+        world: &'a PhysicsWorld,
+        giants: usize,
+        riders: usize,
+        mounts: usize,
+        skinning: Skinning,
+    ) -> Result<Self, Box<dyn Error>> {
+        let herd = Herd::new(creature, giants, skinning)?;
+        Ok(Self {
+            riders: Riders::new(&herd, riders, mounts)?,
+            herd,
+            world,
+            times: Default::default(),
+        })
+    }
+
+    /// One tick, with so many giants awake, `first` of them timed by themselves.
+    fn tick(&mut self, tick: usize, first: usize, awake: usize) -> Result<(), Box<dyn Error>> {
+        self.riders.sit(&self.herd)?;
+        let before = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(self.world, &before);
+        let start = Instant::now();
+        self.herd.pose(tick, 0..first)?;
+        let ridden = micros(start);
+        let start = Instant::now();
+        self.herd.pose(tick, first..awake)?;
+        let others = micros(start);
+        let start = Instant::now();
+        let all = obstacles(&terrain, &self.herd);
+        let all: Vec<(ObstacleId, &dyn Obstacle)> = all
+            .iter()
+            .map(|(id, one)| (*id, *one as &dyn Obstacle))
+            .collect();
+        self.riders.step(&all)?;
+        let riders = micros(start);
+        if tick >= SETTLE {
+            for (times, us) in self.times.iter_mut().zip([ridden, others, riders]) {
+                times.push(us);
+            }
+        }
+        Ok(())
+    }
+
+    /// The median of whole ticks.
+    fn whole(&self) -> f64 {
+        let [ridden, others, riders] = &self.times;
+        let whole = ridden.iter().zip(others).zip(riders);
+        quantile(
+            &mut whole.map(|((a, b), c)| a + b + c).collect::<Vec<_>>(),
+            0.5,
+        )
+    }
+
+    /// The median of one part of a tick.
+    fn part(&self, part: usize) -> f64 {
+        quantile(&mut self.times[part].clone(), 0.5)
+    }
+}
+
+fn valley_of(
+    creature: &Creature,
+    world: &PhysicsWorld,
+    giants: usize,
+    riders: usize,
+    ticks: usize,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let mounts = giants.min(FEW);
+    let scene = |skinning| Scene::new(creature, world, giants, riders, mounts, skinning);
+    let (mut lazy, mut eager) = (scene(Skinning::Lazy)?, scene(Skinning::Everything)?);
+    for tick in 0..SETTLE + ticks {
+        lazy.tick(tick, mounts, giants)?;
+        eager.tick(tick, mounts, giants)?;
+        same(&lazy.riders, &eager.riders, tick)?;
+    }
+    let name = |what: &str| format!("{giants} giants, {riders} riders: {what}");
+    cells.value(&name("poses, us"), lazy.part(0) + lazy.part(1));
+    cells.value(&name("riders, us"), lazy.part(2));
+    let (whole, all) = (lazy.whole(), eager.whole());
+    cells.value(&name("a tick, us"), whole);
+    cells.value(&name("everything skinned, us"), all);
+    cells.value(&name("everything skinned / a tick"), all / whole);
+    let touched = lazy
+        .herd
+        .giants
+        .iter()
+        .map(|giant| giant.surface.diagnostics());
+    let touched: Vec<_> = touched.collect();
+    let share = |part: usize, of: usize| 100.0 * part as f64 / of as f64;
+    let sum = |count: fn(&clamber::surface::Diagnostics) -> usize| touched.iter().map(count).sum();
+    let skinned = share(sum(|d| d.vertices_skinned), sum(|d| d.vertices));
+    cells.value(&name("vertices skinned, %"), skinned);
+    cells.value(
+        &name("clusters touched"),
+        sum(|d| d.clusters_touched) as f64,
+    );
+    cells.value(
+        &name("bounds evaluated"),
+        sum(|d| d.bounds_evaluated) as f64,
+    );
+    if riders > 0 {
+        cells.value(
+            &name("riders that stand, %"),
+            100.0 * lazy.riders.standing(),
+        );
+    }
+    Ok(())
+}
+
+/// Riders on one of many, beside the same on that one alone.
+fn on_one(
+    creature: &Creature,
+    world: &PhysicsWorld,
+    giants: usize,
+    riders: usize,
+    ticks: usize,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let scene = |giants| Scene::new(creature, world, giants, riders, 1, Skinning::Lazy);
+    let (mut many, mut asleep, mut alone) = (scene(giants)?, scene(giants)?, scene(giants)?);
+    // The one stands where it stands among the others, which are no obstacles.
+    alone.herd.giants.truncate(1);
+    for tick in 0..SETTLE + ticks {
+        many.tick(tick, 1, giants)?;
+        asleep.tick(tick, 1, 1)?;
+        alone.tick(tick, 1, 1)?;
+    }
+    let name = |what: &str| format!("{riders} riders on one of {giants} giants: {what}");
+    let (whole, one, others) = (many.whole(), alone.whole(), many.part(1));
+    cells.value(&name("a tick, us"), whole);
+    cells.value(&name("poses of the others, us"), others);
+    cells.value(&name("that one alone, us"), one);
+    let over = whole / (one + others);
+    cells.push(
+        &name("a tick / one alone and the others' poses"),
+        over,
+        Bound::Most(1.3),
+    );
+    let over = asleep.whole() / one;
+    cells.push(
+        &name("the others asleep / one alone"),
+        over,
+        Bound::Most(1.3),
+    );
+    Ok(())
+}
+
+/// Riders on all giants, on rayon's threads; and what this machine's second core is worth at best: two such scenes
+/// with nothing in common that is written to, at once beside one after the other.
+fn on_two_cores(
+    creature: &Creature,
+    world: &PhysicsWorld,
+    giants: usize,
+    riders: usize,
+    ticks: usize,
+    cells: &mut Cells,
+) -> Result<(), Box<dyn Error>> {
+    let threads = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    let pools = [threads(1)?, threads(2)?];
+    let alone = [threads(1)?, threads(1)?];
+    let scene = || Scene::new(creature, world, giants, riders, giants, Skinning::Lazy);
+    let mut scenes = [scene()?, scene()?];
+    let mut apart = [scene()?, scene()?];
+    let (mut in_turn, mut at_once) = (Vec::new(), Vec::new());
+    for tick in 0..SETTLE + ticks {
+        for (scene, pool) in scenes.iter_mut().zip(&pools) {
+            let us = in_parallel(scene, tick, pool)?;
+            if tick >= SETTLE {
+                scene.times[0].push(us);
+            }
+        }
+        let [one, two] = &scenes;
+        same(&one.riders, &two.riders, tick)?;
+        // In turn and at once, by turns.
+        let us = both(&mut apart, tick, &alone, tick % 2 == 0)?;
+        if tick >= SETTLE {
+            if tick % 2 == 0 {
+                &mut in_turn
+            } else {
+                &mut at_once
+            }
+            .push(us);
+        }
+    }
+    let [mut one, mut two] = scenes.map(|scene| scene.times[0].clone());
+    for (which, share) in [("medians", 0.5), ("fastest tenths", 0.1)] {
+        let name = |what: &str| format!("{riders} riders on {giants} giants, {which}: {what}");
+        let (one, two) = (quantile(&mut one, share), quantile(&mut two, share));
+        cells.value(&name("a tick on one core, us"), one);
+        cells.value(&name("a tick on two cores, us"), two);
+        let bound = if share < 0.5 {
+            Bound::Least(1.7)
+        } else {
+            Bound::None
+        };
+        cells.push(&name("one core / two"), one / two, bound);
+        let best = quantile(&mut in_turn, share) / quantile(&mut at_once, share);
+        cells.value(&name("two scenes in turn / at once"), best);
+    }
+    Ok(())
+}
+
+/// A tick of both, each on a pool of its own, in turn or at once; gives its microseconds.
+fn both(
+    scenes: &mut [Scene<'_>; 2],
+    tick: usize,
+    pools: &[rayon::ThreadPool; 2],
+    in_turn: bool,
+) -> Result<f64, Box<dyn Error>> {
+    let [first, second] = scenes;
+    if in_turn {
+        return Ok(in_parallel(first, tick, &pools[0])? + in_parallel(second, tick, &pools[1])?);
+    }
+    let times = std::thread::scope(|scope| {
+        let text = |error: Box<dyn Error>| error.to_string();
+        let other = scope.spawn(move || in_parallel(second, tick, &pools[1]).map_err(text));
+        let one = in_parallel(first, tick, &pools[0]).map_err(text);
+        let other = other.join().map_err(|_| "a thread ended".to_owned());
+        Ok::<_, String>([one?, other??])
+    });
+    Ok(times?.into_iter().fold(0.0, f64::max))
+}
+
+/// A tick on the threads of a pool; gives its microseconds.
+fn in_parallel(
+    scene: &mut Scene<'_>,
+    tick: usize,
+    pool: &rayon::ThreadPool,
+) -> Result<f64, Box<dyn Error>> {
+    scene.riders.sit(&scene.herd)?;
+    let before = BodyPoses::default();
+    let terrain = RapierTerrain::of_world(scene.world, &before);
+    let timed = pool.install(|| {
+        let start = Instant::now();
+        let mut tick = || -> Result<(), Box<dyn Error>> {
+            scene.herd.pose_in_parallel(tick)?;
+            let all = obstacles(&terrain, &scene.herd);
+            scene.riders.step_in_parallel(&all)
+        };
+        tick().map_err(|error| error.to_string())?;
+        Ok::<_, String>(micros(start))
+    });
+    Ok(timed?)
+}
+
+/// Fails if riders differ by a bit.
+fn same(one: &Riders, other: &Riders, tick: usize) -> Result<(), Box<dyn Error>> {
+    if one.states() == other.states() {
+        Ok(())
+    } else {
+        Err(format!("tick {tick}: riders are elsewhere").into())
+    }
+}
+
+fn micros(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e6
+}

@@ -1,0 +1,164 @@
+//! What single operations on the lazy surface cost: first in a tick, when they find nothing skinned,
+//! and again, when they find what they need in the cache.
+//!
+//! `cargo bench -p clamber_benches --bench surface`; brief with `-- --test`.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clamber::geometry::{Capsule, Ray};
+use clamber::mesh::VertexId;
+use clamber::prelude::*;
+use clamber_scenes::Creature;
+use clamber_scenes::giant::{giant, giant_of};
+use clamber_scenes::measure::is_brief;
+use criterion::Criterion;
+use glam::Vec3;
+
+/// Vertices of the larger giant.
+const LARGE: usize = 100_000;
+
+fn main() -> ExitCode {
+    let brief = is_brief();
+    match run(brief) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Box<dyn Error>> {
+    let mut criterion = Criterion::default()
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(800))
+        .sample_size(20)
+        .configure_from_args();
+    measure(&mut criterion, &giant()?)?;
+    if !brief {
+        measure(&mut criterion, &giant_of(LARGE)?)?;
+    }
+    criterion.final_summary();
+    Ok(())
+}
+
+/// One operation.
+type Operation<'a> = (&'a str, Box<dyn FnMut(&SkinnedSurface) + 'a>);
+
+fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn Error>> {
+    let mesh = &creature.collider;
+    let mut surface = SkinnedSurface::new(mesh.clone());
+    let poses = poses(creature)?;
+    surface.place(&poses[0], Similarity::IDENTITY)?;
+    let mut group = criterion.benchmark_group(format!("giant, {}", mesh.positions().len()));
+
+    let mut turn = poses.iter().cycle();
+    let mut advance = |surface: &mut SkinnedSurface| {
+        if let Some(pose) = turn.next() {
+            let advanced = surface.advance(pose, Similarity::IDENTITY);
+            assert_eq!(advanced, Ok(()));
+        }
+    };
+    group.bench_function("advance", |bencher| bencher.iter(|| advance(&mut surface)));
+    for (name, mut operation) in operations(&surface)? {
+        group.bench_function(
+            format!("{name}, first in a tick, with advance"),
+            |bencher| {
+                bencher.iter(|| {
+                    advance(&mut surface);
+                    operation(&surface);
+                });
+            },
+        );
+        operation(&surface);
+        group.bench_function(format!("{name}, again"), |bencher| {
+            bencher.iter(|| operation(black_box(&surface)));
+        });
+    }
+    group.bench_function("skin ahead, with advance", |bencher| {
+        bencher.iter(|| {
+            advance(&mut surface);
+            surface.skin_ahead();
+        });
+    });
+    group.finish();
+    Ok(())
+}
+
+/// A walk, tick by tick.
+fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
+    let walk = creature.clips.iter().find(|clip| clip.name == "walk");
+    let walk = walk.ok_or("the giant cannot walk")?;
+    let rest = creature.skeleton.rest_pose();
+    let pose = |tick: u32| -> Result<Palette, Box<dyn Error>> {
+        let pose = walk.sample(&rest, f64::from(tick) / 60.0, Playback::Loop)?;
+        Ok(creature.skeleton.palette(&pose)?)
+    };
+    (0..60).map(pose).collect()
+}
+
+/// All queries, at the head.
+fn operations(surface: &SkinnedSurface) -> Result<Vec<Operation<'static>>, Box<dyn Error>> {
+    let mesh = surface.mesh();
+    let place = |v: VertexId| mesh.positions()[v.index()];
+    let [a, b, _] = mesh.triangles()[0];
+    let edge = place(a).distance(place(b));
+    let top = mesh
+        .positions()
+        .iter()
+        .copied()
+        .reduce(|top, p| if p.y > top.y { p } else { top });
+    let top = top.ok_or("no vertices")?;
+    let ray = Ray::new(top + Vec3::Y * 5.0, -Vec3::Y).ok_or("no direction")?;
+    let near = surface.in_model().closest_point(top, f32::INFINITY);
+    let anchor = surface.anchor_at(&near.ok_or("no skin")?)?;
+    let (mut few, mut many, mut along, mut in_capsule) = (vec![], vec![], vec![], vec![]);
+    let mut positions = Vec::new();
+    let small = Capsule::ball(top, edge).ok_or("no ball")?;
+    let large = Capsule::ball(top, 10.0 * edge).ok_or("no ball")?;
+    let capsule = Capsule::new(top, top + Vec3::X * edge * 4.0, edge).ok_or("no capsule")?;
+    Ok(vec![
+        (
+            "ray",
+            Box::new(move |s| {
+                black_box(s.in_model().cast_ray(&ray, 10.0));
+            }),
+        ),
+        (
+            "any ray",
+            Box::new(move |s| {
+                black_box(s.in_model().intersects_ray(&ray, 10.0));
+            }),
+        ),
+        (
+            "all along a ray",
+            Box::new(move |s| s.in_model().cast_ray_all(&ray, 10.0, &mut along)),
+        ),
+        (
+            "closest point",
+            Box::new(move |s| {
+                black_box(s.in_model().closest_point(top, 10.0));
+            }),
+        ),
+        (
+            "sphere of an edge",
+            Box::new(move |s| s.in_model().overlap_capsule(&small, &mut few)),
+        ),
+        (
+            "sphere of ten edges",
+            Box::new(move |s| s.in_model().overlap_capsule(&large, &mut many)),
+        ),
+        (
+            "capsule",
+            Box::new(move |s| s.in_model().overlap_capsule(&capsule, &mut in_capsule)),
+        ),
+        (
+            "motion",
+            Box::new(move |s| drop(black_box(s.in_model().motion(&anchor, 1.0 / 60.0)))),
+        ),
+        ("skin all", Box::new(move |s| s.skin_all(&mut positions))),
+    ])
+}

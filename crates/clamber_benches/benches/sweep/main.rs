@@ -1,0 +1,67 @@
+//! What do casts and sweeps cost, beside parry's ball cast and beside additive CCD?
+//!
+//! Spheres of one and of ten mean edge lengths start near the skin of a walking giant of a million
+//! triangles and move on by ten times their radius. parry casts the same balls against a mesh that
+//! holds the same positions; what it takes to put them there is left out. Single triangles are held
+//! against additive CCD. Prints a table and writes it to `target/measure/sweep.csv`: name, value,
+//! bound, holds. Fails if parry and ours disagree about what is hit by more than rounding.
+//!
+//! `cargo bench -p clamber_benches --bench sweep`; brief with `-- --test`.
+
+mod additive;
+mod casts;
+mod pairs;
+mod parry;
+
+/// How near a cast comes before it counts as a contact, metres.
+pub(crate) const TOLERANCE: f64 = 1e-4;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clamber_scenes::measure::{Bound, Cells, is_brief};
+
+use casts::Field;
+
+/// How long the bench may take.
+struct Effort {
+    brief: bool,
+    vertices: usize,
+    casts: usize,
+    sheets: usize,
+}
+
+const FULL: Effort = Effort {
+    brief: false,
+    vertices: 500_000,
+    casts: 400,
+    sheets: 50,
+};
+
+const BRIEF: Effort = Effort {
+    brief: true,
+    vertices: 3_000,
+    casts: 20,
+    sheets: 10,
+};
+
+fn main() -> ExitCode {
+    let effort = if is_brief() { BRIEF } else { FULL };
+    match run(&effort) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
+    let mut cells = Cells::default();
+    let mut field = Field::new(effort.vertices)?;
+    for (edges, bound) in [(10.0, Bound::Least(15.0)), (1.0, Bound::Least(1.0))] {
+        field.measure(edges, effort.casts, bound, &mut cells)?;
+    }
+    pairs::measure(effort.sheets, &mut cells)?;
+    cells.finish("sweep", effort.brief)
+}

@@ -1,0 +1,127 @@
+//! Boxes and triangle meshes.
+
+use glam::DVec3;
+
+/// A shape in its own space.
+#[derive(Clone, Debug)]
+pub enum Solid {
+    /// A box along the axes.
+    Block {
+        /// The corner with the smallest coordinates.
+        low: DVec3,
+        /// The corner with the largest.
+        high: DVec3,
+    },
+    /// Triangles.
+    Mesh(Mesh),
+}
+
+/// Triangles, counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertices.
+    pub positions: Vec<DVec3>,
+    /// Three vertices each.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Solid {
+    /// 1 m thick; its top is the square of a half side around the origin.
+    pub fn floor(half: f64) -> Self {
+        Self::Block {
+            low: DVec3::new(-half, -1.0, -half),
+            high: DVec3::new(half, 0.0, half),
+        }
+    }
+
+    /// A level field of 1 m squares, from `x` on along X and 8 m to both sides.
+    pub fn field(x: f64, columns: u32) -> Self {
+        let mut mesh = Mesh::default();
+        for row in 0..=16u32 {
+            for column in 0..=columns {
+                let (x, z) = (x + f64::from(column), f64::from(row) - 8.0);
+                mesh.positions.push(DVec3::new(x, 0.0, z));
+            }
+        }
+        for row in 0..16 {
+            for column in 0..columns {
+                let a = row * (columns + 1) + column;
+                let below = a + columns + 1;
+                mesh.triangles.push([a, below, below + 1]);
+                mesh.triangles.push([a, below + 1, a + 1]);
+            }
+        }
+        Self::Mesh(mesh)
+    }
+
+    /// Treads and risers of 0.3 m, 4 m wide, up along +Z from the origin, with 5 m of floor before and after.
+    pub fn stairs(count: u32) -> Self {
+        let mut mesh = Mesh::default();
+        mesh.strip(DVec3::new(0.0, 0.0, -5.0), DVec3::ZERO);
+        for step in 0..count {
+            let foot = DVec3::new(0.0, 0.3 * f64::from(step), 0.3 * f64::from(step));
+            let edge = foot + DVec3::Y * 0.3;
+            let depth = if step + 1 == count { 5.0 } else { 0.3 };
+            mesh.strip(foot, edge);
+            mesh.strip(edge, edge + DVec3::Z * depth);
+        }
+        Self::Mesh(mesh)
+    }
+
+    /// Level 10 m, then up along +X from x = 2 by an angle for 30 m.
+    pub fn ramp(angle: f64) -> Self {
+        let end = DVec3::new(2.0 + 30.0 * libm::cos(angle), 30.0 * libm::sin(angle), 0.0);
+        let corner = |at: DVec3, z: f64| DVec3::new(at.x, at.y, z);
+        let (start, foot) = (DVec3::X * -10.0, DVec3::X * 2.0);
+        let positions = [start, foot, end].map(|at| [corner(at, -5.0), corner(at, 5.0)]);
+        Self::Mesh(Mesh {
+            positions: positions.concat(),
+            triangles: vec![[0, 1, 3], [0, 3, 2], [2, 3, 5], [2, 5, 4]],
+        })
+    }
+
+    /// As triangles.
+    pub fn mesh(&self) -> Mesh {
+        match self {
+            Self::Block { low, high } => Mesh::block(*low, *high),
+            Self::Mesh(mesh) => mesh.clone(),
+        }
+    }
+}
+
+impl Mesh {
+    fn block(low: DVec3, high: DVec3) -> Self {
+        let corner = |k: u32| {
+            let pick = |bit: u32, axis: usize| {
+                if k & bit == 0 { low[axis] } else { high[axis] }
+            };
+            DVec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
+        };
+        let faces: [[u32; 4]; 6] = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = faces
+            .iter()
+            .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+        Self {
+            positions: (0..8).map(corner).collect(),
+            triangles: triangles.collect(),
+        }
+    }
+
+    /// A quadrilateral between two lines along X, 2 m to both sides, that faces up or back along Z.
+    fn strip(&mut self, from: DVec3, to: DVec3) {
+        let first = self.positions.len() as u32;
+        let side = DVec3::X * 2.0;
+        self.positions
+            .extend([from - side, to - side, to + side, from + side]);
+        let triangles = [[0, 1, 2], [0, 2, 3]];
+        self.triangles
+            .extend(triangles.map(|t| t.map(|v: u32| v + first)));
+    }
+}

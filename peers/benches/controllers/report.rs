@@ -1,0 +1,116 @@
+//! Tables: one to read, a row for each scene, and one to compute with, a row for each scene and controller.
+
+use std::error::Error;
+
+use clamber_scenes::controllers::{Outcome, Scene};
+use clamber_scenes::measure::{Table, measure_folder, quantile};
+
+use crate::controller::Entry;
+
+const COLUMNS: [&str; 8] = [
+    "scenario",
+    "scene",
+    "controller",
+    "asked, m",
+    "error, m",
+    "ticks not standing",
+    "passes",
+    "us a tick",
+];
+
+/// What all controllers did in all scenes.
+pub(crate) struct Report {
+    read: Table,
+    computed: Table,
+    /// By controller: scenes passed, and microseconds of each.
+    sums: Vec<(usize, Vec<f64>)>,
+}
+
+impl Report {
+    pub(crate) fn new(entries: &[Entry]) -> Self {
+        let names = entries.iter().map(|entry| entry.name);
+        let columns: Vec<&str> = ["scenario", "scene", "asked"]
+            .into_iter()
+            .chain(names)
+            .collect();
+        Self {
+            read: Table::new(&columns),
+            computed: Table::new(&COLUMNS),
+            sums: vec![(0, Vec::new()); entries.len()],
+        }
+    }
+
+    /// A scene, with an outcome for each controller.
+    pub(crate) fn add(&mut self, scene: &Scene, entries: &[Entry], outcomes: &[Outcome]) {
+        let mut row = vec![
+            format!("{:02}", scene.number),
+            scene.name.to_owned(),
+            length(scene.asked),
+        ];
+        row.extend(outcomes.iter().map(|outcome| cell(scene, outcome)));
+        self.read.push(row);
+        for (entry, outcome) in entries.iter().zip(outcomes) {
+            let passes = if outcome.passes { "yes" } else { "NO" };
+            self.computed.push(vec![
+                format!("{:02}", scene.number),
+                scene.name.to_owned(),
+                entry.name.to_owned(),
+                scene.asked.to_string(),
+                format!("{:e}", outcome.error),
+                outcome.in_air.to_string(),
+                passes.to_owned(),
+                format!("{:.1}", outcome.micros),
+            ]);
+        }
+        for ((passed, times), outcome) in self.sums.iter_mut().zip(outcomes) {
+            *passed += usize::from(outcome.passes);
+            times.push(outcome.micros);
+        }
+    }
+
+    /// Prints the one, writes the other.
+    pub(crate) fn finish(mut self, brief: bool) -> Result<(), Box<dyn Error>> {
+        let scenes = self.sums.first().map_or(0, |(_, times)| times.len());
+        let row = |name: &str, cells: Vec<String>| {
+            let head = ["", name, ""].map(str::to_owned);
+            head.into_iter().chain(cells).collect()
+        };
+        let passed = self.sums.iter();
+        let passed = passed.map(|(passed, _)| format!("{passed} of {scenes}"));
+        self.read.push(row("scenes passed", passed.collect()));
+        let times = self.sums.iter_mut();
+        let times = times.map(|(_, times)| format!("{:.1} us", quantile(times, 0.5)));
+        self.read
+            .push(row("a tick, median of scenes", times.collect()));
+        println!("{}", self.read);
+        let brief = if brief { "_brief" } else { "" };
+        let path = measure_folder().join(format!("controllers{brief}.csv"));
+        self.computed.write_csv(&path)?;
+        println!("written to {}", path.display());
+        Ok(())
+    }
+}
+
+fn cell(scene: &Scene, outcome: &Outcome) -> String {
+    let error = length(outcome.error);
+    if outcome.passes {
+        return error;
+    }
+    let in_air = outcome.in_air;
+    if scene.always_stands && in_air > 0 {
+        return format!("NO, {error}, {in_air} ticks in the air");
+    }
+    format!("NO, {error}")
+}
+
+/// Two digits.
+fn length(metres: f64) -> String {
+    let (scaled, unit) = match metres {
+        m if m < 1e-6 => return "< 1 um".to_owned(),
+        m if m < 1e-3 => (m * 1e6, "um"),
+        m if m < 1.0 => (m * 1e3, "mm"),
+        m => (m, "m"),
+    };
+    let digits = usize::from(scaled < 10.0);
+    format!("{scaled:.digits$} {unit}")
+}

@@ -1,0 +1,46 @@
+//! What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other libraries
+//! held against ours, the app on all of Bevy, and the soak.
+
+use cargo_metadata::Metadata;
+
+use crate::run::cargo;
+use crate::steps::Step;
+use crate::{app, golden, peers, soak};
+
+/// Minutes of the soak.
+const MINUTES: f64 = 30.0;
+
+pub(crate) const STEPS: [Step; 5] = [
+    ("all cases", all_cases),
+    ("golden", golden::other_builds),
+    ("peers", |_| peers::check()),
+    ("app", |_| app::check()),
+    ("soak", |_| soak::run(MINUTES, 1, None)),
+];
+
+/// The tests that are ignored elsewhere. One at a time: some take gigabytes, some measure.
+fn all_cases(_: &Metadata) -> Result<(), String> {
+    let test = ["test", "--release", "--no-fail-fast"];
+    let packages = [
+        "-p",
+        "clamber",
+        "-p",
+        "clamber_climber",
+        "-p",
+        "clamber_fuzz",
+        "-p",
+        "clamber_surface",
+    ];
+    let features = ["--features", "clamber_surface/scalar"];
+    let ignored = ["--", "--ignored", "--test-threads", "1"];
+    cargo(
+        &[
+            &test[..],
+            &packages,
+            &features,
+            &["--lib", "--tests"],
+            &ignored,
+        ]
+        .concat(),
+    )
+}
