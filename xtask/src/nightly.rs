@@ -5,13 +5,14 @@ use cargo_metadata::Metadata;
 
 use crate::run::cargo;
 use crate::steps::Step;
-use crate::{app, golden, peers, soak};
+use crate::{app, features, golden, peers, soak};
 
 /// Minutes of the soak.
 const MINUTES: f64 = 30.0;
 
-pub(crate) const STEPS: [Step; 5] = [
+pub(crate) const STEPS: [Step; 6] = [
     ("all cases", all_cases),
+    ("features", features::test),
     ("golden", golden::other_builds),
     ("peers", |_| peers::check()),
     ("app", |_| app::check()),
