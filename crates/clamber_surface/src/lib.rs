@@ -12,7 +12,7 @@ mod simd;
 pub mod skin;
 pub mod surface;
 
-/// The crate whose vectors and quaternions are used here.
+/// The version of `glam` that provides the vector and quaternion types of this crate.
 pub use glam;
 #[doc(hidden)]
 pub use simd::SimdLevel;

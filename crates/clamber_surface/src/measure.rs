@@ -1,5 +1,5 @@
-//! For measuring this library in its own tests and benches: slow references, and stages of what is one call elsewhere.
-//! Not covered by any promise of stability.
+//! Slow references and single stages of larger calls, for measurements in this library's own tests and benches.
+//! Nothing here is covered by a promise of stability.
 
 pub use crate::query::brute_force::BruteForce;
 pub use crate::skin::reference::{error_bound, skin_vertex_reference};

@@ -1,10 +1,10 @@
-//! The instruction set that the fast paths run on, chosen at run time.
+//! Instruction sets for the fast paths, selected at run time.
 
 use std::fmt;
 
 use fearless_simd::Level;
 
-/// An instruction set that this machine has. All give the same bits; they differ in speed alone.
+/// A SIMD instruction set that this machine supports. All of them give the same bits; only speed differs.
 ///
 /// ```
 /// use clamber_surface::SimdLevel;
@@ -16,13 +16,13 @@ use fearless_simd::Level;
 pub struct SimdLevel(Level);
 
 impl SimdLevel {
-    /// The widest one.
+    /// The widest instruction set of this machine.
     pub fn best() -> Self {
         Self(Level::new())
     }
 
-    /// All of them, the widest first. Scalar code comes last where there is no other, or with the feature
-    /// `scalar`.
+    /// All instruction sets of this machine, the widest first. Scalar code comes last; it is listed only if the
+    /// machine has no other, or with the feature `scalar`.
     pub fn available() -> Vec<Self> {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -43,7 +43,7 @@ impl SimdLevel {
         simd.into_iter().chain(scalar).map(Self).collect()
     }
 
-    /// As it is commonly called.
+    /// The common name, such as `"AVX2"`; `"scalar"` for scalar code.
     pub fn name(&self) -> &'static str {
         match self.0 {
             level if level.is_fallback() => "scalar",

@@ -1,4 +1,4 @@
-//! What the unit tests share: a closed tube on a chain of joints, and ways to bend it.
+//! Helpers that the unit tests share: a closed tube on a chain of joints, and palettes that bend or move it.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use crate::geometry::{Affine, Capsule, rotation_from_axis_angle};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
 
-/// A closed tube of radius 0.5 along X from 0 to `joints - 1`, one joint per metre, each vertex on
-/// the two nearest joints.
+/// A closed tube of radius 0.5 along X from 0 to `joints - 1`, one joint per metre. Each vertex follows the two
+/// nearest joints.
 pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {
     let rings = (joints - 1) * 4 + 1;
     let mut positions = Vec::new();
@@ -61,7 +61,7 @@ pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {
     Arc::new(mesh)
 }
 
-/// Bends the tube by `angle` radians about `axis` at every joint but the first.
+/// The palette that bends the tube by `angle` radians about `axis` at every joint except the first.
 pub(crate) fn bend(joints: u32, axis: DVec3, angle: f64) -> Palette {
     let mut global = DAffine3::IDENTITY;
     let turn = DAffine3::from_quat(rotation_from_axis_angle(axis, angle));
@@ -76,13 +76,13 @@ pub(crate) fn bend(joints: u32, axis: DVec3, angle: f64) -> Palette {
     Palette::from_matrices(matrices)
 }
 
-/// The whole tube moved rigidly.
+/// The palette that moves the whole tube rigidly.
 pub(crate) fn rigid(joints: u32, rotation: DQuat, translation: DVec3) -> Palette {
     let map = DAffine3::from_rotation_translation(rotation, translation);
     Palette::from_matrices((0..joints).map(|_| Affine::from_f64(&map)))
 }
 
-/// A seeded random unit vector.
+/// A random unit vector from a seeded generator.
 pub(crate) fn direction(rng: &mut fastrand::Rng) -> Vec3 {
     loop {
         let v = point(rng, 1.0);
@@ -92,18 +92,18 @@ pub(crate) fn direction(rng: &mut fastrand::Rng) -> Vec3 {
     }
 }
 
-/// A seeded random point of a cube of half the side `size` around the origin.
+/// A random point from a seeded generator, in the cube from `-size` to `size` along each axis.
 pub(crate) fn point(rng: &mut fastrand::Rng, size: f32) -> Vec3 {
     let mut coordinate = || (rng.f32() * 2.0 - 1.0) * size;
     Vec3::new(coordinate(), coordinate(), coordinate())
 }
 
-/// A ball that is one.
+/// [`Capsule::ball`] for arguments that are known to be valid.
 pub(crate) fn ball(center: Vec3, radius: f32) -> Capsule {
     Capsule::ball(center, radius).unwrap()
 }
 
-/// A capsule that is one.
+/// [`Capsule::new`] for arguments that are known to be valid.
 pub(crate) fn capsule(a: Vec3, b: Vec3, radius: f32) -> Capsule {
     Capsule::new(a, b, radius).unwrap()
 }

@@ -2,59 +2,58 @@ use glam::DMat3;
 
 use crate::geometry::Affine;
 
-/// What the eight-wide bounds read of a palette: one cache line a joint. Computed once a palette,
-/// for all nodes.
+/// The data of a palette that the eight-wide bounds read, one cache line per joint. Computed once per palette, for
+/// all nodes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointTable {
     joints: Vec<Joint>,
-    /// Of the same joints; kept for its memory alone.
+    /// Intermediate values of the same joints. Stored only to reuse the memory.
     squares: Vec<Squares>,
 }
 
-/// What a joint's lengths are roots of.
+/// Values computed for a joint before roots are taken.
 #[derive(Clone, Copy, Debug)]
 struct Squares {
     stretch: Stretch,
     shift: f64,
 }
 
-/// What bounds a joint's stretch, before its roots.
+/// An upper bound of a joint's stretch, before its root is taken.
 #[derive(Clone, Copy, Debug)]
 enum Stretch {
-    /// Its square, of a matrix whose columns stand nearly at right angles: a joint that turns, and
-    /// scales along its axes.
+    /// The square of the bound, for a matrix whose columns are nearly perpendicular: a joint that rotates, and
+    /// scales along its own axes.
     Square(f64),
-    /// Of any other.
+    /// For any other matrix.
     Power(StretchPower),
 }
 
-/// Columns stand nearly at right angles if the products of pairs of them are below this share of the
-/// longest one's square. The bound is then at most half as much too large.
+/// Columns count as nearly perpendicular if the absolute dot products of their pairs add up to at most this share
+/// of the longest column's square. The bound is then too large by at most half of this share.
 const NEARLY_RIGHT_ANGLES: f64 = 1e-3;
 
-/// One joint's matrix, and how much it stretches and moves at most.
+/// One joint's matrix, and upper bounds of how much it stretches and translates.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joint {
     pub(super) rows: [[f32; 4]; 3],
-    /// At least the largest singular value of the linear part, at most 1.04 times it but for
-    /// rounding; infinite where no f32 is as large.
+    /// An upper bound of the largest singular value of the linear part: at most 1.04 times that value, but for
+    /// rounding. Infinite if no finite f32 is large enough.
     pub(super) stretch: f32,
-    /// At least the length of the translation.
+    /// An upper bound of the length of the translation.
     pub(super) shift: f32,
 }
 
-/// Relative error of a length computed in f64, with room to spare.
+/// More than the relative error of a length computed in f64.
 const LENGTH_SLACK: f64 = 2e-15;
 
 impl JointTable {
-    /// Reads a palette that a surface accepts. Keeps its memory: a palette of the same length
-    /// allocates nothing.
+    /// Reads a palette that a surface accepted. Reuses its memory: a palette of the same length allocates nothing.
     pub(crate) fn update(&mut self, palette: &[Affine]) {
         self.joints.clear();
         self.squares.clear();
-        // Two loops: in one the processor waits for each joint's roots before it begins the next
-        // but one, which takes twice the time.
+        // Two loops. In a single loop the processor waits for the roots of each joint before it begins the next but
+        // one, which takes twice the time.
         self.squares.extend(palette.iter().map(Squares::new));
         let joints = palette.iter().zip(&self.squares);
         self.joints.extend(joints.map(|(matrix, squares)| Joint {
@@ -81,8 +80,8 @@ impl Squares {
 }
 
 impl Stretch {
-    /// The largest singular value's square is at most any norm of `A^T A`; of the rows' sums here,
-    /// which for right angles is that square itself.
+    /// The square of the largest singular value is at most any induced norm of `A^T A`. The norm taken here is the
+    /// largest sum of a row's absolute values. For perpendicular columns it equals that square.
     fn new(linear: &DMat3) -> Self {
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
         let (xx, yy, zz) = (x.dot(x), y.dot(y), z.dot(z));
@@ -103,29 +102,30 @@ impl Stretch {
     }
 }
 
-/// The bound of the singular value is computed with a relative error below this: some 90 roundings
-/// of 2^-53, of which the eighth root leaves an eighth.
+/// More than the relative error of the computed bound: some 90 roundings of 2^-53, of which the eighth root leaves
+/// one eighth.
 const STRETCH_SLACK: f64 = 1e-14;
 
-/// The exponent's bits of an f64: they alone are the power of two below a number.
+/// The exponent bits of an f64. On their own, those of a positive number are the largest power of two that is not
+/// above it.
 const EXPONENT: u64 = 0x7ff << 52;
 
-/// Less the bits of a power of two, those of its inverse.
+/// This minus the bits of a power of two gives the bits of its inverse.
 const INVERSE: u64 = 2046 << 52;
 
 /// `(norm_inf((A^T A)^4))^(1/8)`, rounded up: at least the largest singular value of A, and at most
 /// `((1 + sqrt(3)) / 2)^(1/8)`, 1.04, times it. Exact but for rounding where A is a rotation times a
 /// uniform scale.
 ///
-/// The largest eigenvalue of `A^T A` is that singular value's square, and any induced norm is at
-/// least the largest eigenvalue. A is scaled to elements below 2 first, by a power of two, which is
-/// exact, so that no eighth power overflows, and none that counts underflows.
+/// The largest eigenvalue of `A^T A` is the square of that singular value, and any induced norm is at least the
+/// largest eigenvalue. First, A is scaled by a power of two, which is exact, to elements below 2. So no eighth
+/// power overflows, and none that matters underflows.
 ///
-/// This is what it computes before its roots: they take as long as the rest, and that of many
-/// joints runs at a time where it stands apart.
+/// This type holds the values before the roots are taken. The roots take as long as the rest. With the roots in a
+/// separate pass, the processor works on the rest of several joints at a time.
 #[derive(Clone, Copy, Debug)]
 struct StretchPower {
-    /// A power of two, or the bound itself where it is 0 or not finite.
+    /// A power of two, or the bound itself if that is 0 or not finite.
     scale: f64,
     /// `norm_inf((A^T A)^4)` for A divided by `scale`.
     norm: f64,
@@ -135,7 +135,7 @@ impl StretchPower {
     fn new(linear: &DMat3) -> Self {
         let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
         let [x, y, z] = columns.map(|c| c.abs());
-        // Not `f64::max`: to keep NaN out costs it more than the rest of this function.
+        // Not `f64::max`: its handling of NaN takes longer than the rest of this function.
         let larger = |a: f64, b: f64| if a > b { a } else { b };
         let [x, y, z] = [x, y, z].map(|c| larger(larger(c.x, c.y), c.z));
         let largest = larger(larger(x, y), z);
@@ -173,7 +173,7 @@ fn square(&[xx, yy, zz, xy, xz, yz]: &[f64; 6]) -> [f64; 6] {
     ]
 }
 
-/// The smallest f32 that is not below `x`, which is not negative. Without a branch, which would be
+/// The smallest f32 that is not below `x`. `x` must not be negative. There is no branch, since it would be
 /// mispredicted every other time.
 fn round_up(x: f64) -> f32 {
     let nearest = x as f32;
@@ -188,7 +188,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn rounding_up_is_that_of_all_others() {
+    fn branchless_rounding_up_agrees_with_round_up_to_f32() {
         let mut rng = fastrand::Rng::with_seed(63);
         for x in [
             0.0,
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_uniform_scale_is_met_exactly() {
+    fn the_bound_of_a_uniform_scale_is_exact() {
         for scale in [1e-45f32, 1e-20, 1.0, 3.0, 1e30] {
             let scale = f64::from(scale);
             let bound = StretchPower::new(&DMat3::from_diagonal(DVec3::splat(-scale))).root();

@@ -1,8 +1,7 @@
 //! Bounds of skinned vertices from the palette alone: no vertex is skinned.
 //!
-//! A skinned vertex is `p' = sum w_i M_i p` with `w_i >= 0`, `sum w_i = 1`, `M_i p = A_i p + t_i`.
-//! Let the vertices of a node lie at rest in the ball (c, r), let `w_i` lie within `[low_i, high_i]`
-//! over all of them, and let `s_i` be at least the largest singular value of `A_i`.
+//! Let the rest positions of a node's vertices lie in the ball (c, r), let `w_i` lie within `[low_i, high_i]` over
+//! all of them, and let `s_i` be at least the largest singular value of `A_i`.
 //!
 //! - **Hull**: `M_i p` lies in the ball `(M_i c, s_i r)`, so p' lies in the convex hull of these
 //!   balls, and in every ball that holds them all.
@@ -13,9 +12,9 @@
 //!   so p' lies within `r max s_i + sum d_i |M_i c - c'|` of c'. Where all vertices have the same
 //!   weights the second term is 0.
 //!
-//! The smaller of the two counts. All this holds for exact skinning; what f32 skinning and these bounds
-//! themselves lose is derived where they are computed, in `spheres.rs` and `root.rs`, and added to every
-//! radius. It costs O(joints of the node), in any order.
+//! The smaller of the two bounds is used. Both hold for exact skinning. The rounding errors of f32 skinning and of
+//! the bounds themselves are derived where the bounds are computed, in `spheres.rs` and `root.rs`, and added to
+//! every radius. The bound of a node costs O(joints of the node). Nodes can be evaluated in any order.
 //!
 //! Kavan and Zara 2005 ("Fast Collision Detection for Skeletally Deformable Models", Computer
 //! Graphics Forum 24(3)) refit spheres of linear blend skinning by the hull argument;

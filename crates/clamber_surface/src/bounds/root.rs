@@ -1,12 +1,14 @@
 //! A box around the whole surface, from the palette alone.
 //!
-//! Let `(c_i, r_i)` be a ball at rest around all vertices that joint i moves. A skinned vertex is
-//! `sum w_i M_i p`, and each `M_i p` lies in the ball `(M_i c_i, s_i r_i)`, so the vertex lies in the
-//! convex hull of these balls, and in every box that holds them all. A coordinate of a vertex that
-//! f32 skinned is off by at most `g(n + 4) sum w_i (s_i |p| + |t_i|) + (4 n + 4) 2^-149`
-//! ([`crate::skin`]), which is the same convex combination: growing each joint's ball
-//! by `g(n + 4) (s_i max |p| + |t_i|)` pays for it, with `g(k) = k u / (1 - k u)`, `u = 2^-24`. All is
-//! computed in f64, whose some 20 roundings of 2^-53 are within one unit more: `g(n + 5)`.
+//! Let `(c_i, r_i)` be a ball around the rest positions of all vertices that joint i moves. A skinned vertex is
+//! `sum w_i M_i p`, and each `M_i p` lies in the ball `(M_i c_i, s_i r_i)`. So the vertex lies in the convex hull
+//! of these balls, and in every box that holds them all.
+//!
+//! Each coordinate of a vertex that is skinned in f32 is off by at most
+//! `g(n + 4) sum w_i (s_i |p| + |t_i|) + (4 n + 4) 2^-149` ([`crate::skin`]), with `g(k) = k u / (1 - k u)` and
+//! `u = 2^-24`. The first term is the same convex combination, so enlarging the ball of each joint by
+//! `g(n + 4) (s_i max |p| + |t_i|)` covers it. The second term is added as well. The box is computed in f64; the
+//! some 20 roundings of 2^-53 that this takes are covered by one unit more: `g(n + 5)`.
 
 use glam::{DVec3, Vec3};
 
@@ -15,7 +17,7 @@ use super::joint_table::Joint;
 use crate::geometry::{round_up_to_f32, widen};
 use crate::mesh::{JointBall, JointBalls};
 
-/// Axis-aligned, in model space. Empty, `min` above `max`, for a mesh without vertices.
+/// An axis-aligned box in model space. For a mesh without vertices it is empty: `min` is above `max`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct RootBox {
     pub(crate) min: Vec3,
@@ -23,7 +25,7 @@ pub(crate) struct RootBox {
 }
 
 impl RootBox {
-    /// Holds both.
+    /// The smallest box that holds both.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -32,24 +34,24 @@ impl RootBox {
     }
 }
 
-/// A box that holds every vertex as f32 skinning yields it. O(joints).
+/// A box that holds every vertex, as f32 skinning computes it. O(joints).
 ///
 /// # Panics
-/// If the table has read a palette with fewer joints than the mesh has.
+/// If the palette that the table has read has fewer matrices than the mesh has joints.
 pub(crate) fn root_box(balls: &JointBalls, table: &JointTable) -> RootBox {
     box_of(balls, table, &Lost::of(balls.influences))
 }
 
-/// What skinning may lose per coordinate.
+/// The rounding error of skinning, per coordinate.
 struct Lost {
-    /// As a share of what it adds up.
+    /// As a share of the numbers that are added up, `s_i |p| + |t_i|`.
     relative: f64,
-    /// By underflow.
+    /// By underflow, in model units.
     underflow: f64,
 }
 
 impl Lost {
-    /// For vertices of at most so many influences.
+    /// For vertices with at most this many influences.
     fn of(influences: usize) -> Self {
         let influences = influences as f64;
         let roundings = (influences + 5.0) * f64::from(f32::EPSILON) * 0.5;
@@ -82,7 +84,7 @@ fn radius(joint: &Joint, rest: &JointBall, lost: &Lost) -> f64 {
     let (stretch, shift) = (f64::from(joint.stretch), f64::from(joint.shift));
     let lost = lost.relative * (stretch * f64::from(rest.reach) + shift) + lost.underflow;
     let radius = stretch * f64::from(rest.ball.radius) + lost;
-    // An infinite stretch of a point.
+    // Infinity times 0: an infinite stretch of a ball of radius 0.
     if radius.is_nan() {
         f64::INFINITY
     } else {
@@ -145,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn no_vertex_that_was_added_lies_outside_the_root_box() {
+    fn no_added_vertex_lies_outside_the_root_box() {
         let mut rng = fastrand::Rng::with_seed(63);
         for case in 0..400 {
             let (mut mesh, _) = creature(&mut rng, 1 + case % 4, Spread::Random);

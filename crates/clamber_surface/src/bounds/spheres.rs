@@ -1,46 +1,45 @@
 //! The bounding spheres of all eight children of a hierarchy node at once, in f32.
 //!
-//! For each child, with the words of the parent module: c^ = `sum o_i M_i c` and the `M_i c` as f32
-//! arithmetic gives them, q^_i below, `d_i = |q^_i - c^|`, and a sphere about c^ of radius
-//! `min(r max s_i + sum e_i d_i, max (d_i + s_i r))`: weight interval and hull about one centre, over
-//! the joints that move the child. `e_i` are the deviations, called d_i in the parent module.
-//! It is then made larger by what arithmetic may have lost. Let `u = 2^-24`,
-//! `g(k) = k u / (1 - k u)`, the most that k roundings change a number by relative to it, m the
-//! joints of the child, n the most influences of one of its vertices, `D = sum e_i`, and
-//! `S = max s_i max(|p|, |c|) + max |t_i|`, which is at least `|M_i||p| + |t_i|` but for a factor
-//! `sqrt(3)` (that of Frobenius' norm). Three kinds of loss:
+//! In the notation of the parent module, for each child: c^ is `sum o_i M_i c` and q^_i is `M_i c`, both as f32
+//! arithmetic gives them; `d_i = |q^_i - c^|`; `e_i` are the deviations, which the parent module calls d_i. The
+//! sphere about c^ has the radius `min(r max s_i + sum e_i d_i, max (d_i + s_i r))`: weight interval and hull about
+//! one centre, over the joints that move the child.
+//!
+//! This radius is then enlarged by what rounding may have lost. Let `u = 2^-24`, let `g(k) = k u / (1 - k u)` be
+//! the largest relative change of a number by k roundings, let m be the number of joints of the child, let n be the
+//! most influences of one of its vertices, and let `D = sum e_i` and `S = max s_i max(|p|, |c|) + max |t_i|`. Then
+//! `|M_i||p| + |t_i| <= sqrt(3) S`; the factor is that of the Frobenius norm. There are three kinds of loss:
 //!
 //! **Relative to S** ([`Node::inflation`], precomputed as a factor of S):
 //! - The vertex itself is skinned in f32: `sqrt(3) g(n + 4) S`, see [`crate::skin`].
-//! - c^ is not `c' = sum o_i M_i c`: three roundings in a row, one by the weight, at most m in the
-//!   sum, in which the `o_i` add up to exactly 1: `sqrt(3) g(m + 4) S`.
-//! - q^_i is not `M_i c`: `sqrt(3) g(3) S`. The differences `w_i - o_i` add up to 0, so any point
-//!   may stand for c' in `p' - c' = sum w_i A_i (p - c) + sum (w_i - o_i) (M_i c - c')`, also c^;
-//!   hence `|p' - c'| <= r max s_i + sum e_i (d_i + |M_i c - q^_i|)`, which costs
-//!   `D sqrt(3) g(3) S`. The hull is taken about c^ as well: nothing for c^, and one
-//!   `sqrt(3) g(3) S`, which is less than `sqrt(3) g(m + 4) S`.
+//! - c^ differs from `c' = sum o_i M_i c`: three roundings in each row of `M_i c`, one for the weight, and at most
+//!   m in the sum, in which the `o_i` add up to exactly 1. This is at most `sqrt(3) g(m + 4) S`.
+//! - q^_i differs from `M_i c` by at most `sqrt(3) g(3) S`. The differences `w_i - o_i` add up to 0, so in the
+//!   second sum of `p' - c' = sum w_i A_i (p - c) + sum (w_i - o_i) (M_i c - c')` any point may replace c', and so
+//!   may c^. Hence `|p' - c'| <= r max s_i + sum e_i (d_i + |M_i c - q^_i|)`, which costs `D sqrt(3) g(3) S`. The
+//!   hull is taken about c^ as well. This costs nothing for c^ and one `sqrt(3) g(3) S` for q^_i, which is less
+//!   than `sqrt(3) g(m + 4) S`.
 //!
-//! Together `sqrt(3) (g(n + 4) + g(m + 4) + D g(4)) S`. S, its product with the factor and two sums
-//! are five roundings more: a factor of `1 + 2^-21`.
+//! Together: `sqrt(3) (g(n + 4) + g(m + 4) + D g(4)) S`. Computing S, its product with the factor and two sums
+//! takes five more roundings: a factor of `1 + 2^-21`.
 //!
-//! **Relative to the radius** ([`slack`]): d_i passes one rounding in its differences, three under
-//! the root, of which that leaves half, one in the root: 3.5. The product with `e_i` and the sum make
-//! m + 1, that with `r max s_i` one: m + 5.5. The hull has fewer. The product with the slack and the
-//! last sum: m + 7.5 roundings that may have made it smaller, and `(1 - u)^-k <= 1 + g(k)`. m is at
-//! most 2^16, so `g(k) <= (k + k / 255) u`: the factor is at least `1 + (m + 8 + m / 128) u`.
+//! **Relative to the radius** ([`slack`]): d_i has one rounding in its differences, three under the root, which the
+//! root halves, and one in the root: 3.5. The product with `e_i` and the sum take m + 1, the sum with `r max s_i`
+//! takes one: m + 5.5. The hull has fewer. With the product with the slack and the last sum, m + 7.5 roundings may
+//! have made the radius smaller, and `(1 - u)^-k <= 1 + g(k)`. m is at most 2^16, so `g(k) <= (k + k / 255) u`: the
+//! factor is at least `1 + (m + 8 + m / 128) u`.
 //!
-//! **Absolute** ([`FLOOR`], 2^-56): a product that underflows is off by 2^-150 at most, a sum never.
-//! Squares under the root lose `3 2^-150`, so d_i at most `sqrt(3) 2^-75`, and the sum D times that,
-//! D < 2^16: 2^-58. All else (skinning's `sqrt(3) (4 n + 4) 2^-149`, some `4 m` products) is below
-//! 2^-128.
+//! **Absolute** ([`FLOOR`], 2^-56): a product that underflows is off by at most 2^-150; sums lose nothing to
+//! underflow. Squares under the root lose `3 2^-150`, so d_i loses at most `sqrt(3) 2^-75`, and the sum loses D
+//! times that, with D < 2^16: 2^-58. Everything else (skinning's `sqrt(3) (4 n + 4) 2^-149`, some `4 m` products)
+//! is below 2^-128.
 //!
-//! **Overflow**: positions reach 2^100, so squares may be infinite, and the radius is infinite then.
-//! NaN would come from an infinity times 0. A deviation of 0 times an infinite distance makes the
-//! interval NaN: the comparison then takes the hull, which has no such product, since r has the
-//! smallest normal number added to it.
+//! **Overflow**: positions reach 2^100, so squares may be infinite, and then the radius is infinite. NaN would come
+//! from infinity times 0. A deviation of 0 times an infinite distance makes the interval NaN; the comparison then
+//! selects the hull. The hull has no such product, because the smallest normal number is added to r.
 //!
-//! Same bits at every [`SimdLevel`]: lanes never meet, and each does plain IEEE operations in one
-//! order.
+//! The bits are the same at every [`SimdLevel`]: lanes do not interact, and each does plain IEEE operations in a
+//! fixed order.
 
 use fearless_simd::{Simd, dispatch, f32x8, prelude::*};
 use glam::Vec3;
@@ -51,7 +50,8 @@ use crate::SimdLevel;
 use crate::geometry::Sphere;
 use crate::mesh::hierarchy::{Hierarchy, JointWeights, LANES, Node};
 
-/// Pays for underflow, in metres: less than an atom's nucleus, more than any loss. See above.
+/// Added to every radius to cover underflow, in model units: larger than any such loss, and too small to matter.
+/// See the module docs.
 const FLOOR: f32 = f32::from_bits((127 - 56) << 23);
 
 /// Centres and radii of eight spheres, in model space. A radius may be infinite, never NaN; lanes
@@ -66,7 +66,7 @@ pub(crate) struct Spheres {
 }
 
 impl Spheres {
-    /// Points at the origin.
+    /// Eight spheres of radius 0 at the origin.
     pub(crate) const ZERO: Self = Self {
         x: [0.0; LANES],
         y: [0.0; LANES],
@@ -74,7 +74,7 @@ impl Spheres {
         radius: [0.0; LANES],
     };
 
-    /// That of one lane.
+    /// The sphere of one lane.
     pub(crate) fn sphere(&self, lane: usize) -> Sphere {
         Sphere {
             center: Vec3::new(self.x[lane], self.y[lane], self.z[lane]),
@@ -87,18 +87,20 @@ impl Spheres {
         [&self.x, &self.y, &self.z, &self.radius]
     }
 
-    /// [`Spheres::rows`] to write to.
+    /// [`Spheres::rows`], to be written.
     pub(crate) fn rows_mut(&mut self) -> [&mut [f32; LANES]; 4] {
         [&mut self.x, &mut self.y, &mut self.z, &mut self.radius]
     }
 }
 
-/// What makes good the roundings of a radius: at least `1 + (m + 8 + m / 128) 2^-24`, exact.
+/// The factor that covers the relative rounding error of a radius: at least `1 + (m + 8 + m / 128) 2^-24`, computed
+/// exactly.
 fn slack(joints: usize) -> f32 {
     1.0 + (joints / 2 + joints / 256 + 6) as f32 * f32::EPSILON
 }
 
-/// Spheres that hold every vertex below each child of a node as f32 skinning yields it. `table` has read the palette.
+/// For each child of a node, a sphere that holds every vertex below the child, as f32 skinning computes it. `table`
+/// has read the palette.
 ///
 /// # Panics
 /// If a joint is out of the table's range.
@@ -147,13 +149,13 @@ fn evaluate<S: Simd>(
         center.z += middle * image.z;
     }
 
-    // Never 0: the stretch may be infinite.
+    // Never 0: the stretch may be infinite, and infinity times 0 is NaN.
     let radius = load(simd, &node.radius) + f32::MIN_POSITIVE;
     let reach = load(simd, &node.reach) + f32::MIN_POSITIVE;
     let (mut deviation_sum, mut hull, mut stretch, mut shift) = (zero, zero, zero, zero);
     for (joint, weights) in joints.iter().zip(weights) {
         let joint = &table[*joint as usize];
-        // Computed again: cheaper than any place to keep it.
+        // Computed again, which is cheaper than storing it.
         let image = image(joint, rest);
         let (x, y, z) = (image.x - center.x, image.y - center.y, image.z - center.z);
         let distance = ((x * x + y * y) + z * z).sqrt();
@@ -181,7 +183,7 @@ fn evaluate<S: Simd>(
     }
 }
 
-/// Where a joint takes eight points, in the order of the skinning contract.
+/// The images of eight points under the matrix of a joint, in the order of the skinning contract.
 #[inline(always)]
 fn image<S: Simd>(joint: &Joint, p: Points<S>) -> Points<S> {
     let [x, y, z] = &joint.rows;
@@ -202,7 +204,7 @@ fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> f32x8<S> {
     f32x8::simd_from(simd, *lanes)
 }
 
-/// By comparison: `max` differs between instruction sets.
+/// The larger number of each lane, by comparison, because `max` differs between instruction sets.
 #[inline(always)]
 fn larger<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
     b.simd_gt(a).select(b, a)

@@ -1,4 +1,4 @@
-//! Every bound against every vertex that it must hold, and against the tightest.
+//! Checks that every bound holds its vertices, and that it is little larger than the tightest one.
 
 pub(crate) mod random;
 mod weak_spots;
@@ -32,7 +32,7 @@ pub(super) fn node_of(mesh: &ColliderMesh, sets: &[Vec<VertexId>]) -> Hierarchy 
     hierarchy
 }
 
-/// Checks the sphere of a set of vertices against all of them; gives it.
+/// Asserts that the sphere of a set of vertices holds all of them, and returns it.
 fn check(mesh: &ColliderMesh, vertices: &[VertexId], palette: &Palette, case: &str) -> Sphere {
     let hierarchy = node_of(mesh, &[vertices.to_vec()]);
     let mut table = JointTable::default();
@@ -48,7 +48,7 @@ fn check(mesh: &ColliderMesh, vertices: &[VertexId], palette: &Palette, case: &s
 }
 
 #[test]
-fn a_kilometre_away_what_skinning_rounds_is_within_the_bound() {
+fn rounding_errors_a_kilometre_away_are_within_the_bound() {
     // Rest radius and weights add nothing here: only the inflation holds the vertices.
     let mut rng = fastrand::Rng::with_seed(52);
     for case in 0..2_000 {
@@ -62,8 +62,8 @@ fn a_kilometre_away_what_skinning_rounds_is_within_the_bound() {
 
 #[test]
 fn a_vertex_far_from_a_turning_mesh_origin_is_within_the_bound() {
-    // No translation: what skinning rounds grows with the rest position alone, and the far vertex
-    // stands on the rest ball.
+    // No translation: the rounding error of skinning grows with the rest position alone, and the far vertex lies on
+    // the rest ball.
     let mut rng = fastrand::Rng::with_seed(55);
     for case in 0..4_000 {
         let far = direction(&mut rng) * 1e3;
@@ -90,7 +90,7 @@ fn a_vertex_far_from_a_turning_mesh_origin_is_within_the_bound() {
 }
 
 #[test]
-fn at_rest_the_bound_is_the_rest_ball_by_a_hair() {
+fn at_rest_the_bound_is_hardly_larger_than_the_rest_ball() {
     let mesh = tube(4, 16);
     let palette = Palette::from_matrices([Affine::IDENTITY; 4]);
     for (index, part) in mesh.parts().iter().enumerate() {
@@ -127,7 +127,7 @@ fn on_a_bent_tube_the_spheres_of_parts_are_within_a_fifth_of_the_tightest() {
 }
 
 #[test]
-fn one_vertex_has_its_skinned_position_and_no_more() {
+fn the_bound_of_one_vertex_is_hardly_more_than_its_position() {
     let mesh = tube(4, 12);
     let palette = bend(4, DVec3::Z, 0.5);
     for v in (0..mesh.positions().len() as u32).map(VertexId) {
@@ -137,7 +137,7 @@ fn one_vertex_has_its_skinned_position_and_no_more() {
 }
 
 #[test]
-fn parts_that_were_edited_are_bounded_as_they_are() {
+fn a_part_has_a_bound_while_it_has_triangles() {
     let mesh = tube(3, 8);
     let mut surface = SkinnedSurface::new(mesh.clone());
     let bounded = |surface: &SkinnedSurface| -> Vec<PartId> {

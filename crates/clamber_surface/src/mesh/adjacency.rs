@@ -1,14 +1,14 @@
-//! Which triangles share edges, and which sets of triangles hang together.
+//! Triangles that share edges, and the connected sets that they form (islands).
 //!
-//! Three half-edges a triangle are sorted by the edge that they lie on; those of one edge are paired and joined into
-//! one island (union-find). O(n log n) for n triangles.
+//! The three half-edges of every triangle are sorted by edge. Half-edges of the same edge are paired as neighbours,
+//! and their triangles are joined into one island by union-find. O(n log n) for n triangles.
 
 use super::{ColliderMesh, IslandId, TriangleId};
 
-/// What follows from the triangles that a mesh has now.
+/// Neighbours and islands of the triangles that the mesh has now.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Adjacency {
-    /// By triangle: across the edge from corner k to the next.
+    /// By triangle: the neighbours across the edges from corner k to the next.
     neighbours: Vec<[Option<TriangleId>; 3]>,
     /// `None` for removed triangles.
     island_of: Vec<Option<IslandId>>,
@@ -16,29 +16,32 @@ pub(super) struct Adjacency {
 }
 
 impl ColliderMesh {
-    /// The triangles across the three edges of a triangle: the first from corner 0 to corner 1, then 1 to 2 and 2 to 0.
-    /// `None` where the surface ends, and everywhere for a triangle that was removed or never was.
+    /// The triangles across the three edges of a triangle: those from corner 0 to 1, from 1 to 2, and from 2 to 0.
+    /// `None` for an edge where the surface ends, and for all edges of a triangle that was removed or never
+    /// existed.
     ///
-    /// Triangles are neighbours if they share two vertices. Vertices that were left apart
-    /// ([`BuildReport::cracks`](super::BuildReport::cracks)) are two, so the surface ends there. Neighbours are mutual: of
-    /// more than two triangles at an edge those that run along it in opposite directions are paired first, then those
-    /// left, each by ascending id; an odd one out has none.
+    /// Triangles are neighbours if they share two vertices. Vertices that the build kept apart
+    /// ([`BuildReport::cracks`](super::BuildReport::cracks)) are not shared, so the surface ends there. Neighbours
+    /// are mutual. If more than two triangles share an edge, those that run along it in opposite directions are
+    /// paired first, then the remaining ones, both in the order of ascending ids. A triangle that is left over has
+    /// no neighbour there.
     ///
-    /// The first call after the mesh was built or edited costs O(n log n) of all n triangles, any other O(1).
+    /// The first call after a build or an edit of triangles costs O(n log n) for all n triangles; later calls cost
+    /// O(1).
     pub fn neighbours(&self, triangle: TriangleId) -> [Option<TriangleId>; 3] {
         let neighbours = self.adjacency().neighbours.get(triangle.index());
         neighbours.copied().unwrap_or_default()
     }
 
-    /// The island that a triangle belongs to: all triangles that can be reached from it across shared edges. One vertex
-    /// in common joins none; an edge joins all its triangles. `None` if it was removed or never was. Costs what
-    /// [`ColliderMesh::neighbours`] does.
+    /// The island that a triangle belongs to: all triangles that can be reached from it across shared edges. An
+    /// edge connects all triangles that share it; a single shared vertex connects none. `None` if the triangle was
+    /// removed or never existed. Costs the same as [`ColliderMesh::neighbours`].
     pub fn island_of(&self, triangle: TriangleId) -> Option<IslandId> {
         let island_of = self.adjacency().island_of.get(triangle.index());
         island_of.copied().flatten()
     }
 
-    /// How many islands there are; their ids are `0..island_count`. Costs what [`ColliderMesh::neighbours`] does.
+    /// The number of islands; their ids are `0..island_count`. Costs the same as [`ColliderMesh::neighbours`].
     pub fn island_count(&self) -> usize {
         self.adjacency().islands
     }
@@ -48,14 +51,14 @@ impl ColliderMesh {
     }
 }
 
-/// A triangle's side: `corner` to the next.
+/// One side of a triangle, from `corner` to the next corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
-    /// The smaller vertex first.
+    /// Its two vertices, the smaller first.
     edge: [u32; 2],
     triangle: u32,
     corner: u8,
-    /// From the smaller vertex to the larger.
+    /// True if the side runs from the smaller vertex to the larger.
     ascends: bool,
 }
 
@@ -84,7 +87,7 @@ impl Adjacency {
     }
 }
 
-/// Of all triangles that there are, by edge and then by triangle.
+/// The half-edges of all triangles that were not removed, sorted by edge, then by triangle.
 fn half_edges(mesh: &ColliderMesh) -> Vec<HalfEdge> {
     let mut found = Vec::with_capacity(3 * mesh.triangles.len());
     let triangles = mesh.triangles.iter().zip(&mesh.part_of);
@@ -107,12 +110,12 @@ fn half_edges(mesh: &ColliderMesh) -> Vec<HalfEdge> {
     found
 }
 
-/// Those of one edge, two by two: opposite directions first, then what is left.
+/// Pairs the half-edges of one edge: first those of opposite directions, then the remaining ones.
 fn pairs(around: &[HalfEdge]) -> impl Iterator<Item = [&HalfEdge; 2]> {
     let that = |ascends| around.iter().filter(move |half| half.ascends == ascends);
     let opposite = that(true).count().min(that(false).count());
     let both = that(true).zip(that(false)).map(|(a, b)| [a, b]);
-    // All of these run in one direction: of the other none is left.
+    // All remaining half-edges run in the same direction.
     let left = move |skip| {
         that(true)
             .skip(opposite)
@@ -123,7 +126,7 @@ fn pairs(around: &[HalfEdge]) -> impl Iterator<Item = [&HalfEdge; 2]> {
     both.chain(left(0).zip(left(1)).map(|(a, b)| [a, b]))
 }
 
-/// The lowest triangle of the tree that a triangle is in so far.
+/// The lowest triangle in the union-find tree of a triangle.
 fn root(forest: &mut [u32], mut triangle: u32) -> u32 {
     while forest[triangle as usize] != triangle {
         let parent = forest[triangle as usize];
@@ -138,7 +141,7 @@ fn join(forest: &mut [u32], a: u32, b: u32) {
     forest[a.max(b) as usize] = a.min(b);
 }
 
-/// Islands by their lowest triangle, and how many there are.
+/// Numbers the islands by their lowest triangles. Returns the island of each triangle, and the number of islands.
 fn number_islands(mesh: &ColliderMesh, forest: &mut [u32]) -> (Vec<Option<IslandId>>, usize) {
     let mut island_of: Vec<Option<IslandId>> = vec![None; forest.len()];
     let mut islands = 0;

@@ -1,5 +1,5 @@
-//! From slices to a [`ColliderMesh`]: normalise weights, weld, drop what is no triangle, assign
-//! parts. The steps are those of the thesis's import (5.4, "Import and setup").
+//! Builds a [`ColliderMesh`] from slices: normalises weights, welds vertices, drops unusable triangles, assigns
+//! parts. The steps are those of the import in the thesis that this library grew from (5.4, "Import and setup").
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -16,32 +16,33 @@ use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, Triang
 use crate::geometry::{MAX_COORDINATE, widen};
 use crate::rig::JointId;
 
-/// What a mesh is built from, as importers and engines have it.
+/// The input of [`ColliderMesh::build`]: slices, as importers and engines have them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeshSource<'a> {
-    /// Rest positions, in mesh space.
+    /// Rest positions in mesh space: finite, at most 2^99 from the origin.
     pub positions: &'a [Vec3],
-    /// Corners, counter-clockwise seen from outside.
+    /// The three corners of each triangle, as indices into `positions`; counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// Influences of the first vertex, then of the second, and so on; any number for each.
+    /// Influences of all vertices, one vertex after the other. A vertex can have any number of them.
     pub influences: &'a [Influence],
-    /// End index in `influences` of each vertex. Empty if all vertices have the same count (padded with zero weights).
+    /// For each vertex, the index in `influences` after its last one. Empty if all vertices have the same number of
+    /// influences; pad them with zero weights.
     pub influence_ends: &'a [u32],
-    /// A tag per triangle, or empty for [`SurfaceTag::default`] everywhere.
+    /// One tag per triangle. Empty gives every triangle [`SurfaceTag::default`].
     pub tags: &'a [SurfaceTag],
-    /// A number per vertex, equal for those whose rest positions are in one space; empty if all
-    /// are. Vertices of different spaces, as the pieces of a robot each in its own, are never taken
-    /// for one because their rest positions are equal.
+    /// One number per vertex, equal for vertices whose rest positions are in the same space. Empty if all are in
+    /// one space. Vertices in different spaces are never welded, even if their rest positions are equal. Needed for
+    /// creatures whose pieces each have a space of their own, such as robots.
     pub rest_spaces: &'a [u32],
-    /// How many joints the skeleton has.
+    /// Number of joints of the skeleton.
     pub joint_count: usize,
 }
 
-/// What to do with vertices that coincide at rest but follow their joints differently.
+/// What to do with vertices that coincide at rest but have different influences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Cracks {
-    /// Keep them apart and count them: the surface can gape there when posed.
+    /// Keep them apart and count them in [`BuildReport::cracks`]. The surface can open there when it is posed.
     #[default]
     Report,
     /// Give them the mean of their weights and weld them.
@@ -52,57 +53,58 @@ pub enum Cracks {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Winding {
-    /// As given.
+    /// The side from which the given corners are counter-clockwise.
     #[default]
     Keep,
-    /// The other one.
+    /// The other side: swaps two corners of every triangle.
     Flip,
 }
 
-/// Choices of a build; the default is right for a well-made file.
+/// Options of [`ColliderMesh::build`]. The default suits a well-made file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// Coincident vertices with different influences.
+    /// What to do with coincident vertices that have different influences.
     pub cracks: Cracks,
-    /// Orientation of the triangles.
+    /// Which side of the triangles is outside.
     pub winding: Winding,
 }
 
-/// What a build found and changed.
+/// What [`ColliderMesh::build`] found and changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuildReport {
-    /// Vertices of the mesh.
+    /// Number of vertices of the built mesh.
     pub vertices: usize,
-    /// Vertices given that were merged into another one of equal position and influences.
+    /// Number of source vertices that were merged into another vertex with equal position and influences.
     pub welded: usize,
-    /// Vertices that stand where another one stands but follow their joints differently, and were
-    /// left so: the surface can crack there. 0 under [`Cracks::Unify`].
+    /// Number of vertices that coincide at rest with another vertex but were kept apart, because their influences
+    /// differ; of each group of coincident vertices, one is not counted. The surface can crack there. 0 under
+    /// [`Cracks::Unify`].
     pub cracks: usize,
-    /// Triangles of the mesh.
+    /// Number of triangles of the built mesh.
     pub triangles: usize,
-    /// Triangles dropped because they have no area at rest.
+    /// Number of triangles dropped because they have no area at rest.
     pub degenerate_triangles: usize,
-    /// Triangles dropped because another one has the same corners in the same orientation.
+    /// Number of triangles dropped because an earlier one has the same corners in the same orientation.
     pub duplicate_triangles: usize,
-    /// Which of the source's triangles each triangle of the mesh is, ascending.
+    /// For each triangle of the mesh, its index among the source's triangles; ascending.
     pub source_triangles: Vec<u32>,
-    /// The most influences of one vertex, after merging.
+    /// The most influences of one vertex, after those of the same joint were merged.
     pub max_influences: usize,
-    /// The largest difference from 1 of a vertex's weights as given.
+    /// The largest difference from 1 of the sum of a source vertex's weights.
     pub worst_weight_error: f64,
 }
 
-/// Where a vertex is at rest: position (bits, with one zero), and the space that it is in.
+/// Rest position of a vertex (its bits, with -0 replaced by +0), and the space that it is in.
 type Place = ([u32; 3], u32);
 
-/// Place and influences: what makes two vertices the same one.
+/// Place and influences. Vertices with equal keys are welded.
 type VertexKey = (Place, Vec<(JointId, u32)>);
 
 impl ColliderMesh {
-    /// Builds a mesh: normalises weights to exact sums, welds vertices that are equal in position
-    /// and influences, drops triangles without area and duplicates, and assigns every triangle to
-    /// the part of the joint that moves it most.
+    /// Builds a mesh. Normalises weights to exact sums, welds vertices that are equal in position and influences,
+    /// drops duplicate triangles and triangles without area, and assigns every triangle to the part of the joint
+    /// that moves it most.
     ///
     /// ```
     /// use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
@@ -125,8 +127,8 @@ impl ColliderMesh {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError`], naming what is wrong and where, for input that is not finite, out of range
-    /// or inconsistent, and for a mesh that has no triangle left.
+    /// [`MeshError`] if the input is not finite, out of range or inconsistent, or if no triangle is left. The error
+    /// names what is wrong, and where.
     pub fn build(
         source: &MeshSource<'_>,
         options: &BuildOptions,
@@ -163,7 +165,7 @@ impl ColliderMesh {
         Ok((mesh, report))
     }
 
-    /// Appends the triangles that are some, once each.
+    /// Appends the triangles that have an area, without duplicates.
     fn keep_triangles(
         &mut self,
         source: &MeshSource<'_>,
@@ -181,7 +183,7 @@ impl ColliderMesh {
                 report.degenerate_triangles += 1;
                 continue;
             }
-            // Smallest corner first, order kept: one form for the three ways to write it.
+            // Smallest corner first, in the same cyclic order: the three ways to write a triangle become one.
             let mut canonical = corners;
             while canonical[0] > canonical[1] || canonical[0] > canonical[2] {
                 canonical.rotate_left(1);
@@ -197,7 +199,7 @@ impl ColliderMesh {
         }
     }
 
-    /// Makes the parts, by ascending joint.
+    /// Creates the parts, in ascending joint order.
     fn assign_parts(&mut self) {
         let mut by_joint: BTreeMap<JointId, Vec<TriangleId>> = BTreeMap::new();
         for (index, corners) in self.triangles.iter().enumerate() {
@@ -222,7 +224,7 @@ impl ColliderMesh {
     }
 }
 
-/// Counts, ranges and finiteness.
+/// Checks counts, index ranges, and that positions are usable.
 fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     let vertices = source.positions.len();
     let counts = [
@@ -287,15 +289,15 @@ fn validate(source: &MeshSource<'_>) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// False for a position that is not finite, or larger than 2^99: half of what may be skinned, since
-/// even the identity, by its Frobenius norm, stays within that then.
+/// True for a position within 2^99 of the origin; false if it is not finite. The bound is half of that on skinned
+/// positions: the identity, whose Frobenius norm is sqrt(3), then passes [`ColliderMesh::check_palette`].
 pub(super) fn is_usable(position: Vec3) -> bool {
-    // Written so that NaN is refused.
+    // This comparison is false for NaN.
     widen(position).length() <= MAX_COORDINATE * 0.5
 }
 
 impl<'a> MeshSource<'a> {
-    /// The influences of each vertex, once their counts have been validated.
+    /// The influences of each vertex. Call it only after their counts have been validated.
     fn influences_by_vertex(&self) -> impl Iterator<Item = &'a [Influence]> + use<'a> {
         let (influences, ends) = (self.influences, self.influence_ends);
         let vertices = self.positions.len();
@@ -308,7 +310,7 @@ impl<'a> MeshSource<'a> {
     }
 }
 
-/// The key of every vertex given, with its weights normalised.
+/// The key of every source vertex, with normalised weights.
 fn vertex_keys(
     source: &MeshSource<'_>,
     report: &mut BuildReport,
@@ -322,7 +324,7 @@ fn vertex_keys(
         })?;
         let sum: f64 = influences.iter().map(|i| f64::from(i.weight)).sum();
         report.worst_weight_error = report.worst_weight_error.max((sum - 1.0).abs());
-        // Adding +0 turns -0 into +0 and leaves all else alone.
+        // Adding +0 turns -0 into +0 and keeps every other number.
         let bits = position.to_array().map(|x| (x + 0.0).to_bits());
         let space = source.rest_spaces.get(vertex).copied().unwrap_or_default();
         keys.push(((bits, space), weights));
@@ -330,9 +332,10 @@ fn vertex_keys(
     Ok(keys)
 }
 
-/// Vertices at one place that have more than one set of influences.
+/// Vertices at one place that have more than one distinct set of influences.
 struct CoincidentGroup {
     vertices: Vec<u32>,
+    /// How many distinct sets there are.
     kinds: usize,
 }
 
@@ -371,7 +374,8 @@ fn unify(keys: &mut [VertexKey], groups: &[CoincidentGroup]) {
     }
 }
 
-/// A mesh of the distinct vertices, numbered by first appearance, and each given vertex's number.
+/// A mesh of the distinct vertices without triangles, and for each source vertex its number in the mesh. Vertices
+/// are numbered by first appearance.
 fn weld(source: &MeshSource<'_>, keys: &[VertexKey]) -> (ColliderMesh, Vec<u32>) {
     let mut mesh = ColliderMesh {
         lineage: Lineage::default(),

@@ -22,7 +22,7 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// As an index into a slice.
+            /// The id as an index into a slice.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -37,11 +37,11 @@ macro_rules! id {
 }
 
 id! {
-    /// Index of a vertex of a collider mesh. Ids of removed vertices are not used again.
+    /// Index of a vertex of a collider mesh. Ids of removed vertices are not reused.
     VertexId
 }
 id! {
-    /// Index of a triangle of a collider mesh. Ids of removed triangles are not used again.
+    /// Index of a triangle of a collider mesh. Ids of removed triangles are not reused.
     TriangleId
 }
 id! {
@@ -50,8 +50,8 @@ id! {
 }
 
 id! {
-    /// A connected set of triangles of a collider mesh, as [`ColliderMesh::island_of`] numbers them: by their lowest
-    /// triangle. Edits number them anew.
+    /// Index of an island of a collider mesh: a set of triangles connected across shared edges. Islands are
+    /// numbered in the order of their lowest triangle ids. Edits renumber them. See [`ColliderMesh::island_of`].
     IslandId
 }
 
@@ -59,34 +59,34 @@ id! {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Part {
-    /// The joint with the largest weight over each triangle's three corners.
+    /// The joint with the largest sum of weights over the three corners of each triangle; on a tie, the smaller id.
     pub joint: JointId,
-    /// Ascending.
+    /// The triangles, in ascending order.
     pub triangles: Vec<TriangleId>,
-    /// All corners of the triangles, ascending.
+    /// The corners of the triangles, each once, in ascending order.
     pub vertices: Vec<VertexId>,
 }
 
-/// The rest data of a surface: positions, influences, triangles, tags, parts. Shared by any number of
-/// surfaces through an `Arc`; one that is edited has its own.
+/// The rest data of a surface: positions, influences, triangles, tags, parts. Any number of surfaces share a mesh
+/// through an `Arc`; a surface that is edited gets a copy of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderMesh {
     pub(super) lineage: Lineage,
     pub(super) joint_count: usize,
     pub(super) positions: Vec<Vec3>,
-    /// Influences of vertex v stand at `influence_start[v]..influence_start[v + 1]`.
+    /// The influences of vertex v are at `influence_start[v]..influence_start[v + 1]` in `joints` and `weights`.
     pub(super) influence_start: Vec<u32>,
     pub(super) joints: Vec<u32>,
-    /// Multiples of 2^-24; a vertex's add up to exactly 1.
+    /// Multiples of 2^-24; the weights of one vertex add up to exactly 1.
     pub(super) weights: Vec<f32>,
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) tags: Vec<SurfaceTag>,
     /// `None` for a removed triangle.
     pub(super) part_of: Vec<Option<PartId>>,
     pub(super) parts: Vec<Part>,
-    /// By vertex, as far as the last one that was removed.
+    /// Per vertex, up to the last one that was removed.
     pub(super) vertex_removed: Vec<bool>,
-    /// At least that of every vertex there is or was.
+    /// At least the distance of every vertex from the origin, including removed vertices.
     pub(super) radius: f32,
     pub(super) clusters: Clusters,
     pub(super) hierarchy: Hierarchy,
@@ -98,65 +98,65 @@ pub struct ColliderMesh {
 }
 
 impl ColliderMesh {
-    /// Which mesh it is.
+    /// The mesh's current id.
     pub fn id(&self) -> MeshId {
         self.lineage.id()
     }
 
-    /// Which mesh it was when a triangle was added, or built: what a hit on it carries.
+    /// The id that the mesh had when `triangle` was built or added. Hits on the triangle carry it.
     pub(crate) fn id_of(&self, triangle: TriangleId) -> MeshId {
         self.lineage.id_of(triangle)
     }
 
-    /// True if what was found on a mesh of this id means the same here: it is this mesh, or what it was before it was
-    /// edited.
+    /// True if `id` is this mesh's id, or one that it had before an edit. Points that carry such an id refer to the
+    /// same material here.
     pub fn continues(&self, id: MeshId) -> bool {
         self.lineage.has(id)
     }
 
-    /// How many matrices a palette for this mesh has.
+    /// Number of joints: a palette for this mesh has as many matrices.
     pub fn joint_count(&self) -> usize {
         self.joint_count
     }
 
-    /// Rest positions, in mesh space, those of removed vertices included.
+    /// Rest positions in mesh space, by vertex id. Includes removed vertices.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
 
-    /// Corners of every triangle, removed ones included, counter-clockwise seen from outside.
+    /// Corners of every triangle, by triangle id, counter-clockwise seen from outside. Includes removed triangles.
     pub fn triangles(&self) -> &[[VertexId; 3]] {
         &self.triangles
     }
 
-    /// The tag of every triangle, removed ones included.
+    /// The tag of every triangle, by triangle id. Includes removed triangles.
     pub fn tags(&self) -> &[SurfaceTag] {
         &self.tags
     }
 
-    /// The parts, at first by ascending joint; edits may append more.
+    /// The parts. A build sorts them by joint; edits may append more, and may leave a part without triangles.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// The part that a triangle belongs to; `None` if it was removed or never was.
+    /// The part that a triangle belongs to; `None` if the triangle was removed or never existed.
     pub fn part_of(&self, triangle: TriangleId) -> Option<PartId> {
         self.part_of.get(triangle.index()).copied().flatten()
     }
 
-    /// The joint that moves a triangle most; `None` if it was removed or never was.
+    /// The joint that moves a triangle most; `None` if the triangle was removed or never existed.
     pub fn joint_of(&self, triangle: TriangleId) -> Option<JointId> {
         Some(self.parts[self.part_of(triangle)?.index()].joint)
     }
 
-    /// True if there is such a vertex: false for one that was removed or never was.
+    /// True if the vertex exists and was not removed.
     pub fn has_vertex(&self, vertex: VertexId) -> bool {
         let removed = self.vertex_removed.get(vertex.index());
         vertex.index() < self.positions.len() && !removed.is_some_and(|removed| *removed)
     }
 
-    /// Joints and weights of a vertex, by ascending joint. Weights are positive multiples of 2^-24
-    /// and add up to exactly 1. Empty for a vertex out of range.
+    /// Joints and weights of a vertex, in ascending joint order. Weights are positive multiples of 2^-24 and add up
+    /// to exactly 1. Empty for a vertex out of range.
     pub fn influences(&self, vertex: VertexId) -> impl ExactSizeIterator<Item = (JointId, f32)> {
         let (joints, weights) = if vertex.index() < self.positions.len() {
             self.influence_slices(vertex.index())
@@ -167,8 +167,7 @@ impl ColliderMesh {
         pairs.map(|(joint, weight)| (JointId(*joint), *weight))
     }
 
-    /// The largest distance of a rest position from the mesh's origin, rounded up; those of removed
-    /// vertices count.
+    /// The largest distance of a rest position from the mesh's origin, rounded up. Includes removed vertices.
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -179,7 +178,7 @@ impl ColliderMesh {
         counts.max().unwrap_or(0) as usize
     }
 
-    /// What is skinned together.
+    /// The clusters: vertices and triangles that are skinned together.
     pub(crate) fn clusters(&self) -> &Clusters {
         &self.clusters
     }
@@ -189,21 +188,21 @@ impl ColliderMesh {
         &self.hierarchy
     }
 
-    /// What bounds the whole mesh in any pose.
+    /// The rest data that bound the whole mesh in any pose.
     pub(crate) fn joint_balls(&self) -> &JointBalls {
         &self.joint_balls
     }
 
-    /// What bounds every part in any pose. Read from the rest data when first asked for.
+    /// The rest data that bound every part in any pose. Computed on first use.
     pub(crate) fn part_nodes(&self) -> &Hierarchy {
         self.part_nodes.get_or(|| Hierarchy::of_parts(self))
     }
 
-    /// Whether a surface of this mesh takes a palette.
+    /// Checks whether a surface of this mesh accepts a palette.
     ///
     /// # Errors
-    /// [`PaletteError`], for another number of matrices than the mesh has joints, or for one that is not
-    /// finite or moves vertices beyond 2^100.
+    /// [`PaletteError::JointCount`] if there is not one matrix per joint of the mesh; [`PaletteError::Matrix`] if a
+    /// matrix is not finite or could move a vertex farther than 2^100 from the origin.
     pub fn check_palette(&self, matrices: &[Affine]) -> Result<(), PaletteError> {
         if matrices.len() != self.joint_count {
             return Err(PaletteError::JointCount {
@@ -214,14 +213,14 @@ impl ColliderMesh {
         check_matrices(matrices.iter().copied(), self.radius)
     }
 
-    /// Makes clusters and hierarchy anew.
+    /// Rebuilds the clusters, the hierarchy and the joint balls.
     pub(crate) fn cluster(&mut self) {
         (self.clusters, self.hierarchy) = clusters::build(self);
         self.joint_balls = JointBalls::new(self);
         self.part_nodes.forget();
     }
 
-    /// Bytes of all rest data.
+    /// Size of the rest data in bytes, without data derived on demand.
     pub(crate) fn memory(&self) -> usize {
         let parts = self.parts.iter();
         let parts = parts.map(|p| size_of_val(&p.triangles[..]) + size_of_val(&p.vertices[..]));
@@ -251,7 +250,7 @@ impl ColliderMesh {
         self.triangles[triangle.index()].map(|v| self.positions[v.index()])
     }
 
-    /// The joint with the largest weight over three corners; the smaller id where two are equal.
+    /// The joint with the largest sum of weights over three corners; on a tie, the smaller id.
     pub(super) fn dominant_joint(&self, corners: [VertexId; 3]) -> JointId {
         // Exact: a weight is an integer times 2^-24.
         let units = |weight: f32| (weight * WEIGHT_ONE as f32) as u64;
@@ -272,7 +271,7 @@ impl ColliderMesh {
             .map_or(JointId(0), |(joint, _)| *joint)
     }
 
-    /// Fills a part's vertices from its triangles.
+    /// Updates the vertex list of a part from its triangles.
     pub(super) fn collect_vertices(&mut self, part: usize) {
         let triangles = &self.triangles;
         let part = &mut self.parts[part];
@@ -283,7 +282,7 @@ impl ColliderMesh {
         part.vertices.dedup();
     }
 
-    /// The radius for a set of positions.
+    /// The largest distance of a position from the origin, rounded up.
     pub(super) fn radius_of(positions: &[Vec3]) -> f32 {
         let farthest = positions
             .iter()
@@ -293,7 +292,8 @@ impl ColliderMesh {
     }
 }
 
-/// Refuses a matrix that does not keep everything within `radius` of the mesh's origin within 2^100 of the model's.
+/// Rejects a matrix if [`Affine::reach`] at `radius` exceeds 2^100 or is NaN: it could move a vertex that far from
+/// the model's origin.
 pub(crate) fn check_matrices(
     mut matrices: impl Iterator<Item = Affine>,
     radius: f32,
@@ -304,10 +304,10 @@ pub(crate) fn check_matrices(
     }
 }
 
-/// False for NaN.
+/// True if [`Affine::reach`] at `radius` is at most 2^100. False for NaN.
 #[inline]
 fn keeps(matrix: &Affine, radius: f32) -> bool {
-    // As all creatures do: three by three products of such numbers, and three more, are less.
+    // The usual case. Nine products of such numbers, and three such numbers more, add up to less than 2^100.
     let usual = |x: &f32| x.abs() < USUAL_COORDINATE;
     if usual(&radius) && matrix.rows.as_flattened().iter().all(usual) {
         return true;
@@ -315,10 +315,10 @@ fn keeps(matrix: &Affine, radius: f32) -> bool {
     matrix.reach(f64::from(radius)) <= MAX_COORDINATE
 }
 
-/// 2^40: a size of matrix elements and creatures that needs no closer look.
+/// 2^40: matrices with smaller elements, on creatures with a smaller radius, need no closer check.
 const USUAL_COORDINATE: f32 = (1u64 << 40) as f32;
 
-/// False for a triangle whose corners stand on one line, or on one point.
+/// True unless the corners lie on one line or at one point.
 pub(super) fn has_area(corners: [Vec3; 3]) -> bool {
     scaled_normal(corners) != glam::DVec3::ZERO
 }

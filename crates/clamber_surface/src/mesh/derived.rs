@@ -1,6 +1,6 @@
 use std::sync::OnceLock;
 
-/// What follows from the rest of a value, computed when first asked for: it takes no part in comparison.
+/// A value derived from the rest of its owner: computed on first use, and ignored by comparison.
 #[derive(Clone, Debug)]
 pub(crate) struct Derived<T>(OnceLock<T>);
 
@@ -9,7 +9,7 @@ impl<T> Derived<T> {
         self.0.get_or_init(compute)
     }
 
-    /// For whoever changes what it follows from.
+    /// Drops the value. Call it when the data that it is derived from change.
     pub(crate) fn forget(&mut self) {
         self.0.take();
     }

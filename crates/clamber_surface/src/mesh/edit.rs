@@ -1,9 +1,9 @@
-//! Changing a mesh that was built: rest data at once, parts and clusters when an edit ends.
+//! Edits of a built mesh. Rest data change at once; parts and clusters are updated when an edit ends.
 //!
-//! The clusters of a part that was touched die, and new ones are appended, cut from the part's triangles
-//! alone; those of other parts stay as they are. When more clusters are dead than living, all are made
-//! anew, so that the memory of any number of edits is bounded and an edit costs what it touches, on
-//! average.
+//! When an edit touches a part, the clusters of the part die, and new clusters, cut from the triangles of the part
+//! alone, are appended. The clusters of other parts stay as they are. When more clusters are dead than living, all
+//! clusters are rebuilt. This bounds the memory that dead clusters take, whatever the number of edits. On average,
+//! the cost of an edit is proportional to the parts that it touches.
 
 use std::collections::BTreeSet;
 
@@ -20,24 +20,24 @@ use super::weights::{normalize, weight_of};
 use super::{ColliderMesh, Influence, MeshError, Part, PartId, SurfaceTag, TriangleId, VertexId};
 use crate::rig::JointId;
 
-/// A vertex that may be added.
+/// A validated vertex that can be added.
 pub(crate) struct NewVertex {
     position: Vec3,
     influences: Vec<(JointId, u32)>,
-    /// The mesh's with it.
+    /// The mesh's radius once the vertex is added.
     pub(crate) radius: f32,
 }
 
-/// Which clusters were made anew.
+/// The clusters that [`ColliderMesh::recluster`] rebuilt.
 pub(crate) enum Reclustered {
-    /// All.
+    /// All clusters.
     All,
-    /// Those of the parts touched: these ones died, others were appended.
+    /// The clusters of the touched parts. Lists the clusters that died; others were appended.
     Parts(Vec<u32>),
 }
 
 impl ColliderMesh {
-    /// Checks a vertex to be added, as a build checks its vertices.
+    /// Validates a vertex to be added, as a build validates its vertices.
     pub(crate) fn check_vertex(
         &self,
         position: Vec3,
@@ -75,7 +75,7 @@ impl ColliderMesh {
         })
     }
 
-    /// Appends a vertex that was checked.
+    /// Appends a vertex that [`ColliderMesh::check_vertex`] accepted.
     pub(crate) fn add_vertex(&mut self, vertex: NewVertex) -> VertexId {
         let id = VertexId(self.positions.len() as u32);
         self.positions.push(vertex.position);
@@ -92,7 +92,7 @@ impl ColliderMesh {
         id
     }
 
-    /// Checks a triangle to be added, of vertices that exist.
+    /// Validates a triangle to be added. Its vertices must exist.
     pub(crate) fn check_triangle(&self, corners: [VertexId; 3]) -> Result<(), MeshError> {
         let found = self.triangles.len() + 1;
         if found >= u32::MAX as usize {
@@ -106,7 +106,8 @@ impl ColliderMesh {
         Ok(())
     }
 
-    /// Appends a triangle that was checked to the part of its dominant joint.
+    /// Appends a triangle that [`ColliderMesh::check_triangle`] accepted to the part of its dominant joint. Adds
+    /// the part if the joint has none.
     pub(crate) fn add_triangle(
         &mut self,
         corners: [VertexId; 3],
@@ -133,13 +134,13 @@ impl ColliderMesh {
         (id, part)
     }
 
-    /// Marks a triangle as removed; its part lists it until [`ColliderMesh::recluster`].
+    /// Marks a triangle as removed. Its part lists it until [`ColliderMesh::recluster`].
     pub(crate) fn remove_triangle(&mut self, triangle: TriangleId) {
         self.part_of[triangle.index()] = None;
         self.adjacency.forget();
     }
 
-    /// Marks a vertex as removed, which no triangle has as a corner any more.
+    /// Marks a vertex as removed. No triangle may have it as a corner any more.
     pub(crate) fn remove_vertex(&mut self, vertex: VertexId) {
         let count = self.vertex_removed.len().max(vertex.index() + 1);
         self.vertex_removed.resize(count, false);
@@ -150,7 +151,8 @@ impl ColliderMesh {
         self.tags[triangle.index()] = tag;
     }
 
-    /// The triangles around a vertex. Of the parts in `touched`, all triangles are looked at.
+    /// The triangles that have `vertex` as a corner. Searches all triangles of the parts in `touched`, because the
+    /// vertex lists of these parts are out of date.
     pub(crate) fn triangles_around(
         &self,
         vertex: VertexId,
@@ -166,7 +168,7 @@ impl ColliderMesh {
         around.collect()
     }
 
-    /// Brings parts whose triangles changed, and their clusters, up to date.
+    /// Updates parts whose triangles changed, and their clusters.
     pub(crate) fn recluster(&mut self, touched: &BTreeSet<PartId>) -> Reclustered {
         for part in touched {
             let part_of = &self.part_of;
@@ -195,7 +197,7 @@ impl ColliderMesh {
         }
         let held = self.clusters.held(&part.vertices);
         let (clusters, hierarchy) = build_beside(&self.alone(part), held);
-        // As `hierarchy::collapse` proves of whatever is cut by halves.
+        // `hierarchy::collapse` proves this for every tree that is cut in halves.
         debug_assert!(hierarchy.stack_needed() <= STACK);
         let first = self.clusters.clusters.len() as u32;
         self.hierarchy.append(hierarchy, id, first);
@@ -203,8 +205,8 @@ impl ColliderMesh {
             .append(clusters, id, &part.vertices, &part.triangles);
     }
 
-    /// One part as a mesh of its own, as far as clusters need one. Its vertices and triangles are
-    /// numbered as the part lists them.
+    /// A mesh of one part alone, with only the data that clustering needs. The number of a vertex or triangle is
+    /// its place in the part's list.
     fn alone(&self, part: &Part) -> Self {
         let number = |v: VertexId| part.vertices.partition_point(|other| *other < v) as u32;
         let corners = part.triangles.iter().map(|t| self.triangles[t.index()]);

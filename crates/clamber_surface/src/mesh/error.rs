@@ -2,21 +2,21 @@ use thiserror::Error;
 
 use crate::rig::JointId;
 
-/// Why a palette does not fit a mesh. Nothing was changed.
+/// Why a mesh cannot be posed with a palette. Nothing was changed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PaletteError {
-    /// It has another number of matrices than the mesh has joints.
-    #[error("the mesh has {expected} joints, the palette {found} matrices")]
+    /// The number of matrices differs from the number of joints.
+    #[error("the mesh has {expected} joints, but the palette has {found} matrices")]
     JointCount {
-        /// As the mesh has.
+        /// Number of joints of the mesh.
         expected: usize,
-        /// As the palette has.
+        /// Number of matrices of the palette.
         found: usize,
     },
-    /// A matrix is not finite, or could move a vertex, one to be added among them, farther than 2^100
-    /// from the origin.
-    #[error("matrix {0} of the palette is not finite, or moves vertices beyond 2^100")]
+    /// A matrix is not finite, or could move a vertex farther than 2^100 from the origin. The vertex may be one
+    /// that an edit is adding.
+    #[error("matrix {0} of the palette is not finite, or could move a vertex beyond 2^100")]
     Matrix(JointId),
 }
 
@@ -24,17 +24,19 @@ pub enum PaletteError {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The influences do not divide evenly among the vertices, or there are none. With
-    /// [`influence_ends`](crate::mesh::MeshSource::influence_ends): there is not one end per vertex, or the ends do not
-    /// ascend to the number of influences.
+    /// The influences cannot be assigned to the vertices.
+    ///
+    /// Without [`influence_ends`](crate::mesh::MeshSource::influence_ends): there are no influences or no vertices,
+    /// or the number of influences is not a multiple of the number of vertices. With it: there is not one end per
+    /// vertex, the ends are not in ascending order, or the last end is not the number of influences.
     #[error(
-        "{influences} influences do not fit {vertices} vertices: each needs as many as the others, or \
-         `influence_ends` one ascending end for each"
+        "{influences} influences do not fit {vertices} vertices: every vertex needs the same number, or \
+         `influence_ends` needs one end per vertex, in ascending order"
     )]
     InfluenceCount {
-        /// Influences found.
+        /// Number of influences.
         influences: usize,
-        /// Vertices found.
+        /// Number of vertices.
         vertices: usize,
     },
     /// There are tags, but not one per triangle.
@@ -45,7 +47,7 @@ pub enum MeshError {
         /// Number of tags.
         found: usize,
     },
-    /// There are numbers of rest spaces, but not one per vertex.
+    /// There are rest spaces, but not one per vertex.
     #[error("expected {expected} rest spaces, one per vertex, or none; found {found}")]
     RestSpaceCount {
         /// Number of vertices.
@@ -54,68 +56,72 @@ pub enum MeshError {
         found: usize,
     },
     /// A position is infinite, NaN, or farther than 2^99 from the origin.
-    #[error("the position of vertex {vertex} is not finite, or larger than 2^99")]
+    #[error(
+        "the position of vertex {vertex} is not finite, or is farther than 2^99 from the origin"
+    )]
     Position {
-        /// Index of the vertex in the input.
+        /// Index of the vertex in the input, or the id that a vertex to be added would get.
         vertex: usize,
     },
-    /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices}")]
+    /// A triangle refers to a vertex that does not exist.
+    #[error(
+        "triangle {triangle} refers to vertex {vertex}, but there are only {vertices} vertices"
+    )]
     VertexOutOfRange {
         /// Index of the triangle in the input.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex that it refers to.
         vertex: u32,
-        /// How many there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// An influence names a joint that does not exist.
-    #[error("vertex {vertex} follows joint {joint}, but there are only {joints}")]
+    /// An influence refers to a joint that does not exist.
+    #[error("vertex {vertex} refers to joint {joint}, but there are only {joints} joints")]
     JointOutOfRange {
-        /// Index of the vertex in the input.
+        /// Index of the vertex in the input, or the id that a vertex to be added would get.
         vertex: usize,
-        /// The joint it names.
+        /// The joint that it refers to.
         joint: JointId,
-        /// How many there are.
+        /// Number of joints.
         joints: usize,
     },
-    /// A weight is negative, infinite or NaN, or all weights of a vertex are zero.
+    /// A weight is negative, infinite or NaN, or no weight of a vertex is positive.
     #[error("the weights of vertex {vertex} cannot be normalised: {weights:?}")]
     Weights {
-        /// Index of the vertex in the input.
+        /// Index of the vertex in the input, or the id that a vertex to be added would get.
         vertex: usize,
-        /// Its weights.
+        /// The weights of the vertex as given.
         weights: Vec<f32>,
     },
     /// No triangle is left after degenerate and duplicate ones were dropped.
     #[error("no usable triangle among the {triangles} given")]
     NoTriangles {
-        /// Triangles given.
+        /// Number of triangles given.
         triangles: usize,
     },
-    /// More vertices, influences or triangles than a u32 can number.
+    /// There are more vertices, influences, triangles or joints than a mesh can number.
     #[error("{found} {what} are more than a mesh can number (2^32 - 1)")]
     TooLarge {
-        /// Which of them.
+        /// What there are too many of, such as `"vertices"`.
         what: &'static str,
-        /// How many.
+        /// How many there are.
         found: usize,
     },
-    /// The hierarchy over the triangles is so deep that a query could not descend it. It is balanced, so this is
-    /// not met by meshes that can be numbered.
+    /// The hierarchy over the clusters is too deep for a query to descend. The hierarchy is balanced, so a mesh
+    /// small enough to be numbered is not expected to cause this error.
     #[error(
-        "a query of this mesh may have {needed} nodes still to visit, {most} at most are possible"
+        "a query of this mesh may need a stack of {needed} nodes; at most {most} are available"
     )]
     TooDeep {
-        /// Nodes and clusters that a query may have still to visit.
+        /// The most nodes and clusters that a query may have to keep on its stack.
         needed: usize,
-        /// As many as it can have.
+        /// The size of that stack.
         most: usize,
     },
     /// A triangle to be added has no area at rest.
-    #[error("a triangle of vertices {vertices:?} has no area at rest")]
+    #[error("the triangle of vertices {vertices:?} has no area at rest")]
     DegenerateTriangle {
-        /// The vertices named.
+        /// Its vertices.
         vertices: [u32; 3],
     },
 }

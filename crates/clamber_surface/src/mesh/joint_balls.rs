@@ -1,5 +1,5 @@
-//! For each joint the ball of the vertices that it moves: from them follows a box around the whole surface, see
-//! [`crate::bounds`].
+//! For each joint, a ball around the vertices that it moves. [`crate::bounds`] computes a box around the whole
+//! surface from these balls.
 
 use glam::Vec3;
 
@@ -8,26 +8,27 @@ use super::{ColliderMesh, VertexId};
 use crate::geometry::Sphere;
 use crate::rig::JointId;
 
-/// The ball of the vertices that a joint moves.
+/// A ball around the rest positions of the vertices that a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JointBall {
     pub(crate) joint: JointId,
     pub(crate) ball: Sphere,
-    /// The largest distance of a vertex or of the ball's centre from the mesh's origin, rounded up.
+    /// The largest distance from the mesh's origin to a vertex or to the ball's centre, rounded up.
     pub(crate) reach: f32,
 }
 
-/// Rest data for a box around the whole surface.
+/// The rest data from which a box around the whole surface is computed.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct JointBalls {
-    /// By ascending joint.
+    /// In ascending joint order; only joints that move a vertex.
     pub(crate) balls: Vec<JointBall>,
-    /// The most that one vertex has.
+    /// The most influences that one vertex has.
     pub(crate) influences: usize,
 }
 
 impl JointBalls {
-    /// Reads all vertices of a mesh, those without triangles included: some 66 passes over them.
+    /// Computes the balls from all vertices of a mesh, including those without triangles. Takes some 66 passes over
+    /// the vertices.
     pub(super) fn new(mesh: &ColliderMesh) -> Self {
         let mut moved: Vec<Vec<VertexId>> = vec![Vec::new(); mesh.joint_count()];
         for vertex in (0..mesh.positions().len() as u32).map(VertexId) {
@@ -49,12 +50,13 @@ impl JointBalls {
         }
     }
 
-    /// In bytes.
+    /// Size of the balls in bytes.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.balls[..])
     }
 
-    /// Grows so as to hold one more vertex, which these joints move. The balls stay where they are.
+    /// Enlarges the balls of `joints` to hold one more vertex, which these joints move. The centres stay where they
+    /// are. A joint that has no ball yet gets one.
     pub(super) fn hold(&mut self, position: Vec3, joints: impl ExactSizeIterator<Item = JointId>) {
         self.influences = self.influences.max(joints.len());
         for joint in joints {

@@ -5,18 +5,20 @@ use glam::Vec3;
 use super::{ColliderMesh, TriangleId, VertexId};
 use crate::rig::JointId;
 
-/// Which mesh: a fingerprint of its positions, influences and triangles as they were built, and of each vertex and
-/// triangle that was added since. The same wherever the same is built and added in the same order; tags do not count.
+/// Identity of a mesh: a fingerprint of its positions, influences and triangles as built, and of every vertex and
+/// triangle added since. Two meshes that were built from the same data and got the same additions in the same order
+/// have the same id. Tags and removals do not count.
 ///
-/// Hits and anchors carry that of the mesh as it was when their triangle was added, so that what belongs to one creature
-/// is not taken for a point of another: a point on a triangle that was built holds on every copy, however it is edited;
-/// one on a triangle that an edit added holds where the same was added.
+/// Hits and anchors carry the id that the mesh had when their triangle was built or added. So a point of one
+/// creature is not mistaken for a point of another. A point on a triangle from the build is valid on every copy of
+/// the mesh, however the copy was edited. A point on a triangle that an edit added is valid on copies that got the
+/// same additions up to that triangle.
 ///
-/// As text, and so in save games, it is 16 hexadecimal digits and, after edits, `+` and how many vertices and triangles
-/// they added.
+/// As text, and so in save games, an id is 16 hexadecimal digits. After edits that added something, `+` and the
+/// number of added vertices and triangles follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MeshId {
-    /// How many vertices and triangles were added.
+    /// Number of vertices and triangles added since the build.
     added: u64,
     fingerprint: u64,
 }
@@ -46,25 +48,25 @@ impl<'de> serde::Deserialize<'de> for MeshId {
         let (fingerprint, added) = text.split_once('+').unwrap_or((&text, "0"));
         let numbers = (added.parse().ok()).zip(u64::from_str_radix(fingerprint, 16).ok());
         let id = numbers.map(|(added, fingerprint)| Self { added, fingerprint });
-        // Written in one way only.
+        // Only the form that `Display` writes is accepted.
         id.filter(|id| id.to_string() == text)
-            .ok_or_else(|| D::Error::custom(format_args!("{text:?} is no mesh id")))
+            .ok_or_else(|| D::Error::custom(format_args!("{text:?} is not a mesh id")))
     }
 }
 
-/// All ids that a mesh has had.
+/// All ids that a mesh has had, from the build on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lineage {
-    /// As it was built, and after each vertex and triangle that was added.
+    /// The fingerprint as built, then one after each added vertex or triangle.
     fingerprints: Vec<u64>,
-    /// How many triangles were built.
+    /// Number of triangles as built.
     built: usize,
-    /// Of each triangle that was added, which fingerprint followed.
+    /// Per added triangle, the index of the fingerprint after it.
     added: Vec<u64>,
 }
 
 impl Lineage {
-    /// Of a mesh as it is built.
+    /// The lineage of a mesh that has just been built.
     pub(super) fn of(mesh: &ColliderMesh) -> Self {
         let positions = mesh.positions.iter().flat_map(|p| p.to_array());
         let numbers = positions.chain(mesh.weights.iter().copied());
@@ -83,7 +85,7 @@ impl Lineage {
         self.id_after(self.fingerprints.len().saturating_sub(1) as u64)
     }
 
-    /// The mesh's id when a triangle was added, or built.
+    /// The id that the mesh had when `triangle` was built or added.
     pub(super) fn id_of(&self, triangle: TriangleId) -> MeshId {
         let added = triangle.index().checked_sub(self.built);
         let added = added.and_then(|added| self.added.get(added));
@@ -98,7 +100,7 @@ impl Lineage {
         }
     }
 
-    /// True for the mesh's id and for those that it had before.
+    /// True if `id` is the mesh's current id or one that it had before.
     pub(super) fn has(&self, id: MeshId) -> bool {
         let added = usize::try_from(id.added).ok();
         added.and_then(|added| self.fingerprints.get(added)) == Some(&id.fingerprint)
@@ -121,13 +123,13 @@ impl Lineage {
         self.fingerprints.push(next);
     }
 
-    /// In bytes.
+    /// Size of the arrays in bytes.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.fingerprints[..]) + size_of_val(&self.added[..])
     }
 }
 
-/// FNV-1a (Fowler, Noll, Vo; RFC 9923), word by word.
+/// The FNV-1a hash (Fowler, Noll, Vo; RFC 9923), applied word by word.
 fn fold(hash: u64, words: impl Iterator<Item = u32>) -> u64 {
     words.fold(hash, |hash, word| {
         (hash ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3)

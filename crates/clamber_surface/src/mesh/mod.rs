@@ -1,7 +1,6 @@
-//! The collider mesh: what is skinned and queried.
+//! The collider mesh: the rest data that is skinned and queried.
 //!
-//! [`ColliderMesh::build`] takes plain slices, as any importer or engine has them, and makes an
-//! immutable mesh that surfaces share by `Arc`.
+//! [`ColliderMesh::build`] makes an immutable mesh from plain slices. Surfaces share the mesh by `Arc`.
 
 mod adjacency;
 mod build;

@@ -1,4 +1,4 @@
-//! What bounds need of a set of vertices at rest.
+//! Rest data of sets of vertices, from which bounds are computed.
 
 use glam::Vec3;
 
@@ -7,23 +7,24 @@ use super::{ColliderMesh, VertexId};
 use crate::geometry::{Sphere, round_up_to_f32, widen};
 use crate::rig::JointId;
 
-/// Rest data of a set of vertices, at least one: from it and a palette follows what bounds them in any pose.
+/// Rest data of a set of at least one vertex. Together with a palette, they give bounds of the posed vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Summary {
-    /// The box around the rest positions.
+    /// Lower corner of the box around the rest positions.
     pub(crate) low: Vec3,
+    /// Upper corner of that box.
     pub(crate) high: Vec3,
-    /// About the middle of the box, in f32, which may lose a vertex to rounding: good enough to choose by.
-    /// [`Summary::bound`] makes it one that holds all.
+    /// A ball about the middle of the box, computed in f32. Rounding may leave a vertex outside, which is good
+    /// enough to compare cuts. [`Summary::bound`] replaces it with a ball that holds all vertices.
     pub(crate) ball: Sphere,
-    /// The largest distance of a vertex or of the ball's centre from the mesh's origin, rounded up; 0 before
+    /// The largest distance from the mesh's origin to a vertex or to the ball's centre, rounded up; 0 before
     /// [`Summary::bound`].
     pub(crate) reach: f32,
-    /// Those in several sets of a union count once for each.
+    /// Number of vertices. In a union, a vertex counts once for each set that holds it.
     pub(crate) vertices: usize,
-    /// The most of one vertex.
+    /// The most influences of one vertex.
     pub(crate) influences: usize,
-    /// Of every joint that moves one of them, in no promised order.
+    /// The weights of every joint that moves at least one of the vertices, in no particular order.
     pub(crate) spans: Vec<Span>,
 }
 
@@ -31,15 +32,16 @@ pub(crate) struct Summary {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Span {
     pub(crate) joint: u32,
-    /// Smallest and largest, over the vertices that the joint moves.
+    /// The smallest weight over the vertices that the joint moves.
     low: f32,
+    /// The largest weight over these vertices.
     high: f32,
-    /// How many these are.
+    /// Number of vertices that the joint moves.
     vertices: usize,
 }
 
 impl Span {
-    /// The smallest of all of so many vertices: 0 as soon as there is one that the joint does not move.
+    /// The smallest weight over a set of `vertices` vertices: 0 if there is one that the joint does not move.
     fn low(&self, vertices: usize) -> f32 {
         if self.vertices < vertices {
             0.0
@@ -48,25 +50,25 @@ impl Span {
         }
     }
 
-    /// Half of how far its weights lie apart.
+    /// Half of the difference between the largest and the smallest weight over the set.
     pub(crate) fn spread(&self, vertices: usize) -> f32 {
         0.5 * (self.high - self.low(vertices))
     }
 }
 
-/// How much one joint moves the vertices of a set. All weights are multiples of 2^-24, so the
+/// The interval of one joint's weights over a set of vertices. All weights are multiples of 2^-24, so the
 /// differences below are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WeightInterval {
     /// The joint; it moves at least one of the vertices.
     pub(crate) joint: u32,
-    /// Near the middle of its weights; those of a set add up to exactly 1.
+    /// Near the middle of the interval. The middles of all joints of a set add up to exactly 1.
     pub(crate) middle: f32,
-    /// The most by which a weight differs from `middle`.
+    /// The largest difference of a weight from `middle`.
     pub(crate) deviation: f32,
 }
 
-/// So many points of a large set give the centre of its ball; all of them give the radius.
+/// The most points from which the centre of a ball is computed. Its radius is always computed from all points.
 const CENTER_SAMPLE: usize = 1024;
 
 impl Summary {
@@ -75,7 +77,8 @@ impl Summary {
         (self.low + self.high) * 0.5
     }
 
-    /// Makes the ball nearly the smallest that holds the vertices, which stand at `points`, and finds the reach.
+    /// Replaces the ball by nearly the smallest that holds all vertices, and computes the reach. `points` are the
+    /// rest positions of the vertices.
     #[must_use]
     pub(crate) fn bound(mut self, points: &[Vec3]) -> Self {
         let stride = points.len().div_ceil(CENTER_SAMPLE).max(1);
@@ -94,17 +97,17 @@ impl Summary {
         self
     }
 
-    /// How much each joint moves the vertices, by ascending joint.
+    /// The weight interval of each joint, in ascending joint order.
     pub(crate) fn intervals(&self) -> Vec<WeightInterval> {
         let mut spans = self.spans.clone();
         spans.sort_unstable_by_key(|span| span.joint);
-        // Twice the middles. Their rounding does not matter, the sum of the integers they become does.
+        // Twice the middles. Their rounding does no harm: `normalize` turns them into integers with an exact sum.
         let doubled = |span: &Span| Influence {
             joint: JointId(span.joint),
             weight: span.low(self.vertices) + span.high,
         };
         let middles: Vec<Influence> = spans.iter().map(doubled).collect();
-        // Without those of the joints whose middle is 0.
+        // Joints whose middle becomes 0 are missing here.
         let mut middles = normalize(&middles)
             .unwrap_or_default()
             .into_iter()
@@ -128,14 +131,15 @@ pub(super) fn reach_of(position: Vec3) -> f32 {
     round_up_to_f32(widen(position).length() * (1.0 + 1e-15))
 }
 
-/// Summarises sets of vertices of one mesh. Keeps its memory from one to the next.
+/// Computes summaries of sets of vertices of one mesh. Reuses its memory from set to set.
 pub(crate) struct Summarizer<'a> {
     pub(crate) mesh: &'a ColliderMesh,
-    /// The last set that a vertex, or a joint, was seen in; sets are numbered from 1.
+    /// Per vertex, the last set in which it was seen. Sets are numbered from 1.
     vertex_seen: Vec<u32>,
+    /// Per joint, the last set in which it was seen.
     joint_seen: Vec<u32>,
     set: u32,
-    /// Where a joint of the current set stands in its spans.
+    /// Per joint of the current set, its index in the spans.
     place: Vec<u32>,
     vertices: Vec<u32>,
 }
@@ -152,13 +156,13 @@ impl<'a> Summarizer<'a> {
         }
     }
 
-    /// How many vertices some triangles have.
+    /// The number of distinct corners of some triangles.
     pub(crate) fn count_corners(&mut self, triangles: impl Iterator<Item = u32>) -> usize {
         self.collect_corners(triangles);
         self.vertices.len()
     }
 
-    /// The corners of some triangles, at least one, into `summary`, which keeps its memory.
+    /// Summarises the corners of at least one triangle into `summary`, which keeps its memory.
     pub(crate) fn of_corners(
         &mut self,
         triangles: impl Iterator<Item = u32>,
@@ -168,7 +172,7 @@ impl<'a> Summarizer<'a> {
         self.read(summary);
     }
 
-    /// Some vertices, each once, bounded.
+    /// The summary of vertices that are listed once each, after [`Summary::bound`].
     pub(crate) fn of_vertices(&mut self, vertices: &[VertexId]) -> Summary {
         self.set += 1;
         self.vertices.clear();
@@ -180,7 +184,7 @@ impl<'a> Summarizer<'a> {
         summary.bound(&points)
     }
 
-    /// Several sets together.
+    /// The summary of several sets together, before [`Summary::bound`].
     pub(crate) fn union<'s>(&mut self, sets: impl Iterator<Item = &'s Summary> + Clone) -> Summary {
         self.set += 1;
         let mut union = Summary {
@@ -199,14 +203,14 @@ impl<'a> Summarizer<'a> {
             union.vertices += set.vertices;
             union.influences = union.influences.max(set.influences);
             for span in &set.spans {
-                // A joint that does not move all of the set's vertices has fewer in the union too.
+                // A joint that does not move all vertices of a set counts fewer than all in the union too.
                 self.add(*span, &mut union.spans);
             }
         }
         union
     }
 
-    /// The distinct corners of some triangles, by first appearance.
+    /// Collects the distinct corners of some triangles, in the order of first appearance.
     fn collect_corners(&mut self, triangles: impl Iterator<Item = u32>) {
         self.set += 1;
         self.vertices.clear();
@@ -220,7 +224,7 @@ impl<'a> Summarizer<'a> {
         }
     }
 
-    /// What was collected.
+    /// Summarises the collected vertices.
     fn read(&mut self, summary: &mut Summary) {
         let positions = self.mesh.positions();
         let points = self.vertices.iter().map(|v| positions[*v as usize]);

@@ -1,30 +1,31 @@
-/// What a surface is made of, as far as a climber cares.
+/// The material of a surface, as far as climbing depends on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SurfaceKind {
-    /// Bare: can be stood on or slid on.
+    /// Bare skin: a climber can stand or slide on it.
     #[default]
     Skin,
-    /// Fur or vegetation: can be gripped and climbed.
+    /// Fur or vegetation: a climber can grip and climb it.
     Fur,
-    /// Armour or rock: can be stood on; its edges may be ledges.
+    /// Armour or rock: a climber can stand on it; its edges may be ledges.
     Stone,
 }
 
-/// What a triangle is tagged with.
+/// The tag of a triangle: its material, and data for the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SurfaceTag {
-    /// Material.
+    /// The material.
     pub kind: SurfaceKind,
-    /// True if its rim may be hung from.
+    /// True if a climber may hang from the triangle's rim. `clamber_climber` finds ledges by their shape and does
+    /// not read this.
     pub ledge: bool,
-    /// The game's own: a material for sounds, a surface id. 0 where none is given; nothing here reads it.
+    /// A number for the game, such as a sound material or a surface id. 0 by default; nothing here reads it.
     pub user: u32,
 }
 
 impl SurfaceTag {
-    /// A material, no ledge, and 0 for the game's own number.
+    /// A tag with this material, without a ledge, and with `user` 0.
     pub const fn new(kind: SurfaceKind) -> Self {
         Self {
             kind,
@@ -33,7 +34,7 @@ impl SurfaceTag {
         }
     }
 
-    /// The same with a rim that may be hung from.
+    /// The same tag with `ledge` set.
     #[must_use]
     pub const fn with_ledge(self) -> Self {
         Self {
@@ -42,7 +43,7 @@ impl SurfaceTag {
         }
     }
 
-    /// The same with another number of the game's own.
+    /// The same tag with another `user` number.
     #[must_use]
     pub const fn with_user(self, user: u32) -> Self {
         Self { user, ..self }

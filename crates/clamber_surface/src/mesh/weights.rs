@@ -1,4 +1,5 @@
-//! Influences as the skinning contract wants them: one per joint, ascending, integer weights.
+//! Normalises influences as the skinning contract requires: one per joint, in ascending joint order, with integer
+//! weights.
 
 use crate::rig::JointId;
 
@@ -7,7 +8,7 @@ use crate::rig::JointId;
 pub struct Influence {
     /// The joint.
     pub joint: JointId,
-    /// Not negative; the weights of a vertex are normalised to a sum of one.
+    /// The weight: finite, not negative. A build normalises the weights of each vertex to a sum of 1.
     pub weight: f32,
 }
 
@@ -15,9 +16,9 @@ pub struct Influence {
 /// sum of weights that add up to it.
 pub(crate) const WEIGHT_ONE: u32 = 1 << 24;
 
-/// The influences of one vertex as a collider keeps them: one for each joint, by ascending joint,
-/// none of weight zero; weights are multiples of 2^-24 that sum to exactly 1. `None` if a weight
-/// is negative or not finite, or all are zero.
+/// Normalises the influences of one vertex, as a build does. Returns one influence per joint, in ascending joint
+/// order, none of weight zero. The weights are multiples of 2^-24 that sum to exactly 1. `None` if a weight is
+/// negative or not finite, or if no weight is positive.
 pub fn normalize_influences(influences: &[Influence]) -> Option<Vec<Influence>> {
     let influence = |(joint, units): (JointId, u32)| Influence {
         joint,
@@ -26,16 +27,16 @@ pub fn normalize_influences(influences: &[Influence]) -> Option<Vec<Influence>> 
     Some(normalize(influences)?.into_iter().map(influence).collect())
 }
 
-/// A weight from its units; exact.
+/// The weight for a number of units of 2^-24; exact.
 pub(crate) fn weight_of(units: u32) -> f32 {
     units as f32 / WEIGHT_ONE as f32
 }
 
-/// Weights that add up to exactly [`WEIGHT_ONE`], by joint id, without zeros. `None` if a weight
-/// is negative or not finite, or all are zero.
+/// Joints and their weights in units of 2^-24, in ascending joint order, without zeros. The units add up to exactly
+/// [`WEIGHT_ONE`]. `None` if a weight is negative or not finite, or if no weight is positive.
 ///
-/// Influences of one joint are merged. Each share is rounded down, and what is missing goes to
-/// the largest remainders, ties to the smaller joint: no weight is off by more than one unit.
+/// Influences of the same joint are merged. Each share is rounded down. The units that are then missing go to the
+/// largest remainders, on a tie to the smaller joint. No weight is off by more than one unit.
 pub(crate) fn normalize(influences: &[Influence]) -> Option<Vec<(JointId, u32)>> {
     if influences
         .iter()
@@ -71,8 +72,7 @@ pub(crate) fn normalize(influences: &[Influence]) -> Option<Vec<(JointId, u32)>>
     Some(kept.map(|(joint, units, _)| (joint, units)).collect())
 }
 
-/// Hands out the units that rounding down left over, or takes back what rounding of the shares
-/// themselves gave too many.
+/// Distributes the units that rounding down left over, or takes back units if rounding made the shares too large.
 fn distribute_rest(shares: &mut [(JointId, u32, f64)]) {
     let given: u64 = shares.iter().map(|(_, units, _)| u64::from(*units)).sum();
     let rest = i64::from(WEIGHT_ONE) - given as i64;
@@ -81,7 +81,7 @@ fn distribute_rest(shares: &mut [(JointId, u32, f64)]) {
     for &index in by_remainder.iter().cycle().take(rest.max(0) as usize) {
         shares[index].1 += 1;
     }
-    // Shares are rounded down, so this happens only by the last bit of a division.
+    // Shares are rounded down, so an excess can only come from the rounding of a division.
     let mut excess = (-rest).max(0);
     for share in shares.iter_mut().rev() {
         let taken = excess.min(i64::from(share.1));
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn thirds_go_to_the_smaller_joint_first() {
+    fn the_spare_unit_of_three_thirds_goes_to_the_smallest_joint() {
         let units = normalize(&influences(&[(2, 1.0), (0, 1.0), (1, 1.0)])).unwrap();
         let third = WEIGHT_ONE / 3;
         assert_eq!(units[0], (JointId(0), third + 1));
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_normalised() {
+    fn weights_that_are_negative_not_finite_or_all_zero_are_refused() {
         for bad in [f32::NAN, f32::INFINITY, -0.1] {
             assert_eq!(normalize(&influences(&[(0, 1.0), (1, bad)])), None, "{bad}");
         }

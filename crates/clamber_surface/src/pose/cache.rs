@@ -1,22 +1,22 @@
-//! What was computed on demand, kept until it is out of date, without locks and without unsafe.
+//! A cache of values that are computed on demand, without locks and without unsafe.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Numbers that queries compute on demand, grouped in entries, shared by any number of threads.
 ///
-/// An entry counts as filled while its stamp is the epoch of the pose that it belongs to; a new epoch
-/// outdates all entries at once, in no time. Filling an entry is idempotent: whoever finds it empty
-/// computes it, stores the numbers relaxed and then the stamp with release order; two threads may do
-/// so at once with equal bits, and nobody waits. Whoever reads the stamp with acquire order therefore
-/// reads those numbers. A new epoch needs `&mut`, so no thread sees two.
+/// An entry is filled while its stamp is the current epoch of its pose. A new epoch invalidates all entries at
+/// once, in O(1). Filling an entry is idempotent: a thread that finds the entry empty computes the numbers, stores
+/// them with relaxed order, and then stores the stamp with release order. Two threads may do so at the same time
+/// with equal bits, and neither waits. A thread that reads the stamp with acquire order therefore reads these
+/// numbers. A new epoch needs `&mut`, so no thread sees two epochs.
 #[derive(Debug)]
 pub(super) struct Cache<W = AtomicU64> {
     stamps: Vec<W>,
-    /// Two numbers each.
+    /// Each word holds two numbers.
     words: Vec<W>,
 }
 
-/// An atomic u64: std's, or a checker's.
+/// An atomic u64: that of std, or that of a model checker.
 pub(super) trait Word {
     fn new(value: u64) -> Self;
     fn load(&self, order: Ordering) -> u64;
@@ -37,11 +37,11 @@ impl Word for AtomicU64 {
     }
 }
 
-/// Marks the stamp of an entry that was filled before anybody asked for it.
+/// The bit that marks the stamp of an entry that was filled before anybody requested it.
 const UNASKED: u64 = 1 << 63;
 
 impl<W: Word> Cache<W> {
-    /// All entries empty. No epoch may be 0.
+    /// A cache of empty entries. An epoch must not be 0, the stamp of empty entries.
     pub(super) fn new(entries: usize, numbers: usize) -> Self {
         let mut cache = Self {
             stamps: Vec::new(),
@@ -51,14 +51,15 @@ impl<W: Word> Cache<W> {
         cache
     }
 
-    /// Appends empty entries, up to so many in all.
+    /// Appends empty entries, up to `entries` entries and `numbers` numbers in all.
     pub(super) fn grow(&mut self, entries: usize, numbers: usize) {
         self.stamps.resize_with(entries, || W::new(0));
         self.words.resize_with(numbers.div_ceil(2), || W::new(0));
     }
 
-    /// Copies an entry's numbers out, if they are of this epoch: part after part, of even lengths, from
-    /// the number `first` on, which is even. If false, compute them and [`Cache::keep`] them.
+    /// Copies the numbers of an entry to `parts`, one part after the other, and marks the entry as requested. The
+    /// numbers start at index `first`, which must be even, as must the lengths of the parts. False if the entry is
+    /// not of this epoch: then compute the numbers and call [`Cache::keep`].
     pub(super) fn recall<const N: usize>(
         &self,
         entry: usize,
@@ -84,7 +85,7 @@ impl<W: Word> Cache<W> {
         true
     }
 
-    /// Keeps an entry's numbers, as [`Cache::recall`] takes them.
+    /// Stores the numbers of an entry and marks it as requested. The arguments are those of [`Cache::recall`].
     pub(super) fn keep<const N: usize>(
         &self,
         entry: usize,
@@ -103,12 +104,12 @@ impl<W: Word> Cache<W> {
         self.stamps[entry].store(epoch, Ordering::Release);
     }
 
-    /// The entries that somebody asked for in this epoch.
+    /// The entries that were requested in this epoch.
     pub(super) fn asked(&self, epoch: u64) -> impl Iterator<Item = usize> {
         self.entries_with(move |stamp| stamp == epoch)
     }
 
-    /// The entries that are filled in this epoch, asked for or not.
+    /// The entries that are filled in this epoch, requested or not.
     pub(super) fn filled(&self, epoch: u64) -> impl Iterator<Item = usize> {
         self.entries_with(move |stamp| stamp & !UNASKED == epoch)
     }
@@ -122,8 +123,8 @@ impl<W: Word> Cache<W> {
 }
 
 impl Cache<AtomicU64> {
-    /// [`Cache::keep`] by whoever has the cache alone, before anybody asks; what was asked for already
-    /// stays so.
+    /// [`Cache::keep`] with exclusive access, without marking the entry as requested. An entry that was already
+    /// requested in this epoch stays marked.
     pub(super) fn keep_ahead<const N: usize>(
         &mut self,
         entry: usize,
@@ -150,7 +151,7 @@ impl Cache<AtomicU64> {
         *self.stamps[entry].get_mut() = 0;
     }
 
-    /// Copies numbers out, of whatever epoch, as whoever has the cache alone may.
+    /// Copies numbers out, of any epoch, with exclusive access.
     pub(super) fn peek<const N: usize>(&mut self, first: usize, parts: [&mut [f32]; N]) {
         let mut words = &mut self.words[first / 2..];
         for part in parts {
@@ -162,7 +163,7 @@ impl Cache<AtomicU64> {
         }
     }
 
-    /// In bytes.
+    /// Size of the arrays in bytes.
     pub(super) fn memory(&self) -> usize {
         (self.stamps.len() + self.words.len()) * size_of::<AtomicU64>()
     }

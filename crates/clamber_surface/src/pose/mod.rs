@@ -1,4 +1,4 @@
-//! One pose of a surface, and what was computed of it on demand: bounds of nodes, skinned clusters.
+//! One pose of a surface, with caches of what queries have computed: bounds of nodes, skinned clusters.
 
 mod cache;
 mod whole;
@@ -14,32 +14,32 @@ use crate::mesh::{ColliderMesh, PartId};
 use crate::simd::SimdLevel;
 use crate::skin::{ClusterPositions, skin_cluster, skin_vertex};
 
-/// Numbers of a node's bounds in the cache: x, y, z and radius of every lane.
+/// How many numbers a node's bounds take in the cache: x, y, z and radius of every lane.
 const NODE: usize = 4 * LANES;
 
-/// Numbers of a row of slots: x, y, z.
+/// How many numbers a row of slots takes in the cache: x, y, z of every slot.
 const ROW_OF_POSITIONS: usize = 3 * ROW;
 
-/// A palette, and bounds and positions under it as far as anybody asked for them.
+/// A palette, with the bounds and positions that were requested under it so far.
 #[derive(Debug)]
 pub(crate) struct PosedMesh {
     palette: Vec<Affine>,
     table: JointTable,
     root: RootBox,
     level: SimdLevel,
-    /// Of what the caches hold now; new with every palette.
+    /// The epoch of the current palette. Every new palette gets a new one, which invalidates older cache entries.
     epoch: u64,
     nodes: Cache,
     clusters: Cache,
 }
 
 impl PosedMesh {
-    /// Every matrix the identity.
+    /// A pose in which every matrix is the identity.
     pub(crate) fn at_rest(mesh: &ColliderMesh, level: SimdLevel) -> Self {
         Self::new(mesh, level, vec![Affine::IDENTITY; mesh.joint_count()])
     }
 
-    /// The same palette, and nothing computed, for a mesh that may have been edited.
+    /// A pose with the same palette and empty caches, for a mesh that may have been edited.
     pub(crate) fn renewed(&self, mesh: &ColliderMesh) -> Self {
         Self::new(mesh, self.level, self.palette.clone())
     }
@@ -68,8 +68,8 @@ impl PosedMesh {
             .grow(clusters.clusters.len(), rows * ROW_OF_POSITIONS);
     }
 
-    /// Follows an edit of the mesh in which some clusters died and others were appended: what was
-    /// computed of the rest stays. O(joints and clusters edited).
+    /// Updates the pose after an edit of the mesh in which some clusters died and others were appended. What was
+    /// computed of the other clusters stays valid. O(joints and clusters edited).
     pub(crate) fn follow(&mut self, mesh: &ColliderMesh, dead: &[u32]) {
         for cluster in dead {
             self.clusters.forget(*cluster as usize);
@@ -78,7 +78,7 @@ impl PosedMesh {
         self.root = root_box(mesh.joint_balls(), &self.table);
     }
 
-    /// Takes another palette; O(joints).
+    /// Replaces the palette, which invalidates the caches. O(joints).
     pub(crate) fn set(&mut self, mesh: &ColliderMesh, palette: impl Iterator<Item = Affine>) {
         for (old, new) in self.palette.iter_mut().zip(palette) {
             *old = new;
@@ -86,7 +86,7 @@ impl PosedMesh {
         self.renew(mesh);
     }
 
-    /// Outdates all that was computed.
+    /// Invalidates the caches, and computes the joint table and the root box of the palette.
     fn renew(&mut self, mesh: &ColliderMesh) {
         self.table.update(&self.palette);
         self.root = root_box(mesh.joint_balls(), &self.table);
@@ -97,12 +97,12 @@ impl PosedMesh {
         &self.palette
     }
 
-    /// Holds every vertex.
+    /// A box that holds every vertex.
     pub(crate) fn root(&self) -> &RootBox {
         &self.root
     }
 
-    /// One vertex, skinned by itself.
+    /// The position of one vertex, skinned without its cluster.
     pub(crate) fn position(&self, mesh: &ColliderMesh, vertex: usize) -> Vec3 {
         skin_vertex(mesh, &self.palette, vertex)
     }
@@ -122,7 +122,7 @@ impl PosedMesh {
         found
     }
 
-    /// A sphere for every part that has triangles.
+    /// A bounding sphere for every part that has triangles.
     pub(crate) fn part_spheres(
         &self,
         mesh: &ColliderMesh,
@@ -137,7 +137,7 @@ impl PosedMesh {
         })
     }
 
-    /// The positions of a cluster's slots.
+    /// Writes the positions of a cluster's slots to `out`.
     pub(crate) fn positions(&self, mesh: &ColliderMesh, cluster: u32, out: &mut ClusterPositions) {
         let index = cluster as usize;
         let clusters = mesh.clusters();
@@ -151,22 +151,22 @@ impl PosedMesh {
         }
     }
 
-    /// Clusters that anybody asked for.
+    /// Clusters that were requested in this pose.
     pub(crate) fn asked_clusters(&self) -> impl Iterator<Item = usize> {
         self.clusters.asked(self.epoch)
     }
 
-    /// Nodes whose bounds anybody asked for.
+    /// Nodes whose bounds were requested in this pose.
     pub(crate) fn asked_nodes(&self) -> impl Iterator<Item = usize> {
         self.nodes.asked(self.epoch)
     }
 
-    /// Clusters that were skinned, asked for or not.
+    /// Clusters that were skinned in this pose, requested or not.
     pub(crate) fn skinned_clusters(&self) -> impl Iterator<Item = usize> {
         self.clusters.filled(self.epoch)
     }
 
-    /// Bytes of palette and caches.
+    /// Size of palette and caches in bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.palette[..]) + self.nodes.memory() + self.clusters.memory()
     }

@@ -1,4 +1,4 @@
-//! Every vertex in every bound above it, on meshes as they are built.
+//! Checks that every vertex lies in every bound above it, on meshes as a build makes them.
 
 use super::*;
 use crate::bounds::tests::random::{JOINTS, MOTIONS, Spread, creature, palette};
@@ -10,8 +10,8 @@ use crate::rig::{JointId, Palette};
 use crate::testing::{bend, direction, point, tube};
 use glam::DVec3;
 
-/// Several hundred triangles between nearby vertices that follow `influences` joints of [`JOINTS`]:
-/// enough for nodes above nodes.
+/// 700 triangles, each of nearby vertices that follow `influences` of [`JOINTS`] joints: enough for nodes above
+/// nodes.
 fn many_clusters(rng: &mut fastrand::Rng, influences: usize) -> ColliderMesh {
     let size = [1e-3, 1.0, 1e3][rng.usize(0..3)];
     let offset = direction(rng) * [0.0, 1.0, 1e3][rng.usize(0..3)];
@@ -51,7 +51,7 @@ fn clusters_below(mesh: &ColliderMesh, child: Child, out: &mut Vec<u32>) {
     }
 }
 
-/// Looks at every vertex in every bound above it; gives how many pairs there were.
+/// Asserts that every vertex lies in every bound above it. Returns the number of pairs.
 fn check(mesh: &ColliderMesh, pose: &PosedMesh, case: &str) -> usize {
     let skinned = skin_scalar(mesh, pose.palette()).unwrap();
     let clusters = mesh.clusters();
@@ -91,7 +91,7 @@ fn check(mesh: &ColliderMesh, pose: &PosedMesh, case: &str) -> usize {
     checked + skinned.len()
 }
 
-/// [`check`] of bounds from the palette, then of those refitted to what was skinned.
+/// [`check`] of the bounds from the palette, then of the bounds that were fitted to the skinned positions.
 fn check_both(mesh: &ColliderMesh, pose: &mut PosedMesh, palette: &Palette, case: &str) -> usize {
     pose.set(mesh, palette.matrices().iter().copied());
     let lazily = check(mesh, pose, case);
@@ -145,14 +145,14 @@ fn every_vertex_lies_in_every_bound_above_it() {
 }
 
 #[test]
-#[ignore = "minutes, in release"]
-fn every_vertex_lies_in_every_bound_above_it_however_long_one_looks() {
+#[ignore = "takes minutes in release mode"]
+fn every_vertex_lies_in_every_bound_above_it_in_a_long_search() {
     let checked: usize = (0..40).map(|k| hunt(1_000 + k, 600)).sum();
     println!("{checked} checks");
 }
 
 #[test]
-fn what_was_asked_for_stays_so_when_everything_is_filled() {
+fn requested_entries_stay_marked_when_everything_is_filled() {
     let mesh = tube(9, 24);
     let mut pose = PosedMesh::at_rest(&mesh, SimdLevel::best());
     let mut out = ClusterPositions::ZERO;
@@ -165,7 +165,7 @@ fn what_was_asked_for_stays_so_when_everything_is_filled() {
         assert_eq!(pose.asked_clusters().collect::<Vec<_>>(), [3, 5]);
         assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0]);
         assert_eq!(pose.asked_clusters().count(), 2);
-        // Asked for again, they count no further.
+        // Further requests do not count.
         for cluster in [3, 5] {
             pose.positions(&mesh, cluster, &mut out);
         }
@@ -176,7 +176,7 @@ fn what_was_asked_for_stays_so_when_everything_is_filled() {
     assert_eq!(pose.asked_clusters().count(), 3);
     pose.spheres(&mesh, 1);
     assert_eq!(pose.asked_nodes().collect::<Vec<_>>(), [0, 1]);
-    // Another palette outdates all of it.
+    // Another palette invalidates everything.
     pose.set(&mesh, pose.palette.clone().into_iter());
     assert_eq!(
         (

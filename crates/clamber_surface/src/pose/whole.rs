@@ -1,4 +1,4 @@
-//! The eager way: everything at once, before anybody asks.
+//! Eager evaluation: computes all positions and bounds before they are requested.
 
 use super::{NODE, PosedMesh, ROW, first_number};
 use crate::bounds::Spheres;
@@ -7,7 +7,7 @@ use crate::mesh::hierarchy::Child;
 use crate::skin::{ClusterPositions, skin_cluster};
 
 impl PosedMesh {
-    /// Skins every cluster and refits every bound to what was skinned, children before parents.
+    /// Skins every cluster and fits every bound to the skinned positions, children before parents.
     pub(crate) fn fill(&mut self, mesh: &ColliderMesh) {
         let nodes = &mesh.hierarchy().nodes;
         let mut positions = ClusterPositions::ZERO;
@@ -40,7 +40,7 @@ impl PosedMesh {
         }
     }
 
-    /// Spheres of a node that were kept ahead.
+    /// The spheres that [`PosedMesh::fill`] computed for a node.
     fn refitted(&mut self, node: usize) -> Spheres {
         let mut found = Spheres::ZERO;
         let parts = found.rows_mut().map(|row| &mut row[..]);
@@ -58,22 +58,23 @@ impl PosedMesh {
     }
 }
 
-/// A sphere that holds nothing, of a child that is dead with all below it: it makes no other larger.
+/// An empty sphere, for a dead cluster and for a node that has only dead ones below it. It enlarges no other
+/// sphere.
 const EMPTY: [f32; 4] = [0.0, 0.0, 0.0, f32::NEG_INFINITY];
 
-/// What rounding in f32 may take off a radius: some eight roundings of 2^-24, and squares that
+/// Adds to a radius what rounding in f32 may have taken off: some eight roundings of 2^-24, and squares that
 /// underflow.
 fn rounded_up(radius: f32) -> f32 {
     radius * (1.0 + 8.0 * f32::EPSILON) + LEAST_RADIUS
 }
 
-/// 2^-56, as the bounds that come from the palette have it.
+/// 2^-56, the same as in the bounds from the palette.
 const LEAST_RADIUS: f32 = 1.0 / (1u64 << 56) as f32;
 
-/// Numbers at once.
+/// How many numbers are processed at once.
 const WIDTH: usize = 8;
 
-/// Lowest and highest of some numbers, a multiple of [`WIDTH`] and at least one of them.
+/// The lowest and the highest of some numbers. Their count must be a positive multiple of [`WIDTH`].
 fn range(numbers: &[f32]) -> (f32, f32) {
     let (mut low, mut high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
     for chunk in numbers.as_chunks::<WIDTH>().0 {
@@ -116,7 +117,7 @@ fn around_positions(positions: &ClusterPositions, count: usize) -> [f32; 4] {
     [center[0], center[1], center[2], rounded_up(farthest)]
 }
 
-/// A sphere about the middle of the box of some spheres; [`EMPTY`] if all are.
+/// A sphere about the middle of the box of some spheres; [`EMPTY`] if all of them are empty.
 fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
     let center = [&spheres.x, &spheres.y, &spheres.z].map(|numbers| {
         let ends = numbers.iter().zip(&spheres.radius).take(count);
@@ -124,7 +125,7 @@ fn around_spheres(spheres: &Spheres, count: usize) -> [f32; 4] {
             (low.min(x - r), high.max(x + r))
         });
         let middle = low * 0.5 + high * 0.5;
-        // Any place will do for the middle of an infinite or an empty sphere, but none is NaN.
+        // The centre of an infinite or empty sphere does not matter, but it must not be NaN.
         if middle.is_finite() { middle } else { 0.0 }
     });
     let reach = |lane: usize| {

@@ -6,24 +6,24 @@ use super::transform::{lerp, rotation_f32, rotation_f64, unit_rotation};
 use super::{JointId, Pose, RigError};
 use crate::geometry::{round_to_f32, slerp, widen};
 
-/// How a channel gets from one key frame to the next.
+/// How a channel interpolates between key frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// Holds each value until the next key frame.
     Step,
-    /// Straight line; rotations along the shorter arc.
+    /// Linear; rotations by spherical interpolation along the shorter arc.
     Linear,
-    /// Cubic Hermite spline: three values a key frame (in-tangent, value, out-tangent; tangents
-    /// per second). Rotations are normalised afterwards.
+    /// Cubic Hermite spline with three values per key frame: in-tangent, value, out-tangent. Tangents are per
+    /// second. Rotations are normalised afterwards.
     CubicSpline,
 }
 
-/// What a channel writes into its joint's transform.
+/// The values of a channel, by the property of the joint's transform that they set.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Keyframes {
     /// Translations, in units of the parent.
     Translation(Vec<Vec3>),
-    /// Rotations; values of any length but zero, tangents of any.
+    /// Rotations. Values may have any finite length except zero; tangents may have any finite length.
     Rotation(Vec<Quat>),
     /// Scales per axis.
     Scale(Vec<Vec3>),
@@ -39,11 +39,13 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Checks and keeps key frames: `times` in seconds, not decreasing, at least one; as many
-    /// `values`, or three times as many for [`Interpolation::CubicSpline`].
+    /// Makes a channel from key frames. `times` are in seconds, at least one, and do not decrease. There is one
+    /// value per time, or three per time for [`Interpolation::CubicSpline`].
     ///
     /// # Errors
-    /// [`RigError::KeyframeCount`], [`RigError::TimesNotSorted`], [`RigError::NotFinite`].
+    /// [`RigError::KeyframeCount`] if there are no times, or the number of values does not fit;
+    /// [`RigError::NotFinite`] if a number is not finite, or a rotation value has length zero;
+    /// [`RigError::TimesNotSorted`] if the times decrease.
     pub fn new(
         joint: JointId,
         interpolation: Interpolation,
@@ -67,7 +69,7 @@ impl Channel {
                 (v.len(), v.iter().enumerate().all(usable))
             }
         };
-        // Checked: three times a huge count must not wrap around to the count found.
+        // Saturating: three times a huge count must not wrap around to the count found.
         let expected = times.len().saturating_mul(per_time);
         if times.is_empty() || found != expected {
             return Err(RigError::KeyframeCount {
@@ -97,22 +99,22 @@ impl Channel {
         self.joint
     }
 
-    /// How it gets from one key frame to the next.
+    /// How the channel interpolates between key frames.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }
 
-    /// Seconds of the key frames, not decreasing.
+    /// The times of the key frames in seconds, not decreasing.
     pub fn times(&self) -> &[f32] {
         &self.times
     }
 
-    /// As many values as times, or three times as many for [`Interpolation::CubicSpline`].
+    /// The values: one per time, or three per time for [`Interpolation::CubicSpline`].
     pub fn values(&self) -> &Keyframes {
         &self.values
     }
 
-    /// Seconds of the first and last key frame.
+    /// The times of the first and the last key frame, in seconds.
     pub fn span(&self) -> (f32, f32) {
         (self.times[0], self.times[self.times.len() - 1])
     }
@@ -134,7 +136,7 @@ impl Channel {
         }
     }
 
-    /// The key frame at or before `time`, and where in the interval behind it.
+    /// The key frame at or before `time`, and where in the interval after that key frame the time is.
     fn locate(&self, time: f64) -> Moment {
         let after = self.times.partition_point(|t| f64::from(*t) <= time);
         let last = self.times.len() - 1;
@@ -184,7 +186,7 @@ impl Channel {
                 let [v0, b0, a1, v1] = hermite_indices(at.key, next(at.key));
                 let [w0, wb, wa, w1] = at.hermite_weights();
                 let sum = value(v0) * w0 + value(b0) * wb + value(v1) * w1 + value(a1) * wa;
-                // Opposite values can cancel in the middle; the nearer one stands in.
+                // Opposite values can cancel in the middle; then the nearer one is used.
                 if sum.length_squared() > 1e-24 {
                     sum.normalize()
                 } else {
@@ -199,9 +201,9 @@ impl Channel {
 #[derive(Clone, Copy)]
 struct Moment {
     key: usize,
-    /// 0 at the key frame, 1 at the next one.
+    /// Share of the interval that has passed: 0 at the key frame, 1 at the next one.
     part: f64,
-    /// Seconds between the two; 0 at the channel's ends.
+    /// Seconds between the two key frames; 0 at the channel's ends and beyond them.
     interval: f64,
 }
 
@@ -219,25 +221,25 @@ impl Moment {
     }
 }
 
-/// Where value, out-tangent, next in-tangent and next value stand.
+/// The indices of value, out-tangent, next in-tangent and next value.
 fn hermite_indices(key: usize, next: usize) -> [usize; 4] {
     [3 * key + 1, 3 * key + 2, 3 * next, 3 * next + 1]
 }
 
-/// What happens outside a clip's length.
+/// How a clip continues outside its duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Playback {
-    /// Starts again from the first key frame.
+    /// Repeats from the first key frame, at negative times too.
     Loop,
     /// Holds the first and the last key frame.
     Clamp,
 }
 
-/// A named motion: channels that together move some joints of a skeleton.
+/// A named animation: channels that together move some joints of a skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
-    /// As the file or its maker calls it.
+    /// Name of the clip, as its file or the caller gives it.
     pub name: String,
     channels: Vec<Channel>,
     start: f64,
@@ -245,8 +247,8 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip that lasts from the first to the last key frame of all its channels. Without
-    /// channels it has no length and moves nothing.
+    /// A clip that lasts from the first to the last key frame of all its channels. A clip without channels has
+    /// duration 0 and moves nothing.
     pub fn new(name: impl Into<String>, channels: Vec<Channel>) -> Self {
         let (mut start, mut end) = (f64::INFINITY, f64::NEG_INFINITY);
         for channel in &channels {
@@ -265,12 +267,12 @@ impl Clip {
         }
     }
 
-    /// The channels, in the order of the file.
+    /// The channels, in the order in which the clip was given them.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }
 
-    /// Seconds from the first to the last key frame; 0 for a clip of a single key frame.
+    /// Seconds from the first to the last key frame; 0 for a clip with a single key frame or no channels.
     pub fn duration(&self) -> f64 {
         self.end - self.start
     }
@@ -286,11 +288,11 @@ impl Clip {
         Ok(pose)
     }
 
-    /// [`Clip::sample`] over a pose that exists. Allocates nothing.
+    /// [`Clip::sample`] into an existing pose: writes only the properties that a channel moves. Allocates nothing.
     ///
     /// # Errors
-    /// [`RigError::NotFinite`] for such a time, [`RigError::JointOutOfRange`] if the pose has too
-    /// few joints; the pose is unchanged then.
+    /// [`RigError::NotFinite`] if `time` is not finite, [`RigError::JointOutOfRange`] if the pose has too few
+    /// joints. The pose is unchanged then.
     pub fn sample_into(
         &self,
         time: f64,

@@ -6,31 +6,32 @@ use super::JointId;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RigError {
-    /// A joint names a parent that does not exist.
+    /// The parent of a joint does not exist.
     #[error("joint {joint}'s parent is {parent}, but there are only {joints} joints")]
     ParentOutOfRange {
         /// The joint.
         joint: JointId,
-        /// What it names as its parent.
+        /// Its parent.
         parent: JointId,
-        /// How many joints there are.
+        /// Number of joints.
         joints: usize,
     },
     /// Following parents from this joint leads back to it.
     #[error("joint {0} is its own ancestor")]
     Cycle(JointId),
-    /// A transform, matrix, key frame or time is infinite, NaN or a rotation without length.
-    #[error("{what} is not finite, or is a rotation of length zero")]
+    /// A transform, matrix, key frame, time or blend weight is infinite or NaN, or a rotation has length zero.
+    #[error("{what} is not finite, or has a rotation of length zero")]
     NotFinite {
         /// Which value.
         what: String,
     },
-    /// A pose has another number of joints than the skeleton or than the other pose.
+    /// A pose does not have as many joints as the skeleton or the other pose, or a stored palette does not have one
+    /// joint transform per matrix.
     #[error("expected {expected} joints, found {found}")]
     JointCount {
-        /// As the skeleton has.
+        /// Number of joints of the skeleton or of the first pose, or of matrices of the palette.
         expected: usize,
-        /// As the pose has.
+        /// Number of joints of the pose, or of joint transforms of the palette.
         found: usize,
     },
     /// A channel moves a joint that the pose does not have.
@@ -38,23 +39,25 @@ pub enum RigError {
     JointOutOfRange {
         /// The channel's joint.
         joint: JointId,
-        /// How many joints there are.
+        /// Number of joints of the pose.
         joints: usize,
     },
-    /// A channel has no key frames, or another number of values than of times.
-    #[error("a channel with {times} times needs {expected} values, found {found}")]
+    /// A channel has no key frames, or the number of values does not fit the number of times.
+    #[error(
+        "a channel needs at least one time, and {expected} values for {times} times; found {found}"
+    )]
     KeyframeCount {
         /// Number of times.
         times: usize,
-        /// Values that so many times need: as many, or three times as many for a cubic spline.
+        /// Number of values that these times need: one per time, or three per time for a cubic spline.
         expected: usize,
-        /// Values found.
+        /// Number of values found.
         found: usize,
     },
-    /// Key frame times run backwards.
-    #[error("key frame {index} comes before the one in front of it")]
+    /// The times of the key frames decrease.
+    #[error("key frame {index} has an earlier time than the key frame before it")]
     TimesNotSorted {
-        /// Index of the later key frame.
+        /// Index of the key frame that has the earlier time.
         index: usize,
     },
 }

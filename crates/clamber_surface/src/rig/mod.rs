@@ -1,8 +1,8 @@
-//! From animation to palette: skeleton, pose, clip.
+//! From animation to palette: skeletons, clips and poses.
 //!
-//! `Clip::sample` gives a [`Pose`] (local transforms), [`Pose::blend`] mixes poses, and
-//! [`Skeleton::palette`] turns one into the [`Palette`] that skins a mesh. All of it is a pure
-//! function of its inputs; composition happens in f64 and is rounded to f32 once, per matrix.
+//! [`Clip::sample`] gives a [`Pose`] (local transforms), [`Pose::blend`] mixes two poses, and [`Skeleton::palette`]
+//! turns a pose into the [`Palette`] that skins a mesh. All of these are pure functions of their inputs. Matrices
+//! are composed in f64, and each is rounded to f32 once.
 
 mod clip;
 mod error;

@@ -5,10 +5,10 @@ use super::JointId;
 use super::RigError;
 use crate::geometry::Affine;
 
-/// One matrix per joint that takes mesh space at rest to model space now:
-/// `model_from_joint * joint_from_mesh`. What skinning reads.
+/// One matrix per joint that maps mesh space at rest to model space now: `model_from_joint * joint_from_mesh`.
+/// Skinning reads it.
 ///
-/// Comes from [`crate::rig::Skeleton::palette`], or from an engine's own matrices through
+/// Comes from [`crate::rig::Skeleton::palette`], or from the matrices of an engine through
 /// [`Palette::from_matrices`].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,7 +19,7 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// A palette from matrices in joint order, of an engine that poses its skeletons itself.
+    /// A palette from matrices in joint order, for engines that pose their skeletons themselves.
     pub fn from_matrices(matrices: impl IntoIterator<Item = Affine>) -> Self {
         Self {
             matrices: matrices.into_iter().collect(),
@@ -27,7 +27,7 @@ impl Palette {
         }
     }
 
-    /// Becomes [`Palette::from_matrices`] of others, and keeps its memory.
+    /// Replaces the palette by [`Palette::from_matrices`] of these matrices, and keeps its memory.
     pub fn set_matrices(&mut self, matrices: impl IntoIterator<Item = Affine>) {
         self.matrices.clear();
         self.matrices.extend(matrices);
@@ -39,8 +39,8 @@ impl Palette {
         &self.matrices
     }
 
-    /// Where a joint stands in model space; `None` for a joint out of range and for a palette made
-    /// by [`Palette::from_matrices`], which does not know.
+    /// The transform of a joint in model space. `None` for a joint out of range, and for a palette made by
+    /// [`Palette::from_matrices`], which does not know it.
     pub fn model_from_joint(&self, joint: JointId) -> Option<&DAffine3> {
         self.model_from_joint.get(joint.0 as usize)
     }
@@ -53,7 +53,7 @@ impl FromIterator<Affine> for Palette {
     }
 }
 
-/// A palette as it was written, to be checked.
+/// A deserialised palette that is still to be checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct StoredPalette {

@@ -6,18 +6,18 @@ use crate::geometry::{Slerp, round_to_f32};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
-    /// Relative to each joint's parent.
+    /// One transform per joint, relative to its parent.
     pub transforms: Vec<Transform>,
 }
 
 impl Pose {
-    /// Mixes `self` (at weight 0) with `other` (at weight 1): translations and scales linearly,
-    /// rotations along the shorter arc. A transform that is the same in both stays as it is, bit for
-    /// bit. Weights outside 0 to 1 are clamped.
+    /// Blends `self` (at weight 0) with `other` (at weight 1): translations and scales linearly, rotations along
+    /// the shorter arc. A transform that is equal in both poses stays as it is, bit for bit. Weights outside 0 to 1
+    /// are clamped.
     ///
     /// # Errors
-    /// [`RigError::JointCount`] if the poses differ in length, [`RigError::NotFinite`] if the
-    /// weight is NaN or a rotation has no length.
+    /// [`RigError::JointCount`] if the poses differ in length. [`RigError::NotFinite`] if the weight is NaN, a
+    /// transform is not finite, or a rotation has length zero.
     pub fn blend(&self, other: &Self, weight: f64) -> Result<Self, RigError> {
         let mut blended = self.clone();
         blended.blend_in(other, weight)?;
@@ -27,7 +27,7 @@ impl Pose {
     /// [`Pose::blend`] in place: `self` moves towards `other`. Allocates nothing.
     ///
     /// # Errors
-    /// As [`Pose::blend`]; `self` is unchanged then.
+    /// As [`Pose::blend`]; then `self` is unchanged.
     pub fn blend_in(&mut self, other: &Self, weight: f64) -> Result<(), RigError> {
         if other.transforms.len() != self.transforms.len() {
             return Err(RigError::JointCount {
@@ -37,7 +37,7 @@ impl Pose {
         }
         if weight.is_nan() {
             return Err(RigError::NotFinite {
-                what: "blend weight".into(),
+                what: "the blend weight".into(),
             });
         }
         self.validate()?;
@@ -57,7 +57,7 @@ impl Pose {
         Ok(())
     }
 
-    /// Refuses transforms that are not finite or have a rotation without length.
+    /// Rejects transforms that are not finite or whose rotation has length zero.
     pub(crate) fn validate(&self) -> Result<(), RigError> {
         match self.transforms.iter().position(|t| !t.is_valid()) {
             None => Ok(()),
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_middle() {
+    fn a_blend_is_right_at_its_ends_and_in_the_middle() {
         let (a, b) = (pose(0.2, 1.0), pose(1.0, 3.0));
         assert_eq!(a.blend(&b, 0.0).unwrap().transforms[0].translation.x, 1.0);
         assert_eq!(a.blend(&b, 7.0).unwrap(), a.blend(&b, 1.0).unwrap());

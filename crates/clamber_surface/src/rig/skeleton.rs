@@ -11,7 +11,7 @@ use crate::geometry::Affine;
 pub struct JointId(pub u32);
 
 impl JointId {
-    /// As an index into a slice.
+    /// The id as an index into a slice.
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -23,34 +23,36 @@ impl fmt::Display for JointId {
     }
 }
 
-/// One joint as it stands at rest.
+/// One joint of a skeleton, at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// For people and for [`Skeleton::find`]; need not be unique. `clamber_gltf` names a node without a name by its
-    /// index: `"node 3"`.
+    /// Name for display and for [`Skeleton::find`]; need not be unique. `clamber_gltf` names a node without a name
+    /// by its index: `"node 3"`.
     pub name: String,
-    /// The joint that this one hangs under; `None` at a root.
+    /// The parent joint; `None` for a root.
     pub parent: Option<JointId>,
-    /// Relative to the parent, at rest.
+    /// The transform at rest, relative to the parent.
     pub rest: Transform,
-    /// Inverse bind matrix, `joint_from_mesh`: takes mesh space to the joint's space at rest.
-    /// The identity for joints that skin nothing.
+    /// Inverse bind matrix, `joint_from_mesh`: maps mesh space to the joint's space at rest. The identity for
+    /// joints that skin nothing.
     pub inverse_bind: Affine,
 }
 
-/// A forest of joints. Parents may stand after their children in joint order.
+/// A forest of joints. In joint order, parents may come after their children.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     joints: Vec<Joint>,
-    /// Every parent before its children.
+    /// Indices of the joints, every parent before its children.
     order: Vec<u32>,
 }
 
 impl Skeleton {
-    /// Checks the joints and finds an order in which parents come first.
+    /// Builds a skeleton from joints in any order.
     ///
     /// # Errors
-    /// [`RigError::ParentOutOfRange`], [`RigError::Cycle`], [`RigError::NotFinite`].
+    /// [`RigError::ParentOutOfRange`] if a parent does not exist, [`RigError::Cycle`] if a joint is its own
+    /// ancestor, [`RigError::NotFinite`] if a rest transform or an inverse bind matrix is not finite, or a rotation
+    /// has length zero.
     pub fn new(joints: Vec<Joint>) -> Result<Self, RigError> {
         for (index, joint) in joints.iter().enumerate() {
             let id = JointId(index as u32);
@@ -78,16 +80,15 @@ impl Skeleton {
         &self.joints
     }
 
-    /// The first joint of this name.
+    /// The first joint with this name; `None` if there is none.
     pub fn find(&self, name: &str) -> Option<JointId> {
         let index = self.joints.iter().position(|joint| joint.name == name)?;
         Some(JointId(index as u32))
     }
 
-    /// True if following parents from `joint` leads to `ancestor`, or if they are one joint. O(depth). False for a joint
-    /// that does not exist.
+    /// True if `joint` is `ancestor` or one of its descendants. False for a joint that does not exist. O(depth).
     ///
-    /// Which joints an arm consists of is the question whether they are the shoulder or one of its descendants.
+    /// For example, the joints of an arm are those for which this is true with the shoulder as `ancestor`.
     pub fn is_descendant_or_self(&self, joint: JointId, ancestor: JointId) -> bool {
         let parent = |joint: &JointId| {
             self.joints
@@ -99,7 +100,7 @@ impl Skeleton {
         exists && core::iter::successors(Some(joint), parent).any(|joint| joint == ancestor)
     }
 
-    /// Every joint at rest.
+    /// The pose in which every joint is at rest.
     pub fn rest_pose(&self) -> Pose {
         Pose {
             transforms: self.joints.iter().map(|joint| joint.rest).collect(),
@@ -118,12 +119,14 @@ impl Skeleton {
 
     /// [`Skeleton::palette`] into an existing palette, which keeps its memory.
     ///
-    /// Composes in f64 from root to leaf and rounds each element of the product with the inverse
-    /// bind matrix once: its error is half a unit in the last place of f32. What overflows f32 is
-    /// infinite, and refused by the surface that it is meant for.
+    /// Composes in f64 from root to leaf, and rounds each element of the product with the inverse bind matrix once,
+    /// so its error is half a unit in the last place of f32. An element that overflows f32 is infinite, and
+    /// surfaces refuse such a palette.
     ///
     /// # Errors
-    /// [`RigError::JointCount`] or [`RigError::NotFinite`]; the palette is unchanged then.
+    /// [`RigError::JointCount`] if the pose and the skeleton differ in their number of joints,
+    /// [`RigError::NotFinite`] if a transform is not finite or a rotation has length zero. The palette is unchanged
+    /// then.
     pub fn palette_into(&self, pose: &Pose, palette: &mut Palette) -> Result<(), RigError> {
         if pose.transforms.len() != self.joints.len() {
             return Err(RigError::JointCount {
@@ -160,7 +163,7 @@ fn parents_first(joints: &[Joint]) -> Result<Vec<u32>, RigError> {
     for start in 0..joints.len() {
         let mut next = Some(start);
         while let Some(index) = next.filter(|&index| !placed[index]) {
-            // A chain of unplaced ancestors longer than all joints has met one twice.
+            // A chain of unplaced ancestors that is longer than all joints contains one joint twice.
             if chain.len() == joints.len() {
                 return Err(RigError::Cycle(JointId(start as u32)));
             }
@@ -193,7 +196,7 @@ mod tests {
 
     #[test]
     fn children_follow_parents_that_come_later() {
-        // Joint 0 hangs under 2, 2 under 1.
+        // The parent of joint 0 is joint 2, and the parent of joint 2 is joint 1.
         let skeleton = Skeleton::new(vec![
             joint(Some(2), 1.0),
             joint(None, 10.0),

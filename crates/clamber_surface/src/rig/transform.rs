@@ -7,16 +7,16 @@ use crate::geometry::widen;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transform {
-    /// In units of the parent.
+    /// Translation in the space of the parent.
     pub translation: Vec3,
-    /// Any length but zero: it is normalised where it is used.
+    /// Rotation. The quaternion may have any finite length except zero, since it is normalised where it is used.
     pub rotation: Quat,
-    /// Per axis; may be negative or zero.
+    /// Scale per axis; may be negative or zero.
     pub scale: Vec3,
 }
 
 impl Transform {
-    /// Changes nothing.
+    /// The identity: maps every point to itself.
     pub const IDENTITY: Self = Self {
         translation: Vec3::ZERO,
         rotation: Quat::IDENTITY,
@@ -31,7 +31,7 @@ impl Transform {
         }
     }
 
-    /// True if every part is finite and the rotation has a length.
+    /// True if every number is finite and the rotation does not have length zero.
     pub fn is_valid(&self) -> bool {
         let rotation = rotation_f64(self.rotation).length_squared();
         self.translation.is_finite()
@@ -40,7 +40,7 @@ impl Transform {
             && rotation > 0.0
     }
 
-    /// As a matrix in f64, with the rotation normalised.
+    /// The transform as a matrix in f64, with the rotation normalised.
     pub fn to_affine(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(
             widen(self.scale),
@@ -56,7 +56,7 @@ impl Default for Transform {
     }
 }
 
-/// How far from 1 the squared length of a nearly unit quaternion may be.
+/// Largest difference from 1 of the squared length of a quaternion that counts as nearly unit.
 const NEARLY_UNIT: f64 = 1e-6;
 
 /// Widens a quaternion; exact.
@@ -64,10 +64,11 @@ pub(crate) fn rotation_f64(q: Quat) -> DQuat {
     q.as_dquat()
 }
 
-/// A rotation as a unit quaternion; not finite for one of no length.
+/// Normalises a rotation. The result is not finite if the length is zero.
 ///
-/// One that is nearly a unit, as most are, takes a single step of Newton's method for the inverse root of its squared
-/// length, whose remaining error is 3/8 of the square of what it was: below 4e-13, without division or root.
+/// A nearly unit quaternion, the usual case, takes a single step of Newton's method for the inverse root of its
+/// squared length, without division or root. The remaining error is 3/8 of the square of the squared length's
+/// difference from 1: below 4e-13.
 pub(crate) fn unit_rotation(q: Quat) -> DQuat {
     let q = rotation_f64(q);
     let beyond = q.length_squared() - 1.0;
@@ -83,7 +84,7 @@ pub(crate) fn rotation_f32(q: DQuat) -> Quat {
     q.as_quat()
 }
 
-/// `a` at 0, `b` at 1, computed in f64.
+/// Linear interpolation in f64: `a` at `t` = 0, `b` at `t` = 1.
 pub(crate) fn lerp(a: Vec3, b: Vec3, t: f64) -> DVec3 {
     widen(a) * (1.0 - t) + widen(b) * t
 }
@@ -93,9 +94,9 @@ mod tests {
     use super::*;
     use glam::DVec4;
 
-    /// As far as the step is used, and beyond it.
+    /// Covers the lengths for which the step is used, and some beyond them.
     #[test]
-    fn rotations_become_units_as_closely_as_they_say() {
+    fn normalised_rotations_keep_the_stated_error() {
         let direction = DVec4::new(0.3, -0.5, 0.1, 0.8).normalize();
         for step in -400..=400 {
             let length = 1.0 + f64::from(step) * 2e-9;

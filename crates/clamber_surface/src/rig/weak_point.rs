@@ -7,18 +7,17 @@ use super::JointId;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct WeakPoint {
-    /// For people and for looking it up; need not be unique.
+    /// Name for display and for lookup; need not be unique.
     pub name: String,
-    /// The joint that moves it.
+    /// The joint that moves the weak point.
     pub joint: JointId,
     /// The centre, in the joint's space.
     pub position: Vec3,
-    /// Radius around the centre in model units, finite, at least 0. A joint that is scaled in a pose does not
-    /// change it.
+    /// Radius of the ball in model units, finite, at least 0. A joint that is scaled in a pose does not change it.
     pub radius: f32,
-    /// Damage that it takes before it is used up, finite, greater than 0.
+    /// Damage that the weak point takes before it is used up, finite, greater than 0.
     pub hit_points: f64,
-    /// True if the creature dies when it is used up.
+    /// True if the creature dies when the weak point is used up.
     pub major: bool,
 }
 

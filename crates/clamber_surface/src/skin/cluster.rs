@@ -1,4 +1,4 @@
-//! The fast kernel: one cluster at a time, as many vertices at once as the machine is wide.
+//! The fast kernel: skins one cluster at a time, as many vertices at once as fit a SIMD vector.
 
 use fearless_simd::{Simd, SimdBase, dispatch};
 
@@ -6,8 +6,7 @@ use crate::geometry::Affine;
 use crate::mesh::clusters::{Cluster, Clusters, MAX_SLOTS, ROW, Row};
 use crate::simd::SimdLevel;
 
-/// Positions of a cluster's slots: all x, all y, all z. Slots beyond the cluster's rows hold
-/// whatever they held.
+/// Positions of a cluster's slots: all x, all y, all z. Slots beyond the cluster's rows keep their old values.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClusterPositions(pub(crate) [[f32; MAX_SLOTS]; 3]);
@@ -16,8 +15,8 @@ impl ClusterPositions {
     pub(crate) const ZERO: Self = Self([[0.0; MAX_SLOTS]; 3]);
 }
 
-/// Skins all slots of a cluster; the bits are those of [`super::skin_vertex`]. The palette must have
-/// a matrix for every joint of the mesh.
+/// Skins all slots of a cluster, with the bits of [`super::skin_vertex`]. The palette must have a matrix for every
+/// joint of the mesh.
 pub(crate) fn skin_cluster(
     level: SimdLevel,
     clusters: &Clusters,
@@ -30,7 +29,7 @@ pub(crate) fn skin_cluster(
     dispatch!(level.level(), simd => skin_rows(simd, rest, joints, palette, positions));
 }
 
-/// [`skin_cluster`] for the rows that hold vertices of the cluster's own.
+/// [`skin_cluster`] for only those rows that hold vertices owned by the cluster.
 pub(crate) fn skin_owned(
     level: SimdLevel,
     clusters: &Clusters,
@@ -56,7 +55,7 @@ fn skin_rows<S: Simd>(
         let (place, weights) = rest.split_at(3);
         let influences = joints.iter().zip(weights);
         let from = row * ROW;
-        // Two vectors share the broadcast matrix elements where registers suffice for two.
+        // Two vectors share the broadcast matrix elements, where there are enough registers for two.
         if S::f32s::LEN == ROW {
             skin_vectors::<S, 1>(simd, place, 0, influences, palette, from, positions);
         } else {
@@ -76,7 +75,7 @@ fn skin_rows<S: Simd>(
     }
 }
 
-/// `N` vectors of slots, from `lane` of a row on, to `positions` from slot `to` on.
+/// Skins `N` vectors of slots: reads from `lane` of a row on, writes to `positions` from slot `to` on.
 #[inline(always)]
 fn skin_vectors<'a, S: Simd, const N: usize>(
     simd: S,

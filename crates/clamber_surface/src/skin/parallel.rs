@@ -1,4 +1,4 @@
-//! A whole mesh on all cores.
+//! Skins a whole mesh on all cores.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -9,13 +9,14 @@ use crate::geometry::Affine;
 use crate::mesh::clusters::{Cluster, Clusters};
 use crate::simd::SimdLevel;
 
-/// Clusters that one task skins, some ten microseconds, and vertices that one puts in order.
+/// Number of clusters that one task skins: some ten microseconds of work.
 const CLUSTERS: usize = 256;
+/// Minimum number of vertices that one task puts in order.
 const VERTICES: usize = 16_384;
 
-/// [`whole::skin_owned_vertices`] on all cores, with the same bits: first in the order of clusters,
-/// where every task has a piece of its own to write to, then each vertex to its place. Takes memory for
-/// the positions a second time.
+/// [`whole::skin_owned_vertices`] on all cores, with the same bits. Meshes of up to [`CLUSTERS`] clusters stay on
+/// one thread. Larger ones are first skinned in the order of clusters, so that every task writes to a piece of its
+/// own. Then each vertex is copied to its place. This takes memory for the positions a second time.
 pub(super) fn skin_owned_vertices(
     clusters: &Clusters,
     palette: &[Affine],
@@ -38,7 +39,7 @@ pub(super) fn skin_owned_vertices(
         });
 }
 
-/// Positions of all owned vertices, cluster by cluster.
+/// The positions of all owned vertices, cluster by cluster.
 fn skin_by_rank(clusters: &Clusters, palette: &[Affine], level: SimdLevel) -> Vec<Vec3> {
     let count = |all: &[Cluster]| -> usize { all.iter().map(|c| usize::from(c.owned)).sum() };
     let mut positions = vec![Vec3::ZERO; count(&clusters.clusters)];

@@ -3,10 +3,10 @@ use glam::DVec3;
 use crate::geometry::{Affine, widen};
 use crate::mesh::{ColliderMesh, VertexId};
 
-/// A vertex skinned in f64 on the same f32 palette: the yardstick for every f32 kernel.
+/// Skins a vertex in f64 on the same f32 palette: the reference for every f32 kernel.
 ///
-/// Its own error is some 2^-29 of theirs. `None` if the vertex is out of range or the palette has
-/// another number of matrices than the mesh has joints.
+/// Its own error is about 2^-29 of that of an f32 kernel. `None` if the vertex is out of range, or if the number of
+/// matrices differs from the number of joints of the mesh.
 pub fn skin_vertex_reference(
     mesh: &ColliderMesh,
     palette: &[Affine],
@@ -23,11 +23,11 @@ pub fn skin_vertex_reference(
     Some(sum)
 }
 
-/// How far, per coordinate, an f32 kernel that keeps the contract may be from exact arithmetic:
-/// `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|) + (4 n + 4) 2^-149` for n influences.
+/// An upper bound, per coordinate, of the difference between an f32 kernel that keeps the skinning contract and
+/// exact arithmetic: `(n + 4) 2^-24 sum_k w_k (|M_k| |p| + |t_k|) + (4 n + 4) 2^-149` for n influences.
 ///
-/// A term passes three roundings in its row, one by its weight and at most n in the sum, each of
-/// relative size 2^-24 (Higham 2002, section 3.1); the unit to spare covers the products of
+/// Each term has three roundings in its row, one by its weight and at most n in the sum, each of relative size
+/// 2^-24 (Higham 2002, section 3.1). The addition to +0 is exact, so one unit is left to cover the products of
 /// roundings. The last term bounds underflow. `None` as for [`skin_vertex_reference`].
 pub fn error_bound(mesh: &ColliderMesh, palette: &[Affine], vertex: VertexId) -> Option<DVec3> {
     let p = widen(*mesh.positions().get(vertex.index())?).abs();
@@ -112,11 +112,11 @@ mod tests {
                 worst = worst.max(share);
             }
         }
-        // A bound that nothing comes near would hide a broken kernel.
+        // A bound far above every error would hide a broken kernel.
         assert!(worst > 0.2, "worst share {worst}");
     }
 
-    /// One vertex at (1, 1, 1) on the given joints, skinned; the other two corners are its frame.
+    /// Skins one vertex at (1, 1, 1) on the given joints. The other two corners only complete its triangle.
     fn skin_one(palette: &[Affine], weights: &[f32]) -> Vec3 {
         let count = palette.len() as u32;
         let given: Vec<Influence> = (0..3)
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn rows_and_sums_run_in_the_order_of_the_contract() {
-        // Half a unit in the last place of 1: alone it is lost, two of them make a step.
+        // Half a unit in the last place of 1: added alone it is lost, two of them make a step.
         let half = f32::EPSILON / 2.0;
         let mut matrix = Affine::IDENTITY;
         matrix.rows[0] = [1.0, 0.0, half, half];

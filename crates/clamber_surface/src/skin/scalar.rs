@@ -3,7 +3,7 @@ use glam::Vec3;
 use crate::geometry::Affine;
 use crate::mesh::ColliderMesh;
 
-/// One vertex by the contract, plainly. The palette must have as many matrices as the mesh has
+/// Skins one vertex by the contract, in plain scalar code. The palette must have as many matrices as the mesh has
 /// joints.
 #[inline]
 pub(crate) fn skin_vertex(mesh: &ColliderMesh, palette: &[Affine], v: usize) -> Vec3 {

@@ -14,7 +14,7 @@ fn bits(positions: &[Vec3]) -> Vec<[u32; 3]> {
 
 #[test]
 fn the_fast_kernel_has_the_bits_of_the_plain_one_at_every_level() {
-    // Large enough to be shared among threads where that is compiled in.
+    // The largest is shared among threads with the feature `rayon`.
     for mesh in [tube(2, 3), tube(6, 24), tube(60, 96)] {
         let joints = mesh.joint_count() as u32;
         let palette = bend(joints, DVec3::new(0.0, 0.6, 0.8), 0.1);
@@ -29,7 +29,7 @@ fn the_fast_kernel_has_the_bits_of_the_plain_one_at_every_level() {
 }
 
 #[test]
-fn clusters_come_out_one_after_the_other() {
+fn skin_clusters_writes_one_cluster_after_the_other() {
     let mesh = tube(6, 24);
     let palette = bend(6, DVec3::Z, 0.3);
     let wanted = skin_scalar(&mesh, palette.matrices()).unwrap();
@@ -70,8 +70,8 @@ fn vertices_without_triangles_are_skinned_as_well() {
 }
 
 #[test]
-fn a_mesh_that_was_skinned_equals_one_that_was_not() {
-    // Large enough to be shared among threads where that is compiled in.
+fn skinning_a_mesh_does_not_change_what_it_equals() {
+    // Large enough to be shared among threads with the feature `rayon`.
     let mesh = tube(60, 96);
     let untouched = ColliderMesh::clone(&mesh);
     let palette = bend(60, DVec3::Z, 0.1);
@@ -80,6 +80,6 @@ fn a_mesh_that_was_skinned_equals_one_that_was_not() {
     let surface = SkinnedSurface::new(mesh.clone());
     surface.skin_all(&mut Vec::new());
     assert!(**surface.mesh() == untouched, "after `skin_all`");
-    // Only the cache is left out of the comparison.
+    // The comparison leaves out only the cache.
     assert!(*tube(60, 95) != untouched);
 }

@@ -7,7 +7,7 @@ use crate::mesh::clusters::{Clusters, ROW};
 use crate::mesh::{ColliderMesh, PaletteError};
 use crate::simd::SimdLevel;
 
-/// Skins every vertex of a mesh.
+/// Skins every vertex of a mesh, including removed vertices. The positions are in model space, by vertex id.
 ///
 /// # Errors
 /// As [`skin_into`].
@@ -17,12 +17,11 @@ pub fn skin(mesh: &ColliderMesh, palette: &[Affine]) -> Result<Vec<Vec3>, Palett
     Ok(positions)
 }
 
-/// [`skin`] into an existing vector, which keeps its memory. Positions come out in model space, in vertex order, each
-/// vertex once.
+/// [`skin`] into an existing vector, which keeps its memory.
 ///
 /// # Errors
-/// [`PaletteError::JointCount`] if the palette has another number of matrices than the mesh has
-/// joints. Matrices that are not finite give positions that are not finite.
+/// [`PaletteError::JointCount`] if the number of matrices differs from the number of joints of the mesh. Matrices
+/// that are not finite give positions that are not finite.
 pub fn skin_into(
     mesh: &ColliderMesh,
     palette: &[Affine],
@@ -38,7 +37,7 @@ pub fn skin_into(
     Ok(())
 }
 
-/// [`skin_into`] with a palette of as many matrices as the mesh has joints.
+/// [`skin_into`] for a palette that has as many matrices as the mesh has joints.
 pub(crate) fn skin_checked(
     mesh: &ColliderMesh,
     palette: &[Affine],
@@ -56,7 +55,7 @@ pub(crate) fn skin_checked(
     }
 }
 
-/// Every vertex that a cluster owns.
+/// Skins every vertex that a cluster owns.
 pub(super) fn skin_owned_vertices(
     clusters: &Clusters,
     palette: &[Affine],
@@ -74,10 +73,10 @@ pub(super) fn skin_owned_vertices(
     }
 }
 
-/// Skins cluster by cluster, as the fast kernel does, and leaves positions where it puts them: x, y
-/// and z of sixteen vertices at a time, those on the borders of clusters in each of them, and some to
-/// fill up. What [`skin_into`] does before it puts them in order; for measuring. `numbers` keeps its
-/// memory.
+/// Skins cluster by cluster with the fast kernel, and leaves the positions in the order of clusters; for measuring.
+///
+/// For each cluster, `numbers` gets the x of all its slots, then y, then z. The slots are padded to a multiple of
+/// sixteen. A vertex on the border of several clusters is in each of them. `numbers` keeps its memory.
 ///
 /// # Errors
 /// As [`skin_into`].
@@ -109,7 +108,7 @@ pub fn skin_clusters(
     Ok(())
 }
 
-/// [`skin`] vertex by vertex in plain scalar code: what the fast kernel is compared with, in bits.
+/// [`skin`], vertex by vertex in plain scalar code. Tests compare the bits of the fast kernel with it.
 ///
 /// # Errors
 /// As [`skin_into`].

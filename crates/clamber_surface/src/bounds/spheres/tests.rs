@@ -1,5 +1,5 @@
-//! The eight-wide spheres against every vertex that they must hold, between instruction sets, and
-//! beside the f64 reference.
+//! Checks that the eight-wide spheres hold every vertex that they must hold, that all instruction sets give the
+//! same bits, and that the spheres are as small as an f64 reference.
 
 use glam::{DAffine3, DVec3};
 
@@ -45,7 +45,7 @@ impl Case {
         }
     }
 
-    /// A palette of the given kind; every other one carries the creature a kilometre off.
+    /// A palette of the given kind. About every other one moves the creature a kilometre away.
     fn pose(&mut self, rng: &mut fastrand::Rng, motion: Motion) -> Palette {
         let mut posed = palette(rng, motion, self.mesh.radius());
         if rng.bool() && !matches!(motion, Motion::Huge) {
@@ -61,7 +61,7 @@ impl Case {
         node_spheres(level, &self.hierarchy, &self.table)
     }
 
-    /// How many vertices stand outside, and how many were looked at.
+    /// The number of vertices outside their sphere, and the number of vertices checked.
     fn outside(&self, palette: &Palette) -> (usize, usize) {
         let found = self.spheres(SimdLevel::best());
         let skinned = skin(&self.mesh, palette.matrices()).unwrap();
@@ -82,7 +82,7 @@ fn node_spheres(level: SimdLevel, hierarchy: &Hierarchy, table: &JointTable) -> 
     spheres(level, hierarchy, &hierarchy.nodes[0], table)
 }
 
-/// Looks for a vertex outside until so many were checked; gives how many.
+/// Asserts that no vertex lies outside its sphere, for at least `checks` random vertices. Returns their number.
 fn hunt(seed: u64, checks: usize) -> usize {
     let mut rng = fastrand::Rng::with_seed(seed);
     let (mut checked, mut case) = (0, 0);
@@ -112,8 +112,8 @@ fn no_vertex_lies_outside_its_lane() {
 }
 
 #[test]
-#[ignore = "a thousand million checks: minutes, in release"]
-fn no_vertex_lies_outside_its_lane_however_long_one_looks() {
+#[ignore = "a thousand million checks: takes minutes in release mode"]
+fn no_vertex_lies_outside_its_lane_in_a_long_search() {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let checked: usize = std::thread::scope(|scope| {
         let hunts: Vec<_> = (0..threads as u64)
@@ -188,7 +188,7 @@ fn a_joint_that_moves_no_vertex_of_a_lane_does_not_widen_it() {
 }
 
 #[test]
-fn what_overflows_is_infinite_and_never_nan() {
+fn overflow_gives_an_infinite_radius_and_never_nan() {
     let mesh = tube(2, 8);
     let all: Vec<VertexId> = (0..mesh.positions().len() as u32).map(VertexId).collect();
     let hierarchy = node_of(&mesh, &[all, vec![VertexId(0)]]);
@@ -219,8 +219,8 @@ fn what_overflows_is_infinite_and_never_nan() {
     }
 }
 
-/// The radius in f64 by the weight intervals, and by the hull, of the vertices below a lane: about the same centre, and
-/// without what arithmetic may lose.
+/// The radius in f64 of the sphere of a lane, by the weight intervals and by the hull: about the same centre, and
+/// without the terms for rounding.
 fn reference(hierarchy: &Hierarchy, lane: usize, palette: &Palette) -> [f64; 2] {
     let node = &hierarchy.nodes[0];
     let rest = DVec3::new(
@@ -235,7 +235,7 @@ fn reference(hierarchy: &Hierarchy, lane: usize, palette: &Palette) -> [f64; 2] 
         .map(|(joint, weights)| {
             let map = palette.matrices()[*joint as usize].to_f64();
             let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
-            // Rotations, times a uniform scale, is all that is asked of.
+            // This is asked only of rotations times a uniform scale.
             let stretch = columns.map(DVec3::length).into_iter().fold(0.0, f64::max);
             (map.transform_point3(rest), stretch, weights)
         })
@@ -271,7 +271,7 @@ impl Ratios {
             for lane in 0..children.len() {
                 let [interval, hull] = reference(&hierarchy, lane, palette);
                 let exact = interval.min(hull);
-                // The radius of what is small and far from the origin is mostly rounding.
+                // The radius of a small set far from the origin is mostly the term for rounding.
                 if exact > f64::from(hierarchy.nodes[0].reach[lane]) * 1e-2 {
                     self.ratios.push(f64::from(found.radius[lane]) / exact);
                 }
@@ -280,7 +280,7 @@ impl Ratios {
         }
     }
 
-    /// The least, the largest, and the share of hulls.
+    /// The smallest ratio, the largest ratio, and the share of hulls.
     fn range(&mut self) -> (f64, f64, f64) {
         self.ratios.sort_by(f64::total_cmp);
         let count = self.ratios.len();
@@ -305,7 +305,7 @@ fn on_a_bent_tube_spheres_are_as_small_as_the_reference() {
 }
 
 #[test]
-fn the_smaller_of_hull_and_weight_interval_counts() {
+fn the_smaller_of_hull_and_weight_interval_is_used() {
     let mut rng = fastrand::Rng::with_seed(53);
     let mut ratios = Ratios::default();
     for case in 0..400 {

@@ -1,4 +1,4 @@
-//! Random creatures and palettes, as unlike a limb as the contract allows.
+//! Random creatures and palettes, as unlike a real limb as the contract allows.
 
 use glam::{DAffine3, DMat3, Vec3};
 
@@ -10,17 +10,17 @@ use crate::testing::{direction, point};
 pub(crate) const JOINTS: u32 = 20;
 const VERTICES: usize = 60;
 
-/// How the weights of a test creature are spread.
+/// How the weights of a test creature are distributed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread {
     Random,
     /// All near their mean, as in the middle of a limb.
     NearlyEqual,
-    /// From 1 down to some 1e-9, which rounds to nothing, on joints in any order.
+    /// From 1 down to about 1e-9, which rounds to zero, on joints in any order.
     Uneven,
-    /// A vertex follows one or two joints of the node's many.
+    /// A vertex follows a few of the node's many joints.
     Few,
-    /// All vertices alike.
+    /// The same weights at every vertex.
     Constant,
 }
 
@@ -34,8 +34,8 @@ fn weight(rng: &mut fastrand::Rng, spread: Spread, k: usize) -> f32 {
     }
 }
 
-/// A patch of vertices in a ball (or at one point) somewhere, of `influences` joints each, and one
-/// triangle beside it, since the patch may have no area.
+/// A patch of vertices on an ellipsoid, which may be as small as a point, with `influences` joints each. One
+/// triangle lies beside it, since the patch may have no area.
 pub(crate) fn creature(
     rng: &mut fastrand::Rng,
     influences: usize,
@@ -76,20 +76,20 @@ pub(crate) fn creature(
 /// Kinds of random palettes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Motion {
-    /// The whole creature as one.
+    /// The whole creature moves rigidly.
     Rigid,
-    /// Each joint turned a little, as in a limb.
+    /// Each joint is turned a little, as in a limb.
     Bent,
     Rotations,
     NonUniform,
     Mirrored,
-    /// Any elements.
+    /// Arbitrary elements.
     Sheared,
     Tiny,
     Subnormal,
-    /// As far as a surface takes it.
+    /// As far as a surface accepts it.
     Huge,
-    /// Some matrices zero.
+    /// Some matrices are zero.
     Zeros,
 }
 

@@ -1,4 +1,4 @@
-//! Creatures on which one term of a bound alone holds the vertex, so that no test passes without it.
+//! Creatures whose vertices lie within a bound because of a single term. Without that term, a test fails.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::simd::SimdLevel;
 use crate::skin::skin;
 use crate::testing::direction;
 
-/// One triangle from corners, each with its weights by joint.
+/// A mesh of one triangle, from its corners and the weights of each corner by joint.
 fn triangle(corners: [Vec3; 3], weights: [&[f32]; 3]) -> Arc<ColliderMesh> {
     let joints = weights.map(<[f32]>::len).into_iter().max().unwrap_or(0);
     let given: Vec<Influence> = weights
@@ -40,7 +40,7 @@ fn turn(rng: &mut fastrand::Rng) -> Affine {
     Affine::from_f64(&DAffine3::from_quat(rotation_from_axis_angle(axis, angle)))
 }
 
-/// Every vertex in the sphere of the hierarchy's one lane.
+/// Asserts that every vertex lies in the sphere of the hierarchy's only lane.
 fn assert_in_lane(mesh: &ColliderMesh, palette: &[Affine], case: &str) {
     let hierarchy = mesh.hierarchy();
     let node = &hierarchy.nodes[0];
@@ -59,7 +59,7 @@ fn assert_in_lane(mesh: &ColliderMesh, palette: &[Affine], case: &str) {
 }
 
 #[test]
-fn a_root_box_of_joints_that_move_one_vertex_each_holds_what_skinning_rounds() {
+fn rounding_errors_are_within_the_root_box_where_each_joint_moves_one_vertex() {
     // Every joint's rest ball is a point: only the inflation relative to its distance is left.
     let mut rng = fastrand::Rng::with_seed(111);
     for case in 0..2_000 {
@@ -81,7 +81,7 @@ fn a_root_box_of_joints_that_move_one_vertex_each_holds_what_skinning_rounds() {
 }
 
 #[test]
-fn a_root_box_holds_what_skinning_rounds_of_a_far_translation() {
+fn rounding_errors_of_a_far_translation_are_within_the_root_box() {
     let mut rng = fastrand::Rng::with_seed(112);
     for case in 0..2_000 {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p * 1e-3);
@@ -105,8 +105,8 @@ fn a_root_box_holds_what_skinning_rounds_of_a_far_translation() {
 }
 
 #[test]
-fn a_joint_whose_middle_rounds_to_nothing_still_moves_its_vertex() {
-    // The least weight there is, on a joint a thousand kilometres off: 6 cm.
+fn a_joint_whose_weight_middle_rounds_to_zero_still_moves_its_vertex() {
+    // The smallest weight above zero, on a joint a thousand kilometres away, moves the vertex by 6 cm.
     let unit = 1.0 / 16_777_216.0;
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p * 1e-3);
     let mesh = triangle(corners, [&[1.0 - unit, unit], &[1.0, 0.0], &[1.0, 0.0]]);
@@ -122,14 +122,14 @@ fn a_joint_whose_middle_rounds_to_nothing_still_moves_its_vertex() {
 }
 
 #[test]
-fn a_lane_far_from_the_origin_that_only_turns_holds_what_skinning_rounds() {
-    // No translation: what skinning rounds grows with the rest position alone.
+fn rounding_errors_of_a_turning_lane_far_from_the_origin_are_within_its_sphere() {
+    // No translation: the rounding error of skinning grows with the rest position alone.
     let mut rng = fastrand::Rng::with_seed(113);
     for case in 0..4_000 {
         let far = direction(&mut rng) * 1e3;
         // As small as the coordinates allow: their last place is 6e-5 there.
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| far + p * 1.3e-4);
-        // Some of them lie on one line once rounded.
+        // Rounding puts the corners of some triangles on one line.
         if crate::geometry::triangle::scaled_normal(corners).length() == 0.0 {
             continue;
         }

@@ -26,7 +26,7 @@ fn mesh(positions: &[Vec3], triangles: &[[u32; 3]]) -> ColliderMesh {
         .0
 }
 
-/// A crowd of random triangles on few vertices: edges with many triangles, and some with one.
+/// Random triangles on few vertices: some edges have many triangles, some have one.
 fn crowd(rng: &mut fastrand::Rng) -> ColliderMesh {
     let vertices = rng.u32(4..14);
     let positions: Vec<Vec3> = (0..vertices)
@@ -44,13 +44,14 @@ fn crowd(rng: &mut fastrand::Rng) -> ColliderMesh {
     mesh(&positions, &triangles)
 }
 
-/// Side `k` of a triangle: from, to.
+/// The start and the end of side `k` of a triangle.
 fn side(mesh: &ColliderMesh, triangle: TriangleId, k: usize) -> [VertexId; 2] {
     let corners = mesh.triangles()[triangle.index()];
     [corners[k], corners[(k + 1) % 3]]
 }
 
-/// Everyone at the edge of a side, as the promise reads: in how many pairs the first of two lists is met.
+/// The neighbour by brute force, from the rule in the docs of [`ColliderMesh::neighbours`]: lists all sides at the
+/// edge by direction, and pairs them in ascending order.
 fn neighbour_reference(mesh: &ColliderMesh, triangle: TriangleId, k: usize) -> Option<TriangleId> {
     let [from, to] = side(mesh, triangle, k);
     let (mut same, mut opposite) = (Vec::new(), Vec::new());
@@ -77,7 +78,7 @@ fn living(mesh: &ColliderMesh) -> impl Iterator<Item = TriangleId> {
     all.filter(|triangle| mesh.part_of(*triangle).is_some())
 }
 
-/// All triangles reached from one, by looking at all pairs until nothing changes.
+/// The island by brute force: compares all pairs of triangles until nothing is added any more.
 fn island_reference(mesh: &ColliderMesh, triangle: TriangleId) -> BTreeSet<TriangleId> {
     let mut island = BTreeSet::from([triangle]);
     loop {
@@ -146,12 +147,12 @@ fn edits_are_seen_at_once() {
     for round in 0..60 {
         let mut surface = SkinnedSurface::new(Arc::new(crowd(&mut rng)));
         for step in 0..6 {
-            // Read before, so that what is remembered has to be forgotten.
+            // Reads before the edit, so that the edit has to invalidate what was computed.
             assert_agrees(surface.mesh(), &format!("round {round} step {step}"));
             surface.edit(|edit| {
                 for _ in 0..rng.u32(1..4) {
                     let gone = TriangleId(rng.u32(0..26));
-                    // Refused where it is not there.
+                    // Refused if there is no such triangle.
                     let _ = edit.remove_triangle(gone);
                     let mut any = || VertexId(rng.u32(0..14));
                     let _ = edit.add_triangle([any(), any(), any()], SurfaceTag::default());
@@ -161,7 +162,7 @@ fn edits_are_seen_at_once() {
     }
 }
 
-/// A closed tube with ends: every triangle has three neighbours, and all hang together.
+/// A tetrahedron: every triangle has three neighbours, and all form one island.
 #[test]
 fn a_closed_surface_is_one_island_without_a_rim() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
@@ -178,16 +179,16 @@ fn a_closed_surface_is_one_island_without_a_rim() {
 }
 
 #[test]
-fn one_vertex_in_common_joins_nothing() {
+fn triangles_that_share_one_vertex_are_two_islands() {
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, -Vec3::X, -Vec3::Y];
     let bow_tie = mesh(&positions, &[[0, 1, 2], [0, 3, 4]]);
     assert_eq!(bow_tie.island_count(), 2);
     assert_eq!(bow_tie.neighbours(TriangleId(0)), [None; 3]);
 }
 
-/// Three plates that meet in one edge: those that run in opposite directions are neighbours, the third has none.
+/// Three triangles that share an edge: two of opposite directions are neighbours, the third has none.
 #[test]
-fn the_odd_one_at_an_edge_has_no_neighbour() {
+fn the_third_triangle_at_an_edge_has_no_neighbour() {
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, -Vec3::Y];
     let fins = mesh(&positions, &[[0, 1, 2], [0, 1, 3], [1, 0, 4]]);
     let across = |t| fins.neighbours(TriangleId(t))[0];

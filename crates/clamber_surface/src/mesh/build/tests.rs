@@ -1,6 +1,6 @@
 use super::*;
 
-/// A strip of two triangles over a unit square, each with vertices of its own, on two joints.
+/// A unit square of two triangles on two joints. The triangles do not share vertices.
 struct Square {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
@@ -118,7 +118,7 @@ fn vertices_of_different_rest_spaces_never_coincide() {
 }
 
 #[test]
-fn negative_zero_is_zero() {
+fn positions_that_differ_in_the_sign_of_zero_are_welded() {
     let mut given = square();
     given.positions[3].y = -0.0;
     assert_eq!(given.build().unwrap().1.vertices, 4);
@@ -169,7 +169,7 @@ fn winding_can_be_flipped() {
 }
 
 #[test]
-fn weight_errors_are_measured_and_mended() {
+fn weights_that_do_not_add_up_to_one_are_measured_and_normalised() {
     let mut given = square();
     for influence in &mut given.influences {
         influence.weight *= 0.9;

@@ -1,24 +1,24 @@
-//! Clusters of some parts in place of the ones that these had.
+//! Replaces the clusters of edited parts.
 
 use std::collections::BTreeSet;
 
 use super::super::{PartId, TriangleId, VertexId};
 use super::{Cluster, Clusters, ROW};
 
-/// Owns the vertices that no part does.
+/// The owner of vertices that no part owns.
 const NOBODY: PartId = PartId(u32::MAX);
 
-/// What became of clusters whose parts were edited.
+/// The clusters that an edit killed.
 pub(crate) struct Killed {
-    /// Those that are dead now, ascending.
+    /// Their indices, in ascending order.
     pub(crate) clusters: Vec<u32>,
-    /// Vertices that they owned.
+    /// The vertices that they owned.
     vertices: Vec<VertexId>,
 }
 
 impl Clusters {
-    /// Ends all clusters of some parts of a mesh that has so many vertices by now. Their places stay
-    /// behind, without triangles and vertices.
+    /// Kills all clusters of some parts. `vertices` is the current number of vertices of the mesh. Killed clusters
+    /// stay in the array, without triangles and vertices.
     pub(crate) fn kill(&mut self, parts: &BTreeSet<PartId>, vertices: usize) -> Killed {
         self.find_owners();
         self.owners.resize(vertices, NOBODY);
@@ -45,14 +45,14 @@ impl Clusters {
         killed
     }
 
-    /// By vertex, of `vertices`: whether it has an owner.
+    /// For each of `vertices`, whether it has an owner.
     pub(crate) fn held(&self, vertices: &[VertexId]) -> Vec<bool> {
         let owners = vertices.iter().map(|v| self.owners[v.index()]);
         owners.map(|owner| owner != NOBODY).collect()
     }
 
-    /// Appends the clusters of one part. They number vertices and triangles as `vertices` and
-    /// `triangles` list them.
+    /// Appends the clusters of one part. The vertices and triangles in `added` are indices into `vertices` and
+    /// `triangles`.
     pub(crate) fn append(
         &mut self,
         mut added: Self,
@@ -61,7 +61,7 @@ impl Clusters {
         triangles: &[TriangleId],
     ) {
         for vertex in &mut added.vertices {
-            // What pads a row is beyond them.
+            // Padding is out of range and stays as it is.
             *vertex = vertices.get(vertex.index()).copied().unwrap_or(*vertex);
         }
         for triangle in &mut added.triangles {
@@ -87,7 +87,7 @@ impl Clusters {
         self.vertices.append(&mut added.vertices);
     }
 
-    /// Finds out which vertices are loose, after the last part was appended.
+    /// Updates the list of loose vertices, after the last part was appended.
     pub(crate) fn settle(&mut self, killed: &Killed) {
         let owners = &self.owners;
         self.loose.extend(&killed.vertices);
@@ -97,6 +97,7 @@ impl Clusters {
         self.ranks.forget();
     }
 
+    /// Fills `owners`, unless an earlier edit did.
     fn find_owners(&mut self) {
         if !self.owners.is_empty() {
             return;
@@ -112,7 +113,7 @@ impl Clusters {
     }
 }
 
-/// The vertices that a cluster owns, of the vertices of all.
+/// The vertices that a cluster owns. `vertices` are those of all clusters.
 fn owned<'a>(cluster: &Cluster, vertices: &'a [VertexId]) -> &'a [VertexId] {
     &vertices[cluster.first_row as usize * ROW..][..usize::from(cluster.owned)]
 }

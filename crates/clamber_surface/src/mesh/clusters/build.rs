@@ -1,4 +1,4 @@
-//! From a mesh to clusters and the hierarchy over them.
+//! Builds the clusters of a mesh and the hierarchy over them.
 
 use super::super::ColliderMesh;
 use super::super::hierarchy::Hierarchy;
@@ -8,16 +8,16 @@ use super::tree::Tree;
 use super::{Clusters, MAX_SLOTS};
 use crate::mesh::summary::Summarizer;
 
-/// Vertices that a leaf may have before its borders are straightened: few have more than
-/// [`MAX_SLOTS`] after that, and cutting all that do at first would leave many half empty.
+/// Maximum number of vertices of a leaf before its borders are straightened. Few leaves exceed [`MAX_SLOTS`] after
+/// that. Cutting all that exceed it before would leave many leaves half empty.
 const RAGGED_SLOTS: usize = 72;
 
-/// Clusters all triangles that have a part.
+/// Builds the clusters of all triangles that belong to a part, and the hierarchy over them.
 pub(crate) fn build(mesh: &ColliderMesh) -> (Clusters, Hierarchy) {
     build_beside(mesh, vec![false; mesh.positions().len()])
 }
 
-/// [`build`] beside other clusters: `held` says of each vertex whether one of them owns it.
+/// [`build`] beside existing clusters: `held` tells for each vertex whether one of them owns it.
 pub(crate) fn build_beside(mesh: &ColliderMesh, held: Vec<bool>) -> (Clusters, Hierarchy) {
     let tree = cut(mesh);
     let clusters = Clusters::pack(mesh, &tree, held);
@@ -25,12 +25,12 @@ pub(crate) fn build_beside(mesh: &ColliderMesh, held: Vec<bool>) -> (Clusters, H
     (clusters, hierarchy)
 }
 
-/// The tree of all parts.
+/// Cuts all parts into leaves that fit clusters.
 pub(super) fn cut(mesh: &ColliderMesh) -> Tree {
     let mut splitter = Splitter::new(Summarizer::new(mesh));
     splitter.max_slots = RAGGED_SLOTS;
     splitter.mesh();
-    // What has too many vertices still when its borders are straight is cut once more.
+    // Leaves that still have too many vertices after their borders were straightened are cut again.
     let mut ragged = core::mem::take(&mut splitter.tree);
     let fans = Fans::new(mesh);
     refine(&mut splitter.summarizer, &fans, &mut ragged);

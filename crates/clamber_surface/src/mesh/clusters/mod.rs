@@ -1,11 +1,11 @@
 //! Clusters: up to 64 vertices and 96 triangles of one part that are skinned together.
 //!
-//! Laid out for the skinning kernel: per cluster a list of joints of its own, structure of arrays, one
-//! row of weights per joint, no gathers. A vertex on the border of several clusters stands in each of
-//! them; the first one owns it.
+//! The layout suits the skinning kernel: each cluster has a list of its joints and one row of weights per joint, as
+//! a structure of arrays, so the kernel needs no gathers. A vertex on the border of several clusters is stored in
+//! each of them; the first one owns it.
 //!
-//! When triangles of a part change, its clusters die, and new ones are appended: the others stay the
-//! same entries.
+//! When triangles of a part change, its clusters die, and new ones are appended. Other clusters keep their index
+//! and their data.
 
 mod append;
 mod build;
@@ -19,67 +19,67 @@ pub(crate) use build::{build, build_beside};
 
 use super::{PartId, TriangleId, VertexId};
 
-/// Most vertices of a cluster.
+/// Maximum number of vertices of a cluster.
 pub(crate) const MAX_SLOTS: usize = 64;
 
-/// Most triangles of a cluster.
+/// Maximum number of triangles of a cluster.
 pub(crate) const MAX_TRIANGLES: usize = 96;
 
-/// Slots of a row. A multiple of every SIMD width.
+/// Number of slots in a row. A multiple of every SIMD width.
 pub(crate) const ROW: usize = 16;
 
-/// Triangles of a block.
+/// Number of triangles in a block.
 pub(crate) const BLOCK: usize = 32;
 
-/// A number for each of [`ROW`] slots.
+/// One number for each of [`ROW`] slots.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Row(pub(crate) [f32; ROW]);
 
-/// The corners of [`BLOCK`] triangles, as slots of their cluster. What is beyond the cluster's last
-/// triangle has the corners 0, 0, 0.
+/// The corners of [`BLOCK`] triangles, as slots of their cluster. After the cluster's last triangle, all corners
+/// are 0.
 #[repr(C, align(32))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CornerBlock(pub(crate) [[u8; BLOCK]; 3]);
 
-/// Where one cluster's data stand in the arrays of [`Clusters`].
+/// The location of one cluster's data in the arrays of [`Clusters`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cluster {
     pub(crate) part: PartId,
-    /// Its first row of slots.
+    /// Index of its first row of slots.
     pub(crate) first_row: u32,
-    /// The first of its `rows * (3 + joints)` rows of rest data. For every sixteen slots: their x, y
-    /// and z, then the weights of its first joint, of its second, and so on. Slots beyond the last
-    /// repeat the first.
+    /// Index of the first of its `rows * (3 + joints)` rows of rest data. Every sixteen slots take 3 + joints rows:
+    /// x, y and z, then the weights of the first joint, of the second, and so on. Unused slots repeat the first
+    /// slot.
     pub(crate) first_rest: u32,
     pub(crate) first_joint: u32,
     pub(crate) first_block: u32,
     pub(crate) joints: u32,
-    /// Vertices.
+    /// Number of vertices.
     pub(crate) slots: u8,
-    /// So many of them, the first ones, are this cluster's own; the others are copies.
+    /// Number of vertices that the cluster owns: they come first. The others are copies.
     pub(crate) owned: u8,
     pub(crate) triangles: u8,
 }
 
-/// All clusters of a mesh, dead ones among them.
+/// All clusters of a mesh, including dead ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Clusters {
     pub(crate) clusters: Vec<Cluster>,
     pub(crate) rest: Vec<Row>,
-    /// Joint ids, ascending in each cluster.
+    /// Joint ids, in ascending order within each cluster.
     pub(crate) joints: Vec<u32>,
     pub(crate) corners: Vec<CornerBlock>,
-    /// [`BLOCK`] per block; what is beyond a cluster's last triangle is `TriangleId(u32::MAX)`.
+    /// [`BLOCK`] per block. Entries after a cluster's last triangle are `TriangleId(u32::MAX)`.
     pub(crate) triangles: Vec<TriangleId>,
-    /// [`ROW`] per row; what is beyond a cluster's last slot is `VertexId(u32::MAX)`.
+    /// [`ROW`] per row. Entries after a cluster's last slot are `VertexId(u32::MAX)`.
     pub(crate) vertices: Vec<VertexId>,
-    /// Vertices that no cluster owns, ascending: those without triangles, and those that an edit took
-    /// out of the part that owned them.
+    /// Vertices that no cluster owns, in ascending order: those without triangles, and those that an edit took out
+    /// of the part that owned them.
     pub(crate) loose: Vec<VertexId>,
-    /// How many clusters are dead.
+    /// Number of dead clusters.
     pub(crate) dead: usize,
-    /// By vertex: the part whose cluster owns it. Empty before the first edit.
+    /// Per vertex, the part whose cluster owns it. Empty before the first edit.
     owners: Vec<PartId>,
     /// See [`Clusters::ranks`].
     #[cfg(feature = "rayon")]
@@ -87,7 +87,7 @@ pub(crate) struct Clusters {
 }
 
 impl Cluster {
-    /// Without vertices.
+    /// A cluster without vertices or triangles.
     pub(crate) const NONE: Self = Self {
         part: PartId(0),
         first_row: 0,
@@ -100,12 +100,12 @@ impl Cluster {
         triangles: 0,
     };
 
-    /// True if an edit has taken its triangles and vertices away.
+    /// True if an edit killed the cluster: it has no vertices or triangles any more.
     pub(crate) fn is_dead(&self) -> bool {
         self.triangles == 0
     }
 
-    /// How many rows its slots take.
+    /// Number of rows that its slots take.
     pub(crate) fn rows(&self) -> usize {
         usize::from(self.slots).div_ceil(ROW)
     }
@@ -142,8 +142,8 @@ impl Cluster {
 }
 
 impl Clusters {
-    /// By vertex, of `vertices`: its number among the owned ones, cluster by cluster; `u32::MAX` for
-    /// one that no cluster holds. Counted when first asked for.
+    /// Per vertex, its rank among the owned vertices of all clusters, cluster by cluster; `u32::MAX` for a vertex
+    /// that no cluster owns. `vertices` is the number of vertices of the mesh. Computed on first use.
     #[cfg(feature = "rayon")]
     pub(crate) fn ranks(&self, vertices: usize) -> &[u32] {
         self.ranks.get_or(|| {
@@ -156,12 +156,12 @@ impl Clusters {
         })
     }
 
-    /// How many clusters are not dead.
+    /// Number of clusters that are not dead.
     pub(crate) fn living(&self) -> usize {
         self.clusters.len() - self.dead
     }
 
-    /// In bytes.
+    /// Size of the arrays in bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.clusters[..])
             + size_of_val(&self.rest[..])

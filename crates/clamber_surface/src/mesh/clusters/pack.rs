@@ -4,22 +4,23 @@ use super::super::{ColliderMesh, TriangleId, VertexId};
 use super::tree::{Leaf, Tree};
 use super::{BLOCK, Cluster, Clusters, CornerBlock, ROW, Row};
 
-/// Packs leaf after leaf; what is indexed by vertex or joint is kept between them.
+/// Packs one leaf after the other. Arrays by vertex or joint are reused from leaf to leaf.
 struct Packer<'a> {
     mesh: &'a ColliderMesh,
     packed: Clusters,
-    /// By vertex: whether a cluster holds it, and its slot in the last one that does.
+    /// Per vertex, whether a cluster holds it.
     held: Vec<bool>,
+    /// Per vertex, its slot in the last cluster that holds it.
     slot: Vec<u8>,
-    /// By joint: its place in the cluster being packed.
+    /// Per joint, its place in the joint list of the cluster that is being packed.
     place: Vec<u32>,
     vertices: Vec<VertexId>,
     joints: Vec<u32>,
 }
 
 impl Clusters {
-    /// One cluster for each leaf, which has at most [`super::MAX_SLOTS`] vertices and
-    /// [`super::MAX_TRIANGLES`] triangles. `held` says of each vertex whether it has an owner already.
+    /// Packs one cluster for each leaf. A leaf has at most [`super::MAX_SLOTS`] vertices and
+    /// [`super::MAX_TRIANGLES`] triangles. `held` tells for each vertex whether it already has an owner.
     pub(super) fn pack(mesh: &ColliderMesh, tree: &Tree, held: Vec<bool>) -> Self {
         let vertices = mesh.positions().len();
         let mut packer = Packer {
@@ -66,7 +67,7 @@ impl Packer<'_> {
         self.packed.clusters.push(cluster);
     }
 
-    /// Gives every vertex of the leaf its slot, and says how many are new.
+    /// Assigns a slot to every vertex of the leaf. Returns the number of vertices that no cluster held before.
     fn collect_vertices(&mut self, leaf: &Leaf) -> usize {
         let corners = leaf.triangles.iter();
         let corners = corners.flat_map(|t| self.mesh.triangles()[t.index()]);
@@ -105,7 +106,7 @@ impl Packer<'_> {
         let rest = &mut rest[first..];
         let of_row = 3 + self.joints.len();
         for slot in 0..rows * ROW {
-            // What is to spare repeats the first, so that it needs no care.
+            // Unused slots repeat the first, so that the kernel needs no special case.
             let vertex = self.vertices.get(slot).unwrap_or(&self.vertices[0]);
             let (rest, lane) = (&mut rest[slot / ROW * of_row..][..of_row], slot % ROW);
             let position = self.mesh.positions()[vertex.index()].to_array();

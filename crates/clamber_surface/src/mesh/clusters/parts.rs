@@ -1,4 +1,4 @@
-//! The upper part of the tree: sets of whole parts, cut in two until one part is left.
+//! Builds the upper levels of the tree: sets of whole parts, cut in two until one part is left.
 
 use glam::Vec3;
 
@@ -7,11 +7,12 @@ use super::split::{Splitter, area, ascending_bits, principal_axes};
 use super::tree::{Branch, Fork};
 use crate::mesh::summary::Summary;
 
-/// The least share of its triangles that either side of a cut gets, unless one part is in the way,
-/// which then stands alone two cuts later. So the tree is at most `2 log2(triangles) + 2` deep.
+/// The smallest share of the triangles that either side of a cut gets. If one large part prevents this, the cut is
+/// made beside that part, which then stands alone two cuts later. So the tree is at most `2 log2(triangles) + 2`
+/// deep.
 const LEAST_SHARE: f64 = 0.3;
 
-/// Places to cut at that are tried in every order.
+/// The most places per sort order at which a cut is tried.
 const PLACES: usize = 8;
 
 /// One part of a set.
@@ -22,7 +23,7 @@ struct Piece {
 }
 
 impl Splitter<'_> {
-    /// The tree of all parts that have triangles.
+    /// Builds the tree of all parts that have triangles.
     pub(super) fn mesh(&mut self) {
         let parts = self.summarizer.mesh.parts().iter().enumerate();
         let filled = parts.filter(|(_, part)| !part.triangles.is_empty());
@@ -86,7 +87,7 @@ fn sort(pieces: &mut [&Piece], axis: Vec3) {
     pieces.sort_unstable_by_key(|p| (ascending_bits(center(p).dot(axis)), p.part));
 }
 
-/// Where a sorted set may be cut: so many pieces on the left.
+/// The places where a sorted set may be cut, as the number of pieces on the left side.
 fn places(pieces: &[&Piece]) -> Vec<usize> {
     let all: usize = pieces.iter().map(|p| p.triangles).sum();
     let least = all as f64 * LEAST_SHARE;

@@ -1,13 +1,15 @@
-//! Straightens the borders between clusters: a triangle goes to a neighbour that lacks fewer of its
-//! corners than its own cluster is rid of, or as many if it has fewer triangles. So copies become
-//! fewer, and clusters more equal, which lets the next triangles move: it saves 3 to 6 of 100 slots.
+//! Straightens the borders between clusters, which saves 3 to 6 % of the slots.
+//!
+//! A triangle moves to a neighbouring cluster if the move adds fewer vertices there than it frees in the triangle's
+//! own cluster. It also moves if it adds as many as it frees and the neighbour has at least two triangles fewer.
+//! This leaves fewer copies, and clusters of more equal size, so that further triangles can move.
 
 use super::super::{ColliderMesh, TriangleId};
 use super::tree::Tree;
 use super::{MAX_SLOTS, MAX_TRIANGLES};
 use crate::mesh::summary::Summarizer;
 
-/// Rounds over the triangles. What the last ones gain is little.
+/// Maximum number of rounds over the triangles. The last ones gain little.
 const ROUNDS: u8 = 8;
 
 const NONE: u32 = u32::MAX;
@@ -32,16 +34,17 @@ pub(super) fn refine(summarizer: &mut Summarizer<'_>, fans: &Fans, tree: &mut Tr
     }
 }
 
-/// Which leaf every triangle is in, while they move.
+/// The leaf of every triangle, while triangles move.
 struct Borders<'a> {
     mesh: &'a ColliderMesh,
     fans: &'a Fans,
     leaf_of: Vec<u32>,
-    /// The round in which the triangles around a vertex were last moved. Where nothing was in the
-    /// last two there is nothing new to find.
+    /// Per vertex, the last round in which a triangle around it moved. Where none moved in this round or the one
+    /// before, there is nothing new to find.
     touched: Vec<u8>,
-    /// Triangles and vertices of every leaf.
+    /// Per leaf, the number of its triangles.
     triangles: Vec<usize>,
+    /// Per leaf, the number of its vertices.
     slots: Vec<usize>,
 }
 
@@ -68,7 +71,7 @@ impl<'a> Borders<'a> {
         }
     }
 
-    /// Moves a triangle if that is for the better.
+    /// Moves a triangle to another leaf if that is an improvement. True if it moved.
     fn improve(&mut self, triangle: usize, round: u8) -> bool {
         let own = self.leaf_of[triangle];
         if own == NONE || self.triangles[own as usize] == 1 {
@@ -90,7 +93,7 @@ impl<'a> Borders<'a> {
             return false;
         }
         let part = self.mesh.part_of(TriangleId(triangle as u32));
-        // Fewest new corners, then the smallest leaf.
+        // Fewest added vertices, then the smallest leaf index.
         let mut best = (spared, NONE);
         for neighbor in fans.into_iter().flatten() {
             let leaf = self.leaf_of[*neighbor as usize];

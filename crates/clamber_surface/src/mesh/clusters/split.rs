@@ -1,8 +1,8 @@
-//! Cuts a part's triangles in two, and these again, until every set makes a cluster.
+//! Cuts the triangles of a part in two, again and again, until every set fits a cluster.
 //!
-//! A set is cut across one of a few directions, or by the weight of a joint, so that either side
-//! makes a whole number of nearly full clusters: the candidate with the cheapest sides wins. A set
-//! that is not small is judged by a sample; cutting n triangles costs O(n log n).
+//! A set is cut across one of a few directions, or by the weight of a joint, at a place where both sides fill a
+//! whole number of clusters nearly completely. The candidate with the cheapest sides wins. Large sets are judged by
+//! a sample. Cutting n triangles costs O(n log n).
 
 use core::ops::Range;
 
@@ -14,44 +14,44 @@ use super::{MAX_SLOTS, MAX_TRIANGLES};
 use crate::geometry::widen;
 use crate::mesh::summary::{Summarizer, Summary};
 
-/// Triangles that a cluster should have after the cuts: below [`MAX_TRIANGLES`], so that there is
-/// room for those that straighten its border.
+/// Target number of triangles of a cluster after the cuts. It is below [`MAX_TRIANGLES`], to leave room for
+/// triangles that move when borders are straightened.
 const WANTED_TRIANGLES: usize = 92;
 
-/// Vertices that a cluster should have at most, for meshes whose triangles share few.
+/// Target for the most vertices of a cluster. It matters for meshes whose triangles share few vertices.
 const WANTED_SLOTS: usize = 63;
 
-/// So many triangles of a set at most are looked at to choose a direction. More gain little.
+/// The most triangles of a set that are examined to choose a cut. More gain little.
 const SAMPLE: usize = 512;
 
-/// So many of a set's joints, those of the widest spread of weights, are candidates.
+/// Number of joints by whose weights a cut is tried: those with the widest spread of weights in the set.
 const JOINT_CANDIDATES: usize = 2;
 
-/// What triangles are ordered by.
+/// The value by which triangles are sorted.
 #[derive(Clone, Copy, Debug)]
 enum Order {
     Along(Vec3),
     Joint(u32),
 }
 
-/// Cuts parts; see the module.
+/// Cuts parts; see the module docs.
 pub(super) struct Splitter<'a> {
     pub(super) summarizer: Summarizer<'a>,
     pub(super) tree: Tree,
-    /// Sums of the three corners, by triangle.
+    /// Per triangle, the sum of its three corners.
     centers: Vec<Vec3>,
-    /// The triangles being cut, permuted.
+    /// The triangles that are being cut, permuted by the cuts.
     triangles: Vec<u32>,
-    /// Sort key and triangle; ties go to the smaller triangle.
+    /// Sort key in the upper half, triangle in the lower: ties go to the smaller triangle.
     keys: Vec<u64>,
     summary: Summary,
-    /// Vertices of the sample, over which a cut is judged.
+    /// Number of vertices of the sample on which a cut is judged.
     whole: usize,
-    /// Most vertices of a leaf.
+    /// Maximum number of vertices of a leaf.
     pub(super) max_slots: usize,
 }
 
-/// A cut of a sample.
+/// A possible cut, judged on a sample.
 struct Candidate {
     order: Order,
     cost: f32,
@@ -78,7 +78,7 @@ impl<'a> Splitter<'a> {
         }
     }
 
-    /// Cuts one part, which has triangles, and appends its leaves.
+    /// Cuts one part, which must have triangles, and appends its leaves.
     pub(super) fn part(&mut self, part: PartId) -> Branch {
         let triangles = &self.summarizer.mesh.parts()[part.index()].triangles;
         self.triangles.clear();
@@ -86,7 +86,7 @@ impl<'a> Splitter<'a> {
         self.cut(0..triangles.len(), part)
     }
 
-    /// Cuts the leaves that have too many vertices, in a tree that is otherwise that of `from`.
+    /// Copies the tree `from` below `branch`, and cuts the leaves that have too many vertices.
     pub(super) fn recut(&mut self, from: &Tree, branch: Branch) -> Branch {
         match branch {
             Branch::Leaf(index) => {
@@ -138,7 +138,7 @@ impl<'a> Splitter<'a> {
         Branch::Fork(self.tree.forks.len() as u32 - 1)
     }
 
-    /// The cheapest order to cut in, after `left` triangles.
+    /// The cheapest sort order for a cut after the first `left` triangles.
     fn choose(&mut self, range: Range<usize>, left: usize) -> Candidate {
         let count = range.len();
         let stride = count.div_ceil(SAMPLE);
@@ -189,7 +189,8 @@ impl<'a> Splitter<'a> {
         orders
     }
 
-    /// Puts every `stride`th triangle of a range into `keys`, the first `left` of the order first.
+    /// Fills `keys` with every `stride`th triangle of a range, partitioned so that the first `left` in the sort
+    /// order come first.
     fn order(&mut self, range: Range<usize>, stride: usize, order: Order, left: usize) {
         self.keys.clear();
         let (mesh, centers) = (self.summarizer.mesh, &self.centers);
@@ -212,23 +213,23 @@ impl<'a> Splitter<'a> {
     }
 }
 
-/// How often a set is met: about the square of its bound's radius by weight intervals, see [`crate::bounds`], as if
-/// every joint took the set's centre one radius away.
+/// Estimates how often queries reach a set: about the square of the radius of its bound by weight intervals (see
+/// [`crate::bounds`]), as if every joint moved the set's centre one radius away.
 pub(super) fn area(summary: &Summary) -> f32 {
     let spreads = summary.spans.iter().map(|s| s.spread(summary.vertices));
     let radius = summary.ball.radius * (1.0 + spreads.sum::<f32>());
     radius * radius
 }
 
-/// What the vertices that stand on both sides weigh: the tenth power of slots by vertices.
-/// Powers below 5 leave 5 to 15 of 100 more slots; those from 5 on differ little.
+/// The cost factor of vertices that are stored on both sides of a cut: the tenth power of slots per vertex. With
+/// powers below 5, 5 to 15 % more slots remain; powers from 5 on differ little.
 fn copies_cost(ratio: f32) -> f32 {
     let second = ratio * ratio;
     let fourth = second * second;
     fourth * fourth * second
 }
 
-/// Bits that compare as integers as `f32::total_cmp` compares numbers.
+/// Maps a number to bits, so that comparing them as integers gives the order of `f32::total_cmp`.
 pub(super) fn ascending_bits(x: f32) -> u32 {
     let bits = x.to_bits();
     if bits >> 31 == 0 {
@@ -238,8 +239,8 @@ pub(super) fn ascending_bits(x: f32) -> u32 {
     }
 }
 
-/// The directions in which points spread most and second most, by power iteration on their
-/// covariance. Near enough to cut across: nothing depends on their exactness.
+/// The two directions in which points spread most, by power iteration on their covariance. They are approximate:
+/// correctness does not depend on them.
 pub(super) fn principal_axes(points: impl Iterator<Item = Vec3> + Clone) -> [Vec3; 2] {
     let sums = points.clone().map(|p| (widen(p), 1.0));
     let (sum, count) = sums.fold((DVec3::ZERO, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
@@ -261,7 +262,7 @@ fn dominant_direction(matrix: &DMat3) -> DVec3 {
     for _ in 0..12 {
         let next = *matrix * direction;
         let size = next.abs().max_element();
-        // Not so for NaN either.
+        // Also taken for NaN.
         if !(size > 0.0 && size < f64::INFINITY) {
             return DVec3::X;
         }

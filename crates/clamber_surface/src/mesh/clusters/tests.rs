@@ -57,7 +57,7 @@ fn soup(seed: u64, triangles: u32, joints: u32, most_influences: usize) -> Colli
     mesh_of(&vertices, &triangles, joints as usize)
 }
 
-/// Triangles of few vertices, any three of them.
+/// Random triangles on few vertices.
 fn tangle(seed: u64, vertices: u32, triangles: u32, joints: u32) -> ColliderMesh {
     let mut rng = fastrand::Rng::with_seed(seed);
     let vertices: Vec<_> = (0..vertices)
@@ -70,7 +70,7 @@ fn tangle(seed: u64, vertices: u32, triangles: u32, joints: u32) -> ColliderMesh
     mesh_of(&vertices, &triangles, joints as usize)
 }
 
-/// The tube without every third triangle, and without any of one part.
+/// The tube without every third triangle and without all triangles of one part, but with a triangle added.
 fn holed_tube() -> ColliderMesh {
     let mut mesh = ColliderMesh::clone(&tube(7, 20));
     for triangle in 0..mesh.triangles().len() as u32 {
@@ -95,7 +95,7 @@ fn one_triangle() -> ColliderMesh {
     mesh_of(&vertices, &[[0, 1, 2]], 1)
 }
 
-/// A fan about a vertex with 16 influences; its rim has as many as it likes.
+/// A fan of triangles about a vertex with 16 influences. The vertices of its rim have up to two.
 fn sixteen_influences() -> ColliderMesh {
     let mut rng = fastrand::Rng::with_seed(3);
     let mut vertices = vec![(Vec3::ZERO, influences(&mut rng, 16, 1_000_000))];
@@ -106,7 +106,7 @@ fn sixteen_influences() -> ColliderMesh {
     mesh_of(&vertices, &triangles, 1_000_000)
 }
 
-/// All triangles removed.
+/// A mesh whose only triangle was removed.
 fn nothing() -> ColliderMesh {
     let mut mesh = one_triangle();
     mesh.remove_triangle(TriangleId(0));
@@ -114,7 +114,7 @@ fn nothing() -> ColliderMesh {
     mesh
 }
 
-/// What the tests of clusters and of the hierarchy run over.
+/// The meshes on which the tests of clusters and of the hierarchy run.
 pub(in crate::mesh) fn meshes() -> Vec<(&'static str, ColliderMesh)> {
     vec![
         ("tube", ColliderMesh::clone(&tube(6, 24))),
@@ -130,7 +130,7 @@ pub(in crate::mesh) fn meshes() -> Vec<(&'static str, ColliderMesh)> {
     ]
 }
 
-/// The rest bits of a slot: position, then weight by joint without zeros.
+/// The rest data of a slot: its position, and its weights by joint, without zeros.
 fn slot_data(clusters: &Clusters, cluster: &Cluster, slot: usize) -> (Vec3, Vec<(u32, f32)>) {
     let first = cluster.first_rest as usize + slot / ROW * (3 + cluster.joints as usize);
     let value = |k: usize| clusters.rest[first + k].0[slot % ROW];
@@ -143,7 +143,7 @@ fn slot_data(clusters: &Clusters, cluster: &Cluster, slot: usize) -> (Vec3, Vec<
 }
 
 #[test]
-fn every_triangle_with_a_part_stands_in_one_cluster_of_that_part() {
+fn every_triangle_is_in_exactly_one_cluster_of_its_part() {
     for (name, mesh) in meshes() {
         let (clusters, _) = build(&mesh);
         let mut seen = BTreeMap::new();
@@ -181,7 +181,7 @@ fn every_triangle_with_a_part_stands_in_one_cluster_of_that_part() {
 }
 
 #[test]
-fn slots_hold_their_vertices_owned_ones_first() {
+fn slots_hold_owned_vertices_before_copies() {
     for (name, mesh) in meshes() {
         let (clusters, _) = build(&mesh);
         let mut owner = BTreeMap::new();
@@ -230,7 +230,7 @@ fn slots_hold_their_vertices_owned_ones_first() {
 }
 
 #[test]
-fn arrays_hold_the_clusters_one_behind_the_other() {
+fn clusters_are_packed_without_gaps() {
     for (name, mesh) in meshes() {
         let (clusters, _) = build(&mesh);
         let (mut row, mut rest, mut joint, mut block) = (0, 0, 0, 0);
@@ -251,7 +251,7 @@ fn arrays_hold_the_clusters_one_behind_the_other() {
     }
 }
 
-/// Copies a vertex and triangles a cluster.
+/// Slots per owned vertex, and triangles per cluster.
 fn fill(clusters: &Clusters) -> (f64, f64) {
     let clusters = &clusters.clusters;
     let sum = |of: fn(&Cluster) -> u8| clusters.iter().map(|c| f64::from(of(c))).sum::<f64>();
@@ -261,7 +261,7 @@ fn fill(clusters: &Clusters) -> (f64, f64) {
 
 #[test]
 fn few_copies_and_full_clusters_on_a_smooth_skin() {
-    // A square net of 20,000 triangles, from one joint to the next along X.
+    // A square grid of 20,000 triangles, whose weights go over from one joint to the other along X.
     let side = 101;
     let mut vertices = Vec::new();
     for v in 0..side * side {
@@ -279,13 +279,13 @@ fn few_copies_and_full_clusters_on_a_smooth_skin() {
         .collect();
     let (clusters, _) = build(&mesh_of(&vertices, &triangles, 2));
     let (copies, triangles) = fill(&clusters);
-    // 96 triangles in a hexagon would make 1.27.
+    // Hexagonal clusters of 96 triangles would give 1.27.
     assert!(copies < 1.35, "{copies}");
     assert!(triangles > 80.0, "{triangles}");
 }
 
 #[test]
-fn full_clusters_of_triangles_that_share_no_vertex() {
+fn triangles_that_share_no_vertex_fill_their_clusters() {
     let (clusters, _) = build(&soup(2, 3_000, 1, 1));
     let (copies, triangles) = fill(&clusters);
     assert_eq!(copies, 1.0);
@@ -300,7 +300,7 @@ fn the_same_mesh_gives_the_same_clusters() {
 }
 
 #[test]
-fn huge_coordinates_are_cut_all_the_same() {
+fn tiny_and_huge_coordinates_are_clustered() {
     let mut rng = fastrand::Rng::with_seed(9);
     let one = |joint| {
         vec![Influence {

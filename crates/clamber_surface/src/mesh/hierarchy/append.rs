@@ -1,4 +1,4 @@
-//! Trees of single parts, beside the tree of the whole.
+//! Trees of single edited parts, beside the tree of the whole mesh.
 
 use std::collections::BTreeSet;
 
@@ -13,18 +13,18 @@ pub(super) struct PartRoot {
 }
 
 impl Hierarchy {
-    /// The roots beside node 0: a traversal starts from each, one after the other.
+    /// The roots other than node 0. A traversal starts from each of the roots in turn.
     pub(crate) fn further_roots(&self) -> impl Iterator<Item = u32> {
         self.further_roots.iter().map(|root| root.node)
     }
 
-    /// Takes away the trees that parts have for themselves. Their nodes stay behind.
+    /// Detaches the trees that some parts have of their own. The nodes stay in the array.
     pub(crate) fn cut_off(&mut self, parts: &BTreeSet<PartId>) {
         self.further_roots
             .retain(|root| !parts.contains(&root.part));
     }
 
-    /// Appends the tree of one part, whose clusters were appended from `first_cluster` on.
+    /// Appends the tree of one part. The clusters of the part are appended from index `first_cluster` on.
     pub(crate) fn append(&mut self, mut added: Self, part: PartId, first_cluster: u32) {
         let (first_node, first_joint) = (self.nodes.len() as u32, self.joints.len() as u32);
         for node in &mut added.nodes {

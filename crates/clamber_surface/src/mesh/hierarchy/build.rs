@@ -10,20 +10,21 @@ use crate::mesh::clusters::Clusters;
 use crate::mesh::clusters::tree::{Branch, Tree};
 use crate::mesh::summary::{Summarizer, Summary};
 
-/// Builds while the tree is walked.
+/// State of the build while it walks the tree.
 struct Builder<'a> {
     clusters: &'a Clusters,
     summarizer: Summarizer<'a>,
     collapse: Collapse<'a>,
-    /// The rest positions of all slots, cluster by cluster, and where those of each start.
+    /// The rest positions of all slots, cluster by cluster.
     points: Vec<Vec3>,
+    /// For each cluster, the index of its first point; then the number of points.
     starts: Vec<usize>,
     hierarchy: Hierarchy,
 }
 
 impl Hierarchy {
-    /// The hierarchy over clusters that were packed from the leaves of `tree`. Without clusters it
-    /// is a root without lanes.
+    /// The hierarchy over clusters that were packed from the leaves of `tree`. Without clusters it is a root
+    /// without children.
     pub(crate) fn over(mesh: &ColliderMesh, clusters: &Clusters, tree: &Tree) -> Self {
         let (mut points, mut starts) = (Vec::new(), vec![0]);
         for cluster in &clusters.clusters {
@@ -47,7 +48,8 @@ impl Hierarchy {
         builder.hierarchy
     }
 
-    /// Nodes without a tree above them whose children are a mesh's parts, but for those without triangles.
+    /// A flat list of nodes whose children are the mesh's parts, except those without triangles. There is no tree
+    /// above these nodes.
     pub(crate) fn of_parts(mesh: &ColliderMesh) -> Self {
         let mut summarizer = Summarizer::new(mesh);
         let parts = (0..).map(Child::Cluster).zip(mesh.parts());
@@ -63,7 +65,7 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// A node with up to eight children, whose joints and weights are appended.
+    /// Makes a node with up to eight children, and appends its joints and weights to those of the hierarchy.
     pub(crate) fn node_of(&mut self, children: &[(Child, Summary)]) -> Node {
         let spans = children.iter().flat_map(|(_, summary)| &summary.spans);
         let mut joints: Vec<u32> = spans.map(|span| span.joint).collect();
@@ -88,7 +90,7 @@ impl Hierarchy {
             let deviations = weights.iter().map(|w| f64::from(w.deviation)).sum();
             node.inflation[lane] = inflation(summary.influences, weights.len(), deviations);
             for interval in weights {
-                // Found: all of them are in the list.
+                // Always found: `joints` holds the joints of all children.
                 if let Ok(row) = joints.binary_search(&interval.joint) {
                     rows[row].middle[lane] = interval.middle;
                     rows[row].deviation[lane] = interval.deviation;
@@ -101,10 +103,10 @@ impl Hierarchy {
 }
 
 impl Builder<'_> {
-    /// Fills a node whose first cluster is `first`; returns what its own parent keeps of it, and the
-    /// cluster after its last.
+    /// Fills node `index`, whose first cluster is `first`. Returns the summary of the node for its parent, and the
+    /// index after the node's last cluster.
     fn fill(&mut self, index: usize, first: usize, lanes: &[Branch]) -> (Summary, usize) {
-        // Siblings stand side by side.
+        // Siblings are adjacent in the array.
         let nodes = &mut self.hierarchy.nodes;
         let places = lanes.iter().map(|branch| match *branch {
             Branch::Leaf(cluster) => Child::Cluster(cluster),
@@ -138,11 +140,12 @@ impl Builder<'_> {
     }
 }
 
-/// Rounded up.
+/// The square root of 3, rounded up.
 const SQRT_3: f64 = 1.732_050_807_568_878;
 
-/// What [`Node::inflation`] holds for a child: for `influences` of a vertex at most, `joints` that
-/// move any of its vertices, and the sum of their deviations. [`crate::bounds`] derives it.
+/// [`Node::inflation`] of a child: `influences` is the most influences of one of its vertices, `joints` the number
+/// of joints that move any of them, `deviations` the sum of the deviations of these joints. `bounds/spheres.rs`
+/// derives it.
 fn inflation(influences: usize, joints: usize, deviations: f64) -> f32 {
     let roundings = |count: f64| {
         let unit = f64::from(f32::EPSILON) * 0.5;

@@ -1,36 +1,37 @@
-//! Which branches of the binary tree become the children of a wide node.
+//! Collapses the binary tree into nodes of up to eight children.
 //!
-//! The cheapest choice, where a node costs the area of its bound, found by dynamic programming from the
-//! leaves up (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
-//! Compressed Wide BVHs", section 3.1).
+//! A node costs the area of its bound. Dynamic programming from the leaves up finds the cheapest choice of children
+//! (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+//! section 3.1).
 //!
-//! Every node takes in at least two levels of the binary tree, so the hierarchy is at most half as deep
-//! as that: at most `log2(triangles) + 2` nodes on a path. A traversal that pushes the children of the
-//! node that it pops holds at most seven entries a level, and 7 * 34 + 1 < 256.
+//! Every node replaces at least two levels of the binary tree, so the hierarchy is at most half as deep as that
+//! tree: at most `log2(triangles) + 2` nodes on a path. A traversal that pops a node and pushes its children holds
+//! at most seven entries per level, and 7 * 34 + 1 < 256.
 
 use super::LANES;
 use crate::mesh::clusters::tree::{Branch, Tree};
 
-/// The costs of every fork's ways to stand in the hierarchy.
+/// The costs of every fork in each form that it can take in the hierarchy.
 pub(super) struct Collapse<'a> {
     tree: &'a Tree,
     forks: Vec<Costs>,
 }
 
-/// Of one fork, that of its nodes below included.
+/// The costs of one fork, including the nodes below it.
 #[derive(Clone, Copy)]
 struct Costs {
-    /// As a node, one child of another node.
+    /// The cost as a node: one child of another node.
     node: f32,
-    /// At `i`: opened, as at most `i` children.
+    /// At index `i`: the cost when opened, so that it becomes at most `i` children.
     opened: [f32; LANES + 1],
 }
 
-/// What a branch may stand as.
+/// The forms that a branch can take in the hierarchy.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Form {
+    /// A node, or opened.
     Any,
-    /// No node: a cluster or the sides of a fork.
+    /// Not a node: a cluster, or the sides of a fork.
     Opened,
 }
 
@@ -40,7 +41,7 @@ impl<'a> Collapse<'a> {
             tree,
             forks: Vec::with_capacity(tree.forks.len()),
         };
-        // The area of every fork, known to the fork above it.
+        // The area of every fork, which the fork above it holds.
         let mut areas = vec![0.0; tree.forks.len()];
         for fork in &tree.forks {
             for (side, area) in core::iter::zip(fork.sides, fork.areas) {
@@ -49,7 +50,7 @@ impl<'a> Collapse<'a> {
                 }
             }
         }
-        // A fork stands behind those below it.
+        // Forks come after the forks below them.
         for (fork, area) in core::iter::zip(&tree.forks, areas) {
             let (_, inside) = collapse.divide(fork.sides, LANES, Form::Opened);
             let mut opened = [f32::INFINITY; LANES + 1];
@@ -98,19 +99,20 @@ impl<'a> Collapse<'a> {
         costs.opened[lanes] < costs.node
     }
 
-    /// How many of `lanes` the left side should get, and what both sides cost then.
+    /// The cheapest split of `lanes` between two sides: the number of lanes for the left side, and the cost of both
+    /// sides.
     fn divide(&self, sides: [Branch; 2], lanes: usize, form: Form) -> (usize, f32) {
         let cost =
             |left: usize| self.cost(sides[0], left, form) + self.cost(sides[1], lanes - left, form);
         let ways = (1..lanes).map(|left| (left, cost(left)));
-        // The first of equals.
+        // On a tie, the first one.
         let cheapest = ways.min_by(|a, b| a.1.total_cmp(&b.1));
         cheapest.unwrap_or((0, f32::INFINITY))
     }
 
     fn cost(&self, branch: Branch, lanes: usize, form: Form) -> f32 {
         match branch {
-            // Every cluster is in the hierarchy, however that is made.
+            // Free, because every hierarchy contains every cluster.
             Branch::Leaf(_) => 0.0,
             Branch::Fork(fork) => {
                 let costs = &self.forks[fork as usize];

@@ -1,9 +1,9 @@
-//! The bounding volume hierarchy over clusters: eight children a node, rest data only.
+//! The bounding volume hierarchy over clusters: up to eight children per node, rest data only.
 //!
-//! A part that was edited has a tree of its own beside that of the whole; there its old clusters are
-//! dead, and bounds hold more than they need.
+//! An edited part gets a tree of its own beside the tree of the whole mesh. The part's old clusters in the tree of
+//! the whole are dead, and the bounds above them are larger than necessary.
 //!
-//! What bounds a child in a pose is computed from this and the palette, see [`crate::bounds`].
+//! [`crate::bounds`] computes the bounds of a pose from these data and the palette.
 
 mod append;
 mod build;
@@ -11,14 +11,14 @@ mod collapse;
 
 use append::PartRoot;
 
-/// Children of a node.
+/// Maximum number of children of a node: one per lane.
 pub(crate) const LANES: usize = 8;
 
-/// Most nodes and clusters that a traversal may have still to visit. Balanced trees need far fewer, see
-/// [`Hierarchy::stack_needed`].
+/// Size of the stack of a traversal: nodes and clusters that it still has to visit. Balanced trees need far fewer
+/// entries, see [`Hierarchy::stack_needed`].
 pub(crate) const STACK: usize = 256;
 
-/// A node or a cluster, or none.
+/// A child of a node: another node or a cluster. In [`Hierarchy::of_parts`], a cluster's index is that of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Child {
     Node(u32),
@@ -33,23 +33,25 @@ pub(crate) struct Node {
     pub(crate) x: [f32; LANES],
     pub(crate) y: [f32; LANES],
     pub(crate) z: [f32; LANES],
-    /// Their radii, rounded up.
+    /// Radii of the rest balls, rounded up.
     pub(crate) radius: [f32; LANES],
-    /// Largest distances of rest positions from the mesh's origin, rounded up.
+    /// Largest distance from the mesh's origin to a rest position or to the ball's centre, rounded up.
     pub(crate) reach: [f32; LANES],
-    /// What f32 arithmetic may add to the bound, as a share of the size of what it adds up.
+    /// Upper bound of the f32 rounding error, as a share of the size of the numbers that are added up.
+    /// `bounds/spheres.rs` derives it.
     pub(crate) inflation: [f32; LANES],
-    /// As [`Child`], packed; see [`Node::child`].
+    /// Each a packed [`Child`]; see [`Node::child`].
     pub(crate) children: [u32; LANES],
-    /// Its first row of [`Hierarchy::weights`] and [`Hierarchy::joints`].
+    /// Index of the node's first row in [`Hierarchy::weights`] and [`Hierarchy::joints`].
     pub(crate) first_joint: u32,
-    /// How many joints move any of its children.
+    /// Number of joints that move any of its children.
     pub(crate) joints: u32,
+    /// Number of children. They take the first lanes.
     pub(crate) lanes: u8,
 }
 
-/// How much one joint moves each child of a node: the middle of the interval of its weights, and the
-/// most by which a weight differs from that. Both 0 for a child that the joint does not move.
+/// The weight interval of one joint for each child of a node: its middle, and the largest difference of a weight
+/// from the middle. Both are 0 for a child that the joint does not move.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct JointWeights {
@@ -57,14 +59,15 @@ pub(crate) struct JointWeights {
     pub(crate) deviation: [f32; LANES],
 }
 
-/// All nodes, the first root first, every parent before its children.
+/// All nodes with their weights. Node 0 is the root of the whole mesh; every parent comes before its children.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Hierarchy {
     pub(crate) nodes: Vec<Node>,
-    /// Joint ids, ascending in each node.
+    /// Joint ids, in ascending order within each node.
     pub(crate) joints: Vec<u32>,
+    /// One row per entry of `joints`.
     pub(crate) weights: Vec<JointWeights>,
-    /// By part edited, in the order of the edits; beside node 0, which is a root always.
+    /// The roots of the trees of edited parts, in the order of the edits. Node 0 is always a root too.
     further_roots: Vec<PartRoot>,
 }
 
@@ -88,7 +91,7 @@ impl Child {
 }
 
 impl Node {
-    /// Without children.
+    /// A node without children.
     pub(crate) const EMPTY: Self = Self {
         x: [0.0; LANES],
         y: [0.0; LANES],
@@ -102,7 +105,7 @@ impl Node {
         lanes: 0,
     };
 
-    /// A bit for every lane that holds a child.
+    /// A mask with a bit for every lane that holds a child.
     pub(crate) fn lane_mask(&self) -> u8 {
         ((1u16 << self.lanes) - 1) as u8
     }
@@ -113,7 +116,7 @@ impl Node {
         &hierarchy.joints[first..first + self.joints as usize]
     }
 
-    /// How much each of them does.
+    /// The weights of the joints that move its children, in the order of [`Node::joints`].
     pub(crate) fn weights<'a>(&self, hierarchy: &'a Hierarchy) -> &'a [JointWeights] {
         let first = self.first_joint as usize;
         &hierarchy.weights[first..first + self.joints as usize]
@@ -130,12 +133,12 @@ impl Node {
 }
 
 impl Hierarchy {
-    /// The most nodes and clusters that a traversal has still to visit at once, which pushes all children of the node
-    /// that it pops, in whatever order.
+    /// The most stack entries that a traversal can need, if it pushes all children of the node that it pops, in any
+    /// order.
     pub(crate) fn stack_needed(&self) -> usize {
         let mut needed = vec![1; self.nodes.len()];
         let mut most = 1;
-        // Every parent stands before its children.
+        // Every parent comes before its children.
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let lanes = usize::from(node.lanes);
             let below = (0..lanes).map(|lane| match node.child(lane) {
@@ -148,7 +151,7 @@ impl Hierarchy {
         most
     }
 
-    /// In bytes.
+    /// Size of the arrays in bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&self.nodes[..])
             + size_of_val(&self.joints[..])

@@ -48,7 +48,7 @@ fn for_each_lane(
 }
 
 #[test]
-fn every_cluster_hangs_once_below_the_root_and_parents_come_first() {
+fn every_cluster_is_once_below_the_root_and_parents_come_first() {
     for (name, mesh) in meshes() {
         let (clusters, hierarchy) = build(&mesh);
         let mut below = Vec::new();
@@ -71,8 +71,7 @@ fn every_cluster_hangs_once_below_the_root_and_parents_come_first() {
     }
 }
 
-/// The most that any traversal has still to visit, which pushes all children of the node that it pops, by trying
-/// each child last in turn.
+/// [`Hierarchy::stack_needed`] by brute force: visits each child of a node in turn while its siblings wait.
 fn stack_needed_below(hierarchy: &Hierarchy, child: Child) -> usize {
     let Child::Node(index) = child else {
         return 1;
@@ -84,7 +83,7 @@ fn stack_needed_below(hierarchy: &Hierarchy, child: Child) -> usize {
 }
 
 #[test]
-fn a_traversal_needs_few_entries() {
+fn a_traversal_needs_few_stack_entries() {
     for (name, mesh) in meshes() {
         let (clusters, hierarchy) = build(&mesh);
         let most = hierarchy.stack_needed();
@@ -99,7 +98,7 @@ fn a_traversal_needs_few_entries() {
 }
 
 #[test]
-fn a_chain_of_nodes_needs_an_entry_for_each_that_waits() {
+fn a_chain_of_nodes_needs_a_stack_entry_for_each_waiting_sibling() {
     let mut hierarchy = Hierarchy::default();
     for index in 0..60u32 {
         let mut node = Node::EMPTY;
@@ -132,7 +131,7 @@ fn lane_balls_hold_every_vertex_below() {
 }
 
 #[test]
-fn middles_add_up_to_one_and_deviations_hold_every_weight() {
+fn weight_middles_add_up_to_one_and_every_moving_joint_is_listed() {
     for_each_lane(|name, mesh, node, lane, rows, vertices| {
         let units = |weight: f32| {
             let units = weight * WEIGHT_ONE as f32;
@@ -177,7 +176,7 @@ fn lanes_have_the_intervals_of_their_vertices() {
                     let wanted = wanted.get(joint).copied().unwrap_or_default();
                     assert_eq!(found, wanted, "{name}: joint {joint}");
                 }
-                // Near the ball that costs more to find.
+                // Not much larger than the ball computed from the distinct vertices.
                 let (found, near) = (node.radius[lane], summary.ball.radius);
                 assert!(found <= near * 1.1, "{name}: {found} against {near}");
             }
@@ -203,7 +202,7 @@ fn nodes_are_well_filled() {
 }
 
 #[test]
-fn one_cluster_makes_a_root_of_one_lane() {
+fn one_cluster_gives_a_root_with_one_child() {
     let (_, mesh) = meshes().swap_remove(7);
     let (clusters, hierarchy) = build(&mesh);
     assert_eq!(clusters.clusters.len(), 1);

@@ -1,5 +1,5 @@
-//! The protocol of the cache under every interleaving and every order of memory that
-//! [loom] finds, and the cache by itself.
+//! Tests the protocol of the cache under every interleaving and every memory order that [loom] finds, and the cache
+//! by itself.
 
 use std::sync::atomic::AtomicU64;
 
@@ -19,12 +19,12 @@ impl Word for loom::sync::atomic::AtomicU64 {
     }
 }
 
-/// What everybody computes for the entry in an epoch; never 0, which is what an empty one holds.
+/// The numbers that every thread computes for the entry in an epoch. Never 0, which an empty entry holds.
 fn computed(epoch: u64) -> [f32; 4] {
     [1.0, 2.0, 3.0, 4.0].map(|x| x * epoch as f32)
 }
 
-/// Asks for the entry as a pose does; false if it had to be computed.
+/// Requests the entry as a pose does; false if it had to be computed.
 fn ask<W: Word>(cache: &Cache<W>, epoch: u64) -> bool {
     let mut numbers = [0.0; 4];
     let known = cache.recall(0, epoch, 0, [&mut numbers[..]]);
@@ -38,8 +38,8 @@ fn ask<W: Word>(cache: &Cache<W>, epoch: u64) -> bool {
 
 type LoomCache = Cache<loom::sync::atomic::AtomicU64>;
 
-/// Has some threads ask for one entry, in every way that two can meet; of more, in every way that
-/// takes at most two preemptions, since all of them take more than ten minutes.
+/// Lets some threads request one entry at the same time. Explores all interleavings of two threads. With more
+/// threads it explores those with at most two preemptions, since all of them take more than ten minutes.
 fn meet(threads: usize, prepare: fn(&LoomCache), epoch: u64) {
     let mut model = loom::model::Builder::new();
     model.preemption_bound = (threads > 2).then_some(2);
@@ -57,29 +57,29 @@ fn meet(threads: usize, prepare: fn(&LoomCache), epoch: u64) {
         for other in others {
             other.join().unwrap();
         }
-        // Whoever comes later finds it filled.
+        // A later request finds it filled.
         assert!(ask(&cache, epoch));
     });
 }
 
 #[test]
-fn two_threads_that_meet_at_an_empty_entry_read_what_was_computed() {
+fn two_threads_at_an_empty_entry_read_the_computed_numbers() {
     meet(2, |_| {}, 1);
 }
 
 #[test]
-fn three_threads_that_meet_at_an_empty_entry_read_what_was_computed() {
+fn three_threads_at_an_empty_entry_read_the_computed_numbers() {
     meet(3, |_| {}, 1);
 }
 
 #[test]
-fn threads_that_meet_at_an_outdated_entry_read_what_was_computed_anew() {
+fn threads_at_an_entry_of_an_old_epoch_read_the_new_numbers() {
     let outdated = |cache: &LoomCache| assert!(!ask(cache, 1));
     meet(2, outdated, 2);
 }
 
 #[test]
-fn threads_that_meet_at_an_entry_filled_ahead_read_it() {
+fn threads_at_an_entry_filled_ahead_read_its_numbers() {
     let ahead = |cache: &LoomCache| {
         cache.keep(0, 1 | UNASKED, 0, [&computed(1)[..]]);
     };
@@ -87,7 +87,7 @@ fn threads_that_meet_at_an_entry_filled_ahead_read_it() {
 }
 
 #[test]
-fn a_new_epoch_outdates_every_entry_and_stamps_tell_who_asked() {
+fn a_new_epoch_invalidates_every_entry_and_stamps_tell_which_were_requested() {
     let mut cache = Cache::<AtomicU64>::new(3, 12);
     let asked = |cache: &Cache, epoch: u64| cache.asked(epoch).collect::<Vec<_>>();
     let filled = |cache: &Cache, epoch: u64| cache.filled(epoch).collect::<Vec<_>>();
@@ -107,7 +107,7 @@ fn a_new_epoch_outdates_every_entry_and_stamps_tell_who_asked() {
 }
 
 #[test]
-fn numbers_keep_their_bits_and_their_neighbours() {
+fn numbers_keep_their_bits_and_leave_their_neighbours_alone() {
     let mut cache = Cache::<AtomicU64>::new(1, 8);
     let odd = [f32::NAN, -0.0, f32::from_bits(1), f32::INFINITY];
     let (start, end) = odd.split_at(2);
