@@ -1,6 +1,6 @@
-//! What is written down as JSON and read again has the same bits, and what cannot be is refused.
+//! Values that are written as JSON and read again have the same bits, and invalid values are refused.
 //!
-//! JSON that is read as the nearest float needs `float_roundtrip` of serde_json.
+//! To read a JSON number as the nearest float, serde_json needs its feature `float_roundtrip`.
 
 #![expect(
     clippy::unwrap_used,
@@ -17,7 +17,7 @@ use clamber_surface::surface::{Anchor, SkinnedSurface};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use serde_json::{from_str, json, to_string};
 
-/// Written, read, and told in full: `Debug` of a float names exactly one, and its sign.
+/// Writes and reads a value, and compares the `Debug` text: that of a float names exactly one float, with its sign.
 fn assert_stays<T>(value: &T)
 where
     T: std::fmt::Debug + serde::Serialize + serde::de::DeserializeOwned,
@@ -70,7 +70,7 @@ fn maps_and_poses_keep_every_bit() {
 }
 
 #[test]
-fn ids_and_tags_stay() {
+fn ids_and_tags_round_trip() {
     assert_stays(&(JointId(u32::MAX), VertexId(1), TriangleId(2), PartId(3)));
     assert_stays(&(IslandId(4), Playback::Loop));
     let tag = SurfaceTag::new(SurfaceKind::Stone).with_ledge();
@@ -78,7 +78,7 @@ fn ids_and_tags_stay() {
 }
 
 #[test]
-fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
+fn a_saved_anchor_is_valid_on_a_mesh_rebuilt_and_edited_alike() {
     let made = || {
         let source = MeshSource {
             positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
@@ -109,7 +109,7 @@ fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
         let moved = again.in_model().motion(&read, 0.1).unwrap();
         let expected = surface.in_model().motion(&anchor, 0.1).unwrap();
         assert_eq!(moved.position, expected.position);
-        // Each half of the id counts.
+        // Both halves of the id count.
         let id = anchor.mesh.to_string();
         let (fingerprint, _) = id.split_once('+').unwrap_or((&id, ""));
         let of_mesh = |text: &str| {
@@ -134,7 +134,7 @@ fn an_anchor_that_was_saved_holds_on_the_mesh_made_again_and_edited_alike() {
     }
 }
 
-/// Of two joints: one that is posed by a skeleton knows where its joints are.
+/// A palette of two joints from a skeleton, so that it stores where its joints are.
 fn posed() -> Palette {
     let joint = |parent, x| Joint {
         name: String::new(),
@@ -148,7 +148,7 @@ fn posed() -> Palette {
 }
 
 #[test]
-fn a_palette_knows_where_its_joints_are_after_it_was_read() {
+fn a_palette_still_knows_where_its_joints_are_after_a_round_trip() {
     let palette = posed();
     assert_stays(&palette);
     let read: Palette = from_str(&to_string(&palette).unwrap()).unwrap();

@@ -1,15 +1,15 @@
 use glam::{Affine3, DAffine3, DMat3, DVec3, Vec3};
-#[expect(clippy::disallowed_types, reason = "what other engines have")]
+#[expect(clippy::disallowed_types, reason = "other engines use these types")]
 use glam::{Affine3A, Mat4};
 
 use super::widen;
 
-/// An affine map in f32, row by row: row `r` maps `(x, y, z)` to
-/// `((m0 x + m1 y) + (m2 z + m3))`, in exactly this order and without fused operations.
+/// An affine map in f32, stored row by row.
 ///
-/// This is the form in which a palette holds its matrices: what one row computes is one
-/// coordinate of a skinned vertex, and the order of its operations is part of the skinning
-/// contract (see [`crate::skin`]).
+/// Row `r` maps `(x, y, z)` to `((m0 x + m1 y) + (m2 z + m3))`, in exactly this order and without fused operations.
+///
+/// A palette holds its matrices in this form: each row computes one coordinate of a skinned vertex, and the order of
+/// the operations is part of the skinning contract (see [`crate::skin`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C)]
@@ -28,8 +28,8 @@ impl Affine {
         ],
     };
 
-    /// The map of a column-major 4 x 4 matrix, as glTF stores it. The fourth row is ignored: it is
-    /// (0, 0, 0, 1) for an affine map.
+    /// Converts a column-major 4 x 4 matrix, as glTF stores it. The fourth row is ignored: it is (0, 0, 0, 1) for an
+    /// affine map.
     pub fn from_cols_array(m: &[f32; 16]) -> Self {
         Self {
             rows: [
@@ -40,19 +40,19 @@ impl Affine {
         }
     }
 
-    /// The map of 12 numbers, column by column, as glam stores it; the last three are the translation.
+    /// Converts 12 numbers, column by column, as glam stores an affine map; the last three are the translation.
     fn from_columns(m: &[f32; 12]) -> Self {
         Self {
             rows: core::array::from_fn(|row| core::array::from_fn(|column| m[3 * column + row])),
         }
     }
 
-    /// The same 12 numbers, column by column.
+    /// The 12 numbers, column by column, as glam stores them.
     fn to_columns(self) -> [f32; 12] {
         core::array::from_fn(|k| self.rows[k % 3][k / 3])
     }
 
-    /// Rounds each element of a map in f64 once.
+    /// Converts a map in f64; rounds each element once.
     pub fn from_f64(map: &DAffine3) -> Self {
         let [x, y, z] = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
         let t = map.translation;
@@ -65,7 +65,7 @@ impl Affine {
         }
     }
 
-    /// The same map in f64; exact.
+    /// Converts to f64; exact.
     pub fn to_f64(&self) -> DAffine3 {
         let column = |c: usize| {
             DVec3::new(
@@ -80,7 +80,7 @@ impl Affine {
         }
     }
 
-    /// The image of `p`, in the order of operations that the type promises.
+    /// The image of `p`, computed in the order of operations that [`Affine`] fixes.
     #[inline]
     pub fn transform_point(&self, p: Vec3) -> Vec3 {
         let row = |m: &[f32; 4]| (m[0] * p.x + m[1] * p.y) + (m[2] * p.z + m[3]);
@@ -92,13 +92,13 @@ impl Affine {
         self.rows.iter().flatten().all(|x| x.is_finite())
     }
 
-    /// True if the map mirrors: its determinant, computed in f64, is negative.
+    /// True if the map mirrors: the determinant of its linear part, computed in f64, is negative.
     pub fn is_mirrored(&self) -> bool {
         self.to_f64().matrix3.determinant() < 0.0
     }
 
-    /// An upper bound for `|A p + t|` over all `|p| <= radius`, in f64: Frobenius norm of the
-    /// linear part times `radius`, plus the length of the translation.
+    /// An upper bound of `|A p + t|` over all `|p| <= radius`, in f64: the Frobenius norm of the linear part times
+    /// `radius`, plus the length of the translation.
     pub(crate) fn reach(&self, radius: f64) -> f64 {
         let map = self.to_f64();
         let linear = map.matrix3.x_axis.length_squared()
@@ -115,13 +115,13 @@ impl Affine {
 
 #[expect(clippy::disallowed_types, reason = "read element by element")]
 impl From<Mat4> for Affine {
-    /// Takes the upper three rows.
+    /// Takes the upper three rows; the fourth is ignored.
     fn from(m: Mat4) -> Self {
         Self::from_cols_array(&m.to_cols_array())
     }
 }
 
-/// Exact, as all conversions between [`Affine`] and glam's affine maps in f32.
+/// Exact, like all conversions between [`Affine`] and glam's affine maps in f32.
 impl From<Affine3> for Affine {
     fn from(map: Affine3) -> Self {
         Self::from_columns(&map.to_cols_array())
@@ -169,8 +169,8 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::disallowed_types, reason = "what is converted")]
-    fn glams_maps_have_the_same_elements() {
+    #[expect(clippy::disallowed_types, reason = "the types that are converted")]
+    fn conversions_to_and_from_glam_keep_the_elements() {
         let mut map = Affine::IDENTITY;
         for (k, x) in map.rows.as_flattened_mut().iter_mut().enumerate() {
             *x = k as f32 - 3.5;
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn mirror_is_seen() {
+    fn a_negative_scale_is_mirrored() {
         let mut map = Affine::IDENTITY;
         assert!(!map.is_mirrored());
         map.rows[0][0] = -1.0;

@@ -1,9 +1,9 @@
 use glam::Vec3;
 
-/// All points within a radius of the segment between two points: what a query asks about. A ball where the two
-/// are one.
+/// A query shape: all points within a radius of the segment between two points. It is a ball if both points are equal.
 ///
-/// Checked when made, so that queries need not fail.
+/// Coordinates and radius are in the units of the space that is queried. They are checked when the capsule is made, so
+/// queries cannot fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     ends: [Vec3; 2],
@@ -11,7 +11,7 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// About the segment from `a` to `b`; `None` if anything is not finite, or the radius is negative.
+    /// A capsule about the segment from `a` to `b`; `None` if a number is not finite or the radius is negative.
     pub fn new(a: Vec3, b: Vec3, radius: f32) -> Option<Self> {
         let usable = a.is_finite() && b.is_finite() && (0.0..f32::INFINITY).contains(&radius);
         usable.then_some(Self {
@@ -20,7 +20,7 @@ impl Capsule {
         })
     }
 
-    /// A ball; `None` as for [`Capsule::new`].
+    /// A ball; `None` if a number is not finite or the radius is negative.
     pub fn ball(center: Vec3, radius: f32) -> Option<Self> {
         Self::new(center, center, radius)
     }
@@ -30,12 +30,12 @@ impl Capsule {
         self.ends
     }
 
-    /// Not negative.
+    /// The radius; not negative.
     pub const fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// Whether both ends are one point.
+    /// True if both ends are the same point.
     pub fn is_ball(&self) -> bool {
         self.ends[0] == self.ends[1]
     }
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_finite_or_negative_is_no_capsule() {
+    fn non_finite_or_negative_numbers_make_no_capsule() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             assert_eq!(Capsule::ball(Vec3::ZERO, bad), None);
             assert_eq!(Capsule::new(Vec3::ZERO, Vec3::X * bad, 1.0), None);

@@ -1,18 +1,18 @@
-//! One text for scalar and SIMD arithmetic in f64.
+//! The same source for scalar and SIMD arithmetic in f64.
 //!
-//! A geometric test that is written over [`Lanes`] runs on one `f64`, and is then its own readable
-//! reference, or on a SIMD register, one triangle a lane. The trait has only what IEEE 754 rounds
-//! correctly, so every lane has the bits of the scalar run at every SIMD level. For that reason it
-//! has no minimum, maximum, clamp, sum across lanes or fused product: levels differ in them.
+//! A geometric test that is written over [`Lanes`] runs on one `f64`, and is then its own readable reference, or on a
+//! SIMD register, with one triangle per lane. The trait has only operations that IEEE 754 rounds correctly, so every
+//! lane has the bits of the scalar run at every SIMD level. SIMD levels differ in minimum, maximum, clamp, sums across
+//! lanes and fused products, so the trait has none of these.
 //!
-//! Everything is `#[inline(always)]`, since SIMD instructions are emitted only within the function
-//! that enables them (fearless_simd, MANUAL_INLINING.md); closures would end that.
+//! Everything is `#[inline(always)]`, since SIMD instructions are emitted only within the function that enables them
+//! (fearless_simd, MANUAL_INLINING.md). A closure that is not inlined would leave that function.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
-/// One f64, or as many as a SIMD register holds.
+/// One f64, or a SIMD register of f64.
 pub(crate) trait Lanes:
     Copy
     + Add<Output = Self>
@@ -21,33 +21,33 @@ pub(crate) trait Lanes:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What a comparison gives: a truth value per lane.
+    /// The result of a comparison: a truth value per lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
-    /// `value` in every lane; `self` says how many there are.
+    /// `value` in every lane; `self` only determines the number of lanes.
     fn splat(self, value: f64) -> Self;
     fn sqrt(self) -> Self;
-    /// False where either is NaN, as all comparisons.
+    /// False where either number is NaN, like all comparisons here.
     fn less(self, other: Self) -> Self::Mask;
     fn at_most(self, other: Self) -> Self::Mask;
     fn equals(self, other: Self) -> Self::Mask;
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// True if the mask is in any lane.
+    /// True if the mask is set in any lane.
     fn any(mask: Self::Mask) -> bool;
 
-    /// By comparison; `self` where either is NaN.
+    /// The larger number, by comparison; `self` where either is NaN.
     #[inline(always)]
     fn or_larger(self, other: Self) -> Self {
         Self::select(self.less(other), other, self)
     }
 
-    /// By comparison; `self` where either is NaN.
+    /// The smaller number, by comparison; `self` where either is NaN.
     #[inline(always)]
     fn or_smaller(self, other: Self) -> Self {
         Self::select(other.less(self), other, self)
     }
 
-    /// As [`f64::clamp`]: keeps NaN and -0.
+    /// Clamps to 0..=1 like [`f64::clamp`]: keeps NaN and -0.
     #[inline(always)]
     fn clamp_to_unit(self) -> Self {
         let (zero, one) = (self.splat(0.0), self.splat(1.0));

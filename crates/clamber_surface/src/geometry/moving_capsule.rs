@@ -3,11 +3,11 @@ use glam::DVec3;
 use super::MAX_COORDINATE;
 use super::triangle::{first_contact_relative, nearest_to_axis};
 
-/// A capsule whose ends each move on a straight line, over a time from 0 to 1; a sphere where both ends are one point
-/// at both times.
+/// A capsule whose ends each move on a straight line, from time 0 to time 1. It is a sphere if both ends are the same
+/// point at both times.
 ///
-/// The surface's triangle cast, for single triangles of your own geometry: a terrain, or a rigid body's mesh in the
-/// body's frame.
+/// Runs the surface's own triangle tests on single triangles of other geometry: a terrain, or a rigid body's mesh in
+/// the body's frame. All lengths are in the units of the coordinates.
 ///
 /// ```
 /// use clamber_surface::geometry::MovingCapsule;
@@ -26,7 +26,7 @@ pub struct MovingCapsule {
     pub start: [DVec3; 2],
     /// The same ends at time 1.
     pub end: [DVec3; 2],
-    /// Not negative.
+    /// The radius; not negative.
     pub radius: f64,
 }
 
@@ -34,27 +34,30 @@ pub struct MovingCapsule {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TriangleTouch {
-    /// 0..=1, never later than the first contact.
+    /// Share of the motion, 0..=1; never later than the first contact.
     pub time: f64,
-    /// Weights of the corners: not negative, sum 1 up to rounding.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: DVec3,
-    /// The triangle's point, where it is at that time.
+    /// The contact point on the triangle, at that time.
     pub point: DVec3,
-    /// Counter-clockwise unit normal of the triangle as it is then; `None` where it has collapsed.
+    /// Unit normal of the triangle at that time, towards the side from which its corners run counter-clockwise; `None`
+    /// if it has collapsed.
     pub normal: Option<DVec3>,
-    /// Where on the capsule's segment the point nearest to it lies, from 0 at the first end to 1.
+    /// Position, along the capsule's segment, of the segment's point nearest to `point`: 0 at the first end, 1 at the
+    /// second.
     pub on_axis: f64,
-    /// From the segment to the point, at that time.
+    /// Distance from the segment to `point`, at that time.
     pub distance: f64,
-    /// Unit vector from the point to the segment; where they cross, the triangle's normal.
+    /// Unit vector from `point` to the segment. If the segment touches the triangle itself: the triangle's normal, or Y
+    /// if the triangle has collapsed.
     pub separation_normal: DVec3,
-    /// They overlap at time 0.
+    /// True if capsule and triangle overlap at time 0.
     pub started_inside: bool,
-    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
-/// Below this share of the lengths involved a distance is rounding, and has no direction.
+/// A distance below this share of the lengths involved is rounding error and has no direction.
 const ALL_BUT_TOUCHING: f64 = 1.0 / (1u64 << 46) as f64;
 
 impl MovingCapsule {
@@ -67,25 +70,28 @@ impl MovingCapsule {
         }
     }
 
-    /// Where the ends are at a time, 0..=1.
+    /// The ends at a time, 0..=1.
     pub fn at(&self, time: f64) -> [DVec3; 2] {
         // Exact at both times.
         [0, 1].map(|k| self.start[k] * (1.0 - time) + self.end[k] * time)
     }
 
-    /// Whether both ends stay one point.
+    /// True if both ends are the same point at all times.
     pub fn is_ball(&self) -> bool {
         self.start[0] == self.start[1] && self.end[0] == self.end[1]
     }
 
-    /// The first contact up to the time `limit` with a triangle whose corners each move on a straight line, from the
-    /// first three to the last; twice the same for one that stands still.
+    /// The first contact with a triangle up to the time `limit`.
     ///
-    /// Its time is never later than that of the first touch, and if none is found there is none up to `limit`. At
-    /// that time the distance is at most radius and `tolerance`, unless the touch is
-    /// [undecided](TriangleTouch::undecided); less than 2^-45 of the lengths involved counts as that. The triangle is
-    /// met from both sides and may have collapsed. `None` if anything is not finite or larger than 2^100, or if radius
-    /// or tolerance is negative.
+    /// The triangle's corners each move on a straight line, from the first three at time 0 to the last three at time 1;
+    /// pass the same three twice for a triangle at rest.
+    ///
+    /// The time of the contact is never later than the first touch, and for valid input `None` guarantees that there is
+    /// no touch up to `limit`. A `limit` above 1 counts as 1. At the time of the contact the distance is at most the
+    /// radius plus `tolerance`, unless the contact is [undecided](TriangleTouch::undecided). A tolerance below 2^-45 of
+    /// the lengths involved counts as 2^-45 of them. The triangle is hit from both sides and may have collapsed.
+    ///
+    /// `None` as well if a number is not finite or larger than 2^100, or if radius, `tolerance` or `limit` is negative.
     pub fn cast_at_triangle(
         &self,
         corners: [[DVec3; 3]; 2],
@@ -120,8 +126,9 @@ impl MovingCapsule {
         })
     }
 
-    /// The point of a triangle nearest to the capsule's segment at time 0, whatever the radius; its time is 0. `None`
-    /// as for [`MovingCapsule::cast_at_triangle`].
+    /// The point of a triangle nearest to the capsule's segment at time 0, at any distance. The result has time 0.
+    ///
+    /// `None` if a number is not finite or larger than 2^100, or if the radius is negative.
     pub fn nearest_of_triangle(&self, corners: [DVec3; 3]) -> Option<TriangleTouch> {
         if !self.is_usable([corners; 2]) {
             return None;
@@ -143,7 +150,7 @@ impl MovingCapsule {
             && (0.0..=MAX_COORDINATE).contains(&self.radius)
     }
 
-    /// With the distance measured, and nothing said of inside and undecided.
+    /// A touch with its distance measured; `started_inside` and `undecided` are left false.
     fn touch(&self, corners: [DVec3; 3], barycentric: DVec3, time: f64) -> TriangleTouch {
         let [a, b, c] = corners;
         let point = a * barycentric.x + b * barycentric.y + c * barycentric.z;
@@ -183,7 +190,7 @@ mod tests {
         point(rng, 1.0).as_dvec3() * size
     }
 
-    /// Of f64 that no f32 holds.
+    /// A random capsule and triangle, with coordinates in full f64 precision.
     fn case(rng: &mut fastrand::Rng, is_ball: bool) -> (MovingCapsule, [[DVec3; 3]; 2]) {
         let offset = random(rng, 1.0) * [0.0, 1e3][rng.usize(0..2)];
         let a = random(rng, 2.0) + offset;
@@ -208,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn no_touch_is_late_and_all_are_near() {
+    fn touches_are_never_late_and_within_the_tolerance() {
         let mut rng = fastrand::Rng::with_seed(91);
         let (mut met, mut missed) = (0, 0);
         for round in 0..3_000 {
@@ -249,7 +256,7 @@ mod tests {
                 touch.time == 0.0 && apart <= 0.0,
                 "{round} {touch:?}"
             );
-            // Point, direction and distance agree with where the segment is then.
+            // Point, direction and distance agree with the segment at that time.
             let [a, b] = capsule.at(touch.time);
             let on_axis = a + (b - a) * touch.on_axis;
             let off = touch.point + touch.separation_normal * touch.distance - on_axis;
@@ -259,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_or_negative_touches_nothing() {
+    fn non_finite_or_negative_numbers_touch_nothing() {
         let mut rng = fastrand::Rng::with_seed(92);
         let (mut capsule, corners) = case(&mut rng, false);
         capsule.start[0] = corners[0][0];

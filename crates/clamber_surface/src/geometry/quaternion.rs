@@ -2,14 +2,14 @@
 
 use glam::{DQuat, DVec3};
 
-/// Rotation by `angle` radians about the unit vector `axis`, right-handed. Unlike glam's, it has the same bits on every
-/// platform.
+/// Rotation by `angle` radians about the unit vector `axis`, right-handed. Unlike glam's `from_axis_angle`, it has the
+/// same bits on every platform.
 pub fn rotation_from_axis_angle(axis: DVec3, angle: f64) -> DQuat {
     let s = libm::sin(angle * 0.5);
     DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, libm::cos(angle * 0.5))
 }
 
-/// Axis times angle (radians, at most pi) of a unit quaternion; zero for the identity.
+/// The rotation vector of a unit quaternion: its axis times its angle in radians, at most pi; zero for the identity.
 pub fn rotation_vector(rotation: DQuat) -> DVec3 {
     // q and -q are the same rotation; the one with w >= 0 turns by at most half a turn.
     let q = if rotation.w < 0.0 {

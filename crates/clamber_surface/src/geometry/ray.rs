@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{round_to_f32, widen};
 
-/// A half-line with a direction of length one, up to the rounding of its f32 coordinates.
+/// A half-line whose direction has length one, up to the rounding of its f32 coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     origin: Vec3,
@@ -12,7 +12,7 @@ pub struct Ray {
 impl Ray {
     /// A ray from `origin` along `direction`, which may have any length but zero.
     ///
-    /// `None` if a coordinate is not finite or the direction has no length.
+    /// `None` if a coordinate is not finite or the direction is zero.
     pub fn new(origin: Vec3, direction: Vec3) -> Option<Self> {
         let wide = widen(direction);
         // f32 squared never overflows nor underflows to zero in f64.
@@ -26,12 +26,12 @@ impl Ray {
         })
     }
 
-    /// Where the ray starts.
+    /// The point at which the ray starts.
     pub fn origin(&self) -> Vec3 {
         self.origin
     }
 
-    /// Unit vector.
+    /// The direction, a unit vector.
     pub fn direction(&self) -> Vec3 {
         self.direction
     }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_length_is_normalised_and_nonsense_refused() {
+    fn directions_are_normalised_and_bad_input_is_refused() {
         for scale in [1e-38_f32, 1.0, 1e38] {
             let ray = Ray::new(Vec3::ZERO, Vec3::new(0.0, 3.0, 4.0).normalize() * scale);
             let d = ray.map(|r| r.direction());

@@ -6,23 +6,23 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::{round_to_f32, widen};
 
-/// How far the length of a rotation may be from 1 before [`Similarity::is_valid`] refuses it:
-/// an order above what composing rotations in f32 leaves.
+/// Largest deviation from 1 of the length of a rotation that [`Similarity::is_valid`] accepts: an order of magnitude
+/// above the error left by composing rotations in f32.
 const UNIT_TOLERANCE: f64 = 1e-5;
 
-/// A map that keeps shapes: uniform scale, then rotation, then translation, in f64.
+/// A map that preserves shapes: uniform scale, then rotation, then translation, in f64.
 ///
-/// `world_from_model` of a surface is one of these. Its translation in f64 is what makes a
-/// creature 100 km away as exact as one at the origin: all surface arithmetic happens in the
-/// creature's own model space.
+/// A surface's `world_from_model` is a similarity. Its translation is in f64, and all surface arithmetic happens in the
+/// creature's own model space, so a creature 100 km away is as exact as one at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Similarity {
     /// Unit quaternion.
     pub rotation: DQuat,
-    /// Metres of the target space for one unit of the source space; positive.
+    /// Length in the target space of one unit of the source space, positive. For `world_from_model`: metres per model
+    /// unit.
     pub scale: f64,
-    /// Image of the source's origin, in the target space.
+    /// The image of the source's origin, in the target space.
     pub translation: DVec3,
 }
 
@@ -42,7 +42,7 @@ impl Similarity {
         }
     }
 
-    /// A pure rotation, by a unit quaternion.
+    /// A pure rotation by a unit quaternion, which is not checked: see [`Similarity::is_valid`].
     pub fn from_rotation(rotation: DQuat) -> Self {
         Self {
             rotation,
@@ -50,7 +50,7 @@ impl Similarity {
         }
     }
 
-    /// A pure scale, which is positive.
+    /// A pure scale by a positive factor, which is not checked: see [`Similarity::is_valid`].
     pub fn from_scale(scale: f64) -> Self {
         Self {
             scale,
@@ -98,7 +98,7 @@ impl Similarity {
         round_to_f32(self.inverse_transform_point(p))
     }
 
-    /// As a general affine map. The way back is `Similarity::try_from`.
+    /// Converts to a general affine map. `Similarity::try_from` converts back.
     pub fn to_affine(&self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(
             DVec3::splat(self.scale),
@@ -107,8 +107,8 @@ impl Similarity {
         )
     }
 
-    /// `inverse(self) * other`: takes `other`'s source space to this map's source space. The
-    /// translations are subtracted first, so their common size costs no digits.
+    /// The map `inverse(self) * other`, from `other`'s source space to the source space of `self`. The translations are
+    /// subtracted first, so their common size costs no precision.
     pub fn relative(&self, other: &Self) -> DAffine3 {
         let rotation = self.rotation.conjugate();
         DAffine3::from_scale_rotation_translation(
@@ -118,7 +118,7 @@ impl Similarity {
         )
     }
 
-    /// With the rotation brought back to length one.
+    /// The same map with its rotation normalised.
     pub(crate) fn normalized(&self) -> Self {
         Self {
             rotation: self.rotation.normalize(),
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_not_valid() {
+    fn bad_scales_rotations_and_translations_are_not_valid() {
         let ok = Similarity::IDENTITY;
         assert!(ok.is_valid());
         for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {

@@ -1,13 +1,14 @@
-//! Spherical interpolation (Shoemake 1985), without trigonometry where rotations are near each other, as keys and
-//! frames are: there by a series in the cosine (Eberly 2011, "A Fast and Accurate Algorithm for Computing SLERP").
+//! Spherical interpolation (Shoemake 1985). Rotations that are near each other, as neighbouring keys and frames are,
+//! need no trigonometry: for them it uses a series in the cosine (Eberly 2011, "A Fast and Accurate Algorithm for
+//! Computing SLERP").
 
 use glam::DQuat;
 
-/// How far from 1 the cosine of half the turn may be for the series: below 0.4 radians of turn, where it is off by
-/// less than 1e-12.
+/// Largest distance from 1 of the cosine of half the turn for which the series is used: turns below 0.4 radians. The
+/// series is off by less than 1e-12 there.
 const SMALL: f64 = 0.02;
 
-/// Terms of the series, the last first: `[1 / (n (2 n + 1)), n / (2 n + 1)]` of the n-th.
+/// Terms of the series, the last term first: `[1 / (n (2 n + 1)), n / (2 n + 1)]` for the n-th.
 const TERMS: [[f64; 2]; 5] = [
     [1.0 / 55.0, 5.0 / 11.0],
     [1.0 / 36.0, 4.0 / 9.0],
@@ -16,13 +17,13 @@ const TERMS: [[f64; 2]; 5] = [
     [1.0 / 3.0, 1.0 / 3.0],
 ];
 
-/// Spherical interpolation along the shorter arc (Shoemake 1985), from `a` at 0 to `b` at 1.
-/// Both must be unit quaternions; the result is one, to 1e-12.
+/// Interpolates between two rotations along the shorter arc (Shoemake 1985), from `a` at `t = 0` to `b` at `t = 1`.
+/// Both must be unit quaternions; the result is a unit quaternion to 1e-12.
 pub fn slerp(a: DQuat, b: DQuat, t: f64) -> DQuat {
     Slerp::new(t).between(a, b)
 }
 
-/// [`slerp`] at one `t`, for many rotations.
+/// [`slerp`] at one `t`, for many pairs of rotations.
 pub(crate) struct Slerp {
     from: Share,
     to: Share,
@@ -44,15 +45,15 @@ impl Slerp {
         }
         let angle = libm::acos(cos.abs());
         let sin = |share: &Share| libm::sin(share.t * angle);
-        // What both would be divided by, the sine of the whole angle, is normalised away.
+        // Neither share is divided by the sine of the whole angle: normalisation replaces that.
         mix(sin(&self.from), sin(&self.to)).normalize()
     }
 }
 
-/// `sin(t w) / sin(w)` at one `t`.
+/// `sin(t w) / sin(w)` at one `t`, for any angle `w`.
 struct Share {
     t: f64,
-    /// By which the terms grow, times the cosine's distance from 1; the last first.
+    /// Ratio of each term to the term before it, divided by `cos(w) - 1`; the last term first.
     growth: [f64; 5],
 }
 
@@ -62,7 +63,7 @@ impl Share {
         Self { t, growth }
     }
 
-    /// Of a small angle, by its cosine.
+    /// The share for a small angle, given its cosine.
     fn of_small(&self, cos: f64) -> f64 {
         let mut sum = 1.0;
         for growth in self.growth {
@@ -96,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_series_is_off_by_less_than_it_says_as_far_as_it_is_used() {
+    fn the_series_is_off_by_less_than_1e_12_over_its_range() {
         let mut worst = 0.0_f64;
         for step in 1..=200 {
             let cos = 1.0 - SMALL * f64::from(step) / 200.0;

@@ -5,20 +5,20 @@ use super::{round_to_f32, round_up_to_f32, widen};
 /// A ball: all points within `radius` of `center`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sphere {
-    /// Centre, in the space of the points that it bounds.
+    /// The centre, in the space of the points that the sphere bounds.
     pub center: Vec3,
-    /// Radius, not negative.
+    /// The radius; not negative.
     pub radius: f32,
 }
 
-/// Steps of [`Sphere::nearly_smallest`]: the radius is at most `1 + 1 / sqrt(64)` times the smallest.
-/// What is seen is off by one or two in a hundred, and falls with the steps: more gain little.
+/// Steps of [`Sphere::nearly_smallest`]: the radius is at most `1 + 1 / sqrt(64)` times the smallest. Measured radii
+/// are one or two percent above the smallest. The excess falls slowly with the steps, so more steps gain little.
 const CENTER_STEPS: u32 = 64;
 
 impl Sphere {
-    /// The sphere about the mean of `points` that holds them all: two passes, as in the thesis
-    /// this library grew from (5.2.4, "Collider partitioning"). Not the smallest one: up to twice
-    /// its radius. The radius is rounded up, so no point lies outside. `None` without points.
+    /// A sphere about the mean of `points` that holds all of them. Takes two passes, as in the thesis that this library
+    /// grew from (5.2.4, "Collider partitioning"). It is not the smallest sphere: its radius is up to twice as large.
+    /// The radius is rounded up, so no point lies outside. `None` without points.
     #[doc(hidden)]
     pub fn around_mean(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let (sum, count) = points
@@ -32,11 +32,10 @@ impl Sphere {
         Some(Self::around(round_to_f32(sum / count), points))
     }
 
-    /// A sphere that holds all `points` and is nearly the smallest: every step moves the centre
-    /// towards the farthest point by a share that shrinks (Bădoiu and Clarkson 2003, "Smaller
-    /// core-sets for balls"). Its radius is at most 1.13 times the smallest one, seldom more than
-    /// 1.02 times. Costs some 66 passes: for rest data, not for every tick. The radius is rounded up,
-    /// so no point lies outside. `None` without points.
+    /// A sphere that holds all `points` and is nearly the smallest. Every step moves the centre towards the farthest
+    /// point, by a share that shrinks (Bădoiu and Clarkson 2003, "Smaller core-sets for balls"). The radius is at most
+    /// 1.13 times the smallest, seldom more than 1.02 times. Takes some 66 passes, so it is for rest data, not for
+    /// every tick. The radius is rounded up, so no point lies outside. `None` without points.
     #[doc(hidden)]
     pub fn nearly_smallest(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let around_mean = Self::around_mean(points.clone())?;
@@ -60,8 +59,7 @@ impl Sphere {
         })
     }
 
-    /// The smallest sphere about `center` that holds all `points`, its radius rounded up: no point
-    /// lies outside.
+    /// The smallest sphere about `center` that holds all `points`. Its radius is rounded up, so no point lies outside.
     #[doc(hidden)]
     pub fn around(center: Vec3, points: impl Iterator<Item = Vec3>) -> Self {
         let farthest_sq = points
@@ -72,12 +70,12 @@ impl Sphere {
         Self { center, radius }
     }
 
-    /// True if `point` lies in the sphere, by f64 arithmetic.
+    /// True if `point` lies in the sphere or on it, computed in f64.
     pub fn contains(&self, point: Vec3) -> bool {
         (widen(point) - widen(self.center)).length() <= f64::from(self.radius)
     }
 
-    /// In cubic units of its space.
+    /// The volume, in cubic units of the sphere's space.
     #[doc(hidden)]
     pub fn volume(&self) -> f64 {
         let radius = f64::from(self.radius);
@@ -113,8 +111,8 @@ mod tests {
     }
 
     #[test]
-    fn nearly_the_smallest_sphere_of_a_cap_and_of_a_pair() {
-        // The mean lies off the middle: a thousand points at one end, one at the other.
+    fn nearly_the_smallest_sphere_of_an_uneven_pair_and_of_a_shell() {
+        // The mean is far from the middle: a thousand points at one end, one at the other.
         let crowd = (0..1_000).map(|_| Vec3::X).chain([-Vec3::X]);
         let sphere = Sphere::nearly_smallest(crowd).unwrap();
         assert!(sphere.radius < 1.02, "{sphere:?}");

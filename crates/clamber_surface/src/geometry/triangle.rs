@@ -1,11 +1,11 @@
 //! One triangle, or eight, against a point, a segment and a ray.
 //!
-//! All work in f64 on f32 corners and in coordinates relative to the query: the differences of f32
-//! numbers of similar size are exact there, so distance from the origin costs no digits.
+//! All tests work in f64 on f32 corners, in coordinates relative to the query. Differences of f32 numbers of similar
+//! size are exact in f64, so distance from the origin costs no precision.
 //!
-//! Error of distances to points and segments, as a share of the lengths involved (longest edge,
-//! segment, distance), measured against rational arithmetic: below 5e-15, in slivers of height h and
-//! length 1 below 2^-53 / h, which at 1e-7 is 1e-9 (found: 1e-12).
+//! Error of distances to points and segments, as a share of the lengths involved (longest edge, segment, distance),
+//! measured against rational arithmetic: below 5e-15. In slivers of height h and length 1 it is below 2^-53 / h, which
+//! is 1e-9 at a height of 1e-7 (largest found: 1e-12).
 
 mod candidate;
 mod eight;
@@ -31,17 +31,17 @@ use super::widen;
 pub(crate) struct TrianglePoint {
     /// Weights of the corners: not negative, sum 1 up to rounding.
     pub(crate) barycentric: DVec3,
-    /// Distance from the query's point or segment or, along its direction, from the ray's origin.
+    /// Distance from the query's point or segment; for a ray, distance along it from its origin.
     pub(crate) distance: f64,
 }
 
-/// Corners in f64. Not by an array's `map`: that goes through memory here, and stalls queries with many hits.
+/// Corners in f64. Without an array's `map`: that goes through memory here, and stalls queries with many hits.
 #[inline(always)]
 pub(crate) fn widened([a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
     [widen(a), widen(b), widen(c)]
 }
 
-/// Cross product of two edges, in f64: twice the area long, along the counter-clockwise normal.
+/// Cross product of two edges, in f64: it points along the counter-clockwise normal, and its length is twice the area.
 pub(crate) fn scaled_normal(corners: [Vec3; 3]) -> DVec3 {
     let [a, b, c] = widened(corners);
     (b - a).cross(c - a)

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::lanes::Lanes;
 
-/// A vector per lane, with the order of operations of glam's `DVec3`.
+/// A vector in each lane, with the order of operations of glam's `DVec3`.
 #[derive(Clone, Copy)]
 pub(crate) struct Vector3<L> {
     pub(crate) x: L,
@@ -46,7 +46,7 @@ impl<L: Lanes> Vector3<L> {
         }
     }
 
-    /// Whether `self` comes before `other` when x is compared first, then y, then z.
+    /// True where `self` comes before `other` when x is compared first, then y, then z.
     #[inline(always)]
     pub(crate) fn precedes(self, other: Self) -> L::Mask {
         let by_z = self.z.less(other.z);

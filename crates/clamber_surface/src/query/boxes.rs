@@ -1,4 +1,4 @@
-//! Triangles near a box, over the tick.
+//! Triangles that enter a box over the tick.
 
 use glam::Vec3;
 
@@ -8,10 +8,10 @@ use super::{ModelSpace, broad, root};
 use crate::mesh::TriangleId;
 use crate::mesh::hierarchy::LANES;
 
-/// A triangle on its way from the previous pose to the current one, in the current model frame.
+/// A triangle that moves from the previous pose to the current one, in the current model frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingTriangle {
-    /// Which one.
+    /// The triangle's id.
     pub triangle: TriangleId,
     /// Its corners a tick ago.
     pub previous: [Vec3; 3],
@@ -20,8 +20,8 @@ pub struct MovingTriangle {
 }
 
 impl MovingTriangle {
-    /// Whether its own box, that around its corners a tick ago and now, meets the box from `low` to
-    /// `high`, touching included.
+    /// True if the triangle's bounding box, around its corners a tick ago and now, overlaps or touches the box from
+    /// `low` to `high`.
     pub fn meets_box(&self, low: Vec3, high: Vec3) -> bool {
         let corners = self.previous.iter().chain(&self.current);
         let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -34,11 +34,13 @@ impl MovingTriangle {
 }
 
 impl ModelSpace<'_> {
-    /// Every triangle that enters the box from `low` to `high` between the previous pose and the current one, both ends
-    /// included. May include triangles whose [bounding box](MovingTriangle::meets_box), but not the triangle, enters
-    /// the box. In no promised order.
+    /// Calls `visit` with every enabled triangle that enters the box from `low` to `high`, in model space, at any time
+    /// from the previous pose to the current one.
     ///
-    /// A box whose `low` is above its `high`, or that is not finite, meets nothing.
+    /// Also visits some triangles that stay outside although their [bounding box](MovingTriangle::meets_box) enters.
+    /// The order is unspecified.
+    ///
+    /// Nothing is visited if `low` is above `high` on any axis, or if a coordinate is not finite.
     pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(&MovingTriangle)) {
         let instance = self.instance;
         let poses = [&instance.previous, &instance.current];

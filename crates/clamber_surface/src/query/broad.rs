@@ -1,8 +1,8 @@
 //! A query against the eight spheres of a node, in f32.
 //!
-//! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and NaN touches. A
-//! distance whose square overflows is beyond any reach whose square does not. Squares that underflow do no harm, since
-//! every sphere has a radius of at least 2^-56.
+//! Every test errs on the side of a touch: it is widened by more than f32 arithmetic can be off, and NaN counts as a
+//! touch. A distance whose square overflows is beyond any reach whose square does not. Squares that underflow do no
+//! harm, since every sphere has a radius of at least 2^-56.
 
 use glam::Vec3;
 
@@ -11,22 +11,22 @@ use crate::bounds::Spheres;
 use crate::geometry::Ray;
 use crate::mesh::hierarchy::LANES;
 
-/// How far f32 arithmetic may be off, as a share of the lengths involved. Some ten roundings of
-/// 2^-24 are; less risks a missed triangle, more tests more.
+/// Allowance for rounding in f32, as a share of the lengths involved. The tests take some ten roundings of 2^-24. A
+/// smaller value risks a missed triangle; a larger one tests more triangles.
 pub(super) const SLACK: f32 = 16.0 * f32::EPSILON;
 
-/// The length whose square f32 no longer holds, rounded down.
+/// The length above which squares overflow in f32, rounded down.
 const SQUARE_OVERFLOWS: f32 = 1.8e19;
 
-/// 2^60: products and sums of squares of lengths up to this are far from the end of f32.
+/// 2^60. Products and sums of the squares of lengths up to this are far from overflow in f32.
 const LONG: f32 = (1u64 << 60) as f32;
 
-/// One bit a lane.
+/// One bit per lane.
 pub(super) type LaneMask = u8;
 
 #[inline(always)]
 fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
-    // Integers as wide as the numbers compared: else the compiler takes vectors apart.
+    // Integers as wide as the numbers compared: otherwise the compiler splits the vectors.
     let mut bits = [0u32; LANES];
     for (lane, bit) in bits.iter_mut().enumerate() {
         *bit = if test(lane) { 1 << lane } else { 0 };
@@ -34,7 +34,7 @@ fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
     bits.into_iter().fold(0, |found, bit| found | bit) as LaneMask
 }
 
-/// Lanes that hold something within the probe's reach, before it moves.
+/// Lanes whose sphere may hold something within the probe's reach, before the probe moves.
 pub(super) fn near<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> LaneMask {
     let (distance_sq, lost) = from_core(spheres, probe);
     let mut reach_sq = [0.0; LANES];
@@ -46,8 +46,9 @@ pub(super) fn near<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> LaneM
     lanes(|lane| !(distance_sq[lane] > reach_sq[lane]))
 }
 
-/// Per lane at most the distance from a probe's core, before it moves, to what the sphere holds; 0 of capsules for all that
-/// are [`LONG`] away or beside a segment that long, since where a product overflows, any place along it may come out.
+/// Per lane a lower bound of the distance from a probe's core, before it moves, to the contents of the sphere. For a
+/// capsule it is 0 if the sphere is [`LONG`] away, or if the capsule's segment is that long: where a product overflows,
+/// the position on the segment is arbitrary.
 pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> [f32; LANES] {
     let (distance_sq, lost) = from_core(spheres, probe);
     let mut found = [0.0; LANES];
@@ -64,8 +65,8 @@ pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> 
     found
 }
 
-/// Squares of the distances of centres from a probe's core, before it moves, and what rounding may have added to the
-/// distances: infinity from [`LONG`] on.
+/// Squared distances of the centres from a probe's core, before it moves, and the allowance for rounding in the
+/// distances: infinite from [`LONG`] on.
 #[inline(always)]
 fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANES], [f32; LANES]) {
     let [a, b] = probe.segment();
@@ -88,7 +89,7 @@ fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANE
             let along = (dx * axis.x + dy * axis.y + dz * axis.z) * inverse;
             let along = if along > 0.0 { along } else { 0.0 };
             let along = if along < 1.0 { along } else { 1.0 };
-            // Any point of the segment will do: one that is off by rounding is hardly farther.
+            // Rounding in the position is harmless: a point that is off by rounding is hardly farther.
             dx -= axis.x * along;
             dy -= axis.y * along;
             dz -= axis.z * along;
@@ -98,16 +99,16 @@ fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANE
     (distance_sq, lost)
 }
 
-/// Lanes no farther than `reach`.
+/// Lanes whose distance is at most `reach`.
 pub(super) fn within(distances: &[f32; LANES], reach: f32) -> LaneMask {
     lanes(|lane| distances[lane] <= reach)
 }
 
-/// Lanes whose sphere a ray meets within `limit`, and per lane at most the distance along the ray to
-/// what it holds.
+/// Lanes whose sphere a ray meets within `limit`, and per lane a lower bound of the distance along the ray to the
+/// contents of the sphere.
 ///
-/// By the perpendicular from the centre to the ray, which keeps its digits far out where the usual
-/// discriminant loses them.
+/// Computed from the perpendicular from the centre to the ray, which stays precise far from the origin, where the usual
+/// discriminant does not.
 pub(super) fn along_ray(spheres: &Spheres, ray: &Ray, limit: f32) -> (LaneMask, [f32; LANES]) {
     let (origin, direction) = (ray.origin(), ray.direction());
     let [mut distance_sq, mut reach_sq] = [[0.0; LANES]; 2];
@@ -121,7 +122,7 @@ pub(super) fn along_ray(spheres: &Spheres, ray: &Ray, limit: f32) -> (LaneMask, 
         let oy = dy - direction.y * along;
         let oz = dz - direction.z * along;
         distance_sq[lane] = ox * ox + oy * oy + oz * oz;
-        // Direction and triangle test are off by shares of this distance.
+        // The errors of the direction and of the triangle test are shares of this distance.
         let apart = dx.abs() + dy.abs() + dz.abs();
         let reach = spheres.radius[lane] + SLACK * (apart + spheres.radius[lane]);
         reach_sq[lane] = reach * reach * (1.0 + SLACK);
@@ -135,12 +136,11 @@ pub(super) fn along_ray(spheres: &Spheres, ray: &Ray, limit: f32) -> (LaneMask, 
     (met, first)
 }
 
-/// Lanes of which a sweep may touch anything up to the time `limit`, and per lane at most the time at
-/// which that begins.
+/// Lanes whose contents a sweep may touch up to the time `limit`, and per lane a lower bound of the time of the first
+/// touch.
 ///
-/// What a sphere holds at either end of the motion moves on straight lines, so at time t it is within
-/// `(1 - t) r0 + t r1` of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the
-/// core moves on straight lines as well.
+/// The contents of a sphere move on straight lines between the two poses. At time t they are within `(1 - t) r0 + t r1`
+/// of `(1 - t) c0 + t c1`: at most the larger radius. Relative to that centre the core moves on straight lines as well.
 pub(super) fn along<const N: usize, const P: usize>(
     spheres: &[Spheres; P],
     sweep: &Sweep<N>,
@@ -154,7 +154,8 @@ pub(super) fn along<const N: usize, const P: usize>(
     }
 }
 
-/// By the perpendicular from a sphere's centre to the path of the swept sphere's centre.
+/// [`along`] for a swept sphere, by the perpendicular from a bounding sphere's centre to the path of the swept sphere's
+/// centre.
 fn along_line<const N: usize>(
     [start, end]: [&Spheres; 2],
     probe: &Probe<N>,
@@ -179,7 +180,7 @@ fn along_line<const N: usize>(
         let closest = -(x * dx + y * dy + z * dz) * inverse;
         let time = if closest > 0.0 { closest } else { 0.0 };
         let time = if time < limit { time } else { limit };
-        // Any time up to the limit will do: one that is off by rounding is hardly farther.
+        // Rounding in the time is harmless: a time that is off by rounding is hardly farther.
         let (ox, oy, oz) = (x + dx * time, y + dy * time, z + dz * time);
         distance_sq[lane] = ox * ox + oy * oy + oz * oz;
         let size = x.abs() + y.abs() + z.abs() + taxicab(motion) + radius(start, end, lane);
@@ -200,11 +201,11 @@ fn along_line<const N: usize>(
     (near, first)
 }
 
-/// Rounds of [`nearest_direction`]: more would turn the direction by little.
+/// Iterations of [`nearest_direction`]. More of them would hardly change the direction.
 const ROUNDS: usize = 3;
 
-/// By one direction for all of the path, and one for its beginning: what is farther than the radii
-/// along either, at all four corners that the segment has on its path, is not touched, however the
+/// [`along`] for a swept capsule, by two directions: one for the whole path and one for its beginning. The segment's
+/// path has four corners. If all of them are farther along a direction than the radii, nothing is touched, however the
 /// direction was found.
 fn along_strip<const N: usize>(
     [start, end]: [&Spheres; 2],
@@ -245,8 +246,8 @@ fn along_strip<const N: usize>(
     (near, first)
 }
 
-/// About the unit direction from the origin to the nearest point of the parallelogram with a corner at
-/// `corner`; zero where that is the origin.
+/// Approximate unit direction from the origin to the nearest point of the parallelogram with a corner at `corner`; zero
+/// if that point is the origin.
 fn nearest_direction(corner: Vec3, side: Vec3, other: Vec3) -> Vec3 {
     let [inverse, inverse_of_other] = [side, other].map(|side| {
         let length_sq = side.length_squared();
@@ -271,8 +272,8 @@ fn nearest_direction(corner: Vec3, side: Vec3, other: Vec3) -> Vec3 {
     }
 }
 
-/// The share of the way from `from` to `to` before which a number is above `level`; beyond 1 if it
-/// stays so.
+/// The share of the way from `from` to `to` before which a number is above `level`; above 1 if it stays above, 0 if it
+/// does not start above.
 fn until(from: f32, to: f32, level: f32) -> f32 {
     let share = (from - level) / (from - to);
     let share = if to < level { share } else { 2.0 };
@@ -297,8 +298,8 @@ fn taxicab(v: Vec3) -> f32 {
     v.x.abs() + v.y.abs() + v.z.abs()
 }
 
-/// Lanes of which anything may meet the box on its way between two poses: all of it lies in the box
-/// around the spheres at both.
+/// Lanes whose contents may enter the box between two poses. The contents stay in the box around the spheres at both
+/// poses.
 pub(super) fn near_box([start, end]: &[Spheres; 2], [low, high]: [[f32; 3]; 2]) -> LaneMask {
     let mut beyond = [false; LANES];
     for (axis, (first, last)) in axes(start).into_iter().zip(axes(end)).enumerate() {
@@ -308,7 +309,7 @@ pub(super) fn near_box([start, end]: &[Spheres; 2], [low, high]: [[f32; 3]; 2]) 
             };
             let (x, y) = (first[lane], last[lane]);
             let (at_x, at_y) = (reach(start, x), reach(end, y));
-            // NaN is beyond nothing, so it touches.
+            // Comparisons with NaN are false, so NaN touches.
             beyond[lane] |= (x + at_x < low[axis]) & (y + at_y < low[axis]);
             beyond[lane] |= (x - at_x > high[axis]) & (y - at_y > high[axis]);
         }

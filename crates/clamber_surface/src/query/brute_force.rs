@@ -1,4 +1,4 @@
-//! What queries are compared with: every vertex skinned plainly, every triangle tested.
+//! The reference for queries: every vertex skinned in scalar code, every triangle tested.
 
 use glam::Vec3;
 
@@ -13,12 +13,11 @@ use crate::geometry::{Capsule, Ray};
 use crate::mesh::{PartId, TriangleId};
 use crate::skin::skin_vertex;
 
-/// The queries of a surface by brute force: slow and plain, for tests.
+/// The queries of a surface by brute force: slow and simple, for tests.
 ///
-/// Skins every vertex in scalar code when it is made, knows no bounds, and tests all enabled
-/// triangles one by one. The surface must answer with the same bits; but for sweeps among coordinates that
-/// differ by some 2^50 in size, where bounds may rule out what the exact test leaves
-/// [`undecided`](SweepHit::undecided).
+/// Skins every vertex in scalar code when it is made, uses no bounds, and tests all enabled triangles one by one. The
+/// surface must return the same bits. The only exception is a sweep among coordinates that differ by some 2^50 in size:
+/// there, bounds may rule out a contact that the exact test leaves [`undecided`](SweepHit::undecided).
 #[derive(Clone, Debug)]
 pub struct BruteForce<'a> {
     instance: &'a Instance,
@@ -26,7 +25,7 @@ pub struct BruteForce<'a> {
 }
 
 impl<'a> BruteForce<'a> {
-    /// Of the surface as it is posed now.
+    /// Skins the surface in its current pose.
     pub fn new(space: ModelSpace<'a>) -> Self {
         let instance = space.instance;
         let vertices = 0..instance.mesh.positions().len();
@@ -44,7 +43,7 @@ impl<'a> BruteForce<'a> {
         &self.positions
     }
 
-    /// As [`ModelSpace::cast_ray`].
+    /// Reference for [`ModelSpace::cast_ray`].
     pub fn cast_ray(&self, ray: &Ray, max_distance: f32) -> Option<SurfaceHit> {
         let sheared = ShearedRay::new(ray);
         let mut best = Best::within(length(max_distance)?);
@@ -56,7 +55,7 @@ impl<'a> BruteForce<'a> {
         best.hit(self.instance, ray.origin())
     }
 
-    /// As [`ModelSpace::cast_ray_all`].
+    /// Reference for [`ModelSpace::cast_ray_all`].
     pub fn cast_ray_all(&self, ray: &Ray, max_distance: f32, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
         let Some(limit) = length(max_distance) else {
@@ -72,13 +71,13 @@ impl<'a> BruteForce<'a> {
         sort_by_distance(hits);
     }
 
-    /// As [`ModelSpace::closest_point`].
+    /// Reference for [`ModelSpace::closest_point`].
     pub fn closest_point(&self, point: Vec3, max_distance: f32) -> Option<SurfaceHit> {
         let ball = Capsule::ball(point, 0.0)?;
         self.closest(&Probe::of_ball(&ball, Vec3::ZERO), length(max_distance)?)
     }
 
-    /// As [`ModelSpace::closest_to_capsule`].
+    /// Reference for [`ModelSpace::closest_to_capsule`].
     pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<CapsuleHit> {
         let reach = f64::from(capsule.radius()) + length(max_distance)?;
         let surface = with_probe!(capsule, [Vec3::ZERO; 2], probe => self.closest(&probe, reach));
@@ -96,7 +95,7 @@ impl<'a> BruteForce<'a> {
         best.hit(self.instance, probe.middle())
     }
 
-    /// As [`ModelSpace::overlap_capsule`].
+    /// Reference for [`ModelSpace::overlap_capsule`].
     pub fn overlap_capsule(&self, capsule: &Capsule, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
         with_probe!(capsule, [Vec3::ZERO; 2], probe => {
@@ -110,7 +109,7 @@ impl<'a> BruteForce<'a> {
         });
     }
 
-    /// As [`ModelSpace::cast_capsule`].
+    /// Reference for [`ModelSpace::cast_capsule`].
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -126,7 +125,7 @@ impl<'a> BruteForce<'a> {
         })
     }
 
-    /// As [`ModelSpace::cast_capsule_all`].
+    /// Reference for [`ModelSpace::cast_capsule_all`].
     pub fn cast_capsule_all(
         &self,
         capsule: &Capsule,
@@ -146,7 +145,7 @@ impl<'a> BruteForce<'a> {
         sort_by_time(hits);
     }
 
-    /// As [`ModelSpace::visit_box`], by ascending id.
+    /// Reference for [`ModelSpace::visit_box`], by ascending triangle id.
     pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(&MovingTriangle)) {
         let is_box = low.is_finite() && high.is_finite() && low.cmple(high).all();
         for (triangle, _, current) in self.triangles() {
@@ -161,7 +160,7 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// The first contact of every triangle that has one.
+    /// Calls `visit` with the first contact of every triangle that has one.
     fn contacts<const N: usize>(
         &self,
         sweep: &Sweep<N>,

@@ -1,11 +1,10 @@
-//! A capsule that moves, against the surface at one pose or between two.
+//! A moving capsule against the surface at one pose or between two.
 //!
-//! Nodes and clusters are ruled out by where their spheres are at both ends of the motion: what a
-//! sphere holds moves on straight lines, so between the ends it lies in the sphere between the two.
-//! Of a cluster that is reached triangles are ruled out by planes that
-//! nothing of the cluster crosses; of the others the [first
-//! contact](crate::geometry::triangle::first_contact) is found, of eight at a time. Where only the first contact of all is
-//! asked for, all of it stops at the earliest one found so far.
+//! Nodes and clusters are ruled out by their spheres at both ends of the motion. The contents of a sphere move on
+//! straight lines, so between the ends they lie in the sphere interpolated between the two. Within a cluster, triangles
+//! are ruled out by planes that nothing of the capsule crosses. For the others the [first
+//! contact](crate::geometry::triangle::first_contact) is computed, eight triangles at a time. If only the first contact
+//! of all is asked for, every stage stops at the earliest contact found so far.
 
 use glam::Vec3;
 
@@ -20,18 +19,18 @@ use crate::geometry::{Capsule, round_up_to_f32};
 use crate::mesh::ColliderMesh;
 use crate::pose::PosedMesh;
 
-/// What skin, or any obstacle, does while something is cast at it.
+/// Whether the target of a cast, skin or any other obstacle, moves during the cast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TargetMotion {
-    /// It stands still as it is now.
+    /// The target stands still in its current pose.
     #[default]
     Still,
-    /// It moves from where it was a tick ago to where it is now, every point of it on a straight line, while what is
-    /// cast makes its way: a sweep over the tick.
+    /// The target moves from its pose a tick ago to its current pose, every point on a straight line, while the cast
+    /// shape moves: a sweep over the tick.
     Moving,
 }
 
-/// How something is cast at skin.
+/// Options of a cast at skin.
 ///
 /// ```
 /// use clamber_surface::surface::{CastOptions, TargetMotion};
@@ -43,27 +42,28 @@ pub enum TargetMotion {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CastOptions {
-    /// Whether the skin moves meanwhile.
+    /// Whether the skin moves during the cast.
     pub target: TargetMotion,
-    /// How far from touching counts as a contact, in model units; of a cast in the world, in metres. Where none is given, a
-    /// 4,000th of the radius, below what one sees, and at least the steps of f32 at the mesh's size.
+    /// Largest gap between shape and skin that counts as a contact, in model units; for a cast in world space, in
+    /// metres. `None` stands for a 4,000th of the shape's radius, which is less than one sees, and at least the spacing
+    /// of f32 at the mesh's size.
     pub tolerance: Option<f64>,
 }
 
 impl CastOptions {
-    /// At skin that stands still.
+    /// A cast at skin that stands still.
     pub const STILL: Self = Self {
         target: TargetMotion::Still,
         tolerance: None,
     };
 
-    /// At skin that moves over the tick.
+    /// A cast at skin that moves over the tick.
     pub const MOVING: Self = Self {
         target: TargetMotion::Moving,
         tolerance: None,
     };
 
-    /// With another tolerance, in model units or, in the world, metres.
+    /// The same options with another tolerance, in model units; for a cast in world space, in metres.
     #[must_use]
     pub const fn with_tolerance(self, tolerance: f64) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl CastOptions {
         }
     }
 
-    /// `None` if it is negative or NaN.
+    /// The tolerance in model units; `None` if it is negative or NaN.
     pub(super) fn tolerance_for(&self, capsule: &Capsule, mesh: &ColliderMesh) -> Option<f32> {
         let least = mesh.radius() * f32::EPSILON;
         match self.tolerance {
@@ -93,20 +93,20 @@ impl From<TargetMotion> for CastOptions {
 }
 
 impl ModelSpace<'_> {
-    /// The first contact of a capsule whose ends each go straight by one of `displacements`, with skin that stands still
-    /// or moves meanwhile.
+    /// The first contact of a moving capsule with skin that stands still or moves meanwhile. Each end of the capsule
+    /// moves straight by one of `displacements`, in model units.
     ///
-    /// The time of a contact is never later than that at which the capsule first touches the skin, and
-    /// if none is found there is none. At that time the capsule is at most the tolerance away from the
-    /// skin; less than 2^-45 of the lengths involved counts as that. How much earlier than the
-    /// touch that is has no bound where the capsule grazes the skin. Contacts for which neither could
-    /// be shown are reported, and flagged [`undecided`](SweepHit::undecided).
+    /// The time of the contact is never later than the first touch, and `None` guarantees that there is no contact. At
+    /// that time the capsule is at most the tolerance away from the skin; a tolerance below 2^-45 of the lengths
+    /// involved counts as 2^-45 of them. Where the capsule grazes the skin, the time may be earlier than the touch by
+    /// any amount. If the solver can show neither contact nor miss, it reports a contact flagged
+    /// [`undecided`](SweepHit::undecided).
     ///
-    /// Of contacts at one time the nearest is given, of those as near the one of the smaller triangle
-    /// id. A capsule that overlaps the skin at the start is in contact at time 0 with the triangle
+    /// If several contacts have the same time, the nearest one is returned; if they are equally near, the one with the
+    /// smaller triangle id. A capsule that overlaps the skin at the start is in contact at time 0 with the triangle
     /// nearest to its segment.
     ///
-    /// A displacement that is not finite, and a tolerance that is negative or not finite, find nothing.
+    /// Nothing is found if a displacement is not finite, or if the tolerance is negative or not finite.
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -116,10 +116,11 @@ impl ModelSpace<'_> {
         self.cast(capsule, displacements, options, None)
     }
 
-    /// [`ModelSpace::cast_capsule`] among chosen contacts. `counts` is called, in any order, with the contact of each
-    /// triangle that could be the first; contacts for which it returns false are passed over. A body that is pressed
-    /// into skin so finds other skin: `counts` returns false for contacts that [started
-    /// inside](SweepHit::started_inside).
+    /// [`ModelSpace::cast_capsule`] among the contacts that `counts` accepts.
+    ///
+    /// `counts` is called, in any order, with the contact of each triangle that could be the first. A contact for which
+    /// it returns false is skipped. For example, a body that is pressed into skin finds the other skin in its way if
+    /// `counts` rejects contacts that [started inside](SweepHit::started_inside).
     pub fn cast_capsule_where(
         &self,
         capsule: &Capsule,
@@ -150,8 +151,8 @@ impl ModelSpace<'_> {
         })
     }
 
-    /// Every triangle that [`ModelSpace::cast_capsule`] may meet, each with its own first contact,
-    /// by time, at one time by distance, then by id. `hits` is cleared first and keeps its memory.
+    /// Finds every triangle that [`ModelSpace::cast_capsule`] may meet, each with its own first contact, sorted by
+    /// time, then distance, then triangle id. `hits` is cleared first; its memory is reused.
     pub fn cast_capsule_all(
         &self,
         capsule: &Capsule,
@@ -180,12 +181,12 @@ impl ModelSpace<'_> {
 }
 
 impl Instance {
-    /// Whether skin has two poses for a cast: one that stands still is the same as one that moves nowhere.
+    /// True if a cast needs both poses: skin that stands still has the same pose at both ends.
     fn moves(&self, target: TargetMotion) -> bool {
         target == TargetMotion::Moving && !self.is_still
     }
 
-    /// Earliest bounds first. With `counts`, among the contacts that count.
+    /// Visits nodes with the earliest bounds first. With `counts`, considers only the contacts that it accepts.
     fn first_contact<const N: usize, const P: usize>(
         &self,
         poses: [&PosedMesh; P],
@@ -194,7 +195,7 @@ impl Instance {
     ) -> Option<SweepHit> {
         let sweep = &near(poses, sweep)?;
         let mut earliest = Earliest::default();
-        // The first that is touched may be one that is passed over.
+        // The triangle that is touched by then may be one that `counts` rejects.
         let every_one_counts = counts.is_none();
         self.visit_contacts::<true, N, P>(
             poses,
@@ -219,7 +220,7 @@ impl Instance {
         earliest.hit(self, sweep)
     }
 
-    /// In no order.
+    /// Appends all contacts, in no order.
     fn all_contacts<const N: usize, const P: usize>(
         &self,
         poses: [&PosedMesh; P],
@@ -239,8 +240,8 @@ impl Instance {
         }
     }
 
-    /// Calls `visit` with the first contact of every triangle that is touched up to the time that still matters, which
-    /// `visit` gives; of a cluster not beyond `touched_by`.
+    /// Calls `visit` with the first contact of every triangle that is touched before contacts stop mattering. `visit`
+    /// returns the last time that still matters. Within a cluster, `touched_by` gives another upper limit of that time.
     fn visit_contacts<'a, const EARLIEST_FIRST: bool, const N: usize, const P: usize>(
         &'a self,
         poses: [&'a PosedMesh; P],
@@ -284,7 +285,7 @@ impl Instance {
     }
 }
 
-/// The sweep with the reach that it has among these poses; `None` if that is nowhere near them.
+/// The sweep with the reach that it has among these poses; `None` if it comes nowhere near them.
 fn near<const N: usize, const P: usize>(
     poses: [&PosedMesh; P],
     sweep: &Sweep<N>,

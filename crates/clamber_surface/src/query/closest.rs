@@ -9,16 +9,16 @@ use super::{CapsuleHit, ModelSpace, SurfaceHit, broad, length, root};
 use crate::geometry::{Capsule, round_up_to_f32};
 
 impl ModelSpace<'_> {
-    /// The material point nearest to `point`, no farther than `max_distance`. Of a point that is not finite there is
-    /// none.
+    /// The material point nearest to `point`, at most `max_distance` away, in model space. `None` if there is no such
+    /// point, or if `point` is not finite.
     pub fn closest_point(&self, point: Vec3, max_distance: f32) -> Option<SurfaceHit> {
         let ball = Capsule::ball(point, 0.0)?;
         let probe = Probe::of_ball(&ball, Vec3::ZERO);
         self.instance.closest(&probe, length(max_distance)?)
     }
 
-    /// The material point nearest to a capsule's segment, and the point of the segment nearest to
-    /// that: for limbs. No farther than `max_distance` from the capsule, which may reach into the skin.
+    /// The material point nearest to a capsule's segment, and the point of the segment nearest to it; made for limbs.
+    /// It is at most `max_distance` away from the capsule, which may overlap the skin.
     pub fn closest_to_capsule(&self, capsule: &Capsule, max_distance: f32) -> Option<CapsuleHit> {
         let reach = f64::from(capsule.radius()) + length(max_distance)?;
         let surface = with_probe!(capsule, [Vec3::ZERO; 2], probe => {
@@ -52,7 +52,7 @@ impl Instance {
                 if !posed.visit(cluster) {
                     return Some(limit);
                 }
-                // No triangle farther than the nearest vertex matters, or so little farther as it may measure.
+                // No triangle farther than the nearest vertex matters, except for rounding in its measured distance.
                 let (point, lost) = probe.facing(posed.somewhere()[0]);
                 let vertex = f64::from(posed.nearest_vertex(point)) + lost;
                 let near = best.limit().min(vertex + BLUR * size) + blur;

@@ -12,10 +12,11 @@ use crate::pose::PosedMesh;
 use crate::simd::SimdLevel;
 use crate::skin::ClusterPositions;
 
-/// Vertices that tell about where a cluster is.
+/// Number of vertices whose mean tells where a cluster is.
 const SAMPLES: usize = 8;
 
-/// A cluster as skinned in one pose (P = 1), or in those that it moves between (P = 2), copied out of their caches.
+/// A cluster as skinned in one pose (P = 1), or in the two poses that it moves between (P = 2), with its positions
+/// copied from their caches.
 pub(super) struct PosedCluster<'a, const P: usize> {
     instance: &'a Instance,
     poses: [&'a PosedMesh; P],
@@ -26,7 +27,7 @@ pub(super) struct PosedCluster<'a, const P: usize> {
 }
 
 impl<'a, const P: usize> PosedCluster<'a, P> {
-    /// Nothing yet: call [`PosedCluster::visit`] first. Made once a query, since it is large.
+    /// Holds no cluster yet: call [`PosedCluster::visit`] first. Made once per query, since it is large.
     pub(super) fn new(instance: &'a Instance, poses: [&'a PosedMesh; P]) -> Self {
         Self {
             instance,
@@ -38,7 +39,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         }
     }
 
-    /// Goes to a cluster; false if it is dead or its part is disabled.
+    /// Loads a cluster; false if it is dead or its part is disabled.
     pub(super) fn visit(&mut self, index: u32) -> bool {
         let (instance, mesh) = (self.instance, &self.instance.mesh);
         let clusters = mesh.clusters();
@@ -66,7 +67,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         self.triangles[triangle]
     }
 
-    /// Triangles, by their number in the cluster, that a probe may touch up to the time `until`.
+    /// Triangles that a probe may touch up to the time `until`, by their number in the cluster.
     pub(super) fn near<const N: usize>(&self, probe: &Probe<N>, until: f32) -> Survivors {
         let mut targets = self.somewhere();
         targets[P - 1] = targets[0] + (targets[P - 1] - targets[0]) * until;
@@ -75,14 +76,14 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         narrow::within_planes(self.level(), positions, rows, self.corners, &planes, until)
     }
 
-    /// Triangles whose own boxes over the motion meet a box.
+    /// Triangles whose bounding boxes over the motion overlap a box.
     pub(super) fn in_box(&self, sides: [[f32; 3]; 2]) -> Survivors {
         let (positions, rows) = (self.positions.each_ref(), self.cluster.rows());
         narrow::in_box(self.level(), positions, rows, self.corners, sides)
     }
 
-    /// A time by which one of the triangles is touched; infinity where queries do not see all of them,
-    /// since the vertex touched may be none of theirs.
+    /// A time by which one of the triangles is touched. Infinite if some triangles are hidden, since the vertex that is
+    /// touched may belong to those alone.
     pub(super) fn touched_by<const N: usize>(&self, probe: &Probe<N>) -> f32 {
         if !self.is_whole() {
             return f32::INFINITY;
@@ -92,7 +93,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         narrow::touched_by(self.level(), positions, rows, &ball)
     }
 
-    /// The ball of a capsule that is nearest to the cluster at the start.
+    /// The ball on the capsule's segment that is about nearest to the cluster at the start.
     fn facing_ball<const N: usize>(&self, probe: &Probe<N>) -> MovingBall {
         let [a, b] = probe.segment();
         let axis = b - a;
@@ -110,7 +111,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         }
     }
 
-    /// Those of the survivors that queries see, by number in the cluster.
+    /// The survivors that are enabled, by number in the cluster.
     pub(super) fn enabled(&self, survivors: Survivors) -> impl Iterator<Item = usize> {
         let beyond = self.triangles.len();
         survivors
@@ -119,13 +120,13 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
             .filter(|triangle| self.instance.shows(self.triangles[*triangle]))
     }
 
-    /// True if queries see all triangles.
+    /// True if all triangles of the cluster are enabled.
     fn is_whole(&self) -> bool {
         let instance = self.instance;
         instance.hidden_triangles == 0 || self.triangles.iter().all(|id| instance.shows(*id))
     }
 
-    /// A point near the middle in each pose: the mean of a few vertices.
+    /// A point near the cluster's middle in each pose: the mean of a few vertices.
     pub(super) fn somewhere(&self) -> [Vec3; P] {
         let slots = usize::from(self.cluster.slots);
         let mut means = [Vec3::ZERO; P];
@@ -147,7 +148,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         corners
     }
 
-    /// The corners of a triangle in some positions of the slots.
+    /// The corners of a triangle, looked up in the given positions of the slots.
     #[inline]
     pub(super) fn corners_in(&self, positions: &ClusterPositions, triangle: usize) -> [Vec3; 3] {
         let CornerBlock([a, b, c]) = &self.corners[triangle / BLOCK];
@@ -155,7 +156,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         [slot(a), slot(b), slot(c)].map(|slot| position(positions, slot))
     }
 
-    /// The corners of up to eight triangles in each pose; lanes to spare repeat the first.
+    /// The corners of up to eight triangles in each pose; unused lanes repeat the first triangle.
     pub(super) fn batch(&self, triangles: &[usize]) -> [Corners8; P] {
         let mut batches = [Corners8::default(); P];
         for (batch, positions) in batches.iter_mut().zip(&self.positions) {
@@ -171,7 +172,7 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
 }
 
 impl PosedCluster<'_, 1> {
-    /// Triangles that a ray as far as `limit` may meet, and the sheared positions.
+    /// Triangles that a ray may meet up to the distance `limit`; `sheared` receives the sheared positions.
     pub(super) fn along_ray(
         &self,
         ray: &ShearedRay,
@@ -189,8 +190,8 @@ impl PosedCluster<'_, 1> {
         )
     }
 
-    /// At least the distance from a point to the nearest vertex; infinite where queries do not see
-    /// all triangles, since that vertex may be none of theirs.
+    /// An upper bound of the distance from a point to the nearest vertex. Infinite if some triangles are hidden, since
+    /// that vertex may belong to those alone.
     pub(super) fn nearest_vertex(&self, point: Vec3) -> f32 {
         if !self.is_whole() {
             return f32::INFINITY;
@@ -209,7 +210,7 @@ fn position(positions: &ClusterPositions, slot: usize) -> Vec3 {
     )
 }
 
-/// Calls `test` with up to eight of the items at a time, in their order.
+/// Calls `test` with up to eight items at a time, in order.
 pub(super) fn by_eight(mut items: impl Iterator<Item = usize>, mut test: impl FnMut(&[usize])) {
     let mut batch = [0; EIGHT];
     loop {

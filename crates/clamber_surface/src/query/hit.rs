@@ -12,18 +12,18 @@ use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceHit {
-    /// The mesh that has the triangle.
+    /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
-    /// The triangle.
+    /// The triangle's id.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1 up to rounding.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
     /// The point, in model space.
     pub point: Vec3,
-    /// Outward unit normal of the deformed triangle, in model space. Where the triangle has
-    /// collapsed: towards the query's origin.
+    /// Outward unit normal of the deformed triangle, in model space. If the triangle has collapsed: the unit vector
+    /// from the point towards the ray's origin, the query's point or the middle of the capsule's segment.
     pub normal: Vec3,
-    /// From the ray's origin, the query's point or the capsule's segment, in units of model space.
+    /// Distance from the ray's origin, the query's point or the capsule's segment, in model units.
     pub distance: f64,
     /// The part that the triangle belongs to.
     pub part: PartId,
@@ -31,49 +31,51 @@ pub struct SurfaceHit {
     pub tag: SurfaceTag,
 }
 
-/// Where a capsule and the surface are nearest to each other.
+/// The nearest points of the surface and a capsule's segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CapsuleHit {
-    /// The surface's point. Its distance is that from the capsule's segment: 0 where they cross.
+    /// The surface's point. Its `distance` is measured from the capsule's segment: 0 where they cross.
     pub surface: SurfaceHit,
     /// The segment's point, in model space.
     pub segment: Vec3,
-    /// Where that lies on the segment: 0 at the capsule's first end, 1 at its second.
+    /// Position of that point on the segment: 0 at the capsule's first end, 1 at its second.
     pub along: f32,
 }
 
-/// The first contact of a capsule on its way with a triangle.
+/// The first contact of a moving capsule with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SweepHit {
-    /// The mesh that has the triangle.
+    /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
-    /// The triangle.
+    /// The triangle's id.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1 up to rounding.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
-    /// Share of the motion that was made when they touched, 0..=1.
+    /// Share of the motion until the contact, 0..=1.
     pub time: f64,
-    /// The triangle's point, where it is at that time, in model space.
+    /// The contact point on the triangle at that time, in model space.
     pub point: Vec3,
-    /// Unit vector from there to the capsule's segment; where that lies on the triangle itself, its own normal.
+    /// Unit vector from `point` to the capsule's segment, in model space. If the segment touches the triangle itself:
+    /// the triangle's normal.
     pub separation_normal: Vec3,
-    /// Outward unit normal of the deformed triangle at that time; where it has collapsed, the separation's.
+    /// Outward unit normal of the deformed triangle at that time, in model space. If the triangle has collapsed:
+    /// `separation_normal`.
     pub normal: Vec3,
-    /// From the point to the segment, in units of model space.
+    /// Distance from `point` to the segment, in model units.
     pub distance: f64,
     /// The part that the triangle belongs to.
     pub part: PartId,
     /// The triangle's tag.
     pub tag: SurfaceTag,
-    /// True if they overlap at the start already; the time is 0.
+    /// True if capsule and triangle overlap at the start; the time is 0 then.
     pub started_inside: bool,
-    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
-/// A triangle with its point that a query found.
+/// A triangle and its point that a query found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FoundPoint {
     pub(super) triangle: TriangleId,
@@ -81,28 +83,28 @@ pub(super) struct FoundPoint {
 }
 
 impl FoundPoint {
-    /// By distance, equal ones by triangle id.
+    /// Orders by distance, then by triangle id.
     fn compare(&self, other: &Self) -> Ordering {
         by_length(self.found.distance, other.found.distance)
             .then_with(|| self.triangle.cmp(&other.triangle))
     }
 }
 
-/// The order of lengths, none of which is NaN. -0 equals 0: which of them a distance of zero comes out as
-/// depends on the order of a triangle's corners.
+/// Orders lengths, none of which is NaN. -0 equals 0: the sign of a distance of zero depends on the order of a
+/// triangle's corners.
 fn by_length(a: f64, b: f64) -> Ordering {
     a.partial_cmp(&b).unwrap_or(Ordering::Equal)
 }
 
-/// Sorts hits by distance, equal ones by triangle id: the order in which [`Best`] prefers them.
+/// Sorts hits by distance, then by triangle id: the order in which [`Best`] prefers them.
 pub(super) fn sort_by_distance(hits: &mut [SurfaceHit]) {
     hits.sort_unstable_by(|a, b| {
         by_length(a.distance, b.distance).then_with(|| a.triangle.cmp(&b.triangle))
     });
 }
 
-/// The nearest triangle so far. Of equal distances the smaller triangle id wins, so the order in
-/// which triangles are tested does not matter.
+/// The nearest triangle so far. Among equal distances the smaller triangle id wins, so the order in which triangles are
+/// tested does not matter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
     nearest: Option<FoundPoint>,
@@ -110,7 +112,7 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Nothing yet, and nothing farther than `limit` ever.
+    /// Empty; ignores everything farther than `limit`.
     pub(super) fn within(limit: f64) -> Self {
         Self {
             nearest: None,
@@ -118,7 +120,7 @@ impl Best {
         }
     }
 
-    /// What is farther than this does not matter; what is as far may.
+    /// Triangles farther than this do not matter; a triangle exactly as far may.
     pub(super) fn limit(&self) -> f64 {
         self.limit
     }
@@ -134,7 +136,7 @@ impl Best {
         }
     }
 
-    /// The best as a hit; `origin` is where the query looked from.
+    /// The best as a hit; `origin` is the query's origin, as for [`Instance::hit`].
     pub(super) fn hit(&self, instance: &Instance, origin: Vec3) -> Option<SurfaceHit> {
         let nearest = self.nearest?;
         let part = instance.mesh.part_of(nearest.triangle)?;
@@ -142,14 +144,14 @@ impl Best {
     }
 }
 
-/// Below this share of the lengths involved a distance is rounding, and has no direction.
+/// A distance below this share of the lengths involved is rounding error and has no direction.
 const ALL_BUT_TOUCHING: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// A triangle with its first contact.
+/// A triangle and its first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct First {
     pub(super) triangle: TriangleId,
-    /// Of the triangle, at the start and the end.
+    /// Corners of the triangle at the start and at the end.
     pub(super) corners: [[Vec3; 3]; 2],
     pub(super) contact: Contact,
 }
@@ -161,15 +163,14 @@ impl First {
     }
 }
 
-/// The earliest contact so far; of those at one time the nearest, of those as near the one with the
-/// smaller triangle id.
+/// The earliest contact so far. Among contacts at one time the nearest wins, then the one with the smaller triangle id.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Earliest {
     first: Option<First>,
 }
 
 impl Earliest {
-    /// What is later than this does not matter; what is at that time may.
+    /// Contacts later than this do not matter; a contact at exactly this time may.
     pub(super) fn limit(&self) -> f64 {
         self.first.map_or(1.0, |first| first.contact.time)
     }
@@ -189,7 +190,7 @@ impl Earliest {
     }
 }
 
-/// The order of contacts: by time, then distance, then triangle id.
+/// Orders contacts by time, then distance, then triangle id.
 fn by_time(a: (f64, f64, TriangleId), b: (f64, f64, TriangleId)) -> Ordering {
     by_length(a.0, b.0)
         .then_with(|| by_length(a.1, b.1))
@@ -202,7 +203,7 @@ pub(super) fn sort_by_time(hits: &mut [SweepHit]) {
     hits.sort_unstable_by(|a, b| by_time(key(a), key(b)));
 }
 
-/// Adds the segment's part to the surface's.
+/// Adds the segment's nearest point to a hit on the surface.
 pub(super) fn capsule_hit(capsule: &Capsule, surface: SurfaceHit) -> CapsuleHit {
     let [a, b] = capsule.ends().map(widen);
     let axis = b - a;
@@ -220,9 +221,9 @@ pub(super) fn capsule_hit(capsule: &Capsule, surface: SurfaceHit) -> CapsuleHit 
 }
 
 impl Instance {
-    /// Completes a hit on a triangle with the given posed corners. `origin` is where the query looked
-    /// from.
-    // Called, it would be handed its arguments through memory, once for every hit of an overlap.
+    /// Completes a hit on a triangle with the given posed corners. `origin` is the query's origin: the normal of a
+    /// collapsed triangle points to it.
+    // Inlined: a call would pass its arguments through memory, once for every hit of an overlap.
     #[inline(always)]
     pub(super) fn hit(
         &self,
@@ -248,7 +249,7 @@ impl Instance {
         }
     }
 
-    /// Completes a contact.
+    /// Completes a contact; `None` if the triangle was removed.
     pub(super) fn sweep_hit<const N: usize>(
         &self,
         sweep: &Sweep<N>,

@@ -1,18 +1,17 @@
 //! Whether a point is inside the creature.
 //!
-//! A ray from the point to infinity leaves a closed surface once more than it enters it if the point is inside
-//! (Jordan's theorem; Haines 1994, "Point in Polygon Strategies", Graphics Gems IV, in the plane). The count goes
-//! wrong where the ray meets an edge or a corner, which all triangles around it count, and where it leaves through a
-//! hole. Three rays in unrelated directions are counted, and two that agree decide.
+//! A ray from a point inside a closed surface to infinity leaves the surface once more than it enters it (Jordan's
+//! theorem; Haines 1994, "Point in Polygon Strategies", Graphics Gems IV, in the plane). The count is wrong if the ray
+//! meets an edge or a corner, which all triangles around it count, or if it leaves through a hole. So up to three rays
+//! in unrelated directions are counted, and two that agree decide.
 
 use glam::Vec3;
 
 use super::ModelSpace;
 use crate::geometry::Ray;
 
-/// Directions of the rays, up, down and to the side, some 77 to 109 degrees apart, so that a sheet that is open behind
-/// seldom stops two of them. Far from axes and diagonals, along which edges of modelled
-/// creatures run.
+/// Directions of the rays: up, down and to the side, some 77 to 109 degrees apart, so that an open sheet seldom stops
+/// two of them. They are far from axes and diagonals, along which the edges of modelled creatures run.
 pub(super) const DIRECTIONS: [Vec3; 3] = [
     Vec3::new(0.371, 0.803, 0.467),
     Vec3::new(-0.523, -0.541, 0.659),
@@ -20,12 +19,11 @@ pub(super) const DIRECTIONS: [Vec3; 3] = [
 ];
 
 impl ModelSpace<'_> {
-    /// True if a point is inside: where the surface winds around it at least once, by the triangles that queries see.
-    /// A point that is not finite is not.
+    /// True if a point, in model space, is inside the surface: the enabled triangles wind around it at least once.
+    /// False for a point that is not finite.
     ///
-    /// Where the surface has holes, and for the few points from which a ray meets an edge exactly, two of three
-    /// directions decide: near a hole a point may count as either, as on the surface itself. Mirrored parts count
-    /// with their outside outside.
+    /// Two of three rays decide, so one ray through a hole, or exactly through an edge, is outvoted. Near a hole, and
+    /// on the surface itself, the result may be either. Mirrored parts count with their outward normals.
     pub fn is_inside(&self, point: Vec3) -> bool {
         let mut inside = 0;
         for (asked, direction) in DIRECTIONS.into_iter().enumerate() {

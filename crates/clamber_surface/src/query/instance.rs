@@ -10,26 +10,26 @@ use crate::mesh::{ColliderMesh, PartId, TriangleId, VertexId};
 use crate::pose::PosedMesh;
 use crate::simd::SimdLevel;
 
-/// A mesh in its poses of now and of a tick ago, less what is hidden: all that queries see.
+/// A mesh with its current and its previous pose, and which parts and triangles are hidden: all that queries read.
 pub(crate) struct Instance {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) current: PosedMesh,
-    /// That of the previous tick, expressed in the current model frame.
+    /// The pose of the previous tick, expressed in the current model frame.
     pub(crate) previous: PosedMesh,
-    /// Both poses are one.
+    /// True if both poses are the same.
     pub(crate) is_still: bool,
     pub(crate) simd_level: SimdLevel,
     pub(crate) part_enabled: Vec<bool>,
     /// Per triangle; stays true after the triangle is removed.
     pub(crate) triangle_enabled: Vec<bool>,
-    /// How many triangles are not enabled.
+    /// Number of triangles that are not enabled.
     pub(crate) hidden_triangles: usize,
     pub(crate) triangles_tested: AtomicU64,
     pub(crate) most_cast_steps: AtomicU32,
 }
 
 impl Instance {
-    /// At rest.
+    /// A mesh at rest.
     pub(crate) fn new(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
         Self {
             current: PosedMesh::at_rest(&mesh, simd_level),
@@ -52,13 +52,13 @@ impl Instance {
         })
     }
 
-    /// [`Instance::is_enabled`] for a triangle of an enabled part. Where nothing is hidden, it
-    /// reads nothing.
+    /// [`Instance::is_enabled`] for a triangle of an enabled part. Reads no memory of the triangle if nothing is
+    /// hidden.
     pub(super) fn shows(&self, triangle: TriangleId) -> bool {
         self.hidden_triangles == 0 || self.triangle_enabled[triangle.index()]
     }
 
-    /// Where a vertex is in a pose; `None` if it does not exist or was removed.
+    /// The position of a vertex in a pose; `None` if it does not exist or was removed.
     pub(crate) fn position_in(&self, pose: &PosedMesh, vertex: VertexId) -> Option<Vec3> {
         let exists = self.mesh.has_vertex(vertex);
         exists.then(|| pose.position(&self.mesh, vertex.index()))
@@ -75,7 +75,7 @@ impl Instance {
         self.corners_in(&self.current, triangle)
     }
 
-    /// Spheres that hold the children of a node in each pose.
+    /// Bounding spheres of the children of a node, in each pose.
     pub(super) fn spheres<const P: usize>(
         &self,
         poses: [&PosedMesh; P],
@@ -99,13 +99,13 @@ impl Instance {
         })
     }
 
-    /// True if the joint of a part mirrors.
+    /// True if the joint of a part mirrors in the current pose.
     pub(crate) fn is_mirrored(&self, part: PartId) -> bool {
         let joint = self.mesh.parts()[part.index()].joint;
         self.current.palette()[joint.index()].is_mirrored()
     }
 
-    /// Counts exact triangle tests of a query, which took so many steps at most.
+    /// Counts a query's exact triangle tests; `steps` is the most that one of them took.
     pub(super) fn count_tested(&self, triangles: usize, steps: u32) {
         if triangles > 0 {
             let count = triangles as u64;
@@ -116,7 +116,7 @@ impl Instance {
 }
 
 impl Clone for Instance {
-    /// Both poses and all flags; what queries computed is computed anew.
+    /// Copies both poses and all flags. Cached results are not copied: queries compute them again.
     fn clone(&self) -> Self {
         Self {
             mesh: self.mesh.clone(),
@@ -138,7 +138,7 @@ impl fmt::Debug for Instance {
         let (mesh, hidden) = (&self.mesh, self.hidden_triangles);
         write!(
             f,
-            "{} triangles on {} joints, {hidden} of them hidden",
+            "{} triangles on {} joints, {hidden} triangles hidden",
             mesh.triangles().len(),
             mesh.joint_count()
         )

@@ -1,9 +1,8 @@
-//! Queries of a posed surface, in its own model space. All see triangles from both sides.
+//! Queries of a posed surface, in its own model space. All queries meet triangles from both sides.
 //!
-//! A query descends the hierarchy by spheres that come from the palette alone, has the clusters
-//! skinned that it reaches, rules out most of their triangles by planes, and tests the others
-//! exactly, in f64 on the f32 corners. Bounds only ever rule out what the exact test would refuse, so
-//! the answer is that of testing every triangle, bit for bit.
+//! A query descends the hierarchy by spheres that follow from the palette alone and skins the clusters that it reaches.
+//! It rules out most of their triangles by planes, and tests the others exactly, in f64 on the f32 corners. Bounds rule
+//! out only triangles that the exact test would reject, so the result has the bits of testing every triangle.
 
 mod boxes;
 mod broad;
@@ -32,8 +31,8 @@ use glam::Vec3;
 use crate::geometry::Sphere;
 use crate::mesh::{PartId, VertexId};
 
-/// A surface in its own model space, in f32: queries, and where vertices and parts are. Got from
-/// [`SkinnedSurface::in_model`](crate::surface::SkinnedSurface::in_model).
+/// A view of a surface in its own model space, in f32: queries, and positions of vertices and parts.
+/// [`SkinnedSurface::in_model`](crate::surface::SkinnedSurface::in_model) returns it.
 ///
 /// Ray lengths and the distances of closest-point queries may be infinite. A length that is NaN or negative finds
 /// nothing.
@@ -43,19 +42,19 @@ pub struct ModelSpace<'a> {
 }
 
 impl ModelSpace<'_> {
-    /// Where a vertex stands now; `None` if it does not exist or was removed.
+    /// The current position of a vertex, in model space; `None` if the vertex does not exist or was removed.
     pub fn position(&self, vertex: VertexId) -> Option<Vec3> {
         self.instance.position_in(&self.instance.current, vertex)
     }
 
-    /// Where a vertex stood a tick ago, in the current model frame; `None` if it does not exist or was
-    /// removed. One that was added since stood where the palette of a tick ago would have had it.
+    /// The position of a vertex a tick ago, in the current model frame; `None` if the vertex does not exist or was
+    /// removed. For a vertex that was added since, it is the position that the palette of a tick ago gives it.
     pub fn previous_position(&self, vertex: VertexId) -> Option<Vec3> {
         self.instance.position_in(&self.instance.previous, vertex)
     }
 
-    /// For every part that has triangles a sphere that holds it as it is posed now, from the palette alone. O(joints of
-    /// the part) each. The first call on a mesh reads all its rest data.
+    /// A bounding sphere for each part that has triangles, in the current pose and in model space. Spheres follow from
+    /// the palette alone and cost O(joints of the part) each. The first call on a mesh reads all its rest data.
     pub fn part_spheres(&self) -> impl Iterator<Item = (PartId, Sphere)> {
         self.instance.current.part_spheres(&self.instance.mesh)
     }

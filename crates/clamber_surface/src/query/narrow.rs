@@ -1,10 +1,10 @@
-//! Which triangles of a posed cluster are worth an exact test.
+//! Selects the triangles of a posed cluster that need an exact test.
 //!
-//! Every vertex gets a code with a bit for each half-space that it lies in, beyond a plane that
-//! touches the query's region, or beside its ray; a triangle whose corners share a bit is outside as well (Cohen and Sutherland's
-//! line clipping; Foley, van Dam, Feiner, Hughes 1990, *Computer Graphics*, 3.12). Codes are computed
-//! for as many vertices at once as the machine is wide, and looked up for 32 triangles at once. Vertices that
-//! move are beyond a plane that are so at both ends of their paths.
+//! Every vertex gets a code with a bit for each half-space that it lies in. A half-space is beyond a plane that touches
+//! the query's region, or beside the query's ray. A triangle whose corners share a bit lies in that half-space as well
+//! and is ruled out (Cohen and Sutherland's line clipping; Foley, van Dam, Feiner, Hughes 1990, *Computer Graphics*,
+//! 3.12). Codes are computed for as many vertices at once as a SIMD register holds, and looked up for 32 triangles at
+//! once. A vertex that moves is beyond a plane if it is so at both ends of its path.
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, u8x32};
 
@@ -15,7 +15,7 @@ use crate::mesh::clusters::{BLOCK, CornerBlock, MAX_SLOTS, MAX_TRIANGLES, ROW};
 use crate::simd::SimdLevel;
 use crate::skin::ClusterPositions;
 
-/// A bit for each triangle of a cluster.
+/// The triangles of a cluster that are not ruled out, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Survivors([u32; MAX_TRIANGLES / BLOCK]);
 
@@ -35,7 +35,7 @@ impl Survivors {
     }
 }
 
-/// A code per slot.
+/// One code per slot.
 type Codes = [u8; MAX_SLOTS];
 
 /// Triangles that no plane rules out up to the time `until`.
@@ -53,8 +53,8 @@ pub(super) fn within_planes<const P: usize>(
     })
 }
 
-/// Triangles whose own boxes over the motion meet the box between two corners: exactly, since a code
-/// has a bit for each side of the box that a vertex is beyond all the time.
+/// Triangles whose bounding boxes over the motion overlap the box between two corners. This is exact, since a code has
+/// a bit for each side of the box, set if the vertex is beyond that side at both ends of its path.
 pub(super) fn in_box<const P: usize>(
     level: SimdLevel,
     positions: [&ClusterPositions; P],
@@ -68,8 +68,8 @@ pub(super) fn in_box<const P: usize>(
     })
 }
 
-/// Triangles that a ray as far as `limit` may meet; `sheared` gets the sheared positions, with the
-/// bits of [`ShearedRay::shear`].
+/// Triangles that a ray may meet up to the distance `limit`; `sheared` receives the sheared positions, with the bits of
+/// [`ShearedRay::shear`].
 pub(super) fn along_ray(
     level: SimdLevel,
     positions: &ClusterPositions,
@@ -85,7 +85,7 @@ pub(super) fn along_ray(
     })
 }
 
-/// At least the distance from a point to the nearest of a cluster's vertices.
+/// An upper bound of the distance from a point to the nearest of a cluster's vertices.
 pub(super) fn nearest_vertex(
     level: SimdLevel,
     positions: &ClusterPositions,
@@ -172,8 +172,8 @@ fn plane_codes<S: Simd, const P: usize>(
     )
 }
 
-/// Which of some points, relative to the planes' origin, lie beyond a plane for all that is lost, at both ends of
-/// their paths if they move.
+/// Which points lie beyond a plane by more than the allowance `lost` for rounding; moving points have to at both ends
+/// of their paths. Points are relative to the planes' origin.
 #[inline(always)]
 fn beyond<S: Simd, const P: usize>(
     simd: S,
@@ -274,7 +274,8 @@ fn ray_codes<S: Simd>(
     )
 }
 
-/// A code for every slot from what up to eight half-spaces hold of each vector of slots.
+/// A code for every slot. For each vector of slots, `outside` returns which of them lie in each of up to eight
+/// half-spaces.
 #[inline(always)]
 fn each_code<S: Simd, const N: usize>(
     simd: S,
@@ -293,8 +294,8 @@ fn each_code<S: Simd, const N: usize>(
     wide.map(|code| code as u8)
 }
 
-/// Triangles whose corners share no bit. What lies beyond a cluster's last triangle has thrice the
-/// same corner, and survives if that does: callers know where to stop.
+/// Triangles whose corners share no bit. The padding after a cluster's last triangle repeats one corner three times, so
+/// it may survive: callers stop before it.
 #[inline(always)]
 fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Survivors {
     let mut found = Survivors([0; MAX_TRIANGLES / BLOCK]);
@@ -334,20 +335,21 @@ fn one_by_one(slots: &[[u8; BLOCK]; 3], codes: &Codes) -> u32 {
     bits
 }
 
-/// A ball that moves: its centre, its way, and its radius.
+/// A moving ball: its centre, its displacement and its radius.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBall {
     pub(super) center: [f32; 3],
     pub(super) motion: [f32; 3],
     pub(super) radius: f32,
-    /// How far its centre may be from where it should be.
+    /// Allowance for error in the position of the centre.
     pub(super) lost: f32,
 }
 
-/// A time by which a ball has touched one of a cluster's vertices, or infinity: about the earliest.
+/// A time by which a ball has touched one of a cluster's vertices, close to the earliest such time; infinity if none is
+/// found.
 ///
-/// The root of a quadratic, which rounding may put anywhere, for a ball that is a little smaller; it
-/// counts if the vertex is within the ball then, for all that arithmetic may have lost.
+/// Solves a quadratic for a slightly smaller ball. Rounding may put the root anywhere, so it counts only if the vertex
+/// is then within the full ball, less the allowance for rounding.
 pub(super) fn touched_by<const P: usize>(
     level: SimdLevel,
     positions: [&ClusterPositions; P],
@@ -357,14 +359,14 @@ pub(super) fn touched_by<const P: usize>(
     dispatch!(level.level(), simd => earliest(simd, positions, rows, ball))
 }
 
-/// How much smaller the ball is for which roots are sought: less, and rounding voids more of them;
-/// more, and they come later.
+/// Share of the radius by which the ball is reduced for the quadratic. With a smaller share, rounding voids more roots;
+/// with a larger one, roots come later.
 const SMALLER: f32 = 1.0 / 1024.0;
 
-/// 2^-50: of smaller lengths squares underflow.
+/// 2^-50. Squares of much smaller lengths underflow.
 const LEAST_RADIUS: f32 = 1.0 / (1u64 << 50) as f32;
 
-/// Of larger lengths fourth powers overflow.
+/// Fourth powers of larger lengths overflow.
 const LARGEST_SIZE: f32 = 1e9;
 
 #[inline(always)]

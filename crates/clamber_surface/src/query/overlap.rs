@@ -10,17 +10,16 @@ use crate::geometry::Capsule;
 use crate::mesh::hierarchy::LANES;
 
 impl ModelSpace<'_> {
-    /// Every triangle within the capsule, each with its own point closest to the capsule's segment,
-    /// by ascending triangle id. A hit's distance is that from the segment: 0 where it crosses the
-    /// triangle. `hits` is cleared first and keeps its memory.
+    /// Finds every triangle within the capsule, by ascending triangle id, each with its point closest to the capsule's
+    /// segment. The distance of a hit is measured from the segment: 0 where the segment crosses the triangle. `hits` is
+    /// cleared first; its memory is reused.
     pub fn overlap_capsule(&self, capsule: &Capsule, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
         self.visit_overlap_capsule(capsule, |hit| hits.push(hit));
         hits.sort_unstable_by_key(|hit| hit.triangle);
     }
 
-    /// [`ModelSpace::overlap_capsule`] for callers with a place of their own for the hits, which
-    /// come in no promised order.
+    /// [`ModelSpace::overlap_capsule`] with a callback in place of a list. Hits come in unspecified order.
     pub fn visit_overlap_capsule(&self, capsule: &Capsule, visit: impl FnMut(SurfaceHit)) {
         with_probe!(capsule, [Vec3::ZERO; 2], probe => self.instance.visit_overlap(&probe, visit));
     }

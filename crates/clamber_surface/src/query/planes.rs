@@ -1,8 +1,8 @@
 //! Planes that move with a ball or capsule and touch it, on the side that faces a cluster.
 //!
-//! The distance of a vertex from such a plane changes evenly, and so does a triangle's: one whose
-//! corners are beyond a plane at both ends of the motion is beyond it all the time between. Where a
-//! sphere rests on skin, a box holds hundreds of triangles that do not touch it; these planes leave few.
+//! The distance of a vertex from such a plane changes linearly. A triangle whose corners are beyond a plane at both
+//! ends of the motion is therefore beyond it all the time between. Where a sphere rests on skin, its bounding box holds
+//! hundreds of triangles that it does not touch; these planes leave few.
 
 use glam::{DVec3, Vec3};
 
@@ -10,19 +10,19 @@ use super::broad::SLACK;
 use super::probe::Probe;
 use crate::geometry::{round_to_f32, widen};
 
-/// How many; as many as a code has bits.
+/// Number of planes: as many as a code has bits.
 pub(super) const PLANES: usize = 8;
 
-/// Beyond this, products overflow, and nothing is ruled out.
+/// Above this size, products overflow, and nothing is ruled out.
 const LARGEST: f32 = 1e30;
 
-/// Cosine and sine of the angles between the planes' normals and the direction of the cluster: 25
-/// degrees, where a sphere rests on flat skin, and 55, where it stands in a corner.
+/// Cosine and sine of the angles between the planes' normals and the direction to the cluster: 25 degrees, for a sphere
+/// that rests on flat skin, and 55, for a sphere in a corner.
 const NEAR: [f32; 2] = [0.906_307_8, 0.422_618_26];
 const FAR: [f32; 2] = [0.573_576_45, 0.819_152];
 
-/// Half-spaces `normal . (p - origin) > limit` that hold nothing of a probe: for vertices that move a limit at time 0
-/// and one at the time that still matters, for others one that holds at both.
+/// Half-spaces `normal . (p - origin) > limit` that contain nothing of a probe. For vertices that move (P = 2) there is
+/// one limit for time 0 and one for the last time that matters; otherwise one limit holds at both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planes<const P: usize> {
     pub(super) origin: [f32; 3],
@@ -31,8 +31,8 @@ pub(super) struct Planes<const P: usize> {
 }
 
 impl<const P: usize> Planes<P> {
-    /// Of all that a probe reaches up to the time `until`, towards something that moves from the first target to the
-    /// last by then.
+    /// Planes around all that a probe reaches up to the time `until`, facing a target that moves from the first of
+    /// `targets` to the last by then.
     pub(super) fn facing<const N: usize>(probe: &Probe<N>, until: f32, targets: [Vec3; P]) -> Self {
         let [origin, last] = probe.segment();
         let axis = last - origin;
@@ -72,7 +72,7 @@ impl<const P: usize> Planes<P> {
     }
 }
 
-/// How far a vector goes along each normal.
+/// The product of a vector with each normal.
 #[inline(always)]
 fn along(normals: &[[f32; PLANES]; 3], v: Vec3) -> [f32; PLANES] {
     let mut found = [0.0; PLANES];
@@ -91,9 +91,9 @@ fn larger(a: [f32; PLANES], b: [f32; PLANES]) -> [f32; PLANES] {
     found
 }
 
-/// From the core to the target where they are nearest, about: any direction will do.
+/// Approximate direction from the core to the target when they are nearest. Any direction gives valid planes.
 fn direction(axis: Vec3, motions: [Vec3; 2], origin: Vec3, targets: [Vec3; 2]) -> DVec3 {
-    // In f64: in f32 the squares of what is small underflow, and normals come out too long.
+    // In f64: in f32, squares of small numbers underflow, and normals come out too long.
     let axis = widen(axis);
     let motions = motions.map(widen);
     let [start, end] = targets.map(|target| widen(target) - widen(origin));
@@ -115,11 +115,11 @@ fn share(numerator: f64, denominator: f64) -> f64 {
     }
 }
 
-/// Unit vectors about one, by coordinate: itself, and others that are tilted away from it.
+/// Unit vectors around `facing`, by coordinate: itself, and others tilted away from it.
 fn about(facing: Vec3) -> [[f32; PLANES]; 3] {
     let (across, up) = facing.any_orthonormal_pair();
     let half_root_3 = 0.866_025_4;
-    // Along itself, across and up.
+    // Components along `facing`, `across` and `up`.
     let parts = [
         [1.0, 0.0, 0.0],
         [NEAR[0], NEAR[1], 0.0],

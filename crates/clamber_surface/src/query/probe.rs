@@ -7,28 +7,27 @@ use crate::geometry::triangle::{
 use crate::geometry::{Capsule, round_to_f32, round_up_to_f32, widen};
 use crate::simd::SimdLevel;
 
-/// How far an exact test may be off, as a share of the lengths involved (segment, edges, distance):
-/// four times the 2^-48 by which a segment that all but touches a triangle counts as crossing it, and
-/// some thirty times what rounding takes. Less loses triangles that the exact test takes; more tests
-/// more.
+/// Allowance for the error of an exact test, as a share of the lengths involved (segment, edges, distance): four times
+/// the gap of 2^-48 that counts as a crossing of segment and triangle, and some thirty times the rounding error. A
+/// smaller value loses triangles that the exact test accepts; a larger one tests more triangles.
 pub(super) const BLUR: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// By how much rounding may widen a tolerance, as a share of the lengths involved: eight times the 2^-46
-/// by which [`first_contact`](crate::geometry::triangle::first_contact) does.
+/// Allowance for rounding that widens a tolerance, as a share of the lengths involved: eight times the 2^-46 of
+/// [`first_contact`](crate::geometry::triangle::first_contact).
 const TOLERANCE_BLUR: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// What a query asks about: a ball (N = 1) or a capsule (N = 2), each of whose ends may move on a straight line.
+/// The shape of a query: a ball (N = 1) or a capsule (N = 2), each of whose ends may move on a straight line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe<const N: usize> {
     pub(super) ends: [Vec3; N],
-    /// From time 0 to time 1.
+    /// Displacements of the ends from time 0 to time 1.
     pub(super) motions: [Vec3; N],
     pub(super) radius: f32,
-    /// How near what matters comes to the core, at least.
+    /// Distance from the core within which triangles matter.
     pub(super) reach: f32,
 }
 
-/// Calls something with a [`Probe`] of one end for a capsule that is and stays a ball, of two for any other.
+/// Evaluates an expression with a [`Probe`]: of one end if the capsule is a ball and stays one, else of two.
 macro_rules! with_probe {
     ($capsule:expr, $motions:expr, $probe:ident => $call:expr) => {{
         let (capsule, [of_a, of_b]): (&crate::geometry::Capsule, [glam::Vec3; 2]) =
@@ -67,12 +66,12 @@ impl Probe<2> {
 }
 
 impl<const N: usize> Probe<N> {
-    /// The first end, and the last, which is the same of a ball.
+    /// The first and the last end, which are the same for a ball.
     pub(super) fn segment(&self) -> [Vec3; 2] {
         [self.ends[0], self.ends[N - 1]]
     }
 
-    /// Where a hit's normal points where its triangle has none.
+    /// The middle of the core. The normal of a hit on a collapsed triangle points to it.
     pub(super) fn middle(&self) -> Vec3 {
         match self.segment() {
             [center, _] if N == 1 => center,
@@ -80,7 +79,7 @@ impl<const N: usize> Probe<N> {
         }
     }
 
-    /// A point of its core, about the nearest to `target`, and how far rounding may have taken it off.
+    /// A point of the core, about the nearest to `target`, and how far rounding may have displaced it.
     pub(super) fn facing(&self, target: Vec3) -> (Vec3, f64) {
         let [a, b] = self.segment().map(widen);
         if N == 1 {
@@ -88,7 +87,7 @@ impl<const N: usize> Probe<N> {
         }
         let axis = b - a;
         let along = (widen(target) - a).dot(axis) / axis.length_squared();
-        // An end where that is no number.
+        // NaN gives the first end.
         let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
         let exact = a + axis * along;
         let rounded = round_to_f32(exact);
@@ -96,18 +95,17 @@ impl<const N: usize> Probe<N> {
         (rounded, (widen(rounded) - exact).length() + size * BLUR)
     }
 
-    /// How far beyond its radius the exact test may take a triangle for a touching one, of a surface
-    /// that is `size` across.
+    /// How far beyond the radius the exact test may still accept a triangle, on a surface that is `size` across.
     pub(super) fn blur(&self, size: f64) -> f64 {
         if N == 1 {
-            // What a point's distance is off by is a share of itself: `box_around` pays for it.
+            // The error of a point's distance is a share of that distance: `box_around` allows for it.
             return 0.0;
         }
         let [a, b] = self.segment().map(widen);
         BLUR * ((b - a).length() + f64::from(self.radius) + size)
     }
 
-    /// With the reach of a query for what is within `distance` of its core.
+    /// The same probe with the reach of a query for triangles within `distance` of its core.
     pub(super) fn reaching(&self, distance: f64) -> Self {
         Self {
             reach: round_up_to_f32(distance),
@@ -115,9 +113,9 @@ impl<const N: usize> Probe<N> {
         }
     }
 
-    /// The box around all that is within `distance` of its core before it moves, rounded outwards.
+    /// The box around everything within `distance` of the core before it moves, rounded outwards.
     pub(super) fn box_around(&self, distance: f64) -> [[f32; 3]; 2] {
-        // Some roundings of 2^-53 in the exact test.
+        // Covers some roundings of 2^-53 in the exact test.
         let distance = distance * (1.0 + 1e-12);
         let [a, b] = self.segment();
         let up = |x: f32| round_up_to_f32(f64::from(x) + distance);
@@ -146,7 +144,7 @@ impl<const N: usize> Probe<N> {
     }
 }
 
-/// A probe on its way.
+/// A moving probe and the tolerance of its contacts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep<const N: usize> {
     pub(super) probe: Probe<N>,
@@ -154,7 +152,8 @@ pub(super) struct Sweep<const N: usize> {
 }
 
 impl<const N: usize> Sweep<N> {
-    /// Up to `tolerance` from touching; `None` where either is not finite, or the tolerance is negative.
+    /// A sweep for which a gap of up to `tolerance` is a contact. `None` if a motion or the tolerance is not finite, or
+    /// if the tolerance is negative.
     pub(super) fn new(probe: Probe<N>, tolerance: f32) -> Option<Self> {
         let moves = probe.motions.iter().all(|motion| motion.is_finite());
         let usable = moves && (0.0..f32::INFINITY).contains(&tolerance);
@@ -164,7 +163,7 @@ impl<const N: usize> Sweep<N> {
         })
     }
 
-    /// With the reach that it has among triangles that are up to `size` across and away from it.
+    /// The same sweep with the reach that it has among triangles that are at most `size` across and `size` away.
     pub(super) fn among(&self, size: f64) -> Self {
         let core = &self.core;
         let reach = core.radius + core.tolerance + TOLERANCE_BLUR * (size + core.radius);
@@ -174,13 +173,13 @@ impl<const N: usize> Sweep<N> {
         }
     }
 
-    /// Of its core and its way, at least.
+    /// An upper bound of the length of its core and of its path.
     pub(super) fn length(&self) -> f64 {
         let ends = self.core.start.iter().chain(&self.core.end);
         ends.map(|end| end.length()).sum()
     }
 
-    /// The box around all that it reaches on its way, rounded outwards.
+    /// The box around everything that it reaches on its path, rounded outwards.
     #[inline]
     pub(super) fn bounds(&self) -> [[f32; 3]; 2] {
         let origin = widen(self.core.origin);
@@ -189,7 +188,7 @@ impl<const N: usize> Sweep<N> {
             (DVec3::INFINITY, DVec3::NEG_INFINITY),
             |(low, high), end| (low.min(origin + *end), high.max(origin + *end)),
         );
-        // A step of f32 is more than the sums are off by.
+        // One step of f32 is more than the error of the sums.
         let reach = f64::from(self.probe.reach);
         let up = |x: f64| round_up_to_f32(x + reach).next_up();
         [(-low).to_array().map(|x| -up(x)), high.to_array().map(up)]

@@ -8,9 +8,10 @@ use crate::geometry::{Ray, round_up_to_f32};
 use crate::skin::ClusterPositions;
 
 impl ModelSpace<'_> {
-    /// The first triangle along a ray, from either side, up to `max_distance`.
+    /// The first triangle that a ray meets, from either side, up to `max_distance`, in model units.
     ///
-    /// Watertight across edges and corners that triangles share by index.
+    /// Watertight across edges and corners that triangles share by index. Among equal distances the smaller triangle id
+    /// wins.
     pub fn cast_ray(&self, ray: &Ray, max_distance: f32) -> Option<SurfaceHit> {
         let mut best = Best::within(length(max_distance)?);
         self.instance
@@ -24,7 +25,8 @@ impl ModelSpace<'_> {
         best.hit(self.instance, ray.origin())
     }
 
-    /// True if a ray meets any triangle, from either side, up to `max_distance`. Stops at the first one that it finds.
+    /// True if a ray meets any triangle, from either side, up to `max_distance`. Stops at the first triangle that it
+    /// finds.
     pub fn intersects_ray(&self, ray: &Ray, max_distance: f32) -> bool {
         let mut met = false;
         if let Some(limit) = length(max_distance) {
@@ -36,9 +38,9 @@ impl ModelSpace<'_> {
         met
     }
 
-    /// All triangles that a ray meets, from either side, up to `max_distance`, by distance, equal ones by triangle id:
-    /// the first is the hit of [`ModelSpace::cast_ray`]. A ray through an edge or a corner meets all triangles
-    /// that share it. `hits` is cleared first and keeps its memory.
+    /// Finds all triangles that a ray meets, from either side, up to `max_distance`, sorted by distance, then by
+    /// triangle id. The first is the hit of [`ModelSpace::cast_ray`]. A ray through an edge or a corner meets all
+    /// triangles that share it. `hits` is cleared first; its memory is reused.
     pub fn cast_ray_all(&self, ray: &Ray, max_distance: f32, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
         let Some(limit) = length(max_distance) else {
@@ -62,8 +64,8 @@ impl ModelSpace<'_> {
 }
 
 impl Instance {
-    /// Calls `visit` with every triangle met, nearest bounds first; it gives the distance that still
-    /// matters, or none to stop.
+    /// Calls `visit` with every triangle that the ray meets, nearest bounds first. `visit` returns the distance that
+    /// still matters, or `None` to stop.
     pub(super) fn visit_ray<'a>(
         &'a self,
         ray: &Ray,

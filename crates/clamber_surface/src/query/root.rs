@@ -1,14 +1,14 @@
-//! A query against the box around the whole surface: what is nowhere near costs no more.
+//! A query against the box around the whole surface. A query that misses the box does no other work.
 
 use glam::DVec3;
 
 use crate::bounds::RootBox;
 use crate::geometry::{Ray, widen};
 
-/// How far the f32 triangle test may be off, as a share of the distances involved.
+/// Allowance for the error of the f32 triangle test, as a share of the distances involved.
 const SLACK: f64 = 16.0 * f32::EPSILON as f64;
 
-/// No edge of the surface is longer. May be infinite.
+/// An upper bound of the length of the surface's edges; may be infinite.
 pub(super) fn size(root: &RootBox) -> f64 {
     (widen(root.max) - widen(root.min)).length()
 }
@@ -19,8 +19,8 @@ pub(super) fn overlaps(root: &RootBox, low: [f32; 3], high: [f32; 3]) -> bool {
     (0..3).all(|axis| low[axis] <= max[axis] && min[axis] <= high[axis])
 }
 
-/// False only if a ray as far as `limit` meets nothing on the surface: by its passage through the
-/// three slabs of the box (Kay and Kajiya 1986), widened by what the triangle test may be off.
+/// False only if a ray up to the distance `limit` meets nothing on the surface. Clips the ray to the three slabs of the
+/// box (Kay and Kajiya 1986), widened by the error of the triangle test.
 pub(super) fn may_meet(root: &RootBox, ray: &Ray, limit: f64) -> bool {
     let origin = widen(ray.origin());
     let (min, max) = (widen(root.min) - origin, widen(root.max) - origin);

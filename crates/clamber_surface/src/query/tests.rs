@@ -1,4 +1,4 @@
-//! Lazy against eager, bit for bit: any creature, any palette, any instruction set, any threads.
+//! Lazy against eager skinning, bit for bit: any creature, any palette, any instruction set, any threads.
 
 mod accuracy;
 mod best;
@@ -34,7 +34,7 @@ fn assert_positions_equal(surface: &SkinnedSurface, mesh: &ColliderMesh, case: &
             (&surface.instance.previous, &before),
         ] {
             let mut positions = crate::skin::ClusterPositions::ZERO;
-            // Filled by the first, read from the cache by the second.
+            // The first pass fills the cache, the second reads it.
             for _ in 0..2 {
                 pose.positions(mesh, index as u32, &mut positions);
                 for (slot, v) in cluster.vertices(mesh.clusters()).iter().enumerate() {
@@ -52,7 +52,7 @@ fn same_bits(a: &[Vec3], b: &[Vec3]) -> bool {
 }
 
 #[test]
-fn any_creature_in_any_pose_at_every_simd_level() {
+fn queries_and_skinning_agree_in_any_pose_at_every_simd_level() {
     let mut rng = fastrand::Rng::with_seed(71);
     let spreads = [
         Spread::Random,
@@ -86,7 +86,7 @@ fn any_creature_in_any_pose_at_every_simd_level() {
 }
 
 #[test]
-fn threads_that_query_at_once_find_what_one_finds() {
+fn concurrent_queries_find_the_same_as_one_thread() {
     let mesh = crate::testing::tube(12, 48);
     let mut rng = fastrand::Rng::with_seed(72);
     let mut surface = SkinnedSurface::new(mesh);
@@ -105,7 +105,7 @@ fn threads_that_query_at_once_find_what_one_finds() {
                 .collect()
         };
         surface.advance(&bent, Similarity::IDENTITY).unwrap();
-        // Never skinned ahead, so that it counts what the others count.
+        // The clone is never skinned ahead, so it counts what the others count.
         let alone = surface.clone();
         let wanted = ask(&alone);
         let diagnostics = alone.diagnostics();
@@ -133,7 +133,7 @@ fn threads_that_query_at_once_find_what_one_finds() {
 }
 
 #[test]
-fn skinning_ahead_changes_no_answer() {
+fn skinning_ahead_changes_no_result() {
     let mesh = crate::testing::tube(8, 24);
     let mut rng = fastrand::Rng::with_seed(73);
     let mut ahead = SkinnedSurface::new(mesh.clone());
@@ -149,7 +149,7 @@ fn skinning_ahead_changes_no_answer() {
 }
 
 #[test]
-fn a_tick_after_one_that_touched_everything_is_skinned_ahead_and_one_after_rest_is_not() {
+fn only_a_tick_after_one_that_touched_everything_is_skinned_ahead() {
     let mesh = crate::testing::tube(8, 24);
     let mut surface = SkinnedSurface::new(mesh.clone());
     let bent = crate::testing::bend(8, glam::DVec3::Y, 0.2);
@@ -172,7 +172,7 @@ fn a_tick_after_one_that_touched_everything_is_skinned_ahead_and_one_after_rest_
 }
 
 #[test]
-fn only_what_is_touched_is_skinned() {
+fn only_touched_clusters_are_skinned() {
     let mesh = crate::testing::tube(24, 48);
     let mut surface = SkinnedSurface::new(mesh.clone());
     let bent = crate::testing::bend(24, glam::DVec3::Z, 0.05);
@@ -192,7 +192,7 @@ fn only_what_is_touched_is_skinned() {
         "{touched:?}"
     );
     assert!(touched.triangles_tested < 100, "{touched:?}");
-    // The same again touches nothing new.
+    // The same query again touches nothing new.
     assert_eq!(surface.in_model().closest_point(at, 0.1), near);
     let again = surface.diagnostics();
     assert_eq!(again.bounds_evaluated, touched.bounds_evaluated);

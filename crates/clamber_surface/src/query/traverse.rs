@@ -1,22 +1,23 @@
-//! The one way down the hierarchy.
+//! The traversal of the hierarchy that all queries share.
 
 use super::broad::LaneMask;
 use crate::mesh::hierarchy::{Child, Hierarchy, LANES, STACK};
 
-/// Descends from all roots to the clusters that a query may find something in.
+/// Descends from all roots to the clusters in which a query may find something.
 ///
-/// `bounds` says of a node, given the key that still matters, which of its children may matter, and per child at most
-/// the key of what it holds: a distance, a time; what is beyond the limit is passed over. `leaf` looks at a cluster and
-/// gives the key that still matters, or none to end the search. With `NEAREST_FIRST` children of smaller keys are
-/// visited before others, which brings the limit down soon; without, in any order.
+/// A key is a distance or a time, and `limit` is the largest key that still matters. `bounds` takes a node and the
+/// limit. It returns which children of the node may matter, and for each child a lower bound of the keys of its
+/// contents. `leaf` takes a cluster and the limit. It returns the new limit, or `None` to end the search. With
+/// `NEAREST_FIRST`, children with smaller keys are visited first, which lowers the limit early, and children beyond the
+/// limit are skipped. Without it, the order is arbitrary.
 pub(super) fn traverse<const NEAREST_FIRST: bool>(
     hierarchy: &Hierarchy,
     mut limit: f64,
     mut bounds: impl FnMut(u32, f64) -> (LaneMask, [f32; LANES]),
     leaf: &mut dyn FnMut(u32, f64) -> Option<f64>,
 ) {
-    // Nodes and clusters still to be visited, with their keys where those matter; a mesh whose hierarchy asks for more
-    // room was not built. No struct: the count stays in a register so, and keys that nobody reads cost nothing.
+    // Nodes and clusters still to be visited, and with `NEAREST_FIRST` their keys. A mesh whose hierarchy needs a
+    // larger stack cannot be built. Not a struct, so that the count stays in a register and unused keys cost nothing.
     let (mut children, mut keys) = ([0; STACK], [0.0f32; STACK]);
     for root in std::iter::once(0).chain(hierarchy.further_roots()) {
         children[0] = Child::Node(root).packed();
@@ -26,7 +27,7 @@ pub(super) fn traverse<const NEAREST_FIRST: bool>(
         let mut count = 1;
         while count > 0 {
             count -= 1;
-            // What is as far as the best one stays: it may have a smaller id.
+            // A child at exactly the limit stays: it may hold a triangle with a smaller id.
             if NEAREST_FIRST && f64::from(keys[count]) > limit {
                 continue;
             }
@@ -46,7 +47,7 @@ pub(super) fn traverse<const NEAREST_FIRST: bool>(
             for lane in each_lane(near & node.lane_mask()) {
                 let mut place = count;
                 if NEAREST_FIRST {
-                    // Below those of smaller keys, which are visited before it.
+                    // Below children with smaller keys, which are then visited first.
                     let key = child_keys[lane];
                     while place > first && keys[place - 1].total_cmp(&key).is_lt() {
                         keys[place] = keys[place - 1];

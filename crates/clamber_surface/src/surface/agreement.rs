@@ -1,4 +1,4 @@
-//! For tests: every query of a surface against brute force, bit for bit.
+//! For tests: compares every query of a surface with brute force, bit for bit.
 
 mod bits;
 
@@ -10,7 +10,7 @@ use crate::measure::BruteForce;
 use crate::testing::{direction, point};
 use glam::Vec3;
 
-/// Compares at seeded random places near the surface and far from it; gives how many hits there were.
+/// Compares all queries at seeded random places near the surface and far from it; returns the number of hits.
 pub(crate) fn assert_queries_agree(
     surface: &SkinnedSurface,
     rng: &mut fastrand::Rng,
@@ -80,7 +80,7 @@ pub(crate) fn assert_queries_agree(
     found
 }
 
-/// Compares what is in the box around a point; half of all boxes are inside out, and hold nothing.
+/// Compares the triangles in the box around a point. Half of all boxes have `low` above `high` and hold nothing.
 fn assert_boxes_agree(
     brute_force: &BruteForce<'_>,
     surface: &SkinnedSurface,
@@ -97,7 +97,7 @@ fn assert_boxes_agree(
     found.len()
 }
 
-/// Compares casts of a capsule at skin that stands still and that moves.
+/// Compares casts of a capsule at skin that stands still and at skin that moves.
 fn assert_casts_agree(
     brute_force: &BruteForce<'_>,
     surface: &SkinnedSurface,
@@ -122,7 +122,7 @@ fn assert_casts_agree(
         brute_force.cast_capsule_all(capsule, displacements, &options, &mut expected);
         assert_same_bits(&hits, &expected, &case);
         assert_same_bits(hit.as_slice(), hits.first().copied().as_slice(), &case);
-        // Among some only: those that do not start inside, and every third triangle.
+        // Among some contacts only: those that do not start inside, and every third triangle.
         let counts = [
             |hit: &SweepHit| !hit.started_inside,
             |hit: &SweepHit| hit.triangle.0.is_multiple_of(3),
@@ -138,7 +138,7 @@ fn assert_casts_agree(
     found
 }
 
-/// All answers at one place: points, each with a distance or a time.
+/// The results of all queries at one place: points and normals, each with a distance or a time.
 pub(crate) fn answers(
     surface: &SkinnedSurface,
     place: Vec3,

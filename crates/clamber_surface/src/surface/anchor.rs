@@ -6,18 +6,19 @@ use crate::mesh::{ColliderMesh, MeshId, TriangleId};
 use crate::query::{CapsuleHit, SurfaceHit, SweepHit};
 use crate::rig::rotation_f32;
 
-/// How far barycentric coordinates may be from a sum of 1: some rounding of three f32.
+/// Largest deviation of barycentric coordinates from a sum of 1, and of one of them below 0: some rounding of three
+/// f32.
 const BARYCENTRIC_TOLERANCE: f32 = 1e-5;
 
-/// A point of a mesh's material, wherever that is.
+/// A material point of a mesh: a triangle and the weights of its corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SurfacePoint {
-    /// The mesh that has the triangle.
+    /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
     /// The triangle that the point lies on.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
 }
 
@@ -42,42 +43,44 @@ impl From<&CapsuleHit> for SurfacePoint {
     }
 }
 
-/// A material point: it stays where it is on the skin, whatever the skin does.
+/// A material point with the orientation of the skin around it. It keeps its place on the skin under any deformation.
 ///
-/// A small plain value. It is tied to a triangle, so it holds for every surface whose mesh has that: see
+/// A small plain value. It refers to a triangle, so it is valid on every surface whose mesh has that triangle: see
 /// [`MeshId`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor {
-    /// The mesh that has the triangle.
+    /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
     /// The triangle that the point lies on.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
-    /// The rotation of the material around the point from rest to now, in model space, as it was
-    /// last known. It stands in where the triangle collapses, and matters nowhere else: whose skin may collapse stores
-    /// [`Motion::frame`](crate::surface::Motion::frame), which
-    /// [`ModelSpace::motion`](crate::surface::ModelSpace::motion) gives, here in each tick.
+    /// The last known rotation of the material around the point from rest, in model space. It is used only if the
+    /// triangle is collapsed both now and a tick ago. If the skin may collapse, store
+    /// [`Motion::frame`](crate::surface::Motion::frame) here in each tick;
+    /// [`ModelSpace::motion`](crate::surface::ModelSpace::motion) returns it.
     pub frame: Quat,
 }
 
 impl SkinnedSurface {
-    /// Creates an anchor at a hit or any other point of the surface, as it is posed now.
+    /// Creates an anchor at a hit or any other point of the surface, in the current pose.
     ///
     /// # Errors
-    /// [`SurfaceError::ForeignMesh`] for a point of another mesh, [`SurfaceError::Triangle`] for one whose triangle was
-    /// removed since, [`SurfaceError::Barycentric`] for weights that are not finite, negative, or do not add up to 1.
+    /// [`SurfaceError::ForeignMesh`] if the point belongs to another mesh, [`SurfaceError::Triangle`] if its triangle
+    /// was removed since or does not exist, [`SurfaceError::Barycentric`] if its weights are not finite, are negative,
+    /// or do not add up to 1.
     pub fn anchor_at(&self, point: impl Into<SurfacePoint>) -> Result<Anchor, SurfaceError> {
         let point = point.into();
         check_mesh(self.mesh(), point.mesh)?;
         self.anchor(point.triangle, point.barycentric)
     }
 
-    /// A material point by triangle and corner weights.
+    /// Creates an anchor from a triangle and the weights of its corners, in the current pose.
     ///
     /// # Errors
-    /// [`SurfaceError::Triangle`], [`SurfaceError::Barycentric`].
+    /// [`SurfaceError::Triangle`] if the triangle does not exist or was removed, [`SurfaceError::Barycentric`] if the
+    /// weights are not finite, are negative, or do not add up to 1.
     pub fn anchor(
         &self,
         triangle: TriangleId,
@@ -100,7 +103,7 @@ impl SkinnedSurface {
     }
 }
 
-/// Refuses what belongs to another mesh.
+/// Refuses a point of another mesh.
 pub(super) fn check_mesh(mesh: &ColliderMesh, found: MeshId) -> Result<(), SurfaceError> {
     if mesh.continues(found) {
         Ok(())
@@ -110,7 +113,7 @@ pub(super) fn check_mesh(mesh: &ColliderMesh, found: MeshId) -> Result<(), Surfa
     }
 }
 
-/// Refuses weights that are not finite, negative, or do not add up to 1.
+/// Refuses weights that are not finite, are negative, or do not add up to 1.
 pub(super) fn check_barycentric(weights: [f32; 3]) -> Result<(), SurfaceError> {
     let sum = weights[0] + weights[1] + weights[2];
     // Written so that NaN is refused.

@@ -1,19 +1,19 @@
-//! What became of a triangle: its rotation and its stretch, from one pose to another.
+//! The deformation of a triangle from one pose to another: its rotation and its stretch.
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 
 use crate::geometry::Affine;
 use crate::geometry::triangle::{scaled_normal, widened};
 
-/// A triangle lower than this share of its longest edge has collapsed, 2^-22: its direction is
-/// rounding. Larger freezes frames of slivers that still have one.
+/// A triangle whose height is below this share of its longest edge, 2^-22, has collapsed: its orientation is rounding
+/// error. A larger share would freeze the frames of slivers that still have an orientation.
 const COLLAPSED: f64 = 1.0 / (1u32 << 22) as f64;
 
-/// A triangle lower than this share of its corners' distance from the origin has also collapsed, 2^-20: skinning
-/// rounds each corner by some 2^-24 of that distance, which would turn the triangle by a quarter radian.
+/// A triangle whose height is below this share of its corners' distance from the origin, 2^-20, has also collapsed:
+/// skinning rounds each corner by some 2^-24 of that distance, which would turn the triangle by a quarter radian.
 const COLLAPSED_FAR_OUT: f64 = 1.0 / (1u32 << 20) as f64;
 
-/// True if the triangle has no direction of its own.
+/// True if the triangle is too thin to have an orientation of its own.
 pub(super) fn is_collapsed(corners: [Vec3; 3]) -> bool {
     let [a, b, c] = widened(corners);
     let longest_sq = (b - a)
@@ -27,8 +27,8 @@ pub(super) fn is_collapsed(corners: [Vec3; 3]) -> bool {
     scaled_normal(corners).length() <= longest * lowest
 }
 
-/// The rotation of the material from rest to now. A sliver that has no frame even at rest turns with
-/// the joint of its part.
+/// The rotation of the material from rest to now; `None` if the triangle has collapsed. A sliver without an orientation
+/// even at rest turns with the joint of its part.
 pub(super) fn material_frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) -> Option<DQuat> {
     if !is_collapsed(rest) {
         return frame_of(rest, now);
@@ -39,8 +39,8 @@ pub(super) fn material_frame(rest: [Vec3; 3], now: [Vec3; 3], joint: &Affine) ->
     Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
 }
 
-/// A triangle in the plane: its orthonormal axes (first edge, in-plane perpendicular, normal) and
-/// its two edges in them, `(length, 0)` and `(x, y)` with y positive.
+/// A triangle in its own plane: its orthonormal axes (first edge, in-plane perpendicular, normal), and its two edges in
+/// these axes, `(length, 0)` and `(x, y)` with positive y.
 struct Flattened {
     axes: DMat3,
     first: f64,
@@ -63,8 +63,8 @@ impl Flattened {
         })
     }
 
-    /// The in-plane map that takes this triangle's edges to `to`'s, each in its own axes. It is
-    /// `[[a, b], [0, d]]` with positive a and d, given as (a, b, d).
+    /// The in-plane map from this triangle's edges to those of `to`, each in its own axes: `[[a, b], [0, d]]` with
+    /// positive a and d, returned as (a, b, d).
     fn gradient(&self, to: &Self) -> (f64, f64, f64) {
         let a = to.first / self.first;
         let b = (to.second.x - a * self.second.x) / self.second.y;
@@ -73,10 +73,10 @@ impl Flattened {
     }
 }
 
-/// The rotation nearest to the map from one triangle to the other; `None` if either collapsed.
+/// The rotation nearest to the map from one triangle to the other; `None` if either has collapsed.
 ///
-/// The in-plane gradient `[[a, b], [0, d]]` has as its nearest rotation the one with cosine and
-/// sine proportional to `a + d` and `-b` (polar decomposition in two dimensions).
+/// The rotation nearest to the in-plane gradient `[[a, b], [0, d]]` has a cosine proportional to `a + d` and a sine
+/// proportional to `-b` (polar decomposition in two dimensions).
 pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
     let (rest, now) = (Flattened::new(rest)?, Flattened::new(now)?);
     let (a, b, d) = rest.gradient(&now);
@@ -93,13 +93,13 @@ pub(super) fn frame_of(rest: [Vec3; 3], now: [Vec3; 3]) -> Option<DQuat> {
     frame.is_finite().then_some(frame)
 }
 
-/// Area ratio and principal stretches, larger first, from one triangle to the other.
+/// Area ratio and principal stretches, larger first, from one triangle to the other; 1 if the first has collapsed.
 pub(super) fn stretch(before: [Vec3; 3], now: [Vec3; 3]) -> (f64, [f64; 2]) {
     let Some(flat_before) = Flattened::new(before) else {
         return (1.0, [1.0, 1.0]);
     };
     let Some(flat_now) = Flattened::new(now) else {
-        // Collapsed into a segment or a point: the longest edge tells the stretch along it.
+        // Collapsed into a segment or a point: the longest edges give the stretch along it.
         let area = scaled_normal(now).length() / scaled_normal(before).length();
         let along = longest_edge(now) / longest_edge(before);
         let across = if along > 0.0 { area / along } else { 0.0 };

@@ -3,44 +3,48 @@ use std::sync::atomic::Ordering;
 use super::SkinnedSurface;
 use crate::mesh::TriangleId;
 
-/// What this tick's queries touched, the same however threads interleave. Bounds, clusters and vertices count once,
-/// however many queries reach them; `triangles_tested` counts every test.
+/// Counts of the bounds, clusters, vertices and triangles that this tick's queries touched.
+///
+/// The counts do not depend on how threads interleave. Bounds, clusters and vertices count once, however many queries
+/// reach them; `triangles_tested` counts every test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostics {
-    /// Bounds of nodes and clusters that were evaluated.
+    /// Number of bounds of nodes and clusters that were evaluated.
     pub bounds_evaluated: usize,
-    /// Clusters that queries reached.
+    /// Number of clusters that queries reached.
     pub clusters_touched: usize,
-    /// Clusters that were skinned: the touched ones, or all after a tick that touched nearly everything.
+    /// Number of clusters that were skinned: those that queries reached, or all if the tick before touched at least
+    /// three quarters of them.
     pub clusters_skinned: usize,
-    /// Clusters of the mesh.
+    /// Number of clusters of the mesh.
     pub clusters: usize,
-    /// Vertices of the skinned clusters. One on the border of clusters counts in each.
+    /// Number of vertices in the skinned clusters. A vertex on the border of several clusters counts in each.
     pub vertices_skinned: usize,
-    /// Vertices of all clusters, counted so.
+    /// Number of vertices in all clusters, counted in the same way.
     pub vertices: usize,
-    /// Triangles that no box ruled out: tested exactly, each as often as queries met it.
+    /// Number of exact triangle tests. A triangle counts each time that a query tests it.
     pub triangles_tested: u64,
-    /// Most steps that the exact test of a cast took for a triangle.
+    /// Largest number of steps that the exact test of a cast took for a triangle.
     pub most_cast_steps: u32,
 }
 
-/// One cluster of a surface's triangles, and what this tick's queries made of it.
+/// One cluster of a surface's triangles, and whether this tick's queries used it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct ClusterState<'a> {
-    /// Its triangles. Removed ones stand in no cluster.
+    /// The cluster's triangles. Removed triangles are in no cluster.
     pub triangles: &'a [TriangleId],
-    /// Queries reached it.
+    /// True if a query reached it.
     pub touched: bool,
-    /// It was skinned: because a query reached it, or ahead of queries, as in [`Diagnostics::clusters_skinned`].
+    /// True if it was skinned: because a query reached it, or ahead of queries, as in
+    /// [`Diagnostics::clusters_skinned`].
     pub skinned: bool,
 }
 
 impl SkinnedSurface {
-    /// What was touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`].
-    /// Clusters that an edit has replaced since then count no more. Takes O(clusters).
+    /// Counts what queries touched since the last [`SkinnedSurface::advance`] or [`SkinnedSurface::place`]. Clusters
+    /// that an edit has replaced since then no longer count. Takes O(clusters).
     pub fn diagnostics(&self) -> Diagnostics {
         let (clusters, hierarchy) = (&self.mesh().clusters().clusters, self.mesh().hierarchy());
         let slots = |cluster: usize| usize::from(clusters[cluster].slots);
@@ -57,7 +61,8 @@ impl SkinnedSurface {
         }
     }
 
-    /// Every cluster, and what was made of it since then. Takes O(clusters).
+    /// All clusters that have triangles, and whether queries used them since the last [`SkinnedSurface::advance`] or
+    /// [`SkinnedSurface::place`]. Takes O(clusters).
     pub fn clusters(&self) -> impl Iterator<Item = ClusterState<'_>> {
         let clusters = self.mesh().clusters();
         let mut touched = self.instance.current.asked_clusters().peekable();
@@ -71,14 +76,14 @@ impl SkinnedSurface {
         states.filter(|cluster| !cluster.triangles.is_empty())
     }
 
-    /// The triangles of the clusters that queries have reached since then, cluster by cluster. Takes
-    /// O(clusters).
+    /// The triangles of the clusters that queries reached since the last [`SkinnedSurface::advance`] or
+    /// [`SkinnedSurface::place`], cluster by cluster. Takes O(clusters).
     pub fn touched_triangles(&self) -> impl Iterator<Item = TriangleId> {
         let touched = self.clusters().filter(|cluster| cluster.touched);
         touched.flat_map(|cluster| cluster.triangles.iter().copied())
     }
 
-    /// Bytes that the collider takes: the rest data that surfaces share, and this surface's caches.
+    /// Memory of the collider in bytes: the rest data, which surfaces share, and this surface's caches.
     pub fn memory(&self) -> usize {
         self.mesh().memory()
             + self.instance.current.memory()

@@ -1,4 +1,4 @@
-//! Changing a surface while it lives: a broken plate, a hole, a scab.
+//! Changes to a surface at run time: a broken plate, a hole, a scab.
 
 mod batch;
 
@@ -8,7 +8,7 @@ use super::{SkinnedSurface, SurfaceError};
 use crate::mesh::{PartId, TriangleId};
 
 impl SkinnedSurface {
-    /// Queries see the part's triangles again, but for those disabled one by one.
+    /// Shows the part's triangles to queries again, except those that were disabled one by one.
     ///
     /// # Errors
     /// [`SurfaceError::Part`] if there is no such part.
@@ -17,8 +17,7 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Queries no longer see the part's triangles. They are still skinned, and anchors on them
-    /// still move.
+    /// Hides the part's triangles from queries. They are still skinned, and anchors on them still move.
     ///
     /// # Errors
     /// [`SurfaceError::Part`] if there is no such part.
@@ -27,7 +26,7 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Queries see the triangle again, if its part is enabled.
+    /// Shows the triangle to queries again, if its part is enabled.
     ///
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
@@ -37,7 +36,7 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Queries no longer see the triangle.
+    /// Hides the triangle from queries. It is still skinned, and anchors on it still move.
     ///
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
@@ -47,13 +46,14 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Changes triangles, vertices and tags: as many changes as the closure makes. Gives what the closure
-    /// gives. What is refused changes nothing; what was changed before it stays.
+    /// Runs a closure that changes triangles, vertices and tags, any number of them, and returns the closure's result.
     ///
-    /// When the closure returns, the clusters of the parts whose triangles changed are made anew, once
-    /// each; what queries have computed of other parts stays. That takes as long as building a mesh of
-    /// those parts, and at times, when edits have replaced more than half of all clusters, as long as
-    /// building the whole. The first change of a surface that shares its mesh gives it a copy of its own.
+    /// A change that is refused changes nothing; the changes made before it stay.
+    ///
+    /// When the closure returns, the clusters of the parts whose triangles changed are rebuilt, once each; results that
+    /// queries have cached for other parts stay. That takes as long as building a mesh of those parts. Once edits have
+    /// replaced more than half of all clusters, the edit rebuilds all of them, which takes as long as building the
+    /// whole mesh. The first change of a surface that shares its mesh gives the surface a copy of its own.
     ///
     /// ```
     /// # use std::sync::Arc;

@@ -5,11 +5,11 @@ use crate::query::ModelSpace;
 use crate::skin::skin_checked;
 
 impl ModelSpace<'_> {
-    /// The lowest and the highest coordinates of the skin as it is posed now, in model space: exact over the corners of
-    /// all triangles that queries see. `None` if they see none.
+    /// The lowest and the highest coordinates of the skin in its current pose, in model space: exact over the corners
+    /// of all enabled triangles. `None` if no triangle is enabled.
     ///
-    /// Skins every vertex, like [`SkinnedSurface::skin_all`](super::SkinnedSurface::skin_all), into memory of its own.
-    /// [`SkinnedSurface::bounding_ball`](super::SkinnedSurface::bounding_ball) is coarser and costs nothing.
+    /// Skins every vertex, as [`SkinnedSurface::skin_all`](super::SkinnedSurface::skin_all) does, into newly allocated
+    /// memory. [`SkinnedSurface::bounding_ball`](super::SkinnedSurface::bounding_ball) is coarser and costs nothing.
     pub fn extent(&self) -> Option<[Vec3; 2]> {
         let instance = self.instance;
         let mesh = &instance.mesh;
@@ -36,7 +36,7 @@ mod tests {
     use crate::testing::{bend, tube};
     use glam::DVec3;
 
-    /// Every coordinate by itself, over positions that are asked for one by one.
+    /// Sorts each coordinate by itself, over positions that are read one by one.
     fn extent_reference(surface: &SkinnedSurface) -> Option<[Vec3; 2]> {
         let space = surface.in_model();
         let ids = (0..surface.mesh().triangles().len() as u32).map(TriangleId);
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn the_extent_is_that_of_what_queries_see() {
+    fn the_extent_is_exact_over_the_enabled_triangles() {
         let mut rng = fastrand::Rng::with_seed(17);
         let mesh = tube(5, 7);
         let mut surface = SkinnedSurface::new(mesh.clone());

@@ -1,11 +1,13 @@
-//! The posed surface: one instance of a collider mesh, its queries, and points that stick to it.
+//! The posed surface: one instance of a collider mesh, its queries, and points that move with it.
 //!
-//! [`SkinnedSurface::advance`] skins nothing. A query ([`SkinnedSurface::in_model`]) descends a hierarchy of spheres that
-//! follow from the palette alone, and skins the clusters of vertices that it reaches, once a tick; its answer is
-//! that of skinning everything and testing every triangle, bit for bit.
+//! [`SkinnedSurface::advance`] skins nothing, unless queries reached nearly all clusters in the last tick. A query
+//! ([`SkinnedSurface::in_model`]) descends a hierarchy of spheres that follow from the palette alone, and skins the
+//! clusters of vertices that it reaches, each once a tick. Its result has the bits of skinning everything and testing
+//! every triangle.
 //!
-//! Casts ([`ModelSpace::cast_capsule`]) meet skin that stands still, or on its way from the previous pose to
-//! the current one, and promise what they report: never late, never farther than a tolerance.
+//! Casts ([`ModelSpace::cast_capsule`]) are made at skin that stands still, or at skin that moves from the previous
+//! pose to the current one. A contact is never reported later than the first touch, nor farther away than a tolerance
+//! unless it is flagged undecided.
 
 #[cfg(test)]
 pub(crate) mod agreement;

@@ -1,4 +1,4 @@
-//! How a material point moves and its skin stretches from the previous tick to the current one.
+//! The motion of a material point, and the stretch of the skin around it, from the previous tick to the current one.
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
@@ -9,42 +9,43 @@ use crate::geometry::triangle::{point_at, scaled_normal};
 use crate::geometry::{rotation_vector, round_to_f32, widen};
 use crate::rig::{rotation_f32, rotation_f64};
 
-/// The motion of an anchor over one tick, in the *current* model frame: a moving root moves it
-/// too. Differences of positions over `dt`, never an instantaneous velocity.
+/// The motion of an anchor over one tick, in the *current* model frame: a moving root moves the anchor too. Velocities
+/// are differences over `dt`, never instantaneous.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
-    /// Where the point is now.
+    /// The point's current position.
     pub position: Vec3,
-    /// Where it was a tick ago.
+    /// The point's position a tick ago.
     pub previous_position: Vec3,
-    /// Displacement over the tick, model units per second.
+    /// Displacement over the tick, in model units per second.
     pub velocity: Vec3,
-    /// Rotation of the material around the point from rest to now: the rotation nearest to the
-    /// triangle's deformation, so that stretch and shear do not turn it. Times a direction given
-    /// in the rest pose it is that direction's heading now.
+    /// Rotation of the material around the point from rest to now. It is the rotation nearest to the triangle's
+    /// deformation: stretch does not turn it, and shear turns it by about half the angle of the shear. It rotates a
+    /// direction of the rest pose to its current heading.
     pub frame: Quat,
-    /// Axis times radians per second that turns the frame of a tick ago into the current one, by
-    /// at most half a turn.
+    /// Rotation from the frame of a tick ago to the current one, by at most half a turn: axis times radians per second.
     pub angular_velocity: Vec3,
-    /// Outward unit normal of the triangle now; of a collapsed triangle, as its frame keeps it.
+    /// Outward unit normal of the triangle now. If the triangle has collapsed: the normal that follows from `frame`.
     pub normal: Vec3,
-    /// True if the triangle has no area of its own now: frame and normal are remembered ones.
+    /// True if the triangle has collapsed now, so `frame` and `normal` are the last known ones. A sliver without an
+    /// orientation even at rest turns with its joint, and does not count.
     pub collapsed: bool,
-    /// Area now over area a tick ago; 1 where it was collapsed.
+    /// Area now over area a tick ago, at most `f32::MAX`; 1 if the triangle was collapsed a tick ago.
     pub area_ratio: f32,
-    /// How much longer the most and the least stretched direction of the triangle became since a
-    /// tick ago, larger first; 1 and 1 where it was collapsed.
+    /// Principal stretches since a tick ago, length now over length then, larger first, at most `f32::MAX`; both 1 if
+    /// the triangle was collapsed a tick ago.
     pub stretches: [f32; 2],
 }
 
 impl ModelSpace<'_> {
-    /// The motion of an anchor over a tick of `dt` seconds. Skins three vertices.
+    /// The motion of an anchor over a tick of `dt` seconds. Skins the triangle's three vertices.
     ///
     /// # Errors
-    /// [`SurfaceError::ForeignMesh`], [`SurfaceError::Triangle`] if the triangle does not exist or was removed,
-    /// [`SurfaceError::Barycentric`], [`SurfaceError::Tick`] if `dt` is not positive and finite, or
-    /// [`SurfaceError::ShortTick`].
+    /// [`SurfaceError::ForeignMesh`] if the anchor belongs to another mesh, [`SurfaceError::Triangle`] if its triangle
+    /// does not exist or was removed, [`SurfaceError::Barycentric`] if its weights are not finite, are negative, or do
+    /// not add up to 1, [`SurfaceError::Tick`] if `dt` is not positive and finite, [`SurfaceError::ShortTick`] if a
+    /// velocity over `dt` does not fit in f32.
     pub fn motion(&self, anchor: &Anchor, dt: f64) -> Result<Motion, SurfaceError> {
         let (triangle, instance) = (anchor.triangle, self.instance);
         check_mesh(&instance.mesh, anchor.mesh)?;
@@ -100,12 +101,12 @@ impl ModelSpace<'_> {
     }
 }
 
-/// Rounded; what is larger than any f32 is the largest.
+/// Rounds to f32, at most to `f32::MAX`.
 fn finite(ratio: f64) -> f32 {
     (ratio as f32).min(f32::MAX)
 }
 
-/// The frame that an anchor remembers; no rotation if that is none.
+/// The frame that an anchor stores; no rotation if that is not a rotation.
 fn last_frame(anchor: &Anchor) -> DQuat {
     let frame = rotation_f64(anchor.frame);
     if frame.is_finite() && frame.length_squared() > 0.0 {

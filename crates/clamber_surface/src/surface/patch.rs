@@ -1,4 +1,4 @@
-//! A piece of the surface near a box, kept from tick to tick.
+//! The triangles of a surface near a box, kept from tick to tick.
 
 use glam::Vec3;
 
@@ -6,10 +6,11 @@ use super::SkinnedSurface;
 use crate::mesh::{TriangleId, VertexId};
 use crate::query::MovingTriangle;
 
-/// The triangles near a box, with where their vertices are and were, in memory that is used again each
-/// tick: what a physics engine needs of a creature near one body.
+/// The triangles near a box, with the current and previous positions of their vertices: the data that a physics engine
+/// needs of a creature near one body.
 ///
-/// A patch is of one surface. It is a mesh of its own: [`Patch::indices`] count its vertices.
+/// A patch belongs to one surface and is a mesh of its own: [`Patch::indices`] refer to the patch's own vertices. Its
+/// memory is reused in each tick.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -48,11 +49,11 @@ pub struct Patch {
     indices: Vec<[u32; 3]>,
     positions: Vec<Vec3>,
     previous_positions: Vec<Vec3>,
-    /// Memory for what a query finds.
+    /// Memory for the triangles that a query finds.
     found: Vec<MovingTriangle>,
-    /// Memory for vertices with their places, by id.
+    /// Memory for vertices, by id, with their places in the patch.
     by_id: Vec<(VertexId, u32)>,
-    /// Memory for which vertices have this tick's positions.
+    /// Memory for flags: which vertices have this tick's positions.
     is_taken: Vec<bool>,
 }
 
@@ -60,24 +61,24 @@ pub struct Patch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PatchChange {
-    /// The same triangles, and no position differs by a bit from the update before, now or a tick ago.
+    /// The same triangles, and no position, current or previous, differs by a bit from the last update.
     Same,
-    /// The same triangles: only positions are new.
+    /// The same triangles; some positions, current or previous, are new.
     Moved,
-    /// Other triangles.
+    /// The patch was rebuilt with other triangles.
     Rebuilt,
 }
 
 impl Patch {
-    /// Takes this tick's positions, and other triangles if need be: it holds every enabled triangle
-    /// that [moves within](super::ModelSpace::visit_box) the box from `low` to `high`, in model space.
+    /// Updates the patch to this tick's positions, and to other triangles if necessary. It then holds every enabled
+    /// triangle that [moves within](super::ModelSpace::visit_box) the box from `low` to `high`, in model space.
     ///
-    /// When it is rebuilt it takes in all within `margin` of the box, so that it need not be again
-    /// before the box has moved so far over the skin: with 0 it holds nothing more than it must, and
-    /// is rebuilt whenever something leaves or enters. A larger margin is rebuilt more seldom, and
-    /// costs more in each tick between.
+    /// A rebuild takes in all triangles within `margin` of the box, so that the next rebuild is not due before the box
+    /// has moved that far over the skin. A larger margin needs fewer rebuilds, and costs more in each tick between
+    /// them. With a margin of 0 the patch holds no more triangles than it must, and is rebuilt whenever one leaves or
+    /// enters.
     ///
-    /// A box that is not finite, and a margin that is negative or not finite, hold nothing.
+    /// The patch is empty if the box is not finite, or if the margin is negative or not finite.
     pub fn update(
         &mut self,
         surface: &SkinnedSurface,
@@ -95,7 +96,7 @@ impl Patch {
         self.update_near(surface, low, high, margin, apart)
     }
 
-    /// [`Patch::update`] near a region that fills little of its box. `apart` gives a lower bound of the distance
+    /// [`Patch::update`] near a region that fills little of its box. `apart` returns a lower bound of the distance
     /// between the region and a moving triangle, in model units: 0 or less for a triangle that meets the region.
     pub fn update_near(
         &mut self,
@@ -119,7 +120,7 @@ impl Patch {
                 all_held &= self.triangles.binary_search(&moving.triangle).is_ok();
             }
         });
-        // With a margin of 0, no more than it must; where nothing is met, nothing near it either.
+        // With a margin of 0, no triangle beyond those met; if none is met, no triangle at all.
         let no_more = met > 0 && margin > 0.0 || met == self.triangles.len();
         if all_held && no_more && self.is_of(surface) {
             return self.take_positions(surface);
@@ -131,7 +132,7 @@ impl Patch {
         PatchChange::Rebuilt
     }
 
-    /// Empty, of no surface; keeps its memory.
+    /// Removes all triangles; keeps the memory.
     pub fn clear(&mut self) {
         self.triangles.clear();
         self.vertices.clear();
@@ -140,47 +141,47 @@ impl Patch {
         self.previous_positions.clear();
     }
 
-    /// True without triangles.
+    /// True if the patch has no triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// Ids of its triangles in the surface, ascending; [`Patch::indices`] has the same order.
+    /// Ids of the patch's triangles in the surface, ascending; [`Patch::indices`] has the same order.
     pub fn triangles(&self) -> &[TriangleId] {
         &self.triangles
     }
 
-    /// Ids of its vertices in the surface, in the order in which its triangles use them; the positions
-    /// have the same order.
+    /// Ids of the patch's vertices in the surface, in the order in which its triangles use them; the positions have the
+    /// same order.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
 
-    /// Per triangle its corners, as places among the patch's own vertices.
+    /// The corners of each triangle, as indices into the patch's own vertices.
     pub fn indices(&self) -> &[[u32; 3]] {
         &self.indices
     }
 
-    /// Where its vertices are now, in model space.
+    /// Current positions of the patch's vertices, in model space.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
 
-    /// Where its vertices were a tick ago, in the *current* model frame: a moving root is part of
-    /// their motion.
+    /// Positions of the patch's vertices a tick ago, in the *current* model frame: a moving root is part of their
+    /// motion.
     pub fn previous_positions(&self) -> &[Vec3] {
         &self.previous_positions
     }
 
-    /// Velocities of its vertices over the last tick of `dt` seconds, in the current model frame, model units per
-    /// second; zero for a `dt` that is not positive.
+    /// Velocities of the patch's vertices over the last tick of `dt` seconds, in the current model frame, in model
+    /// units per second; zero if `dt` is not positive.
     pub fn velocities(&self, dt: f64) -> impl ExactSizeIterator<Item = Vec3> {
         let dt = if dt > 0.0 { dt } else { f64::INFINITY };
         let pairs = self.positions.iter().zip(&self.previous_positions);
         pairs.map(move |(now, before)| ((now.as_dvec3() - before.as_dvec3()) / dt).as_vec3())
     }
 
-    /// False once one of its triangles was edited away, or hidden.
+    /// False if one of the patch's triangles was removed or hidden, or has other corners in this surface.
     fn is_of(&self, surface: &SkinnedSurface) -> bool {
         let all = surface.mesh().triangles();
         let mut own = self.triangles.iter().zip(&self.indices);
@@ -190,8 +191,8 @@ impl Patch {
         })
     }
 
-    /// The positions of all vertices: those of the triangles found, which a query has skinned, and the others skinned one
-    /// by one.
+    /// Takes the positions of all vertices: from the triangles found, which a query has skinned; the other vertices are
+    /// skinned one by one.
     fn take_positions(&mut self, surface: &SkinnedSurface) -> PatchChange {
         let mut change = PatchChange::Same;
         self.is_taken.clear();
@@ -217,7 +218,7 @@ impl Patch {
         change
     }
 
-    /// Puts a vertex where it is now and was a tick ago, unless that was done.
+    /// Stores a vertex's current and previous position, unless that was done.
     fn put(&mut self, place: usize, [now, before]: [Vec3; 2], change: &mut PatchChange) {
         if std::mem::replace(&mut self.is_taken[place], true) {
             return;
@@ -251,7 +252,7 @@ impl Patch {
             let corners = all[moving.triangle.index()];
             let mut places = [0; 3];
             for (corner, vertex) in corners.into_iter().enumerate() {
-                // It is there: it was put there just now.
+                // Found, since it was added just above.
                 let index = self.by_id.partition_point(|(known, _)| *known < vertex);
                 let place = &mut self.by_id[index].1;
                 if *place == NOWHERE {
@@ -267,7 +268,7 @@ impl Patch {
     }
 }
 
-/// Of a vertex that has no place in the patch yet.
+/// The place of a vertex that has none in the patch yet.
 const NOWHERE: u32 = u32::MAX;
 
 #[cfg(test)]

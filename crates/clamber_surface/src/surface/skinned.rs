@@ -12,10 +12,9 @@ use crate::skin::skin_checked;
 
 /// One posed instance of a [`ColliderMesh`], with a current and a previous pose.
 ///
-/// All its geometry is in the creature's model space, in f32; [`SkinnedSurface::world_from_model`]
-/// takes it to the world. Between two ticks every vertex moves on a straight line in the *current*
-/// model frame: the previous palette is re-expressed in it, so that a moving root is part of every
-/// vertex's motion.
+/// All its geometry is in the creature's model space, in f32; [`SkinnedSurface::world_from_model`] maps it to the
+/// world. Between two ticks every vertex moves on a straight line in the *current* model frame. The previous palette is
+/// re-expressed in that frame, so a moving root is part of every vertex's motion.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -56,13 +55,12 @@ pub struct SkinnedSurface {
 }
 
 impl SkinnedSurface {
-    /// A surface at rest at the world's origin: every matrix of its palette is the identity.
+    /// A surface at rest, with its model space equal to world space: every matrix of its palette is the identity.
     pub fn new(mesh: Arc<ColliderMesh>) -> Self {
         Self::with_simd_level(mesh, SimdLevel::best())
     }
 
-    /// [`SkinnedSurface::new`] on a given instruction set: for measurements and tests, since the
-    /// results are the same.
+    /// [`SkinnedSurface::new`] on a given instruction set, for measurements and tests: the results are the same.
     #[doc(hidden)]
     pub fn with_simd_level(mesh: Arc<ColliderMesh>, simd_level: SimdLevel) -> Self {
         let mut surface = Self {
@@ -75,13 +73,16 @@ impl SkinnedSurface {
         surface
     }
 
-    /// The next tick: what is current becomes previous, and the given pose becomes current. Costs
-    /// O(joints), and reads one number per cluster: nothing is skinned, unless the last tick touched nearly
-    /// everything. That follows from which clusters queries reached, not from how many threads they ran on.
+    /// Starts the next tick: the current pose becomes the previous one, and the given pose becomes current.
+    ///
+    /// Costs O(joints), and reads one number per cluster. Nothing is skinned, unless the last tick touched at least
+    /// three quarters of all clusters; then all are. That depends on which clusters queries reached, not on how many
+    /// threads they ran on.
     ///
     /// # Errors
-    /// [`SurfaceError::Palette`], about the given palette or about the previous one re-expressed in the new model
-    /// frame, or [`SurfaceError::WorldFromModel`]; the surface is unchanged then.
+    /// [`SurfaceError::Palette`] about the given palette, or about the previous one re-expressed in the new model
+    /// frame; [`SurfaceError::WorldFromModel`] if `world_from_model` is not [valid](Similarity::is_valid). The surface
+    /// is unchanged then.
     pub fn advance(
         &mut self,
         palette: &Palette,
@@ -97,7 +98,7 @@ impl SkinnedSurface {
             ..
         } = &mut self.instance;
         if world_from_model == self.world_from_model {
-            // The last tick's bounds and positions serve as they are.
+            // The last tick's bounds and positions can be used as they are.
             std::mem::swap(current, previous);
         } else {
             let now_from_before = world_from_model.relative(&self.world_from_model);
@@ -112,11 +113,12 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Puts the surface somewhere without motion: the given pose becomes current and previous. For
-    /// the first tick, a teleport, and waking up.
+    /// Places the surface without motion: the given pose becomes both current and previous. For the first tick, a
+    /// teleport, and waking up.
     ///
     /// # Errors
-    /// As [`SkinnedSurface::advance`].
+    /// [`SurfaceError::Palette`] about the given palette, [`SurfaceError::WorldFromModel`] if `world_from_model` is not
+    /// [valid](Similarity::is_valid). The surface is unchanged then.
     pub fn place(
         &mut self,
         palette: &Palette,
@@ -132,18 +134,20 @@ impl SkinnedSurface {
         Ok(())
     }
 
-    /// Whether it was put where it is ([`SkinnedSurface::place`], or new) rather than advanced there.
+    /// True if the surface was last posed by [`SkinnedSurface::place`], or is new; false after
+    /// [`SkinnedSurface::advance`].
     pub const fn is_placed(&self) -> bool {
         self.placed
     }
 
-    /// Falls asleep: from now on the surface stands still as it is posed, without motion, until it is placed or
-    /// advanced again. For a creature that nobody touches or draws: its clips, palette and
-    /// [`SkinnedSurface::advance`] can be left out, and queries that come near all the same are still answered.
-    /// Costs O(joints), once.
+    /// Puts the surface to sleep: it stands still in its current pose, without motion, until it is placed or advanced
+    /// again.
     ///
-    /// To wake it, [`SkinnedSurface::place`] it where it is by then: `advance` would take all the way since for
-    /// the motion of one tick.
+    /// For a creature that nobody touches or draws: its clips, its palette and [`SkinnedSurface::advance`] can be
+    /// skipped. Queries still work. Costs O(joints), once.
+    ///
+    /// To wake the surface, [`SkinnedSurface::place`] it where it is by then. `advance` would take the whole way since
+    /// it fell asleep for the motion of one tick.
     pub fn sleep(&mut self) {
         let Instance {
             mesh,
@@ -156,14 +160,15 @@ impl SkinnedSurface {
         self.bound();
     }
 
-    /// Centre and radius of a ball in world space that holds all skin over the tick that ends now, from its start to
-    /// its end. Follows from the palettes alone: a ball about a box about the joints' balls. `None` without vertices, or
-    /// if it is not finite.
+    /// Centre and radius, in world space, of a ball that holds all skin over the tick that ends now, from its start to
+    /// its end. `None` if the mesh has no vertices, or if the ball is not finite.
+    ///
+    /// It follows from the palettes alone: a ball about a box about the joints' bounding balls.
     pub fn bounding_ball(&self) -> Option<(DVec3, f64)> {
         self.ball
     }
 
-    /// Finds the ball anew, after both poses have changed.
+    /// Computes the bounding ball, after poses have changed.
     pub(super) fn bound(&mut self) {
         let root = self.instance.current.root();
         let root = root.union(self.instance.previous.root());
@@ -175,26 +180,26 @@ impl SkinnedSurface {
         self.ball = is_there.then_some((center, radius + BALL_SLACK * size));
     }
 
-    /// Skins everything now and refits every bound to it, where queries would skin and bound what
-    /// they touch: the eager way. For comparison; the surface does so by itself where it is faster.
+    /// Skins every cluster now and refits every bound to the result, where queries would skip what they do not touch.
+    /// For comparison: the surface does this by itself where it is faster.
     #[doc(hidden)]
     pub fn skin_ahead(&mut self) {
         self.instance.current.fill(&self.instance.mesh);
     }
 
-    /// The surface in its own model space: its queries.
+    /// A view of the surface in its own model space, with its queries.
     pub fn in_model(&self) -> ModelSpace<'_> {
         ModelSpace {
             instance: &self.instance,
         }
     }
 
-    /// The shared rest data.
+    /// The rest data, which surfaces may share.
     pub fn mesh(&self) -> &Arc<ColliderMesh> {
         &self.instance.mesh
     }
 
-    /// Where the creature stands now.
+    /// The map from the creature's model space to the world, as of the current tick.
     pub fn world_from_model(&self) -> &Similarity {
         &self.world_from_model
     }
@@ -205,23 +210,25 @@ impl SkinnedSurface {
         self.instance.simd_level
     }
 
-    /// Skins every vertex, removed ones included, each once, in model space, by vertex id: for renderers,
-    /// and whoever wants everything. `positions` keeps its memory. Queries neither need it nor profit from it.
+    /// Skins every vertex once, removed ones included, into `positions`: in model space, by vertex id. For renderers
+    /// and others that need the whole surface. The memory of `positions` is reused. Queries neither need it nor profit
+    /// from it.
     pub fn skin_all(&self, positions: &mut Vec<Vec3>) {
         let palette = self.instance.current.palette();
         skin_checked(self.mesh(), palette, self.simd_level(), positions);
     }
 
-    /// True if this tick touched so much that skinning the next one ahead costs less than finding out.
+    /// True if this tick touched so many clusters that skinning the next tick ahead costs less than finding out which
+    /// clusters it needs.
     fn touched_nearly_everything(&self) -> bool {
-        // Counted from the stamps. A counter that queries raise would count a cluster twice where two threads
-        // reach it at once.
+        // Counted from the stamps: a counter that queries raise would count a cluster twice if two threads reached it
+        // at once.
         let asked = self.instance.current.asked_clusters().count();
         let all = self.mesh().clusters().living();
         asked * 4 >= all * 3
     }
 
-    /// Makes a pose current, skinned ahead or not; everything was checked before.
+    /// Makes a pose current, skinned ahead or not. The caller has checked it.
     fn pose(&mut self, palette: &Palette, world_from_model: Similarity, ahead: bool) {
         let Instance {
             mesh,
@@ -253,8 +260,8 @@ impl SkinnedSurface {
     }
 }
 
-/// How much larger the ball about a surface is made than its box asks for, as a share of its size and distance: some
-/// twenty roundings of f64 come to less.
+/// Share of a surface's size and distance by which its bounding ball is made larger than its box requires: more than
+/// some twenty roundings of f64.
 const BALL_SLACK: f64 = 1e-14;
 
 #[cfg(test)]

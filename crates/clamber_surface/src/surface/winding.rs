@@ -1,4 +1,4 @@
-//! Whether a point is inside a mesh, from the solid angle: the oracle of [`ModelSpace::is_inside`].
+//! The winding number of a mesh around a point, from the solid angle: the oracle of [`ModelSpace::is_inside`].
 //!
 //! [`ModelSpace::is_inside`]: super::ModelSpace::is_inside
 
@@ -6,13 +6,13 @@ use glam::{DVec3, Vec3};
 
 use crate::mesh::ColliderMesh;
 
-/// How often a mesh winds around `point`: 1 inside a closed mesh, 0 outside, 2 where two closed pieces overlap, in
-/// between near holes.
+/// How often a mesh winds around `point`: 1 inside a closed mesh, 0 outside, 2 where two closed pieces overlap; near
+/// holes, values in between.
 ///
-/// The solid angle of all triangles as seen from the point, over that of a sphere (van Oosterom and Strackee 1983,
-/// "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering 30(2)). `positions` are the
-/// mesh's vertices, skinned; triangles count whether enabled or not. No query takes part, so it can judge them. Looks
-/// at every triangle.
+/// The solid angle of all triangles as seen from the point, over the solid angle of a sphere (van Oosterom and Strackee
+/// 1983, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering 30(2)). `positions` are the
+/// mesh's vertices, skinned, in the space of `point`. Triangles count whether enabled or not. It uses no query, so it
+/// can judge them, and looks at every triangle.
 pub fn winding_number(positions: &[Vec3], mesh: &ColliderMesh, point: DVec3) -> f64 {
     let triangles = mesh.triangles().iter();
     let covered: f64 = triangles

@@ -6,12 +6,13 @@ use crate::geometry::{Capsule, Ray, Similarity, WorldCapsule};
 use crate::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
 use crate::query::{CastOptions, SurfaceHit, SweepHit};
 
-/// A surface in the world, in f64: the queries of [`ModelSpace`](super::ModelSpace) where the creature stands. Got from
-/// [`SkinnedSurface::in_world`].
+/// A view of a surface in world space, in f64: the queries of [`ModelSpace`](super::ModelSpace) at the creature's place
+/// in the world. [`SkinnedSurface::in_world`] returns it.
 ///
-/// Queries go to the model space and come back, so a creature far from the world's origin answers as exactly as one
-/// near it. Ray lengths and the distances of closest-point queries may be infinite. A radius or displacement that is
-/// infinite, a length that is NaN or negative, and a point or direction that is not finite find nothing.
+/// Queries are transformed to model space and their results back, so a creature far from the world's origin is as exact
+/// as one near it. Ray lengths and the distances of closest-point queries may be infinite. Nothing is found for an
+/// infinite radius or displacement, for a length that is NaN or negative, or for a point or direction that is not
+/// finite.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldSpace<'a> {
     surface: &'a SkinnedSurface,
@@ -21,17 +22,18 @@ pub struct WorldSpace<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorldHit {
-    /// The mesh that has the triangle.
+    /// The mesh that the triangle belongs to.
     pub mesh: MeshId,
-    /// The triangle.
+    /// The triangle's id.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1 up to rounding.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
-    /// The point.
+    /// The point, in world space.
     pub point: DVec3,
-    /// Outward unit normal of the deformed triangle. Where the triangle has collapsed: towards the query's origin.
+    /// Outward unit normal of the deformed triangle. If the triangle has collapsed: the unit vector from the point
+    /// towards the ray's origin, the query's point or the middle of the capsule's segment.
     pub normal: DVec3,
-    /// From the ray's origin, the query's point or the capsule's segment, metres.
+    /// Distance from the ray's origin, the query's point or the capsule's segment, metres.
     pub distance: f64,
     /// The part that the triangle belongs to.
     pub part: PartId,
@@ -39,47 +41,49 @@ pub struct WorldHit {
     pub tag: SurfaceTag,
 }
 
-/// The first contact of a capsule on its way with skin, in world space.
+/// The first contact of a moving capsule with skin, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorldSweepHit {
-    /// What is touched, where it is at that time; its distance is from the capsule's segment.
+    /// The contact point on the skin at that time; its `distance` is measured from the capsule's segment.
     pub hit: WorldHit,
-    /// Share of the motion that was made when they touched, 0..=1.
+    /// Share of the motion until the contact, 0..=1.
     pub time: f64,
-    /// Unit vector from the point to the capsule's segment; where that lies on the triangle itself, its normal.
+    /// Unit vector from the contact point to the capsule's segment. If the segment touches the triangle itself: the
+    /// triangle's normal.
     pub separation_normal: DVec3,
-    /// True if they overlap at the start already; the time is 0.
+    /// True if capsule and skin overlap at the start; the time is 0 then.
     pub started_inside: bool,
-    /// As [`SweepHit::undecided`].
+    /// True if the solver could not certify the distance within the tolerance: see [`SweepHit::undecided`].
     pub undecided: bool,
 }
 
-/// The motion of an anchor over one tick, in world space: differences of positions over the tick's length, never an
-/// instantaneous velocity.
+/// The motion of an anchor over one tick, in world space. Velocities are differences over the tick's length, never
+/// instantaneous.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct WorldMotion {
-    /// Where the point is now.
+    /// The point's current position.
     pub position: DVec3,
-    /// Where it was a tick ago.
+    /// The point's position a tick ago.
     pub previous_position: DVec3,
-    /// Displacement over the tick, metres per second. Like both places it is rounded to f32 in model space, by itself: it
-    /// is near to their difference over the tick, and not equal to it.
+    /// Displacement over the tick, metres per second. Like both positions, it is rounded to f32 in model space,
+    /// independently of them, so it is near their difference over the tick's length but not equal to it.
     pub velocity: DVec3,
-    /// Rotation of the material around the point from rest to now, in world space: [`Motion::frame`], and then the
+    /// Rotation of the material around the point from rest to now, in world space: [`Motion::frame`] followed by the
     /// surface's own rotation.
     pub frame: DQuat,
-    /// Axis times radians per second that turns the frame of a tick ago into the current one, by at most half a turn.
+    /// Rotation from the frame of a tick ago to the current one, by at most half a turn: axis times radians per second.
     pub angular_velocity: DVec3,
-    /// Outward unit normal of the triangle now; of a collapsed triangle, as its frame keeps it.
+    /// Outward unit normal of the triangle now. If the triangle has collapsed: the normal that follows from `frame`.
     pub normal: DVec3,
-    /// True if the triangle has no area of its own now: frame and normal are remembered ones.
+    /// True if the triangle has collapsed now, so `frame` and `normal` are the last known ones. A sliver without an
+    /// orientation even at rest turns with its joint, and does not count.
     pub collapsed: bool,
-    /// Area now over area a tick ago; 1 where it was collapsed.
+    /// Area now over area a tick ago, at most `f32::MAX`; 1 if the triangle was collapsed a tick ago.
     pub area_ratio: f32,
-    /// How much longer the most and the least stretched direction of the triangle became since a tick ago, larger first;
-    /// 1 and 1 where it was collapsed.
+    /// Principal stretches since a tick ago, length now over length then, larger first, at most `f32::MAX`; both 1 if
+    /// the triangle was collapsed a tick ago.
     pub stretches: [f32; 2],
 }
 
@@ -100,15 +104,15 @@ impl From<&WorldSweepHit> for SurfacePoint {
 }
 
 impl SkinnedSurface {
-    /// The surface where it stands in the world: its queries.
+    /// A view of the surface in world space, with its queries.
     pub fn in_world(&self) -> WorldSpace<'_> {
         WorldSpace { surface: self }
     }
 }
 
 impl WorldSpace<'_> {
-    /// The first triangle along a ray, from either side, up to `max_distance`. `direction` may have any length but zero;
-    /// distances are in metres along it.
+    /// The first triangle that a ray meets, from either side, up to `max_distance` metres. `direction` may have any
+    /// length but zero; distances along it are in metres.
     pub fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<WorldHit> {
         let ray = self.ray(origin, direction)?;
         let hit = self
@@ -118,7 +122,7 @@ impl WorldSpace<'_> {
         Some(self.hit(&hit, |_| origin))
     }
 
-    /// True if a ray meets any triangle, from either side, up to `max_distance`.
+    /// True if a ray meets any triangle, from either side, up to `max_distance` metres.
     pub fn intersects_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> bool {
         self.ray(origin, direction).is_some_and(|ray| {
             let length = self.length(max_distance);
@@ -126,7 +130,8 @@ impl WorldSpace<'_> {
         })
     }
 
-    /// All triangles along a ray, by distance, equal ones by triangle id. `hits` is cleared first.
+    /// Finds all triangles that a ray meets, sorted by distance in model space, then by triangle id. The first is the
+    /// hit of [`WorldSpace::cast_ray`]. `hits` is cleared first.
     pub fn cast_ray_all(
         &self,
         origin: DVec3,
@@ -136,7 +141,7 @@ impl WorldSpace<'_> {
     ) {
         hits.clear();
         if let Some(ray) = self.ray(origin, direction) {
-            // In the order of the model's distances, so that the first is the one of `cast_ray`.
+            // Keeps the order of the model's distances, so that the first hit is the one of `cast_ray`.
             let (length, mut found) = (self.length(max_distance), Vec::new());
             let space = self.surface.in_model();
             space.cast_ray_all(&ray, length, &mut found);
@@ -144,7 +149,7 @@ impl WorldSpace<'_> {
         }
     }
 
-    /// The material point nearest to `point`, no farther than `max_distance`.
+    /// The material point nearest to `point`, at most `max_distance` metres away.
     pub fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<WorldHit> {
         let local = self.place().inverse_transform_point_f32(point);
         let hit = self
@@ -154,7 +159,8 @@ impl WorldSpace<'_> {
         Some(self.hit(&hit, |_| point))
     }
 
-    /// Every triangle within a capsule, each with its own point closest to the capsule's segment, in no promised order.
+    /// Calls `visit` with every triangle within a capsule, each with its point closest to the capsule's segment. The
+    /// order is unspecified.
     pub fn visit_overlap_capsule(&self, capsule: &WorldCapsule, mut visit: impl FnMut(WorldHit)) {
         if let Some(local) = self.capsule(capsule) {
             let is_ball = capsule.is_ball();
@@ -167,7 +173,7 @@ impl WorldSpace<'_> {
         }
     }
 
-    /// The material point nearest to a capsule's segment, no farther from the capsule than `max_distance`.
+    /// The material point nearest to a capsule's segment, at most `max_distance` metres away from the capsule.
     pub fn closest_to_capsule(
         &self,
         capsule: &WorldCapsule,
@@ -178,15 +184,15 @@ impl WorldSpace<'_> {
         Some(self.hit(&found.surface, |point| capsule.nearest_on_axis(point)))
     }
 
-    /// [`ModelSpace::is_inside`](super::ModelSpace::is_inside).
+    /// True if a point is inside the surface: see [`ModelSpace::is_inside`](super::ModelSpace::is_inside).
     pub fn is_inside(&self, point: DVec3) -> bool {
         let local = self.place().inverse_transform_point_f32(point);
         self.surface.in_model().is_inside(local)
     }
 
-    /// The first contact of a capsule whose ends each go straight by one of `displacements`, with skin that stands still,
-    /// or that moves over the tick meanwhile: [`ModelSpace::cast_capsule`](super::ModelSpace::cast_capsule), with a
-    /// tolerance in metres.
+    /// The first contact of a moving capsule with skin that stands still, or that moves over the tick meanwhile. Each
+    /// end of the capsule moves straight by one of `displacements`. This is
+    /// [`ModelSpace::cast_capsule`](super::ModelSpace::cast_capsule) with displacements and tolerance in metres.
     pub fn cast_capsule(
         &self,
         capsule: &WorldCapsule,
@@ -199,8 +205,8 @@ impl WorldSpace<'_> {
         Some(self.sweep_hit(&hit))
     }
 
-    /// [`WorldSpace::cast_capsule`] among chosen contacts. `counts` is called, in any order, with the contact of each
-    /// triangle that could be the first; contacts for which it returns false are passed over.
+    /// [`WorldSpace::cast_capsule`] among the contacts that `counts` accepts. `counts` is called, in any order, with
+    /// the contact of each triangle that could be the first; a contact for which it returns false is skipped.
     pub fn cast_capsule_where(
         &self,
         capsule: &WorldCapsule,
@@ -215,7 +221,7 @@ impl WorldSpace<'_> {
         Some(self.sweep_hit(&hit))
     }
 
-    /// The motion of an anchor over a tick of `dt` seconds, in world space. Skins three vertices.
+    /// The motion of an anchor over a tick of `dt` seconds, in world space. Skins the triangle's three vertices.
     ///
     /// # Errors
     /// As [`ModelSpace::motion`](super::ModelSpace::motion).
@@ -243,7 +249,7 @@ impl WorldSpace<'_> {
         self.surface.world_from_model()
     }
 
-    /// A length in model units.
+    /// Converts a length in metres to model units.
     fn length(&self, length: f64) -> f32 {
         (length / self.place().scale) as f32
     }
@@ -278,8 +284,8 @@ impl WorldSpace<'_> {
         Some((self.capsule(capsule)?, displacements.map(in_model), options))
     }
 
-    /// A hit in the world. `origin` is where the query was made from, given the point: the distance is measured anew,
-    /// since that in the hit starts from the origin's rounding to f32.
+    /// Transforms a hit to world space. `origin` returns the query's origin for a point. The distance is measured again
+    /// in world space, since the hit's own distance starts from an origin that was rounded to f32.
     fn hit(&self, hit: &SurfaceHit, origin: impl Fn(DVec3) -> DVec3) -> WorldHit {
         let point = self.place().transform_point_f32(hit.point);
         WorldHit {

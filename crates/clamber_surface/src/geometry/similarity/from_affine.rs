@@ -1,38 +1,36 @@
-//! Affine maps that are similarities, taken apart.
+//! Conversion of an affine map to a [`Similarity`].
 
 use glam::{DAffine3, DMat3, DQuat};
 use thiserror::Error;
 
 use super::{Similarity, UNIT_TOLERANCE};
 
-/// Why an affine map is no similarity.
+/// Why an affine map is not a [`Similarity`].
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SimilarityError {
     /// An element is infinite or NaN.
     #[error("the map has an element that is not finite")]
     NotFinite,
-    /// All elements of the linear part are zero, or so small that the scale is no normal number.
-    #[error("the map scales by {0}")]
+    /// The scale is zero, or too small or too large for a normal number.
+    #[error("the map's scale must be a normal number, found {0}")]
     Scale(f64),
-    /// Its axes differ in length, or are not at right angles.
-    #[error(
-        "the map's axes differ from equal lengths and right angles by {found}, more than {limit}"
-    )]
+    /// The images of the axes differ in length, or are not at right angles: the map stretches or shears.
+    #[error("the map stretches or shears: its axes deviate by {found}, more than {limit}")]
     NotUniform {
-        /// The largest difference of an axis's squared length from 1, or of two axes' scalar product from 0, where 1
-        /// is the mean of the squared lengths.
+        /// Largest deviation, after the map is scaled so that its axes have a mean squared length of 1: of the squared
+        /// length of an axis from 1, or of the scalar product of two axes from 0.
         found: f64,
-        /// The most that is taken for rounding.
+        /// Largest deviation that counts as rounding.
         limit: f64,
     },
-    /// It turns right hands into left hands.
+    /// The determinant is negative.
     #[error("the map mirrors")]
     Mirrored,
 }
 
-/// The map of a uniform scale, a rotation and a translation, taken apart. Axes may differ from equal lengths and right
-/// angles by 1e-5, so that what f32 left of a similarity is one.
+/// Splits an affine map into a uniform scale, a rotation and a translation. Its axes may deviate from equal lengths and
+/// right angles by 1e-5, so a similarity that was rounded to f32 is accepted.
 ///
 /// ```
 /// use clamber_surface::geometry::{Similarity, SimilarityError};
@@ -62,7 +60,7 @@ impl TryFrom<DAffine3> for Similarity {
 
 fn scale_and_rotation(map: &DMat3) -> Result<(f64, DQuat), SimilarityError> {
     let elements = map.to_cols_array();
-    // By the largest element, so that no square overflows or vanishes.
+    // Divided by the largest element, so that no square overflows or underflows.
     let largest = elements.into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if largest == 0.0 {
         return Err(SimilarityError::Scale(0.0));
@@ -96,7 +94,7 @@ mod tests {
     use crate::geometry::rotation_from_axis_angle;
     use glam::DVec3;
 
-    /// Over scales whose squares overflow and vanish.
+    /// Includes scales whose squares overflow and underflow.
     #[test]
     fn a_similarity_comes_back_at_any_scale() {
         let mut rng = fastrand::Rng::with_seed(41);
@@ -119,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_rounded_to_f32_is_still_one() {
+    fn a_similarity_rounded_to_f32_is_accepted() {
         let there = Similarity {
             rotation: rotation_from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.7),
             scale: 3.0,

@@ -1,4 +1,4 @@
-//! Points of a triangle that may be the nearest one, and the better of two.
+//! Candidates for the nearest point of a triangle, and the choice between two of them.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::TrianglePoint;
 use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 
-/// A point of the triangle with its measured distance from the query, per lane.
+/// A point of the triangle with its measured distance from the query, in each lane.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<L> {
     /// Weights of the corners.
@@ -15,7 +15,7 @@ pub(super) struct Candidate<L> {
 }
 
 impl<L: Lanes> Candidate<L> {
-    /// The nearer one; of two as near, `self`.
+    /// The nearer of the two; `self` if both are equally near.
     #[inline(always)]
     pub(super) fn or_nearer(self, other: Self) -> Self {
         let nearer = other.distance.less(self.distance);
@@ -31,7 +31,7 @@ impl<L: Lanes> Candidate<L> {
         }
     }
 
-    /// Nearer than nothing, except where `valid`.
+    /// Sets the distance to infinity where not `valid`, so that every other candidate is nearer.
     #[inline(always)]
     pub(super) fn only_where(self, valid: L::Mask) -> Self {
         let infinity = self.distance.splat(f64::INFINITY);
@@ -59,8 +59,8 @@ pub(super) fn fraction<L: Lanes>(numerator: L, denominator: L) -> L {
     L::select(positive, (numerator / denominator).clamp_to_unit(), zero)
 }
 
-/// The point at `t` between two ends. Relative to the second end in the second half, so that t = 1
-/// gives that end itself.
+/// The point at `t` between two ends. For `t` above 0.5 it is computed from the second end, so that t = 1 gives that
+/// end exactly.
 #[inline(always)]
 pub(super) fn between<L: Lanes>(ends: [Vector3<L>; 2], t: L) -> Vector3<L> {
     let [start, end] = ends;

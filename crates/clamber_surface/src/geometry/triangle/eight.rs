@@ -1,4 +1,4 @@
-//! Eight triangles at a time: the scalar tests' text on SIMD registers, and their bits.
+//! Eight triangles at a time: the source of the scalar tests on SIMD registers, with the same bits.
 
 use fearless_simd::{Simd, SimdBase, dispatch};
 use glam::{DVec3, Vec3};
@@ -12,7 +12,7 @@ use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
 use crate::simd::SimdLevel;
 
-/// How many triangles a call takes: one register of f64 at the widest level, four at the narrowest.
+/// Number of triangles per call. They fill one register of f64 at the widest SIMD level, four at the narrowest.
 pub(crate) const EIGHT: usize = 8;
 
 /// Corners of eight triangles: `x[corner][lane]`. Unused lanes may hold any finite numbers.
@@ -61,12 +61,12 @@ impl Points8 {
     }
 }
 
-/// [`closest_point`](super::closest_point) of each triangle, the same in every bit.
+/// [`closest_point`](super::closest_point) of each triangle, with the same bits.
 pub(crate) fn closest_points(level: SimdLevel, corners: &Corners8, p: Vec3) -> Points8 {
     dispatch!(level.level(), simd => closest_points_simd(simd, corners, p))
 }
 
-/// [`closest_to_segment`](super::closest_to_segment) of each triangle, the same in every bit.
+/// [`closest_to_segment`](super::closest_to_segment) of each triangle, with the same bits.
 pub(crate) fn closest_to_segments(
     level: SimdLevel,
     corners: &Corners8,
@@ -107,8 +107,8 @@ fn closest_to_segments_simd<S: Simd>(simd: S, corners: &Corners8, a: Vec3, b: Ve
     points
 }
 
-/// [`Corners8`] in f64: the compiler makes vector conversions of plain loops over arrays, and
-/// registers of the arrays.
+/// [`Corners8`] in f64. The compiler turns plain loops over these arrays into vector conversions and keeps the arrays
+/// in registers.
 pub(super) struct Corners8Wide {
     x: [[f64; EIGHT]; 3],
     y: [[f64; EIGHT]; 3],
@@ -125,7 +125,7 @@ impl Corners8Wide {
         }
     }
 
-    /// The corners of the lanes from `first` on, minus `origin`.
+    /// The corners in the lanes from `first` on, minus `origin`.
     #[inline(always)]
     pub(super) fn relative_to<S: Simd>(
         &self,

@@ -1,10 +1,10 @@
 //! The point of a triangle nearest to a point.
 //!
-//! Takes the best of the perpendicular foot, where it falls inside, and the nearest points of the
-//! three edges, where the usual decision by Voronoi regions (Ericson 2004, *Real-Time Collision
-//! Detection*, 5.1.5) would trust one sign. Each candidate is a point of the triangle whose distance
-//! is measured, so rounding can choose a candidate that is worse by rounding, and nothing more:
-//! slivers lose no digits, and a triangle of zero area answers as the segment or point that it is.
+//! Takes the nearest of four candidates: the foot of the perpendicular, if it falls inside, and the nearest point of
+//! each edge. The usual decision by Voronoi regions (Ericson 2004, *Real-Time Collision Detection*, 5.1.5) would trust
+//! the sign of one number. Each candidate here is a point of the triangle whose distance is measured, so the result is
+//! farther than the nearest point by at most rounding error. Slivers lose no precision, and a triangle of zero area
+//! gives the result of the segment or point that it is.
 
 use glam::Vec3;
 
@@ -20,7 +20,8 @@ pub(crate) fn closest_point(corners: [Vec3; 3], p: Vec3) -> TrianglePoint {
     nearest_to_origin(corners.map(|corner| Vector3::from(widen(corner) - p))).into()
 }
 
-/// The point nearest to the origin: callers subtract before anything is multiplied.
+/// The point of a triangle nearest to the origin. Callers subtract the query's point first, before anything is
+/// multiplied.
 #[inline(always)]
 pub(super) fn nearest_to_origin<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
     let [ab, bc, ca] = edges(corners);
@@ -28,14 +29,14 @@ pub(super) fn nearest_to_origin<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate
     on_edges([ab, bc, ca]).or_nearer(foot(corners))
 }
 
-/// A point of an edge: its share of the way from the edge's first corner, and its distance.
+/// A point of an edge: its position, from 0 at the edge's first corner to 1 at its second, and its distance.
 #[derive(Clone, Copy)]
 pub(super) struct OnEdge<L> {
     pub(super) t: L,
     pub(super) distance: L,
 }
 
-/// The best of one point on each edge.
+/// The nearest of three points, one on each edge.
 #[inline(always)]
 pub(super) fn on_edges<L: Lanes>([ab, bc, ca]: [OnEdge<L>; 3]) -> Candidate<L> {
     let (zero, one) = (ab.t.splat(0.0), ab.t.splat(1.0));
@@ -60,12 +61,12 @@ pub(super) fn edges<L: Lanes>([a, b, c]: [Vector3<L>; 3]) -> [Edge<L>; 3] {
     [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)]
 }
 
-/// An edge, from its lexicographically smaller end: two triangles that share it then compute the
-/// same distance in every bit, and a tie between them is a tie.
+/// An edge that starts at its lexicographically smaller end. Two triangles that share it then compute the same bits for
+/// the distance, so a tie between them is exact.
 #[derive(Clone, Copy)]
 pub(super) struct Edge<L: Lanes> {
     pub(super) ends: [Vector3<L>; 2],
-    /// The smaller end is the second corner.
+    /// True if the smaller end is the second corner.
     pub(super) swapped: L::Mask,
 }
 
@@ -82,7 +83,7 @@ impl<L: Lanes> Edge<L> {
         }
     }
 
-    /// Its point nearest to the origin.
+    /// The edge's point nearest to the origin.
     #[inline(always)]
     pub(super) fn nearest(self) -> OnEdge<L> {
         let [low, high] = self.ends;
@@ -95,7 +96,7 @@ impl<L: Lanes> Edge<L> {
     }
 }
 
-/// The foot of the perpendicular from the origin, where it falls inside.
+/// The foot of the perpendicular from the origin, if it falls inside; else a candidate at infinite distance.
 #[inline(always)]
 pub(super) fn foot<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
     let [a, b, c] = corners;
@@ -112,7 +113,7 @@ pub(super) fn foot<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
     .only_where(inside)
 }
 
-/// Weights of the foot of the perpendicular from the origin, times their sum.
+/// Corner weights of the foot of the perpendicular from the origin, each times the sum of all three.
 #[inline(always)]
 pub(super) fn volumes<L: Lanes>([a, b, c]: [Vector3<L>; 3], normal: Vector3<L>) -> [L; 3] {
     [

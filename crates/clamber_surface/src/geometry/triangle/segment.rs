@@ -1,9 +1,8 @@
 //! The point of a triangle nearest to a segment, the axis of a capsule.
 //!
-//! The nearest pair of a segment and a triangle lies at an edge (Ericson 2004, 5.1.9), at the foot
-//! of one end on the face, or where the segment crosses the face. As for [points](super::point),
-//! every such pair is formed with one point on each of the two and measured, and the best is taken:
-//! no decision by sign can make the answer worse than rounding.
+//! The nearest pair of a segment and a triangle lies at an edge (Ericson 2004, 5.1.9), at the foot of one end on the
+//! face, or where the segment crosses the face. As for [points](super::point), each of these pairs is computed and its
+//! distance measured, and the nearest is taken. So no decision by sign can make the result worse than rounding error.
 
 use glam::{DVec3, Vec3};
 
@@ -14,17 +13,17 @@ use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 use crate::geometry::widen;
 
-/// Pairs this near, as a share of the lengths involved, are one point where the segment passes
-/// through the face: 32 roundings of 2^-53. Smaller, and a crossing shows a distance of rounding;
-/// larger, and a gap is taken for a crossing.
+/// Largest distance, as a share of the lengths involved, that counts as a crossing where the segment passes through the
+/// face: 32 roundings of 2^-53. If it were smaller, a crossing would report rounding error as its distance; if it were
+/// larger, a gap would count as a crossing.
 const TOUCHING: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The point of triangle `corners` nearest to the segment from `a` to `b`, with its distance from the
-/// segment: 0 where they cross, and then it is the crossing point (crossings of a sliver may show
-/// the rounding that the [module](super) states).
+/// The point of triangle `corners` nearest to the segment from `a` to `b`, with its distance from the segment. If they
+/// cross, the distance is 0 and the point is the crossing point (in slivers, the distance may be the rounding error
+/// that the [module](super) states).
 ///
-/// The same in every bit with the ends swapped, and as [`closest_point`](super::closest_point) where
-/// they are equal.
+/// The bits are the same with the ends swapped, and those of [`closest_point`](super::closest_point) if the ends are
+/// equal.
 pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> TrianglePoint {
     let [a, b] = ordered(a, b).map(widen);
     let from_a = corners.map(|corner| Vector3::from(widen(corner) - a));
@@ -32,7 +31,7 @@ pub(crate) fn closest_to_segment(corners: [Vec3; 3], a: Vec3, b: Vec3) -> Triang
     nearest_to_segment(from_a, from_b, (b - a).into()).into()
 }
 
-/// [`closest_to_segment`] in f64, for ends which may be one point.
+/// [`closest_to_segment`] for coordinates in f64; the ends may be the same point.
 pub(crate) fn nearest_to_axis(corners: [DVec3; 3], [a, b]: [DVec3; 2]) -> TrianglePoint {
     let from = |end: DVec3| corners.map(|corner| Vector3::from(corner - end));
     if a == b {
@@ -42,7 +41,7 @@ pub(crate) fn nearest_to_axis(corners: [DVec3; 3], [a, b]: [DVec3; 2]) -> Triang
     }
 }
 
-/// The lexicographically smaller end first.
+/// The two points, the lexicographically smaller one first.
 pub(super) fn ordered(a: Vec3, b: Vec3) -> [Vec3; 2] {
     if b.to_array() < a.to_array() {
         [b, a]
@@ -72,14 +71,13 @@ pub(super) fn nearest_to_segment<L: Lanes>(
 
 /// The point of an edge nearest to the segment.
 ///
-/// Three steps, each clamped: the edge's point nearest to the segment's line, the segment's point
-/// nearest to that, the edge's point nearest to that. For all but parallel lines the first is the
-/// answer already; where they are nearly parallel it may be far off *along* both, which the
-/// other two steps forgive.
+/// Three steps, each clamped: the edge's point nearest to the segment's line, the segment's point nearest to that
+/// point, and the edge's point nearest to that. Unless the lines are nearly parallel, the first step finds the result.
+/// For nearly parallel lines it may be far off *along* both, which the other two steps correct.
 #[inline(always)]
 fn edge_to_segment<L: Lanes>(edge: Edge<L>, axis: Vector3<L>) -> OnEdge<L> {
     let [low, high] = edge.ends;
-    // By the cross product: a difference of squares would keep half the digits.
+    // From the cross product: a difference of squares would keep only half the digits.
     let across = (high - low).cross(axis);
     let t = fraction(-low.cross(axis).dot(across), across.length_squared());
     let near = point_of_axis(axis, nearest_on_axis(axis, between(edge.ends, t)));
@@ -90,12 +88,12 @@ fn edge_to_segment<L: Lanes>(edge: Edge<L>, axis: Vector3<L>) -> OnEdge<L> {
     .nearest()
 }
 
-/// The point where the segment's line passes through the face's plane, clamped to both: the crossing
-/// or, at a clamped end, the foot of that end. Only a segment parallel to the plane has none; all its
-/// points are as far, and the foot of its start stands for them.
+/// The point where the segment's line passes through the face's plane, clamped to the segment and to the face: the
+/// crossing or, at a clamped end, the foot of that end. A segment parallel to the plane has no such point. All of its
+/// points are equally far from the plane, so the foot of its start is enough.
 ///
-/// The normal of a sliver of height h and length 1 is off by 2^-53 / h, and with it the first
-/// guess. One step of Newton's method from that guess squares the error.
+/// The normal of a sliver of height h and length 1 is off by 2^-53 / h, and so is the first guess. One step of Newton's
+/// method from that guess squares the error.
 #[inline(always)]
 fn on_face<L: Lanes>(
     corners: [Vector3<L>; 3],
@@ -134,7 +132,7 @@ fn on_face<L: Lanes>(
     .only_where(slanted)
 }
 
-/// Weights of a point of the face: none negative, sum 1.
+/// Clamps weights to the face: none negative, sum 1.
 #[inline(always)]
 fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
     let zero = x.splat(0.0);
@@ -145,7 +143,7 @@ fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
     [x / sum, y / sum, z / sum]
 }
 
-/// Where on the segment from the origin to `axis` its point nearest to `p` lies, 0..1.
+/// Position, 0..=1, of the point nearest to `p` on the segment from the origin to `axis`.
 #[inline(always)]
 pub(super) fn nearest_on_axis<L: Lanes>(axis: Vector3<L>, p: Vector3<L>) -> L {
     fraction(p.dot(axis), axis.length_squared())

@@ -1,10 +1,9 @@
-//! A triangle against a ray, without a gap between triangles.
+//! A watertight test of a ray against a triangle.
 //!
-//! Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1). Corners are
-//! translated and sheared in f32, the same way for every triangle that shares them; the edge
-//! functions of the sheared corners are then evaluated in f64, where the products of f32 numbers are
-//! exact, so their signs are the true ones. A ray can therefore not slip between two triangles that
-//! share an edge or a corner by index.
+//! Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1). Corners are translated and sheared in
+//! f32, in the same way for every triangle that shares them. The edge functions of the sheared corners are then
+//! evaluated in f64, where the products of f32 numbers are exact, so their signs are the true ones. A ray can therefore
+//! not slip between two triangles that share an edge or a corner by index.
 
 use glam::{DVec3, Vec3};
 
@@ -37,8 +36,8 @@ impl ShearedRay {
 
     /// Sheared x and y, and distance along the ray, of a vertex.
     ///
-    /// All of it in f32, whoever computes it, for one vertex or for many: watertight is a mesh whose
-    /// vertices each have one sheared position.
+    /// All of it is in f32, and it has the same bits for one vertex as for many: the test is watertight only if each
+    /// vertex has a single sheared position.
     pub(crate) fn shear(&self, vertex: Vec3) -> [f32; 3] {
         let local = (vertex - self.origin).to_array();
         let [x, y, z] = self.axes.map(|axis| local[axis]);
@@ -49,8 +48,8 @@ impl ShearedRay {
         ]
     }
 
-    /// Where the ray meets the triangle, from either side, between distance 0 and `max_distance`.
-    /// Borders belong to the triangle. A triangle seen edge-on is not met.
+    /// The point where the ray meets the triangle, from either side, at a distance from 0 to `max_distance`. Edges and
+    /// corners belong to the triangle. A triangle seen edge-on is missed.
     pub(crate) fn intersect(&self, corners: [Vec3; 3], max_distance: f64) -> Option<TrianglePoint> {
         intersect_sheared(corners.map(|corner| self.shear(corner)), max_distance)
     }

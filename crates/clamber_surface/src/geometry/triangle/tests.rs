@@ -15,8 +15,8 @@ fn random_point(rng: &mut fastrand::Rng) -> Vec3 {
     )
 }
 
-/// Nearest distance by another road: a search over the barycentric coordinates,
-/// a coarse grid refined around its best cell until the cell is below rounding.
+/// Nearest distance by another method: a search over the barycentric coordinates, a coarse grid refined around its best
+/// cell until the cell is below rounding.
 fn distance_by_search(corners: [Vec3; 3], p: Vec3) -> f64 {
     let p = widen(p);
     let [a, b, c] = corners.map(|corner| widen(corner) - p);
@@ -81,7 +81,7 @@ fn closest_point_meets_the_optimality_condition_on_slivers_far_out() {
 }
 
 #[test]
-fn closest_point_of_the_troublesome_sliver() {
+fn closest_point_of_a_sliver_with_a_poor_normal_in_f32() {
     // Catto's triangle, whose normal keeps two digits in f32.
     let corners = [
         Vec3::new(0.331_916_57, 0.382_771_94, -0.465_963_87),
@@ -123,7 +123,7 @@ fn collapsed_triangle_answers_as_segment_and_as_point() {
     let found = closest_point([a, b, a], Vec3::new(2.0, 2.0, 0.0));
     assert!((found.distance - 2.0).abs() < 1e-12);
     let first_edge = DVec3::new(0.5, 0.5, 0.0);
-    assert_eq!(found.barycentric, first_edge, "of equal edges the first");
+    assert_eq!(found.barycentric, first_edge, "the first of equal edges");
     let found = closest_point([a, a, a], Vec3::new(1.0, 5.0, 0.0));
     assert!((found.distance - 5.0).abs() < 1e-12);
 }

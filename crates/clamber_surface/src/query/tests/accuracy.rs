@@ -1,4 +1,4 @@
-//! The nearest point through the whole surface against all triangles by another method.
+//! Closest points on the whole surface, compared with all triangles by another method.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::rig::JointId;
 use crate::surface::SkinnedSurface;
 use crate::testing::{direction, point};
 
-/// Slivers of length 1 and height `height` about `center`, each its own three vertices.
+/// Slivers of length 1 and height `height` around `center`, each with its own three vertices.
 fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface {
     let mut positions = Vec::new();
     for _ in 0..400 {
@@ -37,8 +37,8 @@ fn slivers(rng: &mut fastrand::Rng, height: f32, center: Vec3) -> SkinnedSurface
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-/// Distance from the origin to a triangle in f64: the plane's where the foot falls inside, else that of
-/// the nearest edge, on differences that were taken before anything was multiplied.
+/// Distance from the origin to a triangle in f64: the distance to the plane if the foot falls inside, else to the
+/// nearest edge. Differences are taken before anything is multiplied.
 fn distance(corners: [DVec3; 3]) -> f64 {
     let [a, b, c] = corners;
     let edges = [(a, b), (b, c), (c, a)];
@@ -58,7 +58,7 @@ fn distance(corners: [DVec3; 3]) -> f64 {
 }
 
 #[test]
-fn the_nearest_point_is_as_near_as_an_oracle_finds_it_on_slivers_and_far_out() {
+fn closest_points_agree_with_an_oracle_on_slivers_and_far_out() {
     let mut rng = fastrand::Rng::with_seed(92);
     let mut worst = 0.0f64;
     for height in [1e-1, 1e-3, 1e-5, 1e-7] {
@@ -82,12 +82,12 @@ fn the_nearest_point_is_as_near_as_an_oracle_finds_it_on_slivers_and_far_out() {
                 let wanted = all
                     .map(|id| distance(local(id)))
                     .fold(f64::INFINITY, f64::min);
-                // Of the material point that the hit names, not of its rounded place.
+                // The distance of the material point that the hit names, not of its rounded position.
                 let corners = local(hit.triangle.index());
                 let [u, v, w] = hit.barycentric.map(f64::from);
                 let met = (corners[0] * u + corners[1] * v + corners[2] * w).length();
                 for found in [hit.distance, met] {
-                    // Longest edge, distance.
+                    // As a share of the longest edge and the distance.
                     let share = (found - wanted).abs() / (1.0 + wanted);
                     assert!(share <= 2e-7, "height {height}, {place}: {share} {hit:?}");
                     worst = worst.max(share);

@@ -1,4 +1,4 @@
-//! Which of several triangles wins, and what the search for it leaves alone.
+//! Which of several triangles wins, and what the search for it does not touch.
 
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ use crate::surface::SkinnedSurface;
 use crate::testing::{bend, tube};
 
 #[test]
-fn of_triangles_as_near_the_smaller_id_wins() {
+fn the_smaller_id_wins_among_equally_near_triangles() {
     let mesh = tube(5, 24);
     let mut surface = SkinnedSurface::new(mesh.clone());
     for angle in [0.0, 0.3] {
@@ -27,7 +27,7 @@ fn of_triangles_as_near_the_smaller_id_wins() {
             assert_eq!(hit.map(|hit| hit.triangle), first, "vertex {vertex}");
             let hit = brute_force.closest_point(*p, 1.0);
             assert_eq!(hit.map(|hit| hit.triangle), first, "vertex {vertex}");
-            // Along an axis the vertex's sheared position is exactly that of the ray.
+            // Along an axis, the vertex has exactly the sheared position of the ray.
             for axis in [Vec3::Y, Vec3::Z] {
                 let ray = Ray::new(*p - axis, axis).unwrap();
                 surface.in_model().cast_ray_all(&ray, 10.0, &mut all);
@@ -47,7 +47,7 @@ fn of_triangles_as_near_the_smaller_id_wins() {
 }
 
 #[test]
-fn a_ray_leaves_alone_what_lies_behind_its_first_hit() {
+fn a_ray_touches_few_clusters_behind_its_first_hit() {
     let mesh = tube(40, 24);
     let surface = SkinnedSurface::new(mesh);
     // Through the end cap, then along the skin from inside.
@@ -62,7 +62,7 @@ fn a_ray_leaves_alone_what_lies_behind_its_first_hit() {
 }
 
 #[test]
-fn a_point_leaves_alone_what_is_farther_than_its_nearest_triangle() {
+fn a_closest_point_query_touches_few_clusters_beyond_the_nearest_triangle() {
     let mesh = tube(40, 24);
     let surface = SkinnedSurface::new(mesh);
     let place = Vec3::new(20.1, 0.6, 0.02);

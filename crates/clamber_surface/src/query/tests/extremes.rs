@@ -1,4 +1,4 @@
-//! Numbers at the ends of what f32 holds: creatures, queries and distances.
+//! Numbers at the limits of f32: creatures, queries and distances.
 
 use std::sync::Arc;
 
@@ -108,7 +108,7 @@ fn queries_from_anywhere_answer_like_brute_force() {
             let reach = [far * 0.999, far * 1.001, far * 2.0, f32::INFINITY, 1.0, 0.0];
             let place = Place {
                 origin,
-                // The capsule passes through the creature as far again.
+                // The far end of the capsule lies at, beyond or before the creature.
                 towards: (target - origin) * [1.0, 2.0, 0.5][rng.usize(0..3)],
                 reach: reach[rng.usize(0..6)],
             };
@@ -118,7 +118,7 @@ fn queries_from_anywhere_answer_like_brute_force() {
 }
 
 #[test]
-fn rays_along_axes_meet_what_lies_in_their_plane() {
+fn rays_along_axes_through_vertices_agree_with_brute_force() {
     let mut rng = fastrand::Rng::with_seed(85);
     let surface = SkinnedSurface::new(tube(JOINTS, 24));
     let brute_force = BruteForce::new(surface.in_model());
@@ -141,7 +141,7 @@ fn rays_along_axes_meet_what_lies_in_their_plane() {
 }
 
 #[test]
-fn a_capsule_too_long_to_square_still_holds_what_it_passes() {
+fn a_capsule_whose_squared_length_overflows_still_overlaps_triangles() {
     let surface = scaled(1.0);
     let brute_force = BruteForce::new(surface.in_model());
     let mut rng = fastrand::Rng::with_seed(86);
@@ -166,7 +166,7 @@ fn a_capsule_too_long_to_square_still_holds_what_it_passes() {
 }
 
 #[test]
-fn a_capsule_that_all_but_touches_a_face_touches_it_as_the_exact_test_says() {
+fn a_capsule_that_nearly_touches_a_face_agrees_with_the_exact_test() {
     // The exact test takes a gap of 2^-48 of the lengths involved for a crossing.
     let (mut hits, mut wanted, mut touched) = (Vec::new(), Vec::new(), 0);
     for gap in [1e-30, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10] {
@@ -190,8 +190,8 @@ fn a_capsule_that_all_but_touches_a_face_touches_it_as_the_exact_test_says() {
 }
 
 #[test]
-fn a_sphere_that_ends_at_a_face_touches_it_as_the_exact_test_says() {
-    // The face lies beyond the sphere by less than f64 tells at that distance.
+fn a_sphere_that_ends_at_a_face_agrees_with_the_exact_test() {
+    // The face is beyond the sphere by less than f64 can resolve at that distance.
     let (mut hits, mut wanted, mut touched) = (Vec::new(), Vec::new(), 0);
     for gap in [1e-12, 1e-10, 1e-9, 4e-9, 1e-7] {
         for radius in [1e6, 1e7, 1e8] {
@@ -213,8 +213,8 @@ fn a_sphere_that_ends_at_a_face_touches_it_as_the_exact_test_says() {
 
 #[test]
 fn the_nearest_vertex_does_not_narrow_the_search_below_rounding() {
-    // Where a vertex is the nearest point of all its triangles, theirs may be found a little farther
-    // by rounding, and a triangle beside them be nearer than that.
+    // If a vertex is the nearest point of all its triangles, their measured distance may be a little larger by
+    // rounding, and a triangle beside them may be nearer than that.
     let mut rng = fastrand::Rng::with_seed(87);
     for case in 0..20_000 {
         let near = libm::powf(10.0, -14.0 + 4.0 * rng.f32());

@@ -1,4 +1,4 @@
-//! Triangles that queries do not see must not narrow the search for those that they see.
+//! Hidden triangles must not narrow the search for visible ones.
 
 use super::places::{Place, assert_agree};
 use crate::geometry::Similarity;
@@ -13,7 +13,7 @@ fn around(mesh: &ColliderMesh, vertex: VertexId) -> Vec<TriangleId> {
     around.map(|(id, _)| TriangleId(id as u32)).collect()
 }
 
-/// Hides what stands around every vertex in turn, and asks from near that vertex.
+/// Hides the triangles around each vertex in turn, and queries from near that vertex.
 fn check(mut hide: impl FnMut(&mut SkinnedSurface, TriangleId)) {
     let mesh = tube(4, 12);
     let mut rng = fastrand::Rng::with_seed(81);
@@ -38,12 +38,12 @@ fn check(mut hide: impl FnMut(&mut SkinnedSurface, TriangleId)) {
 }
 
 #[test]
-fn the_vertex_of_disabled_triangles_alone_hides_none_that_is_enabled() {
+fn a_vertex_of_disabled_triangles_alone_hides_no_enabled_triangle() {
     check(|surface, triangle| surface.disable_triangle(triangle).unwrap());
 }
 
 #[test]
-fn the_vertex_of_removed_triangles_alone_hides_none_that_is_left() {
+fn a_vertex_of_removed_triangles_alone_hides_no_remaining_triangle() {
     check(|surface, triangle| {
         surface.edit(|edit| edit.remove_triangle(triangle)).unwrap();
     });
@@ -51,7 +51,7 @@ fn the_vertex_of_removed_triangles_alone_hides_none_that_is_left() {
 
 #[test]
 fn a_hidden_triangle_is_hidden_until_it_is_shown_again() {
-    // Whatever was hidden twice, shown twice, or hidden before its part: flags and count agree.
+    // Also if it is hidden or shown twice in a row: flags and count agree.
     let mesh = tube(4, 12);
     let mut rng = fastrand::Rng::with_seed(82);
     let mut surface = SkinnedSurface::new(mesh.clone());

@@ -1,4 +1,4 @@
-//! `is_inside` against the solid angle.
+//! `is_inside` compared with the winding number from the solid angle.
 
 use glam::{DVec3, Vec3};
 
@@ -9,7 +9,7 @@ use crate::query::inside::DIRECTIONS;
 use crate::surface::SkinnedSurface;
 use crate::testing::{bend, point, tube};
 
-/// Compares at a point; gives the winding number.
+/// Compares at a point; returns the winding number.
 fn assert_agrees(surface: &SkinnedSurface, positions: &[Vec3], place: Vec3, case: &str) -> f64 {
     let winding = winding_number(positions, surface.mesh(), place.as_dvec3());
     let inside = surface.in_model().is_inside(place);
@@ -27,7 +27,7 @@ fn a_bent_tube_that_overlaps_itself_agrees_with_the_solid_angle() {
     let mesh = tube(10, 12);
     let mut surface = SkinnedSurface::new(mesh);
     let (mut inside, mut overlapping) = (0, 0);
-    // The last one winds up on itself.
+    // At the last angle the tube overlaps itself.
     for angle in [0.0, 0.2, 0.5, 0.9] {
         let bent = bend(10, DVec3::new(0.0, 0.8, 0.6), angle);
         surface.advance(&bent, Similarity::IDENTITY).unwrap();
@@ -68,7 +68,7 @@ fn a_ray_through_edges_and_corners_is_outvoted() {
 
 #[test]
 fn a_hole_in_one_direction_is_outvoted() {
-    // From the middle of each ring, the skin that one ray leaves through is taken away.
+    // For a point in the middle of each ring, hides the triangle through which one of the rays leaves.
     let whole = SkinnedSurface::new(tube(6, 16));
     for x in [0.6, 2.1, 4.4] {
         let middle = Vec3::new(x, 0.05, -0.03);
@@ -88,8 +88,8 @@ fn a_hole_in_one_direction_is_outvoted() {
 }
 
 #[test]
-fn an_open_sheet_has_no_inside_from_half_its_size_on() {
-    // The end cap of a tube, seen from before it and from behind.
+fn an_open_sheet_has_no_inside_beyond_half_its_size() {
+    // The end cap of a tube, seen from the front and from behind.
     let mut surface = SkinnedSurface::new(tube(3, 16));
     let mesh = surface.mesh().clone();
     let caps: Vec<TriangleId> = (0..mesh.triangles().len() as u32)

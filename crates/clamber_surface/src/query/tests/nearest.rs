@@ -1,4 +1,4 @@
-//! One order along a ray: the exact distance decides, then the triangle id, for the first hit alone as for all
+//! One order of hits along a ray: by exact distance, then by triangle id, both for the first hit alone and for all
 //! hits.
 
 use std::sync::Arc;
@@ -31,14 +31,14 @@ fn still(positions: &[Vec3], triangles: &[[u32; 3]]) -> Option<SkinnedSurface> {
     Some(SkinnedSurface::new(Arc::new(mesh)))
 }
 
-/// How many rays met something, and how many of them met several triangles whose distances are equal in f32.
+/// Number of rays that met something, and of those whose two nearest triangles are at distances that are equal in f32.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     met: usize,
     tied: usize,
 }
 
-/// Compares `cast_ray` with `cast_ray_all`, both with brute force, and the order of all hits with the exact
+/// Compares `cast_ray` with `cast_ray_all`, both of them with brute force, and the order of all hits with the exact
 /// distances.
 fn assert_one_order(surface: &SkinnedSurface, ray: &Ray, count: &mut Count) {
     let (mut all, mut wanted) = (Vec::new(), Vec::new());
@@ -72,7 +72,7 @@ fn assert_one_order(surface: &SkinnedSurface, ray: &Ray, count: &mut Count) {
 }
 
 #[test]
-fn of_two_triangles_whose_distances_differ_below_f32_the_nearer_one_is_first() {
+fn the_nearer_triangle_is_first_even_if_f32_cannot_tell_the_distances_apart() {
     let z = -(1.0 + f32::EPSILON);
     let positions = [
         Vec3::new(-1.0, -0.1, -1.0),
@@ -106,7 +106,7 @@ fn at_distance_zero_the_smaller_id_is_first_whatever_the_sign_of_zero() {
     assert_eq!([count.met, count.tied], [30, 30]);
 }
 
-/// A fan of triangles around a vertex, as flat as `flatness` says: shared edges, and one shared corner.
+/// A fan of triangles around a vertex, with heights up to `flatness`: shared edges, and one shared corner.
 fn fan(rng: &mut fastrand::Rng, flatness: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let sides = rng.u32(3..9);
     let mut positions = vec![point(rng, flatness)];
@@ -122,8 +122,8 @@ fn fan(rng: &mut fastrand::Rng, flatness: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, triangles)
 }
 
-/// Large triangles in one plane or a few units of the last place beside it, all across its middle: what meets one
-/// meets nearly all, at distances that f32 cannot tell apart.
+/// Large triangles in one plane, or a few units in the last place beside it, all of them across its middle. A ray that
+/// meets one meets nearly all, at distances that f32 cannot tell apart.
 fn stack(rng: &mut fastrand::Rng, tilt: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let count = rng.u32(2..12);
     let [u, v] = [Vec3::X, Vec3::Y].map(|axis| axis + Vec3::Z * point(rng, tilt).z);
@@ -156,7 +156,7 @@ fn shared_edges_coplanar_duplicates_and_grazing_rays_keep_one_order() {
         let offset = point(&mut rng, away);
         positions.iter_mut().for_each(|p| *p = (*p + offset) * size);
         if rng.bool() {
-            // The same triangles on corners of their own, the other way round.
+            // The same triangles again, with their own corners and reversed.
             let first = positions.len() as u32;
             positions.extend_from_within(..);
             triangles.extend_from_within(..);

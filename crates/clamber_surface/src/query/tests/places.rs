@@ -1,4 +1,4 @@
-//! One place, every query, against brute force.
+//! Every query at one place, compared with brute force.
 
 use glam::Vec3;
 
@@ -6,16 +6,16 @@ use crate::geometry::{Capsule, Ray};
 use crate::measure::BruteForce;
 use crate::surface::{SkinnedSurface, SurfaceHit};
 
-/// Where a query stands.
+/// The place and size of a query.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) origin: Vec3,
-    /// Where its ray goes, and from `origin` to the other end of its capsule.
+    /// Direction of the ray, and vector from `origin` to the other end of the capsule.
     pub(super) towards: Vec3,
     pub(super) reach: f32,
 }
 
-/// Compares every query at a place; gives how many hits there were.
+/// Compares every query at a place; returns the number of hits.
 pub(super) fn assert_agree(
     surface: &SkinnedSurface,
     brute_force: &BruteForce<'_>,

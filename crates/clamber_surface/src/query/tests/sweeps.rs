@@ -1,4 +1,4 @@
-//! Casts and sweeps: what they promise of times, distances and normals, and of limbs at any speed.
+//! Casts and sweeps: their promises on times, distances and normals, and limbs at any speed.
 
 use std::sync::Arc;
 
@@ -15,18 +15,18 @@ use glam::{DQuat, DVec3, Vec3};
 const RATES: [f64; 3] = [30.0, 60.0, 120.0];
 const SPEEDS: [f64; 5] = [5.0, 20.0, 60.0, 100.0, 300.0];
 
-/// A resting ball far thinner than what the limb moves in a tick.
+/// A resting ball, far thinner than the distance that the limb moves in a tick.
 const BALL: (Vec3, f32) = (Vec3::new(1.5, 0.0, 0.0), 0.1);
 
-/// The tube as a limb that moves along z, from below the ball to above it, tick by tick; the time from
-/// the first tick on at which a query reports the ball first.
+/// Moves the tube as a limb along z, tick by tick, from below the ball to above it. Returns the limb's position on z
+/// when a query first reports the ball.
 fn passes(
     step: f64,
     mut report: impl FnMut(&SkinnedSurface) -> Option<SweepHit>,
     mut place: impl FnMut(&mut SkinnedSurface, f64, bool),
 ) -> Option<f64> {
     let mut surface = SkinnedSurface::new(tube(4, 12));
-    // An odd start, so that no tick ends where the ball is.
+    // An odd start, so that no tick ends at the ball.
     let start = -3.0 - step * 0.37;
     place(&mut surface, start, true);
     let mut tick = 0.0;
@@ -42,7 +42,7 @@ fn passes(
 }
 
 #[test]
-fn a_limb_at_any_speed_touches_a_resting_sphere_when_it_gets_there() {
+fn a_limb_at_any_speed_touches_a_resting_shape_at_the_right_time() {
     let by_joints = |surface: &mut SkinnedSurface, z: f64, first: bool| {
         let palette = rigid(4, DQuat::IDENTITY, DVec3::Z * z);
         step(surface, &palette, DVec3::ZERO, first);
@@ -73,7 +73,7 @@ fn a_limb_at_any_speed_touches_a_resting_sphere_when_it_gets_there() {
             assert!(near(touch), "sphere, joints, {case}: {touch:?}");
             let touch = passes(speed / rate, capsule, by_joints);
             assert!(near(touch), "capsule, joints, {case}: {touch:?}");
-            // What rests in the world rests in the current model frame, wherever that is.
+            // A point at rest in the world rests in the current model frame, wherever that frame is.
             let sphere = |s: &SkinnedSurface| {
                 let in_model = s
                     .world_from_model()
@@ -98,12 +98,12 @@ fn step(surface: &mut SkinnedSurface, palette: &Palette, root: DVec3, first: boo
 }
 
 #[test]
-fn a_swinging_limb_does_not_pass_a_sphere_by() {
+fn a_swinging_limb_does_not_miss_a_sphere() {
     let sphere = ball(Vec3::X * 2.5, 0.05);
     let mut swings = 0;
     for rate in RATES {
         for speed in SPEEDS {
-            // Vertices go straight: in a larger turn they cut across far inside of the arc.
+            // Vertices move straight: in a larger turn they would cut far inside the arc.
             let angle = speed / rate / 2.5;
             if angle > 0.7 {
                 continue;
@@ -150,14 +150,14 @@ fn resting() -> SkinnedSurface {
 }
 
 #[test]
-fn a_hit_tells_when_where_and_which_way() {
+fn a_hit_has_the_right_time_point_and_normals() {
     let surface = resting();
     let sphere = ball(Vec3::new(1.5, 3.0, 0.0), 0.25);
     let hit = surface
         .in_model()
         .cast_capsule(&sphere, [Vec3::NEG_Y * 4.0; 2], &CastOptions::STILL)
         .unwrap();
-    // At height 0.75 of the round tube.
+    // The ball touches at height 0.75 above the axis of the round tube.
     let early = (3.0 - 0.75) / 4.0 - hit.time;
     assert!((-1e-6..1e-3).contains(&early), "{hit:?}");
     assert!(
@@ -171,7 +171,7 @@ fn a_hit_tells_when_where_and_which_way() {
     assert!(!hit.started_inside && !hit.undecided, "{hit:?}");
     let weights: f32 = hit.barycentric.iter().sum();
     assert!((weights - 1.0).abs() < 1e-6, "{hit:?}");
-    // From the inside the contact normal points inwards, the skin's outwards.
+    // From the inside, the contact normal points inwards and the skin's normal outwards.
     let inside = ball(Vec3::new(1.5, 0.0, 0.0), 0.25);
     let hit = surface
         .in_model()
@@ -181,7 +181,7 @@ fn a_hit_tells_when_where_and_which_way() {
         hit.separation_normal.y < -0.99 && hit.normal.y > 0.99,
         "{hit:?}"
     );
-    // What does not move and touches nothing meets nothing.
+    // A ball that neither moves nor touches anything has no contact.
     assert_eq!(
         surface
             .in_model()
@@ -191,7 +191,7 @@ fn a_hit_tells_when_where_and_which_way() {
 }
 
 #[test]
-fn an_overlap_at_the_start_is_a_contact_at_once_with_the_nearest_triangle() {
+fn an_initial_overlap_is_a_contact_at_time_0_with_the_nearest_triangle() {
     let surface = resting();
     let sphere = ball(Vec3::new(1.55, 0.6, 0.01), 0.25);
     let nearest = surface
@@ -207,7 +207,7 @@ fn an_overlap_at_the_start_is_a_contact_at_once_with_the_nearest_triangle() {
         assert_eq!((hit.time, hit.triangle), (0.0, nearest.triangle), "{hit:?}");
         assert!(hit.separation_normal.y > 0.99, "{hit:?}");
     }
-    // The core itself crosses the skin: the skin's own normal.
+    // The capsule's segment itself crosses the skin: the skin's own normal.
     let stick = capsule(Vec3::new(1.5, -0.1, 0.0), Vec3::new(1.5, 1.0, 0.0), 0.01);
     let hit = surface
         .in_model()
@@ -218,7 +218,7 @@ fn an_overlap_at_the_start_is_a_contact_at_once_with_the_nearest_triangle() {
 }
 
 #[test]
-fn all_contacts_come_by_time_and_begin_with_the_first() {
+fn all_contacts_are_sorted_by_time_and_begin_with_the_first() {
     let surface = resting();
     let sphere = ball(Vec3::new(-2.0, 0.2, 0.1), 0.3);
     let (mut hits, motion) = (Vec::new(), Vec3::X * 8.0);
@@ -242,7 +242,7 @@ fn all_contacts_come_by_time_and_begin_with_the_first() {
 }
 
 #[test]
-fn what_is_disabled_is_passed_through() {
+fn casts_pass_through_disabled_triangles_and_parts() {
     let mut surface = resting();
     let sphere = ball(Vec3::new(1.5, 3.0, 0.0), 0.25);
     let cast = |s: &SkinnedSurface| {
@@ -271,7 +271,7 @@ fn what_is_disabled_is_passed_through() {
 }
 
 #[test]
-fn what_is_no_number_finds_nothing() {
+fn non_finite_or_negative_input_finds_nothing() {
     let surface = resting();
     let space = surface.in_model();
     let ball = ball(Vec3::ZERO, 1.0);
@@ -311,7 +311,7 @@ fn what_is_no_number_finds_nothing() {
     }
 }
 
-/// A limb that bends, twists and is thrown, at every level, lazily and skinned ahead.
+/// A limb that bends, twists and turns, at every SIMD level, lazily and skinned ahead.
 #[test]
 fn sweeps_of_a_bent_tube_agree_at_every_level_lazily_and_ahead() {
     let mesh: Arc<ColliderMesh> = tube(12, 40);
@@ -337,7 +337,7 @@ fn sweeps_of_a_bent_tube_agree_at_every_level_lazily_and_ahead() {
 }
 
 #[test]
-fn a_mirrored_tube_has_its_outside_outside() {
+fn a_mirrored_tube_keeps_outward_normals() {
     let mut surface = SkinnedSurface::new(tube(4, 32));
     let mut mirror = Affine::IDENTITY;
     mirror.rows[2][2] = -1.0;

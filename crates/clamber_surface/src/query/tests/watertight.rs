@@ -1,5 +1,5 @@
-//! Rays from inside a closed mesh, at its edges and vertices, through the whole surface: bounds,
-//! cache and boxes included. Any miss is an error by topology.
+//! Rays from inside a closed mesh, at its edges and vertices, through the whole surface: bounds, cache and boxes
+//! included. Each of them must hit, since the mesh is closed.
 
 use core::f32::consts::PI;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::testing::point;
 const COLUMNS: u32 = 200;
 const ROWS: u32 = 100;
 
-/// A sphere of radius 1 about `center`, from one joint at its south to another at its north.
+/// A sphere of radius 1 about `center`. Its south follows one joint and its north another, blended between.
 fn sphere(center: Vec3) -> Arc<ColliderMesh> {
     let mut local = vec![Vec3::Y, -Vec3::Y];
     for row in 1..ROWS {
@@ -62,7 +62,7 @@ fn sphere(center: Vec3) -> Arc<ColliderMesh> {
     Arc::new(mesh)
 }
 
-/// The north turned by `angle` about the centre, and everything moved.
+/// Turns the north by `angle` about the centre, and displaces everything by `shift`.
 fn pose(center: Vec3, angle: f64, shift: Vec3) -> Palette {
     let center = widen(center);
     let turn = DAffine3::from_translation(center + widen(shift))
@@ -72,7 +72,7 @@ fn pose(center: Vec3, angle: f64, shift: Vec3) -> Palette {
     Palette::from_matrices([still, turn].map(|map| Affine::from_f64(&map)))
 }
 
-/// How many rays at points of edges, or at vertices, leave without a hit.
+/// How many rays, aimed at points of edges or at vertices, leave without a hit.
 fn leaks(surface: &SkinnedSurface, center: Vec3, rays: u32, at_vertices: bool) -> u32 {
     let mut rng = fastrand::Rng::with_seed(91);
     let mut positions = Vec::new();

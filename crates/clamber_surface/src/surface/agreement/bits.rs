@@ -1,4 +1,4 @@
-//! Answers as bits: `==` takes -0 for 0.
+//! Query results as bits, since `==` takes -0 for 0.
 
 use std::fmt::Debug;
 
@@ -7,19 +7,19 @@ use glam::Vec3;
 use crate::mesh::{PartId, SurfaceTag, TriangleId};
 use crate::surface::{CapsuleHit, MovingTriangle, SurfaceHit, SweepHit};
 
-/// Appends every number of an answer, bit by bit.
+/// Appends every number of a query result, bit by bit.
 pub(crate) trait Bits {
     fn append_to(&self, bits: &mut Vec<u64>);
 }
 
-/// The bits of one answer.
+/// The bits of one result.
 fn bits(answer: &impl Bits) -> Vec<u64> {
     let mut bits = Vec::new();
     answer.append_to(&mut bits);
     bits
 }
 
-/// Asserts that answers are the same bit for bit.
+/// Asserts that results are the same bit for bit.
 #[track_caller]
 pub(crate) fn assert_same_bits<T: Bits + Debug>(found: &[T], wanted: &[T], case: &str) {
     let same =

@@ -9,7 +9,7 @@ use crate::surface::SkinnedSurface;
 use crate::testing::{ball, bend, tube};
 
 #[test]
-fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
+fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
     let mesh = tube(24, 48);
     let mut surface = SkinnedSurface::new(mesh.clone());
     let bent = bend(24, glam::DVec3::Z, 0.05);
@@ -17,7 +17,7 @@ fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
     let idle = surface.clusters();
     assert_eq!(idle.filter(|c| c.touched || c.skinned).count(), 0);
 
-    // Through the tube from above its middle.
+    // A ray through the tube, from above its middle.
     let middle = surface
         .in_model()
         .position(mesh.triangles()[mesh.triangles().len() / 2][0]);
@@ -55,14 +55,16 @@ fn each_triangle_stands_in_one_cluster_which_says_what_was_made_of_it() {
     assert_eq!(told(&surface)[1], surface.diagnostics().clusters);
 }
 
-/// What a tick with eight equal queries touches, and what the tick after it skins ahead, on so many threads.
+/// Diagnostics of ticks with eight equal queries on a number of threads: at the start of each tick, where clusters may
+/// be skinned ahead, and after its queries.
 fn ticks(threads: usize, count: u32) -> Vec<[Diagnostics; 2]> {
     const QUERIES: usize = 8;
     let mesh = tube(24, 48);
     let mut surface = SkinnedSurface::new(mesh);
     let tick = |tick: u32| {
         let bent = bend(24, glam::DVec3::Z, 1e-4 * f64::from(tick));
-        // From some of the skin to all of it: just below and just above what has the next tick skinned ahead.
+        // The radius reaches from some of the skin to all of it: just below and just above the share for which the next
+        // tick is skinned ahead.
         let radius = 6.0 + 18.0 * (tick % 50) as f32 / 50.0;
         surface.advance(&bent, Similarity::IDENTITY).unwrap();
         let ahead = surface.diagnostics();

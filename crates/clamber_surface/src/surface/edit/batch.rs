@@ -8,10 +8,10 @@ use crate::mesh::{
 };
 use crate::surface::{SkinnedSurface, SurfaceError};
 
-/// Changes of triangles, vertices and tags that belong together; see [`SkinnedSurface::edit`].
+/// A batch of changes to triangles, vertices and tags; see [`SkinnedSurface::edit`].
 ///
-/// Ids of what was removed are never used again, so memory grows by some tens of bytes with each vertex
-/// and each triangle that is added.
+/// The ids of removed vertices and triangles are never used again, so memory grows by some tens of bytes with each
+/// vertex and each triangle that is added.
 #[derive(Debug)]
 pub struct SurfaceEdit<'a> {
     surface: &'a mut SkinnedSurface,
@@ -27,14 +27,15 @@ impl<'a> SurfaceEdit<'a> {
         }
     }
 
-    /// Adds a vertex at a rest position in mesh space, which any number of joints move; weights are
-    /// normalised as those of a mesh that is built. Nothing is welded to it. Until it has a triangle,
-    /// queries do not see it. A tick ago it stood where the palette of that tick would have had it.
+    /// Adds a vertex at a rest position in mesh space, moved by any number of joints.
+    ///
+    /// Weights are normalised as in a mesh build. The vertex is not welded to others, and queries do not see it until
+    /// it has a triangle. Its position a tick ago is the one that the palette of that tick gives it.
     ///
     /// # Errors
     /// [`SurfaceError::Mesh`] for a position, a joint or weights that a build would refuse, and for too many vertices
     /// or influences ([`MeshError::TooLarge`](crate::mesh::MeshError::TooLarge)); [`SurfaceError::Palette`] if a matrix
-    /// of now or of a tick ago could move something so far from the mesh's origin beyond 2^100.
+    /// of the current or the previous palette could move a vertex at that distance from the mesh's origin beyond 2^100.
     pub fn add_vertex(
         &mut self,
         position: Vec3,
@@ -50,8 +51,8 @@ impl<'a> SurfaceEdit<'a> {
         Ok(self.mesh_mut().add_vertex(vertex))
     }
 
-    /// Adds a triangle, counter-clockwise seen from outside. It joins the part of the joint that moves
-    /// it most; if that part is new, it comes last and enabled.
+    /// Adds a triangle, counter-clockwise seen from outside. It joins the part of the joint that moves it most. If that
+    /// part is new, it is enabled and comes after all others.
     ///
     /// # Errors
     /// [`SurfaceError::Vertex`] if a vertex does not exist or was removed, [`SurfaceError::Mesh`] if the
@@ -91,7 +92,7 @@ impl<'a> SurfaceEdit<'a> {
         Ok(())
     }
 
-    /// Removes a vertex for good, and all triangles of which it is a corner.
+    /// Removes a vertex for good, and all triangles that have it as a corner.
     ///
     /// # Errors
     /// [`SurfaceError::Vertex`] if it does not exist or was removed before.
@@ -107,7 +108,7 @@ impl<'a> SurfaceEdit<'a> {
         Ok(())
     }
 
-    /// Gives a triangle another tag.
+    /// Replaces the tag of a triangle.
     ///
     /// # Errors
     /// [`SurfaceError::Triangle`] if it does not exist or was removed.
@@ -119,7 +120,7 @@ impl<'a> SurfaceEdit<'a> {
         Ok(())
     }
 
-    /// The mesh, for this surface alone.
+    /// The mesh, copied first if other surfaces share it.
     fn mesh_mut(&mut self) -> &mut ColliderMesh {
         Arc::make_mut(&mut self.surface.instance.mesh)
     }

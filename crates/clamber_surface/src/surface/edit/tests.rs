@@ -18,7 +18,7 @@ use crate::surface::agreement::answers;
 use crate::testing::{bend, direction, point, tube};
 use glam::{DVec3, Vec3};
 
-/// What moves a vertex as one joint does.
+/// Influences of a vertex that follows one joint alone.
 fn rigid(joint: u32) -> [Influence; 1] {
     [Influence {
         joint: JointId(joint),
@@ -36,7 +36,7 @@ fn bent(joints: u32, sides: u32) -> SkinnedSurface {
     surface
 }
 
-/// A surface of every instruction set, all edited alike.
+/// A surface for every instruction set, all edited alike.
 fn on_every_level() -> Vec<(SkinnedSurface, Model, fastrand::Rng)> {
     let edited = |level: SimdLevel| {
         let mut surface = SkinnedSurface::with_simd_level(tube(5, 16), level);
@@ -73,7 +73,7 @@ fn all_instruction_sets_and_skinning_ahead_agree_after_edits() {
             assert_poses_hold(surface, &case);
             let mut hits = answers(surface, place, towards, 1.0);
             hits.extend(answers(surface, place, towards, f32::INFINITY));
-            // Written out, since equal zeros may differ in sign.
+            // Formatted, since equal zeros may differ in sign.
             all.push(format!("{hits:?}"));
             found += hits.len();
         }
@@ -83,7 +83,7 @@ fn all_instruction_sets_and_skinning_ahead_agree_after_edits() {
 }
 
 #[test]
-fn an_added_vertex_moves_from_where_the_old_palette_has_it() {
+fn an_added_vertex_moves_from_its_position_under_the_old_palette() {
     let mut surface = bent(4, 8);
     let influences = [0, 2, 3].map(|joint| rigid(joint)[0]);
     let position = Vec3::new(1.3, 4.0, -0.2);
@@ -102,7 +102,7 @@ fn an_added_vertex_moves_from_where_the_old_palette_has_it() {
     assert_eq!(bits(&[now]), at(surface.instance.current.palette()));
     assert_eq!(bits(&[before]), at(surface.instance.previous.palette()));
     assert_ne!(now, before);
-    // It sticks out of what the surface was, and is found there.
+    // The vertex is outside the former surface, and queries find it there.
     let corners = [VertexId(0), VertexId(1), vertex];
     let added = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
     let hit = surface.in_model().closest_point(now, 0.01).unwrap();
@@ -124,13 +124,13 @@ fn anchors_on_removed_triangles_report_it() {
     let refused = Err(SurfaceError::Triangle(TriangleId(5)));
     assert_eq!(surface.in_model().motion(&gone, 0.1), refused);
     assert_eq!(surface.in_model().motion(&kept, 0.1), Ok(before));
-    // The same triangle again is another one.
+    // A triangle on the same corners has another id.
     let again = surface.edit(|edit| edit.add_triangle(corners, SurfaceTag::default()));
     assert_ne!(again, Ok(TriangleId(5)));
     assert_eq!(surface.in_model().motion(&gone, 0.1), refused);
     let anew = surface.anchor(again.unwrap(), weights).unwrap();
     assert!(surface.in_model().motion(&anew, 0.1).is_ok());
-    // Removed with a vertex.
+    // Removed together with a vertex.
     let corner = corners[0];
     surface.edit(|edit| edit.remove_vertex(corner)).unwrap();
     let refused = Err(SurfaceError::Triangle(anew.triangle));
@@ -140,7 +140,7 @@ fn anchors_on_removed_triangles_report_it() {
 }
 
 #[test]
-fn ids_are_never_used_again() {
+fn ids_are_never_reused() {
     let mut surface = bent(3, 6);
     let mut seen = std::collections::BTreeSet::new();
     let tag = SurfaceTag::default();
@@ -159,12 +159,12 @@ fn ids_are_never_used_again() {
 }
 
 #[test]
-fn surfaces_that_share_a_mesh_are_edited_apart() {
+fn an_edit_does_not_change_other_surfaces_that_share_the_mesh() {
     let mut one = bent(4, 8);
     let other = one.clone();
     let before = other.mesh().clone();
     assert!(Arc::ptr_eq(one.mesh(), other.mesh()));
-    // What changes nothing takes no copy.
+    // An edit that changes nothing takes no copy.
     one.disable_triangle(TriangleId(3)).unwrap();
     let refused = one.edit(|edit| edit.remove_vertex(VertexId(u32::MAX)));
     assert!(refused.is_err() && Arc::ptr_eq(one.mesh(), other.mesh()));
@@ -190,7 +190,7 @@ fn surfaces_that_share_a_mesh_are_edited_apart() {
 }
 
 #[test]
-fn a_closure_that_panics_leaves_a_surface_that_answers() {
+fn a_panic_in_an_edit_leaves_a_surface_that_answers_queries() {
     let mut surface = bent(4, 8);
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| ()));
@@ -208,10 +208,10 @@ fn a_closure_that_panics_leaves_a_surface_that_answers() {
 }
 
 #[test]
-fn points_hold_on_every_mesh_that_goes_on_from_theirs_and_on_no_other() {
+fn points_are_valid_on_meshes_that_continue_theirs_and_on_no_other() {
     let original = bent(4, 8);
     let before = original.anchor(TriangleId(3), [0.2, 0.3, 0.5]).unwrap();
-    // A copy with a scab, whose tip stands at a height.
+    // A copy with a scab, whose tip is at a given height.
     let with_scab = |height: f32| {
         let mut copy = bent(4, 8);
         let scab = copy.edit(|edit| {
@@ -237,11 +237,11 @@ fn points_hold_on_every_mesh_that_goes_on_from_theirs_and_on_no_other() {
             Err(error) => panic!("{error}"),
         }
     };
-    // The same triangle by number, elsewhere: taken for one of its own before edits counted.
+    // The same triangle id at another place: once accepted as the surface's own, before ids counted edits.
     assert_eq!(on_high.triangle, on_low.triangle);
     assert!(holds(&high, &on_high) && holds(&low, &on_low) && holds(&again, &on_high));
     assert!(!holds(&high, &on_low) && !holds(&low, &on_high) && !holds(&original, &on_high));
-    // What was built means the same on all, whenever it was found.
+    // Triangles of the build mean the same on all copies, whenever the point was found.
     let after = high.anchor(TriangleId(3), [0.2, 0.3, 0.5]).unwrap();
     let down = Ray::new(Vec3::new(2.05, 5.0, 0.03), Vec3::NEG_Y).unwrap();
     let hit = high.in_model().cast_ray(&down, 10.0).unwrap();
@@ -253,7 +253,7 @@ fn points_hold_on_every_mesh_that_goes_on_from_theirs_and_on_no_other() {
                 .all(|built| holds(surface, built))
         );
     }
-    // What changes no triangle's meaning changes no id.
+    // Edits that change the meaning of no triangle change no mesh id.
     let mut tagged = with_scab(3.0).0;
     tagged.edit(|edit| {
         edit.set_tag(TriangleId(0), SurfaceTag::new(SurfaceKind::Stone))

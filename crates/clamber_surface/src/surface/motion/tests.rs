@@ -27,7 +27,7 @@ fn scaled(x: f32, y: f32, z: f32) -> Palette {
 }
 
 #[test]
-fn a_rigid_turn_is_finite_displacement_and_exact_rotation() {
+fn a_rigid_turn_gives_finite_displacement_and_exact_rotation() {
     let mut surface = surface();
     let anchor = anchor(&surface);
     let dt = 0.1;
@@ -80,7 +80,7 @@ fn stretches_and_area_of_pure_scale() {
     assert!((motion.stretches[1] - 1.5).abs() < 0.05, "{motion:?}");
     let product = motion.stretches[0] * motion.stretches[1];
     assert!((product - motion.area_ratio).abs() < 1e-4);
-    // The facet's slope of 15 degrees in YZ becomes that of a third less: 4.87 degrees of turn.
+    // The facet's slope of 15 degrees in YZ falls to two thirds: a turn of 4.87 degrees.
     let turned = rotation_vector(rotation_f64(motion.frame)).length();
     assert!((turned - 0.085).abs() < 1e-3, "{turned}");
 }
@@ -115,7 +115,7 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
     surface
         .advance(&scaled(0.0, 0.0, 0.0), Similarity::IDENTITY)
         .unwrap();
-    // Even an anchor that was not kept fresh has the frame of a tick ago.
+    // Even an anchor whose frame was not updated has the frame of a tick ago.
     assert_eq!(
         surface.in_model().motion(&anchor, 0.1).unwrap().frame,
         motion.frame
@@ -134,8 +134,8 @@ fn a_collapsed_triangle_keeps_the_last_frame_and_stays_finite() {
 }
 
 #[test]
-fn a_triangle_flattened_to_a_line_far_out_is_seen_to_be_collapsed() {
-    // Flattened along one axis, then turned and moved: the corners' rounding gives it an area.
+fn a_triangle_flattened_to_a_line_far_out_counts_as_collapsed() {
+    // Flattened to a line, then turned and moved: rounding of the corners gives it an area.
     let mut rng = fastrand::Rng::with_seed(9);
     let random = |rng: &mut fastrand::Rng| DVec3::new(rng.f64(), rng.f64(), rng.f64()) - 0.5;
     for case in 0..2_000 {
@@ -231,7 +231,7 @@ fn stretches_of_a_collapsed_triangle_come_larger_first() {
 }
 
 #[test]
-fn ratios_beyond_f32_are_its_largest_number() {
+fn ratios_beyond_f32_are_clamped_to_its_largest_number() {
     let mut surface = surface();
     let anchor = anchor(&surface);
     for size in [1e-20, 1e20] {

@@ -33,7 +33,7 @@ fn near(surface: &SkinnedSurface, low: Vec3, high: Vec3) -> Vec<TriangleId> {
 }
 
 #[test]
-fn it_holds_the_triangles_that_brute_force_finds_with_positions_of_both_poses() {
+fn a_patch_has_the_triangles_of_brute_force_with_positions_of_both_poses() {
     let mut rng = fastrand::Rng::with_seed(3);
     let mut patch = Patch::default();
     let (mut filled, mut moved) = (0, 0);
@@ -76,14 +76,14 @@ fn it_holds_the_triangles_that_brute_force_finds_with_positions_of_both_poses() 
 }
 
 #[test]
-fn within_its_margin_it_is_only_moved() {
+fn a_patch_is_rebuilt_less_often_with_a_margin() {
     let mut surface = posed(0);
     let mut patch = Patch::default();
     let (mut rebuilt, mut exact_rebuilt) = (0, 0);
     let mut exact = Patch::default();
     for tick in 2..80 {
         advance(&mut surface, tick);
-        // Slides along the tube, half a millimetre to 2 cm a tick.
+        // The box slides along the tube, half a millimetre to 2 cm a tick.
         let center = Vec3::new(1.0 + tick as f32 * 0.01, 0.5, 0.0);
         let (low, high) = (center - 0.2, center + 0.2);
         let change = patch.update(&surface, low, high, 0.1);
@@ -114,7 +114,7 @@ fn within_its_margin_it_is_only_moved() {
 }
 
 #[test]
-fn a_moving_root_is_part_of_the_velocities() {
+fn velocities_include_the_motion_of_the_root() {
     let mut surface = SkinnedSurface::new(tube(4, 8));
     let palette = bend(4, DVec3::Z, 0.3);
     let root = |x: f64| Similarity {
@@ -138,7 +138,7 @@ fn a_moving_root_is_part_of_the_velocities() {
 }
 
 #[test]
-fn hidden_and_removed_triangles_leave_it() {
+fn hidden_and_removed_triangles_leave_the_patch() {
     let mut surface = SkinnedSurface::new(tube(4, 8));
     let mut patch = Patch::default();
     let (low, high) = (Vec3::splat(-9.0), Vec3::splat(9.0));
@@ -163,7 +163,7 @@ fn hidden_and_removed_triangles_leave_it() {
 }
 
 #[test]
-fn it_is_the_same_only_where_no_position_changed_in_either_pose() {
+fn same_is_reported_only_if_no_position_changed_in_either_pose() {
     let mut surface = SkinnedSurface::new(tube(4, 8));
     let mut patch = Patch::default();
     let (low, high) = (Vec3::splat(-9.0), Vec3::splat(9.0));
@@ -178,18 +178,18 @@ fn it_is_the_same_only_where_no_position_changed_in_either_pose() {
     assert_eq!(update(&surface), PatchChange::Same);
     surface.advance(&poses[1], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Moved);
-    // It came to rest: only the pose of a tick ago is new.
+    // The surface came to rest: only the previous pose is new.
     surface.advance(&poses[1], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Moved);
     surface.advance(&poses[1], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Same);
-    // It stands still elsewhere.
+    // The surface stands still in another pose.
     surface.place(&poses[0], root).unwrap();
     assert_eq!(update(&surface), PatchChange::Moved);
 }
 
 #[test]
-fn another_surface_makes_it_anew() {
+fn another_surface_rebuilds_the_patch() {
     let (low, high) = (Vec3::splat(-9.0), Vec3::splat(9.0));
     let mut patch = Patch::default();
     for (joints, sides) in [(4, 8), (6, 12), (3, 5)] {
@@ -201,7 +201,7 @@ fn another_surface_makes_it_anew() {
 }
 
 #[test]
-fn away_from_the_skin_it_is_empty() {
+fn a_patch_away_from_the_skin_is_empty() {
     let surface = SkinnedSurface::new(tube(4, 8));
     let mut patch = Patch::default();
     let low = Vec3::splat(20.0);
@@ -237,6 +237,6 @@ fn bad_boxes_and_margins_hold_nothing() {
     for margin in [-1.0, f32::NAN, f32::INFINITY] {
         check(Vec3::ZERO, Vec3::ONE, margin);
     }
-    // Inside out: nothing.
+    // `low` above `high`: nothing.
     check(Vec3::ONE, Vec3::ZERO, 0.0);
 }

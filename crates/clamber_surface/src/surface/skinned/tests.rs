@@ -34,7 +34,8 @@ fn queries_agree_with_brute_force_in_every_pose() {
 
 #[test]
 fn no_bound_hides_its_outermost_vertices() {
-    // Rays that graze a part's sphere right where its farthest vertex is, and points beyond it.
+    // Rays that pass just inside each vertex of a part, at right angles to its direction from the sphere's centre, and
+    // points beyond the vertex.
     let mut surface = surface();
     let palette = bend(JOINTS, DVec3::new(0.6, 0.0, 0.8), 0.6);
     surface.advance(&palette, Similarity::IDENTITY).unwrap();
@@ -120,7 +121,7 @@ fn edits_of_one_surface_do_not_show_in_another() {
 }
 
 #[test]
-fn a_disabled_triangle_is_seen_through() {
+fn rays_pass_through_disabled_triangles_and_parts() {
     let mut surface = surface();
     let ray = Ray::new(Vec3::new(2.1, 5.0, 0.1), -Vec3::Y).unwrap();
     let front = surface.in_model().cast_ray(&ray, 100.0).unwrap();
@@ -139,7 +140,7 @@ fn a_disabled_triangle_is_seen_through() {
 }
 
 #[test]
-fn previous_positions_are_last_ticks_when_the_root_rests() {
+fn previous_positions_are_those_of_the_last_tick_if_the_root_rests() {
     let mut surface = surface();
     let world = Similarity::from_translation(DVec3::new(1e5, 3.0, 0.0));
     surface.place(&bend(JOINTS, DVec3::Z, 0.1), world).unwrap();
@@ -161,7 +162,7 @@ fn previous_positions_are_last_ticks_when_the_root_rests() {
 }
 
 #[test]
-fn previous_positions_are_those_of_the_tick_before_tick_after_tick() {
+fn previous_positions_are_those_of_the_last_tick_over_many_ticks() {
     let mut surface = surface();
     for tick in 0..6 {
         let before = positions_of(&surface);
@@ -197,7 +198,7 @@ fn previous_positions_follow_a_moving_root_far_from_the_origin() {
             .previous_position(VertexId(v as u32))
             .unwrap();
         let previous = surface.world_from_model().transform_point_f32(previous);
-        // Coordinates of up to 25 m in f32, and f64 at 1e5 m.
+        // The error of coordinates of up to 25 m in f32, and of f64 at 1e5 m.
         assert!(
             (previous - *before).length() < 2e-5,
             "vertex {v}: {previous} {before}"
@@ -206,7 +207,7 @@ fn previous_positions_follow_a_moving_root_far_from_the_origin() {
 }
 
 #[test]
-fn place_leaves_no_motion_behind() {
+fn place_leaves_no_motion() {
     let mut surface = surface();
     surface
         .advance(&bend(JOINTS, DVec3::Z, 0.3), Similarity::IDENTITY)
@@ -244,7 +245,7 @@ fn a_sleeping_surface_answers_and_does_not_move() {
     let hit = surface.in_model().cast_ray(&ray, 10.0);
     assert!(hit.is_some());
     assert_eq!(hit, awake.in_model().cast_ray(&ray, 10.0));
-    // Far away by now: no motion.
+    // Placed far away: no motion.
     surface.place(&bent(0.9), world(50.0)).unwrap();
     let v = VertexId(3);
     assert_eq!(
@@ -254,7 +255,7 @@ fn a_sleeping_surface_answers_and_does_not_move() {
 }
 
 #[test]
-fn the_ball_holds_all_skin_over_the_tick() {
+fn the_bounding_ball_holds_all_skin_over_the_tick() {
     let mut surface = surface();
     for tick in 0..8 {
         let world = Similarity::from_translation(DVec3::Y * f64::from(tick) * 0.3);
@@ -294,7 +295,7 @@ fn a_creature_far_away_answers_like_one_at_the_origin() {
 }
 
 #[test]
-fn mirrored_joints_keep_their_normals_outside() {
+fn mirrored_joints_keep_outward_normals() {
     let mut surface = surface();
     let mut mirror = Affine::IDENTITY;
     mirror.rows[2][2] = -1.0;
@@ -345,7 +346,7 @@ fn bad_palettes_and_placements_change_nothing() {
         refused(&mut surface, &good, world),
         SurfaceError::WorldFromModel
     );
-    // Teleporting by `advance` would need a displacement that f32 cannot square.
+    // A teleport by `advance` would need a displacement whose square overflows f32.
     let far = Similarity::from_translation(DVec3::splat(1e40));
     assert!(matches!(
         surface.advance(&good, far),

@@ -2,11 +2,10 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::widen;
 
-/// A sphere (N = 1) or a capsule (N = 2) that moves.
+/// The core and radius of a moving sphere (N = 1) or capsule (N = 2).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingCore<const N: usize> {
-    /// The sphere's centre or one end of the capsule's segment at time 0, to which all else is
-    /// relative.
+    /// The sphere's centre, or the first end of the capsule's segment, at time 0. All other points are relative to it.
     pub(crate) origin: Vec3,
     pub(crate) start: [DVec3; N],
     pub(crate) end: [DVec3; N],
@@ -16,7 +15,7 @@ pub(crate) struct MovingCore<const N: usize> {
 }
 
 impl<const N: usize> MovingCore<N> {
-    /// Of ends that each move by a vector of their own.
+    /// A core whose ends each move by their own vector.
     pub(crate) fn new(ends: [Vec3; N], motions: [Vec3; N], radius: f32, tolerance: f32) -> Self {
         let origin = ends[0];
         let start = ends.map(|end| widen(end) - widen(origin));
@@ -33,7 +32,7 @@ impl<const N: usize> MovingCore<N> {
         }
     }
 
-    /// Where the ends are at a time, relative to the origin.
+    /// The ends at a time, relative to the origin.
     fn at(&self, time: f64) -> [DVec3; N] {
         let mut ends = self.start;
         for (end, last) in ends.iter_mut().zip(self.end) {
@@ -42,7 +41,7 @@ impl<const N: usize> MovingCore<N> {
         ends
     }
 
-    /// The point of the core nearest to `point` at a time; neither is relative to the origin.
+    /// The point of the core nearest to `point` at a time. Neither point is relative to the origin.
     pub(crate) fn nearest(&self, time: f64, point: DVec3) -> DVec3 {
         let ends = self.at(time);
         let (origin, axis) = (widen(self.origin), ends[N - 1] - ends[0]);

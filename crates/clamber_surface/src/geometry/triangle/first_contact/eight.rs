@@ -1,4 +1,4 @@
-//! Eight moving triangles at a time: the scalar text on SIMD registers, and its bits.
+//! Eight moving triangles at a time: the scalar source on SIMD registers, with the same bits.
 
 use fearless_simd::{Simd, SimdBase, dispatch};
 use glam::DVec3;
@@ -11,7 +11,7 @@ use crate::geometry::lanes::Wide;
 use crate::geometry::widen;
 use crate::simd::SimdLevel;
 
-/// What [`first_contact`](super::first_contact) finds for each of eight triangles.
+/// The results of [`first_contact`](super::first_contact) for eight triangles.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Contacts8 {
@@ -19,7 +19,7 @@ pub(crate) struct Contacts8 {
     time: [f64; EIGHT],
     barycentric: [[f64; EIGHT]; 3],
     distance: [f64; EIGHT],
-    /// Most steps of any.
+    /// Largest number of steps of any lane.
     pub(crate) steps: u32,
 }
 
@@ -35,8 +35,8 @@ impl Contacts8 {
     }
 }
 
-/// [`first_contact`](super::first_contact) for each triangle, the same in every bit. Unused lanes repeat a used
-/// one.
+/// [`first_contact`](super::first_contact) for each triangle, with the same bits. Callers fill unused lanes with a used
+/// triangle.
 pub(crate) fn first_contact_of_eight<const N: usize, const P: usize>(
     level: SimdLevel,
     corners: &[Corners8; P],

@@ -4,18 +4,18 @@ use super::{LOST, NEVER, ROUNDED_DOWN, ROUNDED_UP};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 
-/// When the gap along a direction is large enough.
+/// The interval of time in which the gap along a direction is large enough.
 pub(super) struct Gaps<L: Lanes> {
-    /// From here, ...
+    /// Start of the interval.
     pub(super) from: L,
-    /// ... until here, which may be [`NEVER`] for both.
+    /// End of the interval. Start and end may both be [`NEVER`].
     pub(super) until: L,
-    /// The line that is lowest at the time asked for falls.
+    /// True if the line that is lowest at the given time falls.
     pub(super) approaching: L::Mask,
 }
 
-/// What has to be left of the ends of each line: the radius, and what arithmetic may have taken, of the
-/// core's part and of the triangle's.
+/// Lower limits for the ends of each line: the radius and the allowance for rounding, split into the core's part and
+/// the triangle's part.
 #[derive(Clone, Copy)]
 pub(super) struct Floors<L, const N: usize, const P: usize> {
     core_start: [L; N],
@@ -46,7 +46,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         }
     }
 
-    /// When the gap along `n` is large enough, and whether it falls at `time`.
+    /// The interval in which the gap along `n` is large enough, and whether the gap falls at `time`.
     #[inline(always)]
     pub(super) fn gaps(&self, n: Vector3<L>, floors: &Floors<L, N, P>, time: L) -> Gaps<L> {
         let zero = time.splat(0.0);
@@ -85,11 +85,11 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         }
     }
 
-    /// Whether the gap is large enough all the time between two, along a direction that turns linearly
-    /// from the one to the other.
+    /// True if the gap is large enough at all times between two, along a direction that turns linearly from the first
+    /// to the second.
     ///
-    /// Each gap of an end and a corner is quadratic then, and nowhere less than the least of its
-    /// coefficients in the Bernstein basis.
+    /// The gap of each end and corner is then quadratic in time, and never less than the least of its coefficients in
+    /// the Bernstein basis.
     #[inline(always)]
     pub(super) fn holds_turning(
         &self,
@@ -135,8 +135,8 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     }
 }
 
-/// Coefficients in the Bernstein basis of a point's part along a direction, both of which go linearly
-/// from the first to the last.
+/// Coefficients, in the Bernstein basis, of the product of a direction and a point that both change linearly from the
+/// first to the second.
 #[inline(always)]
 fn along_turning<L: Lanes>([n, m]: [Vector3<L>; 2], [p, q]: [Vector3<L>; 2]) -> [L; 3] {
     let between = (n.dot(q) + m.dot(p)) * p.x.splat(0.5);

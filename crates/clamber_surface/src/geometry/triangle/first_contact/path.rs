@@ -4,9 +4,9 @@ use super::{CONTACT, FARTHEST_AHEAD, GOING, LOST, MISS, SLOW, STEPS, UNDECIDED};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::vector3::Vector3;
 
-/// Per lane a triangle, still (P = 1) or moving (P = 2); in all lanes the same core.
+/// One triangle in each lane, still (P = 1) or moving (P = 2), and the same core in all lanes.
 pub(super) struct Path<L, const N: usize, const P: usize> {
-    /// At the start and, if it moves, at the end.
+    /// Corners at the start and, if the triangle moves, at the end.
     pub(super) corners: [[Vector3<L>; 3]; P],
     pub(super) core_start: [Vector3<L>; N],
     pub(super) core_end: [Vector3<L>; N],
@@ -14,39 +14,39 @@ pub(super) struct Path<L, const N: usize, const P: usize> {
     pub(super) tolerance: L,
 }
 
-/// What is known of each lane.
+/// The result of each lane so far.
 #[derive(Clone, Copy)]
 pub(super) struct Found<L> {
-    /// One of [`MISS`], [`CONTACT`], [`UNDECIDED`]; [`GOING`] until one is known.
+    /// One of [`MISS`], [`CONTACT`] and [`UNDECIDED`]; [`GOING`] until one of them is known.
     pub(super) verdict: L,
-    /// No contact before.
+    /// There is no contact before this time.
     pub(super) time: L,
-    /// Of the nearest points at that time.
+    /// Corner weights of the triangle's nearest point at that time.
     pub(super) weights: [L; 3],
     pub(super) distance: L,
 }
 
-/// What is the same at every step.
+/// Values that are the same at every step.
 struct Terms<L, const N: usize, const P: usize> {
-    /// What does not matter is later than this.
+    /// Contacts after this time are pruned.
     limit: L,
     floors: Floors<L, N, P>,
-    /// What arithmetic may have taken off a distance.
+    /// Allowance for rounding in a distance.
     lost: L,
-    /// A distance that counts as a contact.
+    /// Largest distance that counts as a contact.
     near: L,
 }
 
-/// How the last step went, for those that look ahead.
+/// The last step, for the look-ahead.
 struct Progress<L> {
     time: L,
     distance: L,
-    /// The share of the way to where the gap would close at which a direction is sought next.
+    /// Time of the next look-ahead, as a share of the way to the time at which the gap would close.
     ahead: L,
 }
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
-    /// Per lane the verdict; in how many steps, those of the slowest lane.
+    /// The result of each lane, and the number of steps of the slowest lane.
     #[inline(always)]
     pub(super) fn first_contact(&self, limit: L) -> (Found<L>, u32) {
         let zero = limit.splat(0.0);
@@ -73,7 +73,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
                 *kept = L::select(is_going, weight, *kept);
             }
             let (until, approaching) = self.certified(&nearest, distance, &found, &terms);
-            // What turns or slides closer does so although no line falls along n of the moment.
+            // A shape that turns or slides closer approaches although no line falls along the current n.
             let approaching = approaching | distance.less(progress.distance);
             let last = steps == STEPS;
             let verdict = self.verdict([time, until, distance], approaching, &terms, last);
@@ -102,8 +102,8 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         }
     }
 
-    /// Until when the gap is large enough, not later than now if it is not so now; and whether it falls
-    /// now.
+    /// The time until which the gap is large enough, and whether the gap falls now. If the gap is too small now, that
+    /// time is not later than now.
     #[inline(always)]
     fn certified(
         &self,
@@ -142,7 +142,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         let is_near = distance.at_most(terms.near);
         let touches = (is_near & (approaching | stuck)) | distance.at_most(self.radius);
         let misses = one.less(until) & self.radius.less(distance);
-        // Pruning comes first, to be overruled, so that it changes no contact that is found.
+        // Pruning comes first and may be overruled below, so that it removes no contact that is found.
         let verdict = L::select(terms.limit.less(until), miss, going);
         let verdict = L::select(stuck, undecided, verdict);
         let verdict = if last { undecided } else { verdict };
@@ -150,8 +150,9 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         L::select(misses, miss, verdict)
     }
 
-    /// Goes on from `found.time` by a direction of shortly before the gap would close, if that went on
-    /// as since the last step, or by one that turns from that of `nearest`, where this step began, to it.
+    /// Goes on from `found.time` with a direction from a later time: that of the probe time, shortly before the gap
+    /// would close at the rate of the last step. If that fails, tries a direction that turns from that of `nearest`, at
+    /// the beginning of this step, to that of the probe time.
     #[inline(always)]
     fn look_ahead(
         &self,
@@ -213,7 +214,8 @@ impl<L: Lanes> Found<L> {
 }
 
 impl<L: Lanes, const N: usize, const P: usize> Terms<L, N, P> {
-    /// The distance between the nearest points; 0 for what crosses the triangle, and shows rounding.
+    /// The distance between the nearest points; 0 if it is no more than rounding error, as where the core crosses the
+    /// triangle.
     #[inline(always)]
     fn measured(&self, nearest: &Separation<L>) -> L {
         let distance = nearest.apart.length();

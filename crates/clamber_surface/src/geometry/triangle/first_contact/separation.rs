@@ -1,4 +1,4 @@
-//! Where triangle and core are nearest at a time, and the direction between them.
+//! The nearest points of triangle and core at a time, and the direction between them.
 
 use super::ROUNDED_DOWN;
 use super::gaps::taxicab;
@@ -11,15 +11,15 @@ use crate::geometry::vector3::Vector3;
 /// The nearest points of triangle and core.
 #[derive(Clone, Copy)]
 pub(super) struct Separation<L> {
-    /// Weights of the corners that give the triangle's.
+    /// Corner weights of the triangle's nearest point.
     pub(super) weights: [L; 3],
-    /// From there to the core's.
+    /// Vector from the triangle's nearest point to the core's.
     pub(super) apart: Vector3<L>,
-    /// Corners, relative to the core's first end.
+    /// Corners of the triangle, relative to the core's first end.
     corners: [Vector3<L>; 3],
-    /// From the core's first end to its last.
+    /// Vector from the core's first end to its last.
     axis: Vector3<L>,
-    /// The core's point on it, 0 to 1.
+    /// Position of the core's nearest point on `axis`, 0 to 1.
     along: L,
 }
 
@@ -66,12 +66,12 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 }
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
-    /// Where a corner is at a time.
+    /// The position of a corner at a time.
     #[inline(always)]
     pub(super) fn corner(&self, corner: usize, time: L) -> Vector3<L> {
         let start = self.corners[0][corner];
         if P == 1 {
-            // What `between` gives where nothing moves, -0 included.
+            // As `between` computes a point that does not move: -0 becomes 0.
             let zero = time.splat(0.0);
             return Vector3 {
                 x: start.x + zero,
@@ -84,7 +84,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 }
 
 impl<L: Lanes> Separation<L> {
-    /// Of what the nearest points are made of.
+    /// Size of the numbers that the nearest points are computed from.
     #[inline(always)]
     pub(super) fn size(&self) -> L {
         let ([x, y, z], [a, b, c]) = (self.weights, self.corners);
@@ -92,13 +92,13 @@ impl<L: Lanes> Separation<L> {
         x * taxicab(a) + y * taxicab(b) + z * taxicab(c) + on_axis
     }
 
-    /// The vector between the nearest points, made upright on edges and axis that they lie within, or on
-    /// which it all but is.
+    /// The vector between the nearest points, made perpendicular to the edges and the axis that these points lie
+    /// within, and to those to which it is nearly perpendicular.
     ///
-    /// Where these are far longer than the distance, the point on them is off by rounding of their length,
-    /// and the direction by that over the distance: an end far away then seems to be on the wrong side.
-    /// What is upright on them knows no such lever. Twice, since the first time leaves what rounding takes
-    /// of the part that is taken away.
+    /// An edge or axis may be far longer than the distance. Its nearest point is then off by the rounding of that
+    /// length, and the direction by that error over the distance, so an end far away seems to lie on the wrong side. A
+    /// vector that is perpendicular to the edge has no such error. The projection runs twice, since the first one
+    /// leaves the rounding error of the part that it removes.
     #[inline(always)]
     pub(super) fn upright(&self) -> Vector3<L> {
         let [a, b, c] = self.corners;
@@ -118,8 +118,8 @@ impl<L: Lanes> Separation<L> {
         upright
     }
 
-    /// `direction`, if the nearest point lies within it, or if it is all but perpendicular to what is
-    /// between the nearest points; else zero.
+    /// `direction`, if the nearest point lies within it, or if it is nearly perpendicular to the vector between the
+    /// nearest points; else zero.
     #[inline(always)]
     fn where_upright(&self, direction: Vector3<L>, within: L::Mask) -> Vector3<L> {
         let zero = self.along.splat(0.0);
@@ -130,10 +130,11 @@ impl<L: Lanes> Separation<L> {
     }
 }
 
-/// Square of the sine that counts as none: a direction may be turned by so much.
+/// Largest squared sine of the deviation from a right angle that counts as perpendicular: a direction may be turned by
+/// that angle.
 const ALL_BUT_UPRIGHT: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// `v` less its part along `direction`; zero if hardly more than rounding is left.
+/// `v` without its component along `direction`; zero if hardly more than rounding error is left.
 #[inline(always)]
 fn without<L: Lanes>(v: Vector3<L>, direction: Vector3<L>) -> Vector3<L> {
     let zero = v.x.splat(0.0);
@@ -144,7 +145,7 @@ fn without<L: Lanes>(v: Vector3<L>, direction: Vector3<L>) -> Vector3<L> {
     Vector3::select(rounding.less(left.length_squared()), left, v * zero)
 }
 
-/// Shorter than 1 for all rounding; zero where the distance is.
+/// The direction of `apart`, with a length of at most 1 despite rounding; zero if the distance is zero.
 #[inline(always)]
 pub(super) fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> {
     let zero = distance.splat(0.0);
@@ -152,7 +153,7 @@ pub(super) fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> 
     Vector3::select(zero.less(distance), apart * shrink, apart * zero)
 }
 
-/// `start` at time 0.
+/// Linear interpolation from `start` at time 0 to `end` at time 1; exact at time 0.
 #[inline(always)]
 pub(super) fn between<L: Lanes>(start: Vector3<L>, end: Vector3<L>, time: L) -> Vector3<L> {
     start + (end - start) * time

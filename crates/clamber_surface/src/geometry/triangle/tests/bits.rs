@@ -1,4 +1,4 @@
-//! Eight at a time give the bits of one at a time, at every level.
+//! Tests of eight triangles at a time give the bits of the scalar tests, at every SIMD level.
 
 use super::cases::{moved, query, segment, triangle};
 use super::*;
@@ -9,7 +9,7 @@ fn bits(found: &TrianglePoint) -> [u64; 4] {
     [a, b, c, found.distance].map(f64::to_bits)
 }
 
-/// Scales from subnormal to huge, with and without an offset.
+/// A random map of points: scales from subnormal to huge, with and without an offset.
 fn place(rng: &mut fastrand::Rng) -> impl Fn(Vec3) -> Vec3 + use<> {
     let scale = [1.0, 1.0, 1e-40, 1e-20, 1e20, (1u128 << 90) as f32][rng.usize(0..6)];
     let offset = [0.0, 0.0, 1000.0, -0.1][rng.usize(0..4)];
@@ -63,7 +63,7 @@ fn eight_lanes_have_the_scalar_bits_for_a_million_triangles() {
 }
 
 #[test]
-fn segments_agree_swapped_and_points_as_segments() {
+fn swapped_ends_and_segments_of_zero_length_give_the_same_bits() {
     let mut rng = fastrand::Rng::with_seed(42);
     for case in 0..20_000 {
         let corners = triangle(&mut rng);
@@ -83,7 +83,7 @@ fn segments_agree_swapped_and_points_as_segments() {
 }
 
 #[test]
-fn edges_are_shared_in_every_bit_by_segments_too() {
+fn segment_distances_to_a_shared_edge_have_the_same_bits() {
     let mut rng = fastrand::Rng::with_seed(43);
     let mut shared = 0;
     for case in 0..5_000 {

@@ -1,4 +1,4 @@
-//! Triangles and queries that have broken such tests before, and plain ones between them.
+//! Triangles and queries that have broken such tests before, mixed with plain ones.
 
 use glam::Vec3;
 
@@ -36,7 +36,7 @@ pub(super) fn triangle(rng: &mut fastrand::Rng) -> [Vec3; 3] {
     corners
 }
 
-/// A point to ask about: on a corner, on an edge, on the face, near it, or anywhere.
+/// A query point: on a corner, on an edge, on the face, near it, or anywhere.
 pub(super) fn query(rng: &mut fastrand::Rng, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let inside = lerp(a, lerp(b, c, rng.f32()), rng.f32());
     match rng.u32(0..8) {
@@ -49,8 +49,8 @@ pub(super) fn query(rng: &mut fastrand::Rng, [a, b, c]: [Vec3; 3]) -> Vec3 {
     }
 }
 
-/// A segment to ask about: through the face, one end on a feature, parallel to an edge, in the
-/// plane, of no length, or anywhere.
+/// A query segment: through the face, one end on a feature, parallel to an edge, in the plane, of zero length, or
+/// anywhere.
 pub(super) fn segment(rng: &mut fastrand::Rng, corners: [Vec3; 3]) -> [Vec3; 2] {
     let [a, b, c] = corners;
     let (p, q) = (query(rng, corners), query(rng, corners));
@@ -68,7 +68,7 @@ pub(super) fn segment(rng: &mut fastrand::Rng, corners: [Vec3; 3]) -> [Vec3; 2] 
     }
 }
 
-/// The same numbers elsewhere, rounded to where they come to lie.
+/// The points displaced by `offset`, rounded to f32.
 pub(super) fn moved<const N: usize>(points: [Vec3; N], offset: Vec3) -> [Vec3; N] {
     points.map(|p| p + offset)
 }

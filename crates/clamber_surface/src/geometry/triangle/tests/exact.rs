@@ -5,8 +5,8 @@ use dashu::rational::Relaxed;
 use super::cases::{moved, query, segment, triangle};
 use super::*;
 
-/// Most that a distance may be off, as a share of the lengths involved. Of 600,000 cases all but 20
-/// stay below 5e-15, and slivers reach 1e-12; what is wrong by more than rounding shows 1e-10.
+/// Largest allowed error of a distance, as a share of the lengths involved. Of 600,000 cases all but 20 stay below
+/// 5e-15, and slivers reach 1e-12; a result that is wrong by more than rounding shows 1e-10.
 const TOLERANCE: f64 = 5e-12;
 
 type Exact = [Relaxed; 3];
@@ -136,7 +136,7 @@ fn triangle_segment_sq(corners: &[Exact; 3], p: &Exact, q: &Exact) -> Relaxed {
     best
 }
 
-/// The point that weights stand for, which must be weights of a point of the triangle.
+/// The point with the weights found; asserts that they are the weights of a point of the triangle.
 fn point_of(corners: &[Exact; 3], found: &TrianglePoint) -> Exact {
     let weights = found.barycentric.to_array();
     assert!(weights.iter().all(|w| *w >= 0.0), "{found:?}");

@@ -1,4 +1,4 @@
-//! Rays from inside a closed mesh aimed at its edges and vertices: any miss is an error by topology.
+//! Rays from inside a closed mesh, aimed at its edges and vertices: each of them must hit, since the mesh is closed.
 
 use core::f32::consts::PI;
 
@@ -14,8 +14,8 @@ struct Mesh {
     around: Vec<Vec<usize>>,
 }
 
-/// A sphere of 200 x 100 around `centre`, with bumps of the given height: gentle ones, so that from
-/// near the centre every triangle is seen from its back.
+/// A sphere of 200 columns by 100 rows around `centre`, with bumps of the given height. They are so gentle that every
+/// triangle is seen from its back from near the centre.
 fn sphere(bumps: f32, centre: Vec3) -> Mesh {
     let mut positions = vec![centre + Vec3::Y, centre - Vec3::Y];
     for row in 1..ROWS {
@@ -52,7 +52,7 @@ fn sphere(bumps: f32, centre: Vec3) -> Mesh {
     }
 }
 
-/// How many of `rays` rays at points of edges (or at vertices) meet no triangle around them.
+/// How many of `rays` rays, aimed at points of edges or at vertices, meet no triangle around their target.
 fn leaks(mesh: &Mesh, centre: Vec3, rays: u32, at_vertices: bool) -> u32 {
     let mut rng = fastrand::Rng::with_seed(60);
     let mut leaks = 0;

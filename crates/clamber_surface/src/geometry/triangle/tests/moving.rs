@@ -12,7 +12,7 @@ fn bits(contact: &Option<Contact>) -> Option<[u64; 5]> {
     })
 }
 
-/// A sphere on its way to a triangle that does not move.
+/// Casts a sphere at a triangle that does not move.
 fn cast(corners: [Vec3; 3], center: Vec3, motion: Vec3, radius: f32) -> Option<Contact> {
     let core = MovingCore::new([center], [motion], radius, 1e-4);
     first_contact([corners, corners], &core, 1.0).0
@@ -31,7 +31,7 @@ fn a_falling_sphere_meets_the_floor_when_its_height_is_the_radius() {
     assert!((contact.distance - 1.0).abs() < 1e-13, "{contact:?}");
     assert!(!contact.undecided);
     assert_eq!(cast(FLOOR, Vec3::Y * 3.0, Vec3::NEG_Y * 1.99, 1.0), None);
-    // Away from it, and beside it.
+    // Moving away from the floor, and along it.
     assert_eq!(cast(FLOOR, Vec3::Y * 1.00005, Vec3::Y, 1.0), None);
     assert_eq!(cast(FLOOR, Vec3::Y * 1.00005, Vec3::X, 1.0), None);
     let overlap = cast(FLOOR, Vec3::Y * 0.9, Vec3::Y, 1.0).unwrap();
@@ -39,7 +39,7 @@ fn a_falling_sphere_meets_the_floor_when_its_height_is_the_radius() {
 }
 
 #[test]
-fn a_sphere_meets_an_edge_and_a_corner_when_a_quadratic_says_so() {
+fn contact_times_of_a_sphere_with_an_edge_and_a_corner_match_a_quadratic() {
     // Along x at height 1/2 towards the edge x = -5, and along the diagonal towards a corner.
     let contact = cast(FLOOR, Vec3::new(-9.0, 0.5, 0.0), Vec3::X * 4.0, 1.0).unwrap();
     let expected = (4.0 - 0.75f64.sqrt()) / 4.0;
@@ -144,14 +144,14 @@ fn compare<const N: usize>(batches: u32, seed: u64) -> [u32; 3] {
                     "{level} {case}"
                 );
             }
-            // A triangle that stands still is one that moves nowhere.
+            // A triangle that stands still has the bits of one that moves by nothing.
             let (still, _) = first_contact([start], &core, limit);
             let (nowhere, _) = first_contact([start, start], &core, limit);
             assert_eq!(bits(&still), bits(&nowhere), "{case}");
             for (level, found) in levels.iter().zip(&of_still) {
                 assert_eq!(bits(&found.get(lane)), bits(&still), "{level} {case}");
             }
-            // What the limit leaves away changes nothing else.
+            // The limit removes later contacts and changes nothing else.
             let whole = first_contact([start, end], &core, 1.0).0;
             let kept = whole.filter(|c| c.time <= limit);
             assert_eq!(bits(&one), bits(&kept), "{case}");
@@ -180,9 +180,9 @@ fn eight_moving_lanes_have_the_scalar_bits_at_every_level() {
 }
 
 #[test]
-fn what_only_turning_brings_closer_is_a_contact_once_it_is_near() {
-    // Each took all steps, ever nearer to a radius that it all but reached: no line falls along the direction of the
-    // moment.
+fn an_approach_by_rotation_alone_ends_in_a_contact_after_few_steps() {
+    // Each case once took all steps: it came ever nearer to the radius without reaching it, since no line falls along
+    // the current direction.
     let needle = [
         Vec3::new(0.6113142, 5.4071283, 0.18201125),
         Vec3::new(309.57385, -783.1844, -64.232796),
@@ -222,7 +222,7 @@ fn what_only_turning_brings_closer_is_a_contact_once_it_is_near() {
 
 #[test]
 fn a_turn_of_a_lever_a_thousand_times_as_long_takes_few_steps() {
-    // Took 126 steps: each could go only as far as the fastest corner allows along the direction of the moment.
+    // This once took 126 steps: each step went only as far as the fastest corner allows along the current direction.
     let start = [
         Vec3::new(-1972.4215, -500.92007, 1484.7556),
         Vec3::new(-1881.5419, 1500.78, -517.9993),
@@ -247,5 +247,5 @@ fn a_turn_of_a_lever_a_thousand_times_as_long_takes_few_steps() {
     assert!(contact.is_some_and(|c| !c.undecided), "{contact:?}");
 }
 
-/// Steps.
+/// Number of steps that counts as few.
 const FEW: u32 = 32;

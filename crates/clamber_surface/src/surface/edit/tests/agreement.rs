@@ -1,4 +1,4 @@
-//! Ten thousand edits in motion: the answers of brute force, and those of a mesh clustered from scratch.
+//! Thousands of edits in motion: the results are those of brute force, and those of a mesh clustered from scratch.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::surface::{SkinnedSurface, SurfacePoint};
 use crate::testing::{bend, direction, point, tube};
 use glam::{DVec3, Vec3};
 
-/// The same surface, its clusters and hierarchy made from scratch.
+/// The same surface, with clusters and hierarchy made from scratch.
 fn rebuilt(surface: &SkinnedSurface) -> SkinnedSurface {
     let mut fresh = surface.clone();
     let instance = &mut fresh.instance;
@@ -22,7 +22,7 @@ fn rebuilt(surface: &SkinnedSurface) -> SkinnedSurface {
     fresh
 }
 
-/// Compares answers at a few places, in every bit, signs of zeros included.
+/// Compares query results at a few places, in every bit, signs of zeros included.
 fn assert_same_answers(
     surface: &SkinnedSurface,
     fresh: &SkinnedSurface,
@@ -52,7 +52,7 @@ fn assert_same_answers(
     found
 }
 
-/// Edits a creature in motion until so many edits were made; gives how many of each kind.
+/// Edits a creature in motion until `edits` edits were made; returns how many of each kind.
 fn edit_at_random(mesh: Arc<ColliderMesh>, seed: u64, edits: usize) -> [usize; KINDS] {
     let mut rng = fastrand::Rng::with_seed(seed);
     let (joints, parts) = (mesh.joint_count() as u32, mesh.parts().len());

@@ -1,4 +1,4 @@
-//! An edit costs what it touches, in clusters made, in what was computed, and in memory.
+//! The cost of an edit depends on the parts that it touches: clusters rebuilt, cached results lost, memory.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 
 const PART: PartId = PartId(3);
 
-/// What is stored of a cluster: its entry, and all that it points to.
+/// All data of a cluster: its entry, and everything that it points to.
 fn stored(clusters: &Clusters, cluster: &Cluster) -> String {
     let (rest, joints) = (cluster.rest(clusters), cluster.joints(clusters));
     let (vertices, triangles) = (cluster.vertices(clusters), cluster.triangles(clusters));
@@ -23,7 +23,7 @@ fn stored(clusters: &Clusters, cluster: &Cluster) -> String {
     format!("{cluster:?} {rest:?} {joints:?} {vertices:?} {triangles:?} {corners:?}")
 }
 
-/// Living clusters outside the part, by index.
+/// Living clusters outside [`PART`], by index.
 fn others(mesh: &ColliderMesh) -> Vec<(usize, String)> {
     let clusters = mesh.clusters();
     let all = clusters.clusters.iter().enumerate();
@@ -47,7 +47,7 @@ fn touch_everything(surface: &SkinnedSurface) -> usize {
 }
 
 #[test]
-fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
+fn an_edit_reclusters_only_its_part_and_keeps_other_cached_results() {
     let mut surface = bent(7, 24);
     let triangle = surface.mesh().parts()[PART.index()].triangles[4];
     let corners = surface.mesh().triangles()[triangle.index()];
@@ -88,7 +88,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
         before.len()
     );
 
-    // The rest is skinned when it is asked for, and nothing twice.
+    // The rest is skinned on demand, and nothing twice.
     assert_eq!(touch_everything(&surface), all);
     assert_eq!(surface.diagnostics().clusters_skinned, wanted.clusters);
     assert_eq!(
@@ -97,7 +97,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     );
     assert_poses_hold(&surface, "lazily");
 
-    // So it is with what was skinned ahead.
+    // The same holds for clusters that were skinned ahead.
     ahead.skin_ahead();
     edit(&mut ahead);
     let diagnostics = ahead.diagnostics();
@@ -105,7 +105,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     assert_eq!(diagnostics.clusters_touched, 0);
     assert_eq!(ahead.instance.current.asked_clusters().count(), 0);
     assert_poses_hold(&ahead, "ahead");
-    // Nothing dead is skinned, nor does it make a bound larger.
+    // Dead clusters are not skinned and do not enlarge any bound.
     ahead.skin_ahead();
     let diagnostics = ahead.diagnostics();
     assert_eq!(diagnostics.clusters_skinned, diagnostics.clusters);
@@ -127,7 +127,7 @@ fn only_the_part_touched_is_clustered_anew_and_what_was_computed_stays() {
     assert_poses_hold(&ahead, "ahead again");
 }
 
-/// True if no cluster below lives.
+/// True if no cluster below `child` lives.
 fn is_dead(mesh: &ColliderMesh, child: Child) -> bool {
     match child {
         Child::Cluster(index) => mesh.clusters().clusters[index as usize].is_dead(),
@@ -139,7 +139,7 @@ fn is_dead(mesh: &ColliderMesh, child: Child) -> bool {
 }
 
 #[test]
-fn dead_clusters_do_not_keep_a_surface_from_being_skinned_ahead() {
+fn dead_clusters_do_not_prevent_skinning_ahead() {
     let mut surface = bent(7, 24);
     let corners = surface.mesh().parts()[..6].iter().map(|p| p.triangles[0]);
     let corners: Vec<_> = corners
@@ -160,7 +160,7 @@ fn dead_clusters_do_not_keep_a_surface_from_being_skinned_ahead() {
 }
 
 #[test]
-fn a_tag_touches_no_cluster() {
+fn a_change_of_tag_touches_no_cluster() {
     let mut surface = bent(5, 12);
     touch_everything(&surface);
     let (clusters, hierarchy) = (
@@ -206,7 +206,7 @@ fn ten_thousand_edits_take_at_most_three_times_the_memory_of_a_rebuild() {
 }
 
 #[test]
-fn what_is_removed_to_the_last_and_added_again_is_found() {
+fn triangles_are_found_after_all_were_removed_and_added_again() {
     let mut surface = bent(4, 8);
     let mesh = surface.mesh().clone();
     let all = touch_everything(&surface);
@@ -247,8 +247,8 @@ fn what_is_removed_to_the_last_and_added_again_is_found() {
 }
 
 #[test]
-fn all_of_a_mesh_of_hundreds_of_clusters_is_skinned_after_an_edit() {
-    // More than one task skins, where tasks do.
+fn hundreds_of_clusters_are_all_skinned_after_an_edit() {
+    // Large enough that several tasks skin it, with feature `rayon`.
     let mut surface = SkinnedSurface::new(tube(20, 160));
     assert_poses_hold(&surface, "built");
     surface.edit(|edit| {
@@ -261,7 +261,7 @@ fn all_of_a_mesh_of_hundreds_of_clusters_is_skinned_after_an_edit() {
 
 #[test]
 #[ignore = "measures: run it in release"]
-fn what_an_edit_of_a_hundred_thousand_triangles_takes() {
+fn time_of_edits_of_a_mesh_of_a_hundred_thousand_triangles() {
     let mut surface = SkinnedSurface::new(tube(50, 256));
     touch_everything(&surface);
     let time = |work: &mut dyn FnMut()| {

@@ -1,4 +1,4 @@
-//! Random edits of a surface, kept account of without it: what there must be afterwards.
+//! Random edits of a surface, and a simple model of them: the expected state afterwards.
 
 use std::collections::BTreeSet;
 
@@ -17,15 +17,15 @@ struct Known {
     enabled: bool,
 }
 
-/// What was there at first, and what edits made of it.
+/// The expected state: the mesh as built, and the edits made since.
 pub(super) struct Model {
     joints: u32,
-    /// `None` for removed ones.
+    /// `None` for removed vertices.
     vertices: Vec<Option<Vec3>>,
     triangles: Vec<Option<Known>>,
     at_first: usize,
     parts: Vec<bool>,
-    /// Edits that were made, by kind.
+    /// Number of edits made, by kind.
     pub(super) made: [usize; KINDS],
 }
 
@@ -54,7 +54,7 @@ impl Model {
         }
     }
 
-    /// Disables or enables something.
+    /// Disables or enables a part or a triangle.
     pub(super) fn flag(&mut self, surface: &mut SkinnedSurface, rng: &mut fastrand::Rng) {
         let enabled = rng.u32(0..3) > 0;
         if rng.u32(0..3) == 0 {
@@ -84,7 +84,7 @@ impl Model {
         }
     }
 
-    /// Adds, removes or tags something. Keeps about as many triangles as there were at first.
+    /// Adds, removes or tags something. Keeps about as many triangles as the mesh was built with.
     pub(super) fn change(&mut self, edit: &mut SurfaceEdit<'_>, rng: &mut fastrand::Rng) {
         let there = self.triangles.iter().flatten().count();
         let few = there < self.at_first;
@@ -102,7 +102,7 @@ impl Model {
     }
 
     fn any_vertex(&self, rng: &mut fastrand::Rng) -> VertexId {
-        // The last ones more often: those that were added.
+        // Prefers the last ones, which were added.
         let count = self.vertices.len() as u32;
         let last = if rng.bool() { count.min(12) } else { count };
         VertexId(count - 1 - rng.u32(0..last))
@@ -190,10 +190,10 @@ impl Model {
         }
     }
 
-    /// Compares rest data, flags and parts with what there must be.
+    /// Compares rest data, flags and parts with the expected state.
     pub(super) fn check(&mut self, surface: &SkinnedSurface, case: &str) {
         let mesh = surface.mesh();
-        // Parts come with triangles, enabled.
+        // New parts come with triangles, and are enabled.
         self.parts.resize(mesh.parts().len(), true);
         assert_eq!(mesh.triangles().len(), self.triangles.len(), "{case}");
         assert_eq!(mesh.positions().len(), self.vertices.len(), "{case}");

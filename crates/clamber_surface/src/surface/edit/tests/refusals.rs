@@ -1,4 +1,4 @@
-//! What is refused changes nothing.
+//! An edit that is refused changes nothing.
 
 use super::{bent, rigid};
 use crate::geometry::{Affine, Similarity};
@@ -10,7 +10,7 @@ use crate::surface::{Diagnostics, SkinnedSurface, SurfaceEdit, SurfaceError};
 use crate::testing::{bend, tube};
 use glam::{DVec3, Vec3};
 
-/// All that an edit could change.
+/// All state that an edit could change.
 fn state(surface: &SkinnedSurface) -> (ColliderMesh, Diagnostics, String) {
     let flags = (
         &surface.instance.part_enabled,
@@ -39,7 +39,7 @@ fn assert_refused<T: std::fmt::Debug>(
     error
 }
 
-/// A surface from which something was removed, and which was asked.
+/// A surface from which something was removed, and which has answered a query.
 fn edited() -> SkinnedSurface {
     let mut surface = bent(4, 8);
     surface.edit(|edit| {
@@ -84,7 +84,7 @@ fn vertices_and_triangles_that_do_not_exist_or_were_removed() {
 #[test]
 fn triangles_without_area() {
     let mut surface = edited();
-    // Two corners alike, and three along the tube.
+    // Two equal corners, and three in a line along the tube.
     for corners in [[1, 1, 2], [1, 9, 17]] {
         let error = assert_refused(&mut surface, |edit| {
             edit.add_triangle(corners.map(VertexId), SurfaceTag::default())
@@ -141,7 +141,7 @@ fn a_vertex_that_either_palette_would_take_too_far() {
         let error = assert_refused(&mut surface, add);
         assert_eq!(error, PaletteError::Matrix(JointId(1)).into());
     }
-    // Out of both poses, it is taken; then the palette is not.
+    // Once the large palette is in neither pose, the vertex is accepted; then the large palette is refused.
     surface.advance(&small, Similarity::IDENTITY).unwrap();
     surface.edit(add).unwrap();
     let refused = surface.advance(&large, Similarity::IDENTITY);
@@ -149,7 +149,7 @@ fn a_vertex_that_either_palette_would_take_too_far() {
 }
 
 #[test]
-fn what_came_before_a_refusal_stands() {
+fn changes_before_a_refused_one_stay() {
     let mut surface = edited();
     let count = surface.mesh().positions().len() as u32;
     let result = surface.edit(|edit| {

@@ -1,4 +1,4 @@
-//! What must hold of clusters and hierarchy after any edits.
+//! Invariants of clusters and hierarchy after any edits.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::skin::ClusterPositions;
 use crate::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
-/// Living clusters by how often the hierarchy leads to them.
+/// Living clusters, each with how often the hierarchy leads to it.
 fn reached(mesh: &ColliderMesh) -> BTreeMap<u32, usize> {
     let hierarchy = mesh.hierarchy();
     let mut found = BTreeMap::new();
@@ -32,7 +32,7 @@ fn reached(mesh: &ColliderMesh) -> BTreeMap<u32, usize> {
     found
 }
 
-/// Every triangle stands in one living cluster of its part, every vertex has one owner or none, and
+/// Asserts that every triangle is in one living cluster of its part, that every vertex has one owner or none, and that
 /// the hierarchy leads to every living cluster once.
 pub(super) fn assert_sound(mesh: &ColliderMesh, case: &str) {
     let clusters = mesh.clusters();
@@ -66,8 +66,8 @@ pub(super) fn assert_sound(mesh: &ColliderMesh, case: &str) {
     assert_eq!(clusters.loose, loose, "{case}");
 }
 
-/// Whatever both poses have computed, or compute now, is what plain skinning gives and within the
-/// bounds above it.
+/// Asserts that the positions that both poses have cached, or compute now, are those of plain skinning and within the
+/// bounds above them.
 pub(super) fn assert_poses_hold(surface: &SkinnedSurface, case: &str) {
     let mesh = surface.mesh();
     let mut all = Vec::new();
