@@ -3,16 +3,18 @@ use glam::DVec3;
 
 use crate::MoverError;
 
-/// The shape that is moved: a capsule around a position, with an outer layer that may overlap what it touches.
+/// The shape that is moved: a capsule at a position, with an outer layer that may overlap obstacles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoverBody {
-    /// Ends of the capsule's segment, from the body's position, metres. Both zero: a ball. The first end should be
-    /// zero: ground beside and under the feet, and grips, are looked for around the ball at the position only.
+    /// Ends of the capsule's segment relative to the body's position, metres. If both are zero, the body is a ball. The
+    /// first end should be zero, since ground beside and under the feet, and grips, are searched around the ball at the
+    /// position only.
     pub axis: [DVec3; 2],
-    /// Of the capsule, metres, positive. The body comes to rest at this distance.
+    /// Radius of the capsule, metres, positive. A resting body has its axis at this distance from what it touches.
     pub radius: f64,
-    /// Thickness of the outer layer, metres, not negative and less than the radius. The rest is the core, which enters
-    /// nothing. A wider margin forgives rougher deformation and shows more overlap; 1/40 of the radius is a good start.
+    /// Thickness of the outer layer, metres, not negative and less than the radius. The rest of the body is the core,
+    /// which enters nothing. A larger margin tolerates rougher deformation, but more overlap is visible; 1/40 of the
+    /// radius is a good start.
     pub margin: f64,
 }
 
@@ -26,7 +28,7 @@ impl MoverBody {
         }
     }
 
-    /// A capsule from a ball around the position to one at `top`, which is given from the position.
+    /// A capsule from the position to `top`, which is relative to the position.
     pub const fn capsule(top: DVec3, radius: f64, margin: f64) -> Self {
         Self {
             axis: [DVec3::ZERO, top],
@@ -48,12 +50,12 @@ impl MoverBody {
         }
     }
 
-    /// Its core at a position in world space.
+    /// The core at a position in world space.
     pub fn core_at(&self, position: DVec3) -> WorldCapsule {
         self.at(position).with_radius(self.core_radius())
     }
 
-    /// The ball around its position alone, with the same margin: the body as it crouches.
+    /// The crouched body: the ball around the position, with the same radius and margin.
     #[must_use]
     pub const fn crouched(&self) -> Self {
         Self::ball(self.radius, self.margin)

@@ -1,20 +1,20 @@
 use thiserror::Error;
 
-/// Why a mover could not be made.
+/// An invalid number in a body or a tick.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MoverError {
-    /// A number is infinite or NaN.
+    /// A number, named here, is infinite or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
     /// A number is outside its range.
     #[error("{name} must be {range}, found {found}")]
     OutOfRange {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// What it may be.
+        /// Valid range of the number.
         range: &'static str,
-        /// What it is.
+        /// Value of the number.
         found: f64,
     },
 }

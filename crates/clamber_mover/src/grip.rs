@@ -2,20 +2,20 @@ use glam::DVec3;
 
 use crate::{Mover, MoverBody, Touch};
 
-/// Contacts farther than the nearest by less than this share of the body's radius are as near.
+/// Contacts farther than the nearest by less than this fraction of the body's radius count as equally near.
 const AS_NEAR: f64 = 0.05;
 
-/// Most contacts that a hand is tried to reach: what is behind a wall has many triangles.
+/// Most contacts for which a hand's reach is tested: a surface behind a wall has many triangles.
 const TRIES: usize = 16;
 
-/// The last of the way to a contact that a hand need not have free, as a share of the body's radius: the triangles around
-/// the contact.
+/// The end of the line to a contact may be blocked over this length, as a fraction of the body's radius: the triangles
+/// around the contact are there.
 const AT_HAND: f64 = 0.025;
 
 impl Mover<'_> {
-    /// What hands can grip at a position: the nearest contact within `reach` of the body's ball that `can_grip` lets
-    /// through and a hand can reach, and of those about as near the one that `merit` likes best; a merit of 1 outweighs a
-    /// difference in distance of a tenth of the radius.
+    /// Finds the contact that hands grip at a position: the nearest one within `reach` metres of the body's ball that
+    /// `can_grip` accepts and that a hand can reach. Of contacts about equally near, the one with the highest `merit`
+    /// is chosen; a merit of 1 outweighs a tenth of the radius in distance.
     pub fn find_grip(
         &mut self,
         body: &MoverBody,
@@ -49,7 +49,7 @@ impl Mover<'_> {
             let (_, index) = best?;
             let touch = self.overlaps()[index];
             let at_hand = AT_HAND * body.radius;
-            // Within the core nothing is in the way but what crushes the body.
+            // Within the core, only an obstacle that crushes the body can be in the way.
             let is_at_body = touch.contact.distance - at_hand <= body.core_radius();
             if is_at_body || self.can_reach(position, &touch, at_hand) {
                 return Some(touch);
@@ -59,8 +59,8 @@ impl Mover<'_> {
         None
     }
 
-    /// True if nothing is on the line from a position to a contact, with every obstacle as it stands now. The last
-    /// `slack` metres of the line are ignored. True for input that is not finite.
+    /// True if nothing is on the line from a position to a contact, against obstacles in their current state. The last
+    /// `slack` metres of the line are ignored. Also true for input that is not finite.
     pub fn can_reach(&mut self, position: DVec3, touch: &Touch, slack: f64) -> bool {
         let way = touch.contact.point - position;
         let length = way.length() - slack;

@@ -1,4 +1,4 @@
-//! What holds a body up: the ground below it, and which contacts of a movement it stands on.
+//! Support of a body: the ground below it, and the contacts of a movement that hold it up.
 
 use clamber_world::WorldCapsule;
 use glam::DVec3;
@@ -6,45 +6,45 @@ use glam::DVec3;
 use crate::half_spaces::{HalfSpace, project_onto_half_spaces};
 use crate::{Hit, Mover, MoverBody, Touch};
 
-/// Where ground is looked for.
+/// Parameters of a search for ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundProbe {
-    /// What is to stand there.
+    /// The body that is to stand there.
     pub body: MoverBody,
-    /// Unit vector.
+    /// Unit vector that points up.
     pub up: DVec3,
     /// Steepest slope that counts as ground, radians from level.
     pub max_slope: f64,
-    /// How far below the feet, metres, not negative.
+    /// Search distance below the feet, metres, not negative.
     pub reach: f64,
 }
 
 /// Ground that a body can stand on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// The contact that it would stand on.
+    /// The contact that the body would stand on.
     pub touch: Touch,
-    /// Where the body would stand, in world space.
+    /// Position of the body on the ground, in world space.
     pub position: DVec3,
 }
 
-/// Ground this little below is underfoot, however small the reach, as a share of the margin: far above the rounding of
-/// f32, by which a standing body may be above it.
+/// Ground is searched at least this far below, however small the reach, as a fraction of the margin: far more than the
+/// rounding of f32, by which a standing body may be above its ground.
 const UNDERFOOT: f64 = 0.1;
 
-/// What is left of a step down where slopes on all sides support: sine of some degrees.
+/// Slopes on all sides support a body if they leave less than this of a unit step down: the sine of 6 degrees.
 const SUPPORTED: f64 = 0.1;
 
-/// Contacts underfoot that are farther than the nearest by less than this share of the margin are as near.
+/// Contacts underfoot that are farther than the nearest by less than this fraction of the margin count as equally near.
 const AS_NEAR: f64 = 0.01;
 
-/// Faces whose cosines from up differ by less are one face: rounding of f32 normals.
+/// Faces whose slopes differ by less than this, as cosines, count as one face: the rounding of f32 normals.
 const ONE_FACE: f64 = 1e-6;
 
-/// Cosine of how far the ground may have turned under a body that slides over it in a tick: 45 degrees.
+/// Cosine of the largest angle by which the ground may turn under a body that slides over it in a tick: 45 degrees.
 const SAME_SIDE: f64 = 0.7;
 
-/// Most slopes that are looked at together.
+/// Most slopes that are considered together.
 const WEDGE: usize = 16;
 
 impl GroundProbe {
@@ -52,20 +52,20 @@ impl GroundProbe {
         slope(normal, self.up) <= self.max_slope
     }
 
-    /// The least distance that is looked.
+    /// The least search distance, metres.
     fn least(&self) -> f64 {
         UNDERFOOT * self.body.margin
     }
 }
 
-/// Angle of a unit vector from up, radians.
+/// Angle between a unit vector and up, radians.
 pub fn slope(normal: DVec3, up: DVec3) -> f64 {
     libm::acos(normal.dot(up).clamp(-1.0, 1.0))
 }
 
 impl Mover<'_> {
-    /// The ground straight below a position, else the nearest beside it, up to the probe's reach, or to a tenth of the
-    /// body's margin if that is more.
+    /// Finds the ground straight below a position or, if there is none, the nearest beside it. The search distance is
+    /// the probe's reach, or a tenth of the body's margin if that is more.
     pub fn find_ground(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let probe = &GroundProbe {
             reach: probe.reach.max(probe.least()),
@@ -75,18 +75,19 @@ impl Mover<'_> {
             .or_else(|| self.find_ground_beside(probe, position))
     }
 
-    /// What the body comes down on first, if that is ground.
+    /// Finds the ground straight below a position, within the probe's reach: the first contact of the body on its way
+    /// down, if its slope counts as ground.
     pub fn find_ground_below(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let body = &probe.body;
         let down = -probe.up * (probe.reach + body.margin);
         let Hit { touch, time, .. } = self.meet_ground(probe, position, down)?;
-        // Up again, so that the whole body touches what its core has met.
+        // Back up, until the whole body just touches what its core has met.
         let rise = (body.radius - touch.contact.distance) / touch.normal.dot(probe.up);
         let position = position + down * time + probe.up * rise;
         Some(Ground { touch, position })
     }
 
-    /// The nearest ground where what is straight below is too steep.
+    /// The nearest ground, for a body with no ground straight below.
     fn find_ground_beside(&mut self, probe: &GroundProbe, position: DVec3) -> Option<Ground> {
         let body = &probe.body;
         let mut best: Option<Touch> = None;
@@ -97,8 +98,8 @@ impl Mover<'_> {
             }
         }
         let best = best?;
-        // A triangle's nearest point may be on an edge within a wall, and look like a ledge: only what the body comes to
-        // first is there.
+        // A triangle's nearest point may be on an inner edge of a wall and look like a ledge. So the body must meet it
+        // first in a cast.
         let way = (best.contact.distance - body.core_radius()).max(0.0) + probe.least();
         let toward = -best.normal * way;
         let Hit { touch, time, .. } = self.meet_ground(probe, position, toward)?;
@@ -107,7 +108,7 @@ impl Mover<'_> {
         Some(Ground { touch, position })
     }
 
-    /// What the core of the body meets first on a way, if that is ground.
+    /// The first contact of the body's core along `way`, if it is ground.
     fn meet_ground(&mut self, probe: &GroundProbe, position: DVec3, way: DVec3) -> Option<Hit> {
         let hit = self.cast(&probe.body.core_at(position), way)?;
         let is_ground = !hit.started_inside && probe.is_ground(hit.touch.normal);
@@ -176,25 +177,25 @@ impl Mover<'_> {
     }
 }
 
-/// A step in the way of a walking body.
+/// A walk that was blocked, perhaps by a step: the parameters of [`Mover::step_up`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepUp {
-    /// The body, the slope that a tread may have, and how high a step may be (the probe's reach).
+    /// The body, the steepest slope of a tread, and the largest height of a step (the probe's reach).
     pub probe: GroundProbe,
-    /// Where the walk began, in world space: where the ground has carried the body by the tick's end.
+    /// Start of the walk, in world space: the position to which the ground has carried the body by the tick's end.
     pub from: DVec3,
-    /// Where it was to lead, in world space.
+    /// Target of the walk, in world space.
     pub target: DVec3,
-    /// Where it was blocked, in world space.
+    /// Position at which the walk was blocked, in world space.
     pub position: DVec3,
 }
 
-/// Share of a way that may be missing before it counts as blocked.
+/// Fraction of a walk that may be missing before the walk counts as blocked.
 const BLOCKED: f64 = 0.05;
 
 impl Mover<'_> {
-    /// Where a body stands after it has climbed the step that blocks it, if there is one: up, on, and down, as casts of
-    /// its core. (The three casts: Quake's step move, Jolt's WalkStairs.)
+    /// The position of a body after it has climbed the step that blocked it; `None` if there is no such step. Casts the
+    /// body's core up, forward and down. (The three casts: Quake's step move, Jolt's WalkStairs.)
     pub fn step_up(&mut self, step: &StepUp) -> Option<DVec3> {
         let StepUp {
             probe,
@@ -212,7 +213,7 @@ impl Mover<'_> {
             return None;
         }
         let core = probe.body.core_at(position);
-        // Not up to what is above, or that would be on every way from there.
+        // Stay below a ceiling: otherwise it would block every way from there.
         let room = self.cast(&core, up * height);
         let rise = room.map_or(height, |hit| {
             (height * hit.time - probe.body.margin).max(0.0)
@@ -228,8 +229,8 @@ impl Mover<'_> {
         })
     }
 
-    /// Where the body stands on a tread below `over`, if that is level enough, higher than `position`, and below what is
-    /// above it there.
+    /// The position of the body on a tread below `over`, if the tread is level enough and higher than `position`, and
+    /// the body fits under what is above it.
     fn tread_below(&mut self, probe: &GroundProbe, position: DVec3, over: DVec3) -> Option<DVec3> {
         let down = GroundProbe {
             reach: (over - position).dot(probe.up),
@@ -240,7 +241,7 @@ impl Mover<'_> {
         if rise <= probe.body.margin {
             return None;
         }
-        // The body stands off what its core has come down on: perhaps higher than from where that came.
+        // The body stands a margin off what its core has met, so perhaps higher than the core started.
         let lift = (ground.position - over).dot(probe.up);
         let core: WorldCapsule = probe.body.core_at(over);
         let is_free = lift <= 0.0 || self.is_free(&core, probe.up * lift);
@@ -248,7 +249,7 @@ impl Mover<'_> {
     }
 }
 
-/// How far a ball has to go from where an edge first stops it to where it stands on that edge.
+/// Distance that a ball has to move from where an edge first stops it to where it stands on that edge.
 fn onto_a_tread(probe: &GroundProbe) -> f64 {
     probe.body.radius * (1.0 - libm::sin(probe.max_slope)) + probe.body.margin
 }

@@ -1,59 +1,60 @@
-//! Projection of a point onto the intersection of half-spaces: where a body may go, or how fast, between walls that move.
+//! Projection of a point onto the intersection of half-spaces: the positions, or velocities, that moving walls leave to
+//! a body.
 //!
 //! A least-distance problem in three dimensions, solved by a dual active-set method (Goldfarb and Idnani 1983, "A
 //! numerically stable dual method for solving strictly convex quadratic programs"). At most three planes support the
-//! point. In each pivot the plane that is violated most joins them, and of the at most seven subsets that contain it the
-//! one whose point satisfies all four planes is the next basis. Testing every subset needs no sign of a multiplier, so
-//! normals that are parallel to rounding do no harm.
+//! point. Each pivot adds the plane that is violated most. Of the at most seven subsets that contain this plane, the
+//! one whose point satisfies all four planes is the next basis. Since every subset is tested, no sign of a multiplier
+//! is needed, and normals that are parallel to rounding do no harm.
 //!
-//! If the intersection is empty, or much nearer for a little relief, all planes are relaxed by the same amount, the least
-//! that helps. Planes that are opposite to within a hundredth of a degree intersect thousands of times as far away as they
-//! overlap. Such an intersection is of no use, and counts as empty. The distance of the nearest point is a convex function
-//! of the relief, so that each attempt that fails tells how much more is needed at least. With more relief the point comes
-//! nearer ever more slowly.
+//! If the intersection is empty, or becomes much nearer with a little relief, all planes are relaxed by the same
+//! amount, the least that helps. Planes that are opposite to within a hundredth of a degree intersect thousands of
+//! times as far away as they overlap. Such an intersection is of no use, and counts as empty. The distance of the
+//! nearest point is a convex function of the relief: with more relief, the point comes nearer ever more slowly. So each
+//! attempt that fails gives a lower bound of the relief.
 
 use glam::DVec3;
 
-/// If relaxing all planes by d brings the point nearer by more than this times d, they are relaxed. Opposite planes
-/// therefore have to differ by 2e-4 radians to count as a wedge. With a larger value the rounding of f32 normals throws a
-/// crushed body hundreds of metres; with a smaller one acute valleys count as closed.
+/// If relaxing all planes by d brings the point nearer by more than this times d, they are relaxed. So planes have to
+/// be at least 2e-4 radians from opposite to count as a wedge. With a larger value, the rounding of f32 normals throws
+/// a crushed body hundreds of metres; with a smaller one, acute valleys count as closed.
 const STEEPEST: f64 = 1e4;
 
-/// By how much planes are relaxed to measure how fast the point follows, as a share of the largest gap and of the distance:
-/// a hundred times the tolerance [`HELD`].
+/// Relief by which the steepness is measured, as a fraction of the largest gap and of the distance: a hundred times the
+/// tolerance [`HELD`].
 const PROBE: f64 = 1e-11;
 
-/// A plane that is violated by no more than this share of the largest gap, or of the distance, counts as satisfied: a
-/// hundred roundings of a point on three planes. Times [`STEEPEST`] it stays 1e-9.
+/// A plane that is violated by no more than this fraction of the largest gap, or of the distance, counts as satisfied:
+/// a hundred times the rounding of a point on three planes. Times [`STEEPEST`] it is 1e-9.
 const HELD: f64 = 1e-13;
 
-/// After this many pivots [`HELD`] doubles with each: where many planes meet in one point, rounding could make them take
-/// turns for ever. Sets of 32 planes take a dozen pivots at most.
+/// After this many pivots, [`HELD`] doubles with each: where many planes meet in one point, rounding could otherwise
+/// make them alternate for ever. Sets of 32 planes take a dozen pivots at most.
 const PATIENCE: usize = 64;
 
 /// Doublings of [`HELD`] until everything counts as satisfied.
 const DOUBLINGS: usize = 44;
 
-/// Smaller sines are rounding: two such planes cannot both support the point.
+/// A smaller sine is rounding: two planes at such an angle cannot both support the point.
 const PARALLEL: f64 = 1e-13;
 
-/// The least relief is found so well that the point is exact to this share of the largest gap, however much nearer it comes
-/// for each metre of relief.
+/// The least relief is found so precisely that the point is exact to this fraction of the largest gap, at any
+/// steepness.
 const NARROW: f64 = 1e-8;
 
-/// How far beyond where the least relief seems to be one looks first, as a share of how well it is sought, and by which factor
-/// farther each time that this is not enough.
+/// First step beyond the estimated least relief, as a fraction of the precision sought, and the factor by which it
+/// grows each time that it is not enough.
 const FIRST_STEP: f64 = 0.25;
 const LONGER: f64 = 8.0;
 
-/// Most attempts to find it. Three or four are the rule; every third attempt halves what is left.
+/// Most attempts to find the least relief. Three or four are usual; every third attempt halves the interval.
 const ATTEMPTS: usize = 150;
 
 /// All points y with `normal . y >= offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// Unit length. Planes whose normal is shorter than a half, longer than 2, or not finite are
-    /// ignored.
+    /// Unit normal that points into the half-space. Planes whose normal is shorter than a half, longer than 2, or not
+    /// finite are ignored.
     pub normal: DVec3,
     /// Metres for points, metres a second for velocities.
     pub offset: f64,
@@ -63,28 +64,28 @@ pub struct HalfSpace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Projection {
-    /// The nearest point.
+    /// The point nearest to the target.
     pub point: DVec3,
-    /// By how much the worst plane is violated; 0, or rounding, if the intersection is not empty.
+    /// Violation of the worst plane, in the unit of the offsets; 0, or rounding, if the half-spaces leave room.
     pub missed: f64,
 }
 
-/// The point nearest to `target` inside all half-spaces. If their intersection is empty, the point that violates the
-/// worst plane least, and of these the nearest. Planes that leave no room between them and are within 2e-4 radians of
-/// opposite count as having no intersection.
+/// Projects `target` onto the intersection of half-spaces: the nearest point inside all of them. If the intersection is
+/// empty, the point that violates the worst plane least, and of these the nearest. Planes that leave no room between
+/// them and are within 2e-4 radians of opposite count as having no intersection.
 ///
-/// Exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding of coordinates.
-/// Where the intersection is empty, what is missed is exact to 1e-12 of that gap, and the point to 1e-8 of it.
-/// The same bits in whatever order the planes come. Planes that are not finite are ignored. A target that is not finite
-/// is returned as it is, with nothing missed.
+/// The point is exact to 1e-9 of the largest gap between target and plane, to 1e-9 of the distance, and to the rounding
+/// of coordinates. If the intersection is empty, [`Projection::missed`] is exact to 1e-12 of that gap, and the point to
+/// 1e-8 of it. The order of the planes does not change any bit of the result. Planes that are not finite are ignored. A
+/// target that is not finite is returned as it is, with nothing missed.
 pub fn project_onto_half_spaces(target: DVec3, planes: &[HalfSpace]) -> Projection {
     project_where_it_pays(target, planes, 0.0, STEEPEST)
 }
 
-/// [`project_onto_half_spaces`] where it pays: beyond a distance `free` from the target, planes are also relaxed wherever
-/// this brings the point nearer by more than `steepest` times as much. So the point minimises
-/// `max(free, |point - target|) + steepest * missed`, changes continuously with the offsets, and is no farther away
-/// than `free` and `steepest` times the largest gap together. `steepest` is at least 1.
+/// [`project_onto_half_spaces`] with a limit to how far the point moves for a gain of room. Beyond the distance `free`
+/// from the target, planes are also relaxed wherever this brings the point nearer by more than `steepest` times the
+/// relief. So the point minimises `max(free, |point - target|) + steepest * missed`, changes continuously with the
+/// offsets, and is no farther away than `free` and `steepest` times the largest gap together. `steepest` is at least 1.
 pub(crate) fn project_where_it_pays(
     target: DVec3,
     planes: &[HalfSpace],
@@ -100,26 +101,26 @@ pub(crate) fn project_where_it_pays(
     }
 }
 
-/// The problem with the target at the origin and the largest gap 1.
+/// The problem, with the target at the origin and scaled so that the largest gap is 1.
 struct Search<'a> {
     target: DVec3,
     planes: &'a [HalfSpace],
-    /// The largest gap: by how much the target misses the worst plane.
+    /// The largest gap: the violation of the worst plane at the target.
     size: f64,
-    /// As far as this a point may be, though little is gained, in largest gaps.
+    /// Distance up to which the point may move for any gain of room, in largest gaps.
     free: f64,
-    /// Beyond, how much nearer it may come for each metre of relief at most.
+    /// Largest steepness beyond `free`.
     steepest: f64,
-    /// Farthest that a point can be, in largest gaps; follows from the two above.
+    /// Largest possible distance of the point, in largest gaps; follows from the two above.
     reach: f64,
 }
 
-/// What is known of a relief that is not enough.
+/// Bounds from a relief that is not enough.
 #[derive(Clone, Copy)]
 struct TooLittle {
     /// No relief below this is enough.
     least: f64,
-    /// Other planes carry from here on: where planes that are all but closed end to carry.
+    /// Estimated relief from which other planes carry: where nearly closed planes cease to carry.
     turn: f64,
 }
 
@@ -136,21 +137,21 @@ struct Corner {
     walls: [Wall; 3],
     count: usize,
     point: DVec3,
-    /// The multipliers of the planes: the point is the sum of their normals by so much each.
+    /// Multipliers of the planes: the point is the sum of their normals times these.
     pushes: [f64; 3],
-    /// Whether all planes push: their multipliers are positive.
+    /// True if all planes carry the point: no multiplier is negative.
     carries: bool,
-    /// How much nearer the point comes for each metre by which the planes are lowered: by duality,
-    /// at most the sum of their multipliers over the distance, if they carry.
+    /// How much nearer the point comes for each unit of relief: by duality, at most the sum of the multipliers over the
+    /// distance, if the planes carry.
     steepness: f64,
 }
 
 impl<'a> Search<'a> {
-    /// None if the target is above all planes.
+    /// `None` if the target is above all planes.
     fn new(target: DVec3, planes: &'a [HalfSpace], free: f64, steepest: f64) -> Option<Self> {
         let gaps = planes.iter().filter_map(|plane| gap(plane, target));
         let size = gaps.fold(0.0, f64::max);
-        // Below, reciprocals overflow.
+        // Reciprocals of smaller gaps overflow.
         (size > 1e-300).then_some(Self {
             target,
             planes,
@@ -161,13 +162,13 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The nearest point with the least relief.
+    /// The nearest point above all planes with the least relief that helps.
     fn least_relieved(&self) -> DVec3 {
         let mut low = match self.sound(0.0) {
             Ok(point) => return point,
             Err(too_little) => too_little,
         };
-        // Relieved of the largest gap, the target itself is above all.
+        // With the largest gap as relief, the target itself is above all planes.
         let (mut high, mut point) = (1.0, DVec3::ZERO);
         let narrow = NARROW / self.steepest;
         let mut step = FIRST_STEP * narrow;
@@ -184,7 +185,7 @@ impl<'a> Search<'a> {
             match self.sound(relief) {
                 Ok(found) => (high, point) = (relief, found),
                 Err(too_little) => {
-                    // Planes that are all but opposite say less than what is needed.
+                    // The lower bound from nearly opposite planes is too low: take a longer step.
                     step *= if too_little.least > relief || halves {
                         1.0
                     } else {
@@ -215,6 +216,7 @@ impl<'a> Search<'a> {
     }
 
     /// The nearest point above all planes lowered by `relief`, if it is within reach and more relief does not pay.
+    /// Otherwise, a lower bound of the relief.
     fn sound(&self, relief: f64) -> Result<DVec3, TooLittle> {
         let at = |relief: f64| {
             let least = |least| TooLittle { least, turn: least };
@@ -228,8 +230,8 @@ impl<'a> Search<'a> {
                     .carries_for()
                     .min(corner.lacks_itself(self.free).max(0.0)),
         };
-        // In most cases the planes that carry tell at once. Where others meet them these may carry from here on; then the
-        // distance itself has the last word, unless it is all rounding.
+        // In most cases the planes that carry decide at once. If others meet them in the point, these may carry from
+        // here on. Then the distance itself is measured, unless it is all rounding.
         let distance = corner.point.length();
         let steepest = if distance <= self.free {
             STEEPEST
@@ -252,8 +254,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The nearest point above all planes lowered by `relief`, and what carries it. If there is none within reach, the
-    /// relief that is needed at least, as far as that is seen.
+    /// The nearest point above all planes lowered by `relief`, and the planes that carry it. If there is none within
+    /// reach, a lower bound of the relief.
     fn nearest(&self, relief: f64) -> Result<Corner, f64> {
         let mut corner = Corner::nowhere();
         let mut held = HELD;
@@ -276,7 +278,7 @@ impl<'a> Search<'a> {
         Err(relief)
     }
 
-    /// How many planes lowered by `relief` a point is on, or all but on.
+    /// Number of planes, lowered by `relief`, that a point is on, or nearly on.
     fn met(&self, point: DVec3, relief: f64) -> usize {
         let near = 100.0 * HELD * (1.0 + point.length());
         let gaps = self.planes.iter().filter_map(|plane| {
@@ -309,7 +311,8 @@ impl<'a> Search<'a> {
 }
 
 impl TooLittle {
-    /// Where to try next, below a relief that is enough: a step above, and then below, where other planes carry.
+    /// The relief to try next, between `least` and `high`: a step above the turn, else a step below it, else a step
+    /// below `high`, else the middle.
     fn next(&self, high: f64, step: f64) -> f64 {
         let turn = self.turn.max(self.least);
         let tries = [turn + step, turn - step, high - step];
@@ -319,7 +322,7 @@ impl TooLittle {
     }
 }
 
-/// By how much a point misses a plane; none if the plane is to be ignored.
+/// By how much a point misses a plane; `None` if the plane is to be ignored.
 fn gap(plane: &HalfSpace, point: DVec3) -> Option<f64> {
     let gap = plane.offset - plane.normal.dot(point);
     ((0.25..=4.0).contains(&plane.normal.length_squared()) && gap.is_finite()).then_some(gap)
@@ -330,7 +333,7 @@ impl Wall {
         self.gap - self.normal.dot(point)
     }
 
-    /// An order of walls that are missed alike, by nothing but their values.
+    /// Orders walls that are missed by the same amount, by their values alone.
     fn precedes(&self, other: &Self) -> bool {
         let key = |wall: &Self| [wall.gap, wall.normal.x, wall.normal.y, wall.normal.z];
         let (own, others) = (key(self), key(other));
@@ -361,13 +364,13 @@ impl Corner {
         &self.walls[..self.count]
     }
 
-    /// The nearest point above these walls and a new one that the point misses, which therefore is
-    /// one of those that carry. None if there is no such point.
+    /// The nearest point above these walls and a new one that the current point misses. So the new wall is one of those
+    /// that carry the result. `None` if there is no such point.
     fn joined(&self, wall: Wall, slack: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let mut nearest = f64::INFINITY;
-        // With none of the old walls, one, two: those that carry are the answer. Rounding may leave
-        // none that do; then the nearest is.
+        // The new wall with none, one or two of the old ones: the subset that carries is the answer. If rounding leaves
+        // no such subset, the nearest point is the answer.
         for kept in [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110_usize] {
             if kept >> self.count != 0 {
                 continue;
@@ -397,7 +400,7 @@ impl Corner {
         best
     }
 
-    /// For how much more relief all of these walls carry.
+    /// The additional relief over which all of these walls carry.
     fn carries_for(&self) -> f64 {
         let mut lowered = *self;
         lowered.walls.iter_mut().for_each(|wall| wall.gap = 1.0);
@@ -416,8 +419,8 @@ impl Corner {
         }
     }
 
-    /// How much relief these walls need at least for a point within reach: what they push with tells it. Their point says
-    /// the same, but not between walls that are all but parallel, where it is mostly rounding.
+    /// A lower bound of the additional relief that these walls need for a point within reach, from their multipliers.
+    /// Their point gives the same bound, but between nearly parallel walls it is mostly rounding.
     fn lacks_itself(&self, reach: f64) -> f64 {
         let (mut sum, mut weights, mut gap) = (DVec3::ZERO, 0.0, 0.0);
         for (wall, push) in self.walls().iter().zip(self.pushes) {
@@ -432,8 +435,8 @@ impl Corner {
         }
     }
 
-    /// How much relief these walls and a new one need at least for a point within reach, as far as one sees: each
-    /// combination of walls with weights of at least zero tells some.
+    /// A lower bound of the additional relief that these walls and a new one need for a point within reach. Each
+    /// combination of walls with weights of at least zero gives a bound; the largest one counts.
     fn lacks(&self, wall: Wall, reach: f64) -> f64 {
         let mut most = f64::NEG_INFINITY;
         for kept in 0b000..1_usize << self.count {
@@ -446,7 +449,7 @@ impl Corner {
             let Some(axes) = axes(others.walls()) else {
                 continue;
             };
-            // What the others oppose of the new one.
+            // The weights with which the others oppose the new one.
             let (mut sum, mut weights, mut gap) = (wall.normal, 1.0, wall.gap);
             let mut opposes = true;
             for (other, axis) in others.walls().iter().zip(&axes).rev() {
@@ -470,16 +473,14 @@ impl Corner {
         }
     }
 
-    /// Finds the point on all walls. False if two of them are parallel, or three have a direction
-    /// in common.
+    /// Finds the point on all walls. False if two of them are parallel, or three are parallel to one line.
     fn settle(&mut self) -> bool {
         let Some(axes) = axes(self.walls()) else {
             return false;
         };
         let pairs = || self.walls[..self.count].iter().zip(&axes);
         let mut point = DVec3::ZERO;
-        // A second round takes out the rounding that the first leaves, magnified, between walls
-        // that are nearly parallel.
+        // A second round removes the rounding of the first, which nearly parallel walls magnify.
         for _ in 0..self.count.min(2) {
             for (wall, axis) in pairs() {
                 point += *axis * (wall.missed(point) / wall.normal.dot(*axis));
@@ -487,7 +488,7 @@ impl Corner {
         }
         let (mut rest, mut sum, mut carries) = (point, 0.0, true);
         let mut pushes = [0.0; 3];
-        // The last axis is square to all walls but the last.
+        // The last axis is perpendicular to the normals of all walls but the last.
         for ((wall, axis), push) in pairs().zip(&mut pushes).rev() {
             *push = rest.dot(*axis) / wall.normal.dot(*axis);
             rest -= wall.normal * *push;
@@ -501,14 +502,14 @@ impl Corner {
     }
 }
 
-/// Unit vectors, each square to the normals of all walls before its own, so that a step along it
-/// leaves those walls alone. None if one has nothing left.
+/// Unit vectors, each perpendicular to the normals of all walls before its own, so that a step along it does not change
+/// the distance to those walls. `None` if nothing is left of a normal.
 fn axes(walls: &[Wall]) -> Option<[DVec3; 3]> {
     let mut axes = [DVec3::ZERO; 3];
     for (k, wall) in walls.iter().enumerate().take(3) {
         let (before, rest) = axes.split_at_mut(k);
         let mut axis = wall.normal;
-        // Once leaves what rounding adds, which is much of a short remainder.
+        // A second pass, since rounding is a large part of a short remainder.
         for _ in 0..2 {
             for other in before.iter() {
                 axis -= *other * other.dot(axis);

@@ -3,31 +3,32 @@ use glam::DVec3;
 
 use crate::{Mover, MoverBody, Touch, slope};
 
-/// Where a ledge is looked for.
+/// Parameters of [`Mover::find_ledge`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedgeProbe {
-    /// What is to hang from it.
+    /// The body that is to hang from the ledge.
     pub body: MoverBody,
-    /// Unit vector.
+    /// Unit vector that points up.
     pub up: DVec3,
-    /// Unit vector, level: towards the wall.
+    /// Level unit vector towards the wall.
     pub facing: DVec3,
-    /// How far above the position a ledge may be, metres.
+    /// Largest height of a ledge above the position, metres.
     pub reach_up: f64,
-    /// How far beyond the body's ball the wall may be, metres.
+    /// Largest distance of the wall beyond the body's ball, metres.
     pub reach: f64,
     /// Steepest slope of a ledge's top, radians from level.
     pub max_slope: f64,
 }
 
-/// Radius of a hand, as a share of the body's radius: what is narrower is no ledge.
+/// Radius of a hand, as a fraction of the body's radius. A narrower top is no ledge.
 const HAND: f64 = 0.15;
 
-/// How far beyond the edge hands are put, as a share of the body's radius.
+/// Distance of the hands beyond the edge, as a fraction of the body's radius.
 const BEYOND: f64 = 0.25;
 
 impl LedgeProbe {
-    /// From the body's position to the contact of its hands, while it hangs at the wall, along the facing, metres.
+    /// Distance along the facing from the body's position to the contact of its hands, while it hangs at the wall,
+    /// metres.
     pub fn hands_ahead(&self) -> f64 {
         self.body.radius * (1.0 + HAND + BEYOND)
     }
@@ -37,23 +38,23 @@ impl LedgeProbe {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Ledge {
-    /// The contact of a hand with the ledge's top, a hand beyond the edge.
+    /// The contact of a hand with the ledge's top, beyond the edge.
     pub touch: Touch,
-    /// Unit vector, level: straight at the wall.
+    /// Level unit vector straight towards the wall.
     pub facing: DVec3,
 }
 
-/// Cosine of the most oblique angle at which a wall is still in front: 72 degrees.
+/// Cosine of the largest angle between the facing and the direction straight towards a wall: 72 degrees.
 const OBLIQUE: f64 = 0.309;
 
 impl Mover<'_> {
-    /// The ledge in front of a position, with room for the hand on the way there.
+    /// Finds the ledge in front of a position, with room for the hand on its way there.
     pub fn find_ledge(&mut self, probe: &LedgeProbe, position: DVec3) -> Option<Ledge> {
         let LedgeProbe { body, up, .. } = *probe;
         let hand_radius = HAND * body.radius;
         let reach = body.radius + probe.reach;
         let height = up * probe.reach_up;
-        // The wall, wherever it is highest up front.
+        // The first wall in front, at any height within reach.
         let hand = WorldCapsule {
             ends: [position, position + height],
             radius: hand_radius,
@@ -82,7 +83,7 @@ impl Mover<'_> {
     }
 }
 
-/// The level direction straight at a wall; `None` if the probe faces it too obliquely.
+/// The level direction straight towards a wall; `None` if the probe faces the wall too obliquely.
 fn straight_at(wall: &Touch, probe: &LedgeProbe) -> Option<DVec3> {
     let normal = wall.normal;
     let level = normal - probe.up * normal.dot(probe.up);

@@ -14,7 +14,7 @@ mod velocity;
 
 pub use body::MoverBody;
 pub use error::MoverError;
-/// The crate whose vectors and quaternions are used here.
+/// The version of glam that this crate's API uses.
 pub use glam;
 pub use ground::{Ground, GroundProbe, StepUp, slope};
 pub use half_spaces::{HalfSpace, Projection, project_onto_half_spaces};

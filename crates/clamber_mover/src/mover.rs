@@ -10,26 +10,27 @@ use crate::half_spaces::HalfSpace;
 use crate::surroundings::Surroundings;
 use crate::{Hit, MoverBody, MoverError, Touch};
 
-/// Memory that movers reuse, so that a steady tick allocates nothing. It carries nothing from tick to tick.
+/// Memory that movers reuse, so that a steady tick allocates nothing. It carries no state from tick to tick.
 #[derive(Clone, Debug, Default)]
 pub struct MoverMemory {
     contacts: Vec<Contact>,
-    /// What the core began inside of, or is crushed by: sweeps look past it. Each as it was when the tick began.
+    /// Contacts that the core started inside of, or that crush it. Sweeps ignore them. Each is in its state at the
+    /// start of the tick.
     pub(crate) passed: Vec<Touch>,
-    /// By how much the half-spaces leave too little room for what the body wants; no more once it is crushed.
+    /// Room that the half-spaces lack for the wanted movement, metres. It is not updated once the body is crushed.
     pub(crate) lacking: f64,
     pub(crate) overlaps: Vec<Touch>,
     pub(crate) half_spaces: Vec<HalfSpace>,
-    /// Steep slopes once more, as vertical walls.
+    /// Steep slopes a second time, as vertical walls.
     pub(crate) walls: Vec<HalfSpace>,
     pub(crate) touched: Vec<Touch>,
-    /// Of what is touched, each at the same index.
+    /// Velocities of the contacts in `touched`, at the same indices.
     pub(crate) velocities: Vec<Option<DVec3>>,
     surroundings: Surroundings,
 }
 
-/// Room for contacts of a query and half-spaces of a movement from the first tick on, so that later ticks hardly ever
-/// need more: within its reach a climber on the giant of 20 m finds up to 42 contacts. Together 19 KB.
+/// Initial capacities for the contacts of a query and the half-spaces of a movement, so that later ticks hardly ever
+/// allocate: a climber on the giant of 20 m has up to 42 contacts within its reach. Together they take 19 KB.
 const CONTACTS: usize = 64;
 const HALF_SPACES: usize = 32;
 
@@ -51,32 +52,33 @@ impl MoverMemory {
     }
 }
 
-/// Half of a ray from whose length on it counts as endless, metres.
+/// A ray counts as endless if half its length is at least this, metres.
 const LONGEST: f64 = 1e150;
 
-/// One tick's view of the world, through which a body is moved and looks around.
+/// The obstacles of one tick, with functions to move a body among them and to query its surroundings.
 ///
-/// Obstacles already stand where they are at the tick's end. Nothing here remembers anything from one call to the next
-/// but the [`Mover::overlaps`] and [`Mover::touched`] of the last one.
+/// Obstacles must already be in their state at the end of the tick. From one call to the next, a mover keeps only its
+/// results [`Mover::overlaps`] and [`Mover::touched`].
 pub struct Mover<'a> {
     pub(crate) obstacles: &'a [(ObstacleId, &'a dyn Obstacle)],
     dt: f64,
     pub(crate) memory: &'a mut MoverMemory,
 }
 
-/// A body whose axis is less than this share of its core's radius behind a face was pressed through it, and comes out
-/// where it went in; only a crushed body gets this deep. A body that is deeper takes the nearest way out: one may climb
-/// on both sides of thin skin.
+/// A body whose axis is behind a face by less than this fraction of its core's radius was pressed through the face, and
+/// comes out where it went in. Only a crushed body gets this deep. A body that is deeper takes the nearest way out,
+/// since a climber may be on either side of thin skin.
 const PRESSED: f64 = 0.5;
 
-/// An axis nearer to a contact than this share of the radius lies on the face: its direction from there is rounding.
+/// An axis nearer to a contact than this fraction of the radius is on the face: the direction between them is rounding.
 const ON_FACE: f64 = 1e-5;
 
-/// Contacts farther than the nearest by less than this share of the core's radius are as near: triangles around a vertex.
+/// Contacts farther than the nearest by less than this fraction of the core's radius count as equally near, such as
+/// those of the triangles around a vertex.
 const AS_NEAR: f64 = 2.5e-4;
 
 impl<'a> Mover<'a> {
-    /// A tick of `dt` seconds. Obstacles may come in any order; of two with the same id the first counts.
+    /// A mover for a tick of `dt` seconds. Obstacles may be in any order; of two with the same id, the first is used.
     ///
     /// # Errors
     /// [`MoverError::OutOfRange`] if `dt` is not positive and finite.
@@ -105,24 +107,26 @@ impl<'a> Mover<'a> {
         self.dt
     }
 
-    /// An obstacle of this tick.
+    /// The obstacle with this id; `None` if it is not in this tick's list.
     pub fn obstacle(&self, id: ObstacleId) -> Option<&'a dyn Obstacle> {
         find(self.obstacles, id)
     }
 
-    /// How a material point moves over the tick; `None` if it is gone, or its motion is not finite.
+    /// Motion of a material point over the tick. `None` if the obstacle or the material is gone, or if the motion is
+    /// not finite.
     pub fn motion(&self, obstacle: ObstacleId, point: &MaterialPoint) -> Option<PointMotion> {
         motion_among(self.obstacles, obstacle, point, self.dt)
     }
 
-    /// Fixes something at `place`, in world space, to the material of a contact. [`Attachment::follow`] it in later ticks.
+    /// Fixes something at `place`, in world space, to the material of a contact. Call [`Attachment::follow`] in later
+    /// ticks.
     pub fn attach(&self, touch: &Touch, place: DVec3) -> Attachment {
         let motion = self.motion(touch.obstacle, &touch.contact.material);
         Attachment::with_motion(touch.obstacle, &touch.contact, motion.as_ref(), place)
     }
 
-    /// The speed, metres a second, that an impulse of 1 N s along a unit `direction` gives to a material point; 0 for
-    /// what cannot be pushed.
+    /// The speed along a unit `direction`, metres a second, that an impulse of 1 N s in this direction gives to a
+    /// material point. 0 if the point cannot be pushed.
     pub fn push_response(
         &self,
         obstacle: ObstacleId,
@@ -138,10 +142,10 @@ impl<'a> Mover<'a> {
         }
     }
 
-    /// Everything within `reach` of the body's surface at a position, by ascending obstacle and material.
+    /// All contacts within `reach` metres of the body's surface at a position, by ascending obstacle and material.
     ///
-    /// Of a surface that the body was pressed through, only the nearest of the contacts that face inward are kept:
-    /// turned outward, with a negative distance.
+    /// If the body was pressed through a surface, only the nearest of the contacts that face inward are kept: turned
+    /// outward, with a negative distance.
     pub fn overlap(&mut self, body: &MoverBody, position: DVec3, reach: f64) -> &[Touch] {
         let capsule = body.at(position).with_radius(body.radius + reach);
         let pressed = PRESSED * body.core_radius();
@@ -175,20 +179,21 @@ impl<'a> Mover<'a> {
     }
 
     /// The result of the last [`Mover::overlap`]. [`Mover::slide`], [`Mover::find_ground`], [`Mover::still_underfoot`]
-    /// and [`Mover::find_grip`] overwrite it as well.
+    /// and [`Mover::find_grip`] also overwrite it.
     pub fn overlaps(&self) -> &[Touch] {
         &self.memory.overlaps
     }
 
-    /// The first contact of a capsule whose ends move by `ways` over the tick, with every obstacle on its own way.
+    /// The first contact over the tick of a capsule whose ends move by `ways`, against obstacles that move as well.
+    /// `capsule` is the capsule at the start of the tick.
     pub fn sweep(&mut self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<Hit> {
         self.first(capsule, ways, |_, obstacle| {
             obstacle.cast_capsule(capsule, ways, TargetMotion::Moving)
         })
     }
 
-    /// [`Mover::sweep`] among chosen contacts: `counts` is called, in any order, with those that could be the first,
-    /// and the ones for which it returns false are passed over.
+    /// [`Mover::sweep`] restricted to the contacts that `counts` accepts. `counts` is called, in any order, with the
+    /// contacts that could be the first; those for which it returns false are ignored.
     pub fn sweep_where(
         &mut self,
         capsule: &WorldCapsule,
@@ -201,9 +206,9 @@ impl<'a> Mover<'a> {
         })
     }
 
-    /// Sweeps the path from `start` to `end`, shifted by `correction`, against moving obstacles: for a step up or a
-    /// snap to the ground, which see only the tick's end. True if nothing is met, and for input that is not finite.
-    /// Overlaps at the start do not count.
+    /// Checks a step up or a snap to the ground, which consider only the end of the tick, against moving obstacles.
+    /// Sweeps the body's core from `start` to `end`, shifted by `correction`. True if it meets nothing, and for input
+    /// that is not finite. Overlaps at the start are ignored.
     pub fn is_clear_with(
         &mut self,
         body: &MoverBody,
@@ -215,22 +220,22 @@ impl<'a> Mover<'a> {
             .is_none()
     }
 
-    /// The first contact of a capsule that moves by `way`, with every obstacle as it stands now.
+    /// The first contact of a capsule that moves by `way`, against obstacles in their current state.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         self.first(capsule, [way; 2], |_, obstacle| {
             obstacle.cast_capsule(capsule, [way; 2], TargetMotion::Still)
         })
     }
 
-    /// The first contact along a ray, up to a length in metres, which may be infinite, with every obstacle as it stands
-    /// now. `direction` may have any length but zero.
+    /// The first contact along a ray, against obstacles in their current state. `length` is in metres and may be
+    /// infinite; `direction` may have any length but zero.
     pub fn cast_ray(&mut self, origin: DVec3, direction: DVec3, length: f64) -> Option<Touch> {
         if length.is_nan() || length < 0.0 {
             return None;
         }
         let direction = direction.try_normalize()?;
         let half = length * 0.5;
-        // An endless ray has no middle, and neither has one whose squares overflow.
+        // An endless ray has no middle, and neither has one so long that its squares overflow.
         let (middle, reach) = if half < LONGEST {
             (origin + direction * half, half)
         } else {
@@ -254,14 +259,14 @@ impl<'a> Mover<'a> {
             }
         }
         if reach == f64::INFINITY {
-            // Else everything was near for the rest of the tick.
+            // Otherwise all obstacles would count as near for the rest of the tick.
             surroundings.forget();
         }
         first
     }
 
-    /// True if a capsule that moves by `way` meets nothing, with every obstacle as it stands now. True for input that
-    /// is not finite.
+    /// True if a capsule that moves by `way` meets nothing, against obstacles in their current state. Also true for
+    /// input that is not finite.
     pub fn is_free(&mut self, capsule: &WorldCapsule, way: DVec3) -> bool {
         self.cast(capsule, way).is_none()
     }
@@ -272,7 +277,8 @@ impl<'a> Mover<'a> {
         ways: [DVec3; 2],
         mut ask: impl FnMut(ObstacleId, &dyn Obstacle) -> Option<SweepContact>,
     ) -> Option<Hit> {
-        // A ball that goes by the mean of both holds the capsule, if it is larger by how far they are from the mean.
+        // A ball that moves by the mean of both displacements encloses the capsule, if its radius includes how far they
+        // are from the mean.
         let (middle, reach) = capsule.bounding_ball();
         let half = (ways[0] + ways[1]) * 0.25;
         let turn = (ways[1] - ways[0]).length() * 0.5;
@@ -285,7 +291,7 @@ impl<'a> Mover<'a> {
             };
             let hit = Hit::new(id, &hit);
             let is_sound = (0.0..=1.0).contains(&hit.time) && hit.touch.is_finite();
-            // In ascending order of ids: the first of equals stays.
+            // Obstacles come by ascending id: of equal times the first stays.
             if is_sound && first.is_none_or(|best| hit.time < best.time) {
                 first = Some(hit);
             }
@@ -293,7 +299,7 @@ impl<'a> Mover<'a> {
         first
     }
 
-    /// A body that began inside something is only pressed into it, and not deep: pushing out finds the way it went in.
+    /// True if the body is pressed into a contact's face, and not deep: pushing out moves it back to where it went in.
     pub(crate) fn is_pressed_into(body: &MoverBody, touch: &Touch) -> bool {
         touch.faces_inward() && touch.contact.distance < PRESSED * body.core_radius()
     }
@@ -318,15 +324,15 @@ pub(crate) fn motion_among(
     motion.is_finite().then_some(motion)
 }
 
-/// Looks at the contacts of one obstacle, from index `first` on, body by body: how deep the climber is in one says nothing
-/// of another.
+/// Applies [`turn_outward`] to the contacts of one obstacle, from index `first` on, body by body: the depth in one body
+/// says nothing about another.
 fn turn_outward_by_body(
     obstacle: &dyn Obstacle,
     touches: &mut Vec<Touch>,
     first: usize,
     limits: [f64; 2],
 ) {
-    // From the end, so that contacts that are dropped move none that is still to be looked at.
+    // From the end, so that dropped contacts do not shift those that are still to be handled.
     let mut end = touches.len();
     while end > first {
         let body = obstacle.body_of(&touches[end - 1].contact.material);
@@ -340,7 +346,7 @@ fn turn_outward_by_body(
 }
 
 /// Turns the nearest contacts of one body outward if they face inward and are nearer than `pressed`. The body's other
-/// inward contacts are dropped then: from outside they are not met.
+/// inward contacts are then dropped, since a body outside does not meet them.
 fn turn_outward(touches: &mut Vec<Touch>, of_body: Range<usize>, [pressed, as_near]: [f64; 2]) {
     let distances = touches[of_body.clone()]
         .iter()

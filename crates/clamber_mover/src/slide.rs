@@ -1,16 +1,17 @@
-//! How a body gets from where it was a tick ago to where it wants to be, among obstacles that move.
+//! Moves a body from its position a tick ago to its wanted position, among obstacles that move.
 //!
-//! The body's core is swept over the tick against everything on its own way. What it meets becomes a half-space: the body
-//! may not end beyond it, where the material point that was met will be at the tick's end. Of the displacements inside all
-//! half-spaces the one nearest to the wanted displacement is taken, and swept again, until nothing is in the way. Then
-//! everything that overlaps the whole body, margin included, at the tick's end adds its half-space, the deepest first.
-//! Each contact is looked at anew after every push, so that edges within flat ground, which are deeper only until the
-//! ground has pushed, add none. Contacts that are near but clear are among them, since a push may lead into them.
+//! The body's core is swept over the tick against all moving obstacles. Each contact becomes a half-space, beyond which
+//! the body may not end. Its plane is at the touched material point's position at the tick's end. Of the displacements
+//! inside all half-spaces, the one nearest to the wanted displacement is taken and swept again, until nothing is in the
+//! way. Then everything that overlaps the whole body, margin included, at the tick's end adds its half-space, the
+//! deepest first. Each contact is evaluated anew after every push, so that inner edges of flat ground, which are deeper
+//! only until the ground has pushed, add none. Contacts that are near but clear are included, since a push may lead
+//! into them.
 //!
-//! A half-space says where the body may end, not how fast it may go, so that being pushed aside, being carried and
-//! sliding all happen within the same tick: an obstacle's velocity is in where its point ends. (Contact planes solved
-//! together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those ask for planes near the start,
-//! with a margin, of obstacles that stand still.)
+//! A half-space limits where the body may end, not how fast it may go. The end of a touched point includes the
+//! obstacle's velocity, so being pushed aside, being carried and sliding all happen within the same tick. (Contact
+//! planes solved together: Jolt's CharacterVirtual, box3d's mover, avian's velocity projection. Those collect planes
+//! near the start, with a margin, from obstacles at rest.)
 
 use clamber_world::WorldCapsule;
 use glam::DVec3;
@@ -19,48 +20,49 @@ use crate::half_spaces::{HalfSpace, Projection, project_where_it_pays};
 use crate::mover::motion_among;
 use crate::{Hit, Mover, MoverBody, Touch};
 
-/// Most rounds of one movement, each a sweep, a look at what overlaps, or both. Corners take two or three; after eight
-/// the body stops where the sweep met something.
+/// Most rounds of one movement, each with a sweep, an overlap query, or both. Corners take two or three rounds. After
+/// the last one the body stops where the sweep met something.
 const ROUNDS: u32 = 8;
 
 /// Most half-spaces that the overlaps of one round add.
 const PUSHES: usize = 16;
 
-/// Overlap that counts as none, as a share of the radius: above the rounding of f32 coordinates of a creature, far below
-/// what is seen.
+/// An overlap up to this fraction of the radius counts as none: more than the rounding of a creature's f32 coordinates,
+/// far less than is visible.
 const TOUCH: f64 = 2.5e-5;
 
-/// How far around the body contacts are looked for that a push may lead into, as a share of the margin; a body that is
-/// pushed farther is swept again. More than the half by which a walking body is pressed onto the ground, or rounding
-/// would decide whether ground contact is found; less than the whole, by which the core is clear of what touches the
-/// margin.
+/// Search distance around the body for contacts that a push may lead into, as a fraction of the margin. A body that is
+/// pushed farther is swept again. It is more than the half margin by which a walking body is pressed onto the ground;
+/// otherwise rounding would decide whether ground contact is found. It is less than the whole margin, by which the core
+/// is clear of what touches the body.
 const NEAR: f64 = 0.75;
 
-/// A movement over the tick.
+/// A movement over the tick, for [`Mover::slide`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
-    /// What moves.
+    /// The body that moves.
     pub body: MoverBody,
     /// Position a tick ago, in world space.
     pub start: DVec3,
-    /// Axis at the start of the tick, from `start`, metres, for a body that turns. The final axis is always
-    /// `body.axis`.
+    /// Ends of the body's axis at the start of the tick, relative to `start`, metres, for a body that turns. The axis
+    /// at the tick's end is always `body.axis`.
     pub start_axis: [DVec3; 2],
-    /// The wanted position at the tick's end. Includes how the ground or the frame that the body is in carried it.
+    /// The wanted position at the tick's end, in world space. It includes the displacement by which the ground, or the
+    /// frame that the body is in, has carried the body.
     pub target: DVec3,
-    /// Displacement over the tick, metres, of the body's support or of the frame that it is in. The solver gives up the
-    /// whole motion relative to it before it accepts an overlap; a crushed body keeps this displacement. With it,
-    /// results are the same in every frame that moves steadily.
+    /// Displacement over the tick of the body's support, or of the frame that it is in, metres. The solver gives up all
+    /// motion relative to it before it accepts an overlap; a crushed body keeps this displacement. With it, results are
+    /// the same in every inertial frame.
     pub frame: DVec3,
     /// Treats slopes that are too steep as vertical walls, so that walking does not climb them.
     pub walking: Option<Walking>,
-    /// What the body hangs from.
+    /// The arm that the body hangs by, if it hangs.
     pub arm: Option<Arm>,
-    /// Whether the body moves from start to target, or was put at the target.
+    /// Whether the body moves from start to target, or was placed at the target.
     pub begin: Begin,
-    /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits how fast the
-    /// body leaves an overlap, to 30 radii a second; pushes by obstacles that it meets on its way come on top. So a
-    /// body that was pressed through something does not jump to the other side.
+    /// Set this if the last movement ended crushed ([`Moved::missing_room`] above the margin). It limits the speed at
+    /// which the body leaves an overlap to 30 radii a second; pushes by obstacles that it meets on its way come on top.
+    /// So a body that was pressed through something does not jump to the other side.
     pub crushed: bool,
 }
 
@@ -69,47 +71,49 @@ pub struct Path {
 pub enum Begin {
     /// At the start: the body is swept from there.
     Start,
-    /// At the target: the body was put there, and only gets out of what it overlaps.
+    /// At the target: the body was placed there, and is only pushed out of what it overlaps.
     Target,
 }
 
 /// The slopes that a walking body may climb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walking {
-    /// Unit vector.
+    /// Unit vector that points up.
     pub up: DVec3,
-    /// The steepest slope, radians from level ground.
+    /// The steepest slope that the body may climb, radians from level ground.
     pub max_slope: f64,
 }
 
-/// An arm that the body hangs by: the position is no farther than this from the pivot.
+/// An arm that the body hangs by: it keeps the body's position within `length` of `pivot`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// In world space, at the tick's end.
+    /// Position at the tick's end, in world space.
     pub pivot: DVec3,
-    /// Metres.
+    /// Length, metres.
     pub length: f64,
 }
 
-/// Where a body went.
+/// The result of [`Mover::slide`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Moved {
-    /// In world space.
+    /// Position at the tick's end, in world space.
     pub position: DVec3,
-    /// Room that is missing between obstacles, metres. Above the margin the body is crushed.
+    /// Room that the body lacks between obstacles, metres. If it is more than the margin, the body is crushed.
     pub missing_room: f64,
-    /// How deep the core is in something, metres.
+    /// Depth of the core inside an obstacle, metres; 0 if it is clear of all.
     pub penetration: f64,
-    /// Rounds that it took.
+    /// Rounds of sweeping and pushing that the movement took, at most 8; 0 for an invalid path.
     pub rounds: u32,
-    /// Nothing is in the way from start to position, except obstacles that the body began inside of or is crushed by.
-    /// Always true for a body that was placed ([`Begin::Target`]), which is not swept.
+    /// True if nothing is in the way from start to position, except obstacles that the body started inside of or is
+    /// crushed by. Always true for a body that was placed ([`Begin::Target`]), which is not swept, unless the path is
+    /// invalid.
     pub is_clear: bool,
 }
 
 impl Path {
-    /// A sweep from `start` to `target`, both in world space.
+    /// A movement from `start` to `target`, both in world space. The body does not turn, walk or hang, is not crushed,
+    /// and its frame is at rest.
     pub const fn new(body: MoverBody, start: DVec3, target: DVec3) -> Self {
         Self {
             body,
@@ -124,7 +128,7 @@ impl Path {
         }
     }
 
-    /// Gets a body that was put at a position out of what it overlaps there.
+    /// Pushes a body that was placed at a position, in world space, out of what it overlaps there.
     pub const fn placed(body: MoverBody, position: DVec3) -> Self {
         Self {
             begin: Begin::Target,
@@ -141,7 +145,7 @@ impl Path {
         }
     }
 
-    /// The displacement that a body is to come nearest to: the one it wants, or, crushed, that of its frame.
+    /// The displacement that the solver approximates: the wanted one, or the frame's if the body is crushed.
     fn aim(&self, moved: &Moved) -> DVec3 {
         if moved.missing_room > self.body.margin {
             self.frame
@@ -150,13 +154,14 @@ impl Path {
         }
     }
 
-    /// How far the core's ends go if the position goes by `way`.
+    /// Displacements of the core's ends if the position moves by `way`.
     fn ways(&self, way: DVec3) -> [DVec3; 2] {
         let turn = |k: usize| self.body.axis[k] - self.start_axis[k];
         [way + turn(0), way + turn(1)]
     }
 
-    /// Where the point of the axis that is nearest to a place at a time, on the way there, ends; from the position.
+    /// The point of the axis that is nearest to `place` at a time of a movement by `way`. Given at the end of the tick,
+    /// relative to the body's position.
     fn end_of(&self, way: DVec3, time: f64, place: DVec3) -> DVec3 {
         let then = self
             .core()
@@ -179,10 +184,11 @@ impl Path {
 }
 
 impl Mover<'_> {
-    /// Moves a body. [`Mover::touched`] tells what it touches in the end or was kept from entering.
+    /// Moves a body along a path. [`Mover::touched`] then holds the contacts that the body touches in the end or was
+    /// kept from entering.
     ///
-    /// A path that is not finite, or with an invalid body ([`MoverBody::validate`]), leads nowhere: the body stays at
-    /// its start, and the way is not clear.
+    /// If the path is not finite or its body is invalid ([`MoverBody::validate`]), the body stays at its start, and
+    /// [`Moved::is_clear`] is false.
     pub fn slide(&mut self, path: &Path) -> Moved {
         let mut moved = self.find_way(path);
         if path.crushed && moved.rounds > 0 && path.begin == Begin::Start {
@@ -192,7 +198,7 @@ impl Mover<'_> {
         moved
     }
 
-    /// Lets a crushed body go no farther than it may in one tick.
+    /// Limits how far a crushed body is pushed in one tick.
     fn come_out_slowly(&mut self, path: &Path, moved: &mut Moved) {
         let aim = path.aim(moved);
         let push = moved.position - path.start - aim;
@@ -202,7 +208,7 @@ impl Mover<'_> {
         }
         let touched = self.memory.touched.iter().zip(&self.memory.half_spaces);
         let gaps = touched.map(|(touch, wall)| {
-            // An overlap says how deep the body was, and its material where it went.
+            // The offset of an overlap includes the body's depth; only the motion of its material counts as a push.
             let motion = self.motion(touch.obstacle, &touch.contact.material);
             let offset = match motion.filter(|_| !touch.swept) {
                 Some(motion) => {
@@ -248,7 +254,7 @@ impl Mover<'_> {
         self.keep_arm(path, &mut moved);
         let near = path.body.margin * NEAR;
         let touch = TOUCH * path.body.radius;
-        // The way to here is known to be clear.
+        // The position up to which the way is known to be clear.
         let mut clear_to: Option<DVec3> = None;
         loop {
             moved.rounds += 1;
@@ -265,8 +271,8 @@ impl Mover<'_> {
             let before = moved.position;
             let from = *clear_to.get_or_insert(before);
             let pushes = self.push_out(path, &mut moved);
-            // One push leads straight off its contact. Of two, each moves the other's contact: it is looked for anew,
-            // unless there is no room to find.
+            // A single push leads straight off its contact. With two pushes, each changes the other's contact. Contacts
+            // are then searched anew, unless there is no room to find.
             let is_settled = pushes < 2 || moved.position.distance(before) <= touch;
             let is_there = is_settled || moved.missing_room > touch;
             let is_near = moved.position.distance(from) <= near;
@@ -276,18 +282,20 @@ impl Mover<'_> {
         }
     }
 
-    /// The contacts that the last movement touched or was kept from entering, in that order; some perhaps twice.
+    /// The contacts of the last movement, in the order in which they were found: those that the body touches in the end
+    /// or was kept from entering. A contact may be listed twice.
     pub fn touched(&self) -> &[Touch] {
         &self.memory.touched
     }
 
-    /// What overlaps the core at the start carries the body along over the tick: it comes no deeper.
+    /// Adds half-spaces for everything that overlaps the core at the start. It carries the body along over the tick, so
+    /// that the body gets no deeper.
     fn go_with_overlaps(&mut self, path: &Path, moved: &mut Moved) {
         let mut inside = std::mem::take(&mut self.memory.passed);
         inside.sort_unstable_by(Touch::order);
         inside.truncate(PUSHES);
         for (index, touch) in inside.iter().enumerate() {
-            // Of one face the nearest contact tells how deep the body is; the others are edges within the face.
+            // The nearest contact of a face gives the body's depth; the others are inner edges of the face.
             let margin = path.body.margin;
             let continues = |nearer: &Touch| touch.continues(touch.contact.point, nearer, margin);
             let is_known = inside[..index].iter().any(continues);
@@ -305,8 +313,8 @@ impl Mover<'_> {
         self.solve(path, moved);
     }
 
-    /// Sweeps to the wanted position, and keeps clear of the first contact; at first also of what the core was inside of
-    /// from the start, which would hide everything else. False if nothing is in the way.
+    /// Sweeps to the wanted position and adds a half-space for the first contact. If the core started inside of
+    /// obstacles, the first round adds half-spaces for these instead. False if nothing is in the way.
     fn meet(&mut self, path: &Path, moved: &mut Moved) -> bool {
         let way = moved.position - path.start;
         let hit = if moved.rounds == 1 {
@@ -330,7 +338,7 @@ impl Mover<'_> {
         self.know_velocity(motion.as_ref());
         self.solve(path, moved);
         if moved.missing_room > path.body.margin {
-            // What crushes the body is met by every sweep: later ones look past it.
+            // Every sweep would meet the contact that crushes the body, so later ones ignore it.
             let mut passed = touch;
             passed.contact.point = motion.map_or(end, |motion| motion.previous_position);
             self.memory.passed.push(passed);
@@ -338,7 +346,7 @@ impl Mover<'_> {
         true
     }
 
-    /// The first contact on a way. What the core begins inside of does not count, and is noted.
+    /// The first contact along `way`. Contacts that the core starts inside of are ignored, and stored in `passed`.
     fn sweep_at_first(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
         let mut inside = std::mem::take(&mut self.memory.passed);
@@ -353,7 +361,7 @@ impl Mover<'_> {
         hit
     }
 
-    /// The first contact on a way, past what the core began inside of or is crushed by.
+    /// The first contact along `way`, except what the core started inside of or is crushed by.
     fn sweep_from(&mut self, path: &Path, way: DVec3) -> Option<Hit> {
         let core = path.core();
         let inside = std::mem::take(&mut self.memory.passed);
@@ -379,7 +387,7 @@ impl Mover<'_> {
         hit
     }
 
-    /// Stops where the sweep meets something, and goes with it for the rest of the tick.
+    /// Stops the body where the sweep meets something, and carries it along with that for the rest of the tick.
     fn stop(&mut self, path: &Path, moved: &mut Moved) {
         let way = moved.position - path.start;
         if let Some(Hit { touch, time, .. }) = self.sweep_from(path, way) {
@@ -389,7 +397,7 @@ impl Mover<'_> {
         }
     }
 
-    /// Gets the body out of everything that overlaps it where it is; gives the number of pushes.
+    /// Pushes the body out of everything that overlaps it at its position. Returns the number of pushes.
     fn push_out(&mut self, path: &Path, moved: &mut Moved) -> usize {
         let body = &path.body;
         let found = moved.position;
@@ -398,7 +406,7 @@ impl Mover<'_> {
         let mut pushes = 0;
         while pushes < PUSHES {
             let capsule = body.at(moved.position);
-            // Half-spaces that are relaxed already take this much more.
+            // Half-spaces that are already relaxed allow this much more depth.
             let mut deepest = moved.missing_room + touching;
             let mut worst: Option<Touch> = None;
             for touch in self.overlaps() {
@@ -431,14 +439,15 @@ impl Mover<'_> {
         pushes
     }
 
-    /// What overlaps a crushed body no deeper than the others moves it no further, but touches it as well.
+    /// Adds the contacts that overlap a crushed body no deeper than the others. They do not move the body, but it
+    /// touches them.
     fn touch_the_rest(&mut self, path: &Path, moved: &Moved, found: DVec3) {
         let body = &path.body;
         let capsule = body.at(moved.position);
         for index in 0..self.overlaps().len() {
             let touch = self.overlaps()[index].after_push(&capsule, moved.position - found);
             let overlaps = body.radius - touch.contact.distance > TOUCH * body.radius;
-            // Of one face one triangle is enough.
+            // One triangle of each face is enough.
             let is_known = self.touched().iter().any(|other| touch.pushes_like(other));
             if overlaps && !is_known && self.touched().len() < PUSHES {
                 self.keep_off(path, touch, moved.position);
@@ -446,14 +455,14 @@ impl Mover<'_> {
         }
     }
 
-    /// A body at a position may end no deeper than at a contact's face.
+    /// Adds a half-space that keeps a body at a position from ending deeper than a contact's face.
     fn keep_off(&mut self, path: &Path, touch: Touch, position: DVec3) {
         let depth = path.body.radius - touch.contact.distance;
         let offset = touch.normal.dot(position - path.start) + depth;
         self.add_half_space(path, touch, offset, position);
     }
 
-    /// `position` is where the body would be without the half-space.
+    /// Adds a contact with its half-space. `position` is where the body would be without it.
     fn add_half_space(&mut self, path: &Path, touch: Touch, offset: f64, position: DVec3) {
         let memory = &mut *self.memory;
         memory.touched.push(touch);
@@ -465,7 +474,7 @@ impl Mover<'_> {
             let rise = touch.normal.dot(up);
             let level = (touch.normal - up * rise).normalize_or_zero();
             let lean = touch.normal.dot(level);
-            // Too steep to stand on, and no ceiling: as steep as can be.
+            // Too steep to stand on, and no ceiling: treated as vertical.
             if rise > LEVEL && rise < libm::cos(max_slope) && lean > 0.0 {
                 let displacement = position - path.start;
                 let into = offset - touch.normal.dot(displacement);
@@ -479,14 +488,15 @@ impl Mover<'_> {
 
     fn solve(&mut self, path: &Path, moved: &mut Moved) {
         let margin = path.body.margin;
-        // What is crushed stays so, however many half-spaces are added.
+        // A crushed body stays crushed, however many half-spaces are added.
         if self.memory.lacking <= margin {
             let nearest = self.nearest_to_wanted(path);
             (moved.position, moved.missing_room) = (path.start + nearest.point, nearest.missed);
             self.memory.lacking = nearest.missed;
         }
         if self.memory.lacking > margin {
-            // It stays where its frame carries it: weight must not press it ever deeper, nor a walk through a wall.
+            // The body stays where its frame carries it: weight must not press it ever deeper, and a walk must not
+            // press it through a wall.
             let excess = self.memory.lacking - margin;
             let slip = SLIP * self.dt() * libm::sqrt(excess * margin);
             let nearest = self.nearest_displacement(path.frame, slip);
@@ -504,23 +514,24 @@ impl Mover<'_> {
         let nearest = self.nearest_displacement(wanted, free);
         self.memory.half_spaces.truncate(count);
         if nearest.missed > TOUCH * path.body.radius && !self.memory.walls.is_empty() {
-            // Steep slopes on all sides: they hold the body up, as they do one that falls between them.
+            // Steep slopes on all sides hold the body up, as they hold up a body that falls between them.
             return self.nearest_displacement(wanted, free);
         }
         nearest
     }
 
-    /// The displacement inside all half-spaces that is nearest to the wanted one, where that pays: `free` metres the body goes
-    /// back for any gain of room; beyond, each metre has to gain a quarter of a metre.
+    /// The displacement inside all half-spaces that is nearest to the wanted one, if it is near enough. For any gain of
+    /// room the body moves up to `free` metres from the wanted displacement; beyond, each metre has to gain a quarter
+    /// of a metre.
     ///
-    /// Walls that are all but opposite meet somewhere, many times as far away as they overlap: no body slips out there
-    /// within a tick. They crush it.
+    /// Nearly opposite walls intersect many times as far away as they overlap. No body slips out there within a tick,
+    /// so such walls crush it.
     fn nearest_displacement(&self, wanted: DVec3, free: f64) -> Projection {
         project_where_it_pays(wanted, &self.memory.half_spaces, free, STEEPEST_PUSH)
     }
 
-    /// A body at the end of a taut arm stays there: half-spaces that touch the ball of its reach where the body is.
-    /// Walls are harder than arms: where both leave no room, the arm gives way.
+    /// Keeps the body within the arm's reach, by half-spaces tangent to the ball of this reach where the body is. Walls
+    /// take precedence: where walls and arm together leave no room, the arm gives way.
     fn keep_arm(&mut self, path: &Path, moved: &mut Moved) {
         let Some(arm) = path.arm else {
             return;
@@ -550,18 +561,19 @@ impl Mover<'_> {
     }
 }
 
-/// How many metres a body is pushed at most for each metre of room that this gains: walls that differ by less than 29
-/// degrees from opposite are no wedge to slip out of, as if by friction of 0.26. A larger value throws a body that is crushed
-/// by a few centimetres over metres, through whatever is there; a smaller one holds bodies that could slip out.
+/// Largest push for each metre of room that it gains, metres. Between walls within 29 degrees of opposite, a body does
+/// not slip out, as if held by friction of 0.26. A larger value throws a body that is crushed by a few centimetres
+/// several metres away, through whatever is there; a smaller one holds bodies that could slip out.
 pub(crate) const STEEPEST_PUSH: f64 = 4.0;
 
-/// How fast a crushed body slips to where there is more room, however slowly the walls part there: so often a second by the
-/// geometric mean of its margin and of what it lacks beyond. Just crushed it does not slip, so that no threshold is felt;
-/// and the last of a lack is made up in a few ticks.
+/// Speed at which a crushed body slips to where there is more room, however slowly the walls part there: this many
+/// times a second the geometric mean of its margin and of the room that it lacks beyond the margin. A body that is only
+/// just crushed does not slip, so that the threshold causes no jerk. The last of the missing room is gained in a few
+/// ticks.
 const SLIP: f64 = 60.0;
 
-/// How fast a crushed body comes out of what it is inside of, radii a second: half a radius in a tick of 60 Hz.
+/// Speed at which a crushed body leaves what it is inside of, radii a second: half a radius in a tick of 1/60 s.
 const OUT: f64 = 30.0;
 
-/// Slopes steeper than this are walls already: sine of the angle from the vertical.
+/// Slopes this close to vertical are walls already: sine of the angle from the vertical.
 const LEVEL: f64 = 1e-3;

@@ -1,34 +1,34 @@
-//! Which obstacles of a tick are near: of a hundred creatures, a climber asks the one or two that it can touch.
+//! The obstacles near a query: of a hundred creatures, a climber queries only the one or two that it can touch.
 
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
-/// How much farther than a query reaches one looks around, metres and as a factor: later queries of the step are near
-/// the first.
+/// The search radius is a query's radius times [`FARTHER`], plus [`AHEAD`] metres: later queries of a tick are near the
+/// first.
 const AHEAD: f64 = 1.0;
 const FARTHER: f64 = 2.0;
 
-/// How much more than the sum of both radii apart counts as near, as a share: what comparing in f64 may be off.
+/// Rounding error of a comparison of distances in f64, as a fraction of them.
 const SLACK: f64 = 1e-12;
 
-/// Obstacles that may have something within a ball.
+/// Obstacles whose bounds may meet a ball.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     center: DVec3,
-    /// `None` before one has looked.
+    /// `None` before the first search of a tick.
     radius: Option<f64>,
-    /// By ascending id; where in the caller's list.
+    /// By ascending id, with the index in the caller's list.
     near: Vec<(ObstacleId, u32)>,
 }
 
 impl Surroundings {
-    /// For a new tick.
+    /// Discards the found obstacles, for a new tick.
     pub(crate) fn forget(&mut self) {
         self.radius = None;
     }
 
-    /// All obstacles that may have something within a ball, and perhaps others, by ascending id. Of two with one id the
-    /// first counts.
+    /// All obstacles whose bounds meet a ball, and possibly others, by ascending id. Of two obstacles with the same id,
+    /// the first in the list is used.
     pub(crate) fn near<'a>(
         &mut self,
         obstacles: &[(ObstacleId, &'a dyn Obstacle)],

@@ -5,7 +5,7 @@ use crate::half_spaces::{HalfSpace, project_where_it_pays};
 use crate::slide::STEEPEST_PUSH;
 use crate::{Mover, Touch};
 
-/// Most half-spaces that stop a velocity together.
+/// Most half-spaces that limit a velocity together.
 const STOPS: usize = 24;
 
 fn velocity_in(motion: Option<&PointMotion>) -> DVec3 {
@@ -13,7 +13,7 @@ fn velocity_in(motion: Option<&PointMotion>) -> DVec3 {
 }
 
 impl Mover<'_> {
-    /// Velocity of the material at a contact, metres a second; zero where it has no motion.
+    /// Velocity of the material at a contact, metres a second; zero if the material has no motion.
     pub fn velocity_of(&self, touch: &Touch) -> DVec3 {
         let known = self.touched().iter().zip(&self.memory.velocities);
         let mut same = known.filter(|(other, velocity)| {
@@ -27,14 +27,14 @@ impl Mover<'_> {
         })
     }
 
-    /// Notes the velocity of what was touched last.
+    /// Stores the velocity of the contact that was touched last.
     pub(crate) fn know_velocity(&mut self, motion: Option<&PointMotion>) {
         let before = self.touched().len().saturating_sub(1);
         self.memory.velocities.resize(before, None);
         self.memory.velocities.push(Some(velocity_in(motion)));
     }
 
-    /// Asks once for the velocities of what a movement has touched: they are needed several times.
+    /// Computes the velocities of all contacts of a movement once, since they are needed several times.
     pub(crate) fn know_velocities(&mut self) {
         let mut velocities = std::mem::take(&mut self.memory.velocities);
         velocities.resize(self.touched().len(), None);
@@ -44,12 +44,13 @@ impl Mover<'_> {
         self.memory.velocities = velocities;
     }
 
-    /// The velocity closest to `velocity` that does not move into any contact of the last movement. Obstacles that
-    /// recede may be followed. `limit` is one more half-space of velocities to stay in.
+    /// The velocity closest to `velocity` that does not move into any contact of the last movement. It may follow
+    /// obstacles that recede. `limit` is one more half-space of velocities to stay in. Velocities are in metres a
+    /// second, in world space.
     ///
-    /// Relative to `frame`, the velocity of the support or of the frame that the body is in, never faster than the body and
-    /// the fastest of the obstacles together: between half-spaces that close like scissors the nearest velocity has no
-    /// bound.
+    /// `frame` is the velocity of the support, or of the frame that the body is in. Relative to it, the result is never
+    /// faster than the body and the fastest of the obstacles together: between half-spaces that close like scissors,
+    /// the nearest velocity has no bound.
     pub fn clip_velocity(&self, velocity: DVec3, frame: DVec3, limit: Option<HalfSpace>) -> DVec3 {
         let mut half_spaces = [HalfSpace {
             normal: DVec3::Y,

@@ -2,21 +2,23 @@ use glam::{DQuat, DVec3};
 
 use crate::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion};
 
-/// A gap between ticks counts as several moves in one tick up to this many times the last move: up to nine moves at a
-/// steady speed. A larger gap is another obstacle under the same id.
+/// A gap of up to this many times the last move counts as several moves within one tick: up to nine moves at a steady
+/// speed. A larger gap means that the id now names another obstacle.
 const MOST_MOVES: f64 = 8.0;
 
-/// A gap of this share of the last move or more is other moves before it: two in one tick leave a gap as long as the last.
+/// A gap of at least this fraction of the last move means that there were moves before it: after two equal moves in a
+/// tick, the gap is as long as the last move.
 const PART: f64 = 0.5;
 
-/// Below this share of the slack a gap is rounding: 0.2 mm of 10 mm, the steps of f32 some kilometres out. What is between
-/// is part of the motion, or a slow creature that is advanced twice would be said to move at half its speed.
+/// A gap below this fraction of the slack is rounding: 0.2 mm of 10 mm, the resolution of f32 some kilometres from the
+/// origin. A larger gap is part of the motion; otherwise a slow creature that is advanced twice would be reported at
+/// half its speed.
 const ROUNDING: f64 = 0.02;
 
 /// Something fixed to a point of an obstacle's material: a foot, a hand, an arrow, a camera.
 ///
-/// A small plain value that survives any deformation. [`Attachment::follow`] it once a tick; [`Attachment::position`] is
-/// where the attached thing is then.
+/// A small plain value that survives any deformation. Call [`Attachment::follow`] once a tick; [`Attachment::position`]
+/// is then where the attached thing is.
 ///
 /// ```
 /// use clamber_world::{Attachment, Obstacle, ObstacleId};
@@ -46,67 +48,68 @@ const ROUNDING: f64 = 0.02;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// It does not know a creature's mesh: whoever saves it keeps [`ColliderMesh::id`] beside it, and asks
-/// [`ColliderMesh::continues`] before it is followed on what was loaded.
+/// An attachment does not store the mesh of a creature. To save one, store [`ColliderMesh::id`] beside it. After
+/// loading, follow it only if [`ColliderMesh::continues`] accepts that id.
 ///
 /// [`ColliderMesh::id`]: clamber_surface::mesh::ColliderMesh::id
 /// [`ColliderMesh::continues`]: clamber_surface::mesh::ColliderMesh::continues
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attachment {
-    /// The obstacle.
+    /// Id of the obstacle.
     pub obstacle: ObstacleId,
-    /// The point of its material.
+    /// The obstacle's material point.
     pub material: MaterialPoint,
-    /// Where that point was when it was last followed, in world space.
+    /// Position of that point when it was last followed, in world space.
     pub point: DVec3,
-    /// The frame of the material then; where the skin collapses it stays.
+    /// Frame of the material at that time, in world space. Where the skin has collapsed, the last known frame.
     pub frame: DQuat,
-    /// From the point to the attached thing, metres, in the frame of the material.
+    /// Vector from the point to the attached thing, metres, in the frame of the material.
     pub offset: DVec3,
 }
 
-/// How the material came to where it is.
+/// How the material got to its current position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Continuity {
-    /// It moved there from where it was last followed.
+    /// It moved there from its position when last followed.
     Moved,
-    /// It was put there (a teleport), which is no motion.
+    /// It was teleported there, which is not motion.
     Placed,
-    /// It moved several times since it was last followed, as if a creature was advanced twice in one tick. The motion
-    /// covers all of it; sweeps against the obstacle cover only its last move.
+    /// It moved several times since it was last followed, for example because a creature was advanced twice in one
+    /// tick. The motion covers all of these moves; sweeps against the obstacle cover only the last one.
     MovedRepeatedly,
 }
 
-/// Where an [`Attachment`] was carried.
+/// The result of [`Attachment::follow`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Followed {
-    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`]:
-    /// the motion that the obstacle reports, which starts elsewhere.
+    /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`], it
+    /// is the motion that the obstacle reports, which starts elsewhere.
     pub motion: PointMotion,
-    /// How it came there.
+    /// How the point got to its current position.
     pub continuity: Continuity,
 }
 
 impl Attachment {
-    /// Fixes something at `place`, in world space, to a contact of an obstacle as it stands now. A point that has no
-    /// motion is taken to be at [`Contact::point`], with the identity as its frame.
+    /// Fixes something at `place`, in world space, to a contact with an obstacle in its current state. If the contact's
+    /// point has no motion, the attachment takes [`Contact::point`] as its position and the identity as its frame.
     pub fn new(
         obstacle: ObstacleId,
         touched: &dyn Obstacle,
         contact: &Contact,
         place: DVec3,
     ) -> Self {
-        // The frame and the place of a point do not depend on how long the tick was.
+        // A point's frame and position do not depend on the length of the tick.
         let motion = touched.motion(&contact.material, 1.0);
         Self::with_motion(obstacle, contact, motion.as_ref(), place)
     }
 
-    /// [`Attachment::new`] where the motion of the contact's point is known already; `None` if it has none.
+    /// [`Attachment::new`] with the motion of the contact's point, for a caller that knows it; `None` if the point has
+    /// no motion.
     pub fn with_motion(
         obstacle: ObstacleId,
         contact: &Contact,
@@ -115,7 +118,8 @@ impl Attachment {
     ) -> Self {
         let frame = motion.and_then(|motion| motion.frame);
         let frame = frame.unwrap_or(DQuat::IDENTITY);
-        // The material point's own position, which it will be carried by: the contact's may differ by rounding.
+        // The position that the material point reports, since it is followed from there. The contact's may differ by
+        // rounding.
         let position = motion.map_or(contact.point, |motion| motion.position);
         Self {
             obstacle,
@@ -136,7 +140,7 @@ impl Attachment {
         self.frame * self.offset
     }
 
-    /// Fixes the attached thing somewhere else relative to the same material point; `place` is in world space.
+    /// The same attachment with the attached thing at `place`, in world space. The material point stays the same.
     #[must_use]
     pub fn moved_to(&self, place: DVec3) -> Self {
         Self {
@@ -145,15 +149,15 @@ impl Attachment {
         }
     }
 
-    /// Goes with the material over the tick of `dt` seconds that ends now; call it once a tick.
+    /// Moves the attachment with the material over the tick of `dt` seconds that ends now. Call it once a tick.
     ///
-    /// `slack` is the largest allowed distance, metres, between the stored position and the obstacle's previous one:
-    /// 0.01 for a person, more than rounding and less than a player sees. It must be at least 0. A larger distance is
-    /// allowed for an obstacle that was [placed](Continuity::Placed), and up to 8 times its last move
-    /// ([`Continuity::MovedRepeatedly`]).
+    /// `slack` is the largest allowed distance, metres, between the stored position and the previous position that the
+    /// obstacle reports. It must be at least 0. For a character of human size 0.01 is right: more than rounding, less
+    /// than a player sees. A larger distance is allowed for an obstacle that was [placed](Continuity::Placed), and up
+    /// to 8 times its last move ([`Continuity::MovedRepeatedly`]).
     ///
-    /// `None`, with nothing changed, if the material is gone, or if the distance is too large: the id names another
-    /// obstacle now.
+    /// Returns `None` and changes nothing if the material is gone. The same happens if the distance is too large, which
+    /// means that the id now names another obstacle.
     pub fn follow(&mut self, obstacle: &dyn Obstacle, dt: f64, slack: f64) -> Option<Followed> {
         let mut motion = obstacle.motion(&self.material, dt)?;
         let frame = motion.frame.unwrap_or(self.frame);
@@ -181,7 +185,7 @@ impl Attachment {
         Some(Followed { motion, continuity })
     }
 
-    /// Whether all numbers are finite.
+    /// True if all numbers are finite.
     pub fn is_finite(&self) -> bool {
         let point = DVec3::from_array(self.material.coordinates);
         let vectors = [self.point, self.offset, point];

@@ -14,21 +14,21 @@ mod surface;
 pub use attachment::{Attachment, Continuity, Followed};
 /// The shape that obstacles are queried with.
 pub use clamber_surface::geometry::WorldCapsule;
-/// What a contact's material is made of.
+/// The material tag of a contact.
 pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
-/// Whether an obstacle moves while something is cast at it.
+/// Whether an obstacle moves during a cast.
 pub use clamber_surface::surface::TargetMotion;
 #[cfg(feature = "rapier")]
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
-/// The crate whose vectors and quaternions are used here.
+/// The version of glam that this crate's API uses.
 pub use glam;
 pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
-/// The parry whose shapes [`shapes`] speaks of.
+/// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]
 pub use parry3d;
 #[cfg(feature = "rapier")]
 pub use rapier::{BodyPoses, RapierTerrain, apply_push};
-/// The rapier that [`RapierTerrain`] speaks to.
+/// The version of rapier that [`RapierTerrain`] uses.
 #[cfg(feature = "rapier")]
 pub use rapier3d;
 pub use rigid_pose::RigidPose;

@@ -2,10 +2,11 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::PointMotion;
 
-/// A rigid pose in f64: engines round their own in f32 with every product.
+/// A rigid pose (rotation and translation) in f64. Engines compose poses in f32, which rounds with every product.
 ///
-/// An obstacle that moves and turns keeps two of them, of the last tick and of this one, and material points in the
-/// body's own space; [`RigidPose::motion_since`] is its [`Obstacle::motion`](crate::Obstacle::motion):
+/// An obstacle that moves and turns stores two poses, one of the last tick and one of this tick, and keeps material
+/// points in the body's local space. [`RigidPose::motion_since`] then implements its
+/// [`Obstacle::motion`](crate::Obstacle::motion):
 ///
 /// ```
 /// use clamber_world::RigidPose;
@@ -24,20 +25,20 @@ use crate::PointMotion;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidPose {
-    /// A unit quaternion.
+    /// Rotation, a unit quaternion.
     pub rotation: DQuat,
-    /// Metres.
+    /// Translation, metres.
     pub translation: DVec3,
 }
 
 impl RigidPose {
-    /// At the origin, not turned.
+    /// The pose at the origin without rotation.
     pub const IDENTITY: Self = Self {
         rotation: DQuat::IDENTITY,
         translation: DVec3::ZERO,
     };
 
-    /// From an engine's pose; the rotation is normalised.
+    /// Converts an engine's f32 pose; the rotation is normalised.
     pub fn new(rotation: Quat, translation: Vec3) -> Self {
         Self {
             rotation: rotation.as_dquat().normalize(),
@@ -45,7 +46,7 @@ impl RigidPose {
         }
     }
 
-    /// The product `self * inner`: a point goes through `inner` first.
+    /// The product `self * inner`: applies `inner` first, then `self`.
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
@@ -54,7 +55,7 @@ impl RigidPose {
         }
     }
 
-    /// Undoes this pose.
+    /// The inverse pose.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
@@ -64,19 +65,21 @@ impl RigidPose {
         }
     }
 
-    /// A point of the body, in the space that the pose places it in.
+    /// Transforms a point from the body's local space to the space of the pose.
     pub fn transform(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
-    /// Undoes [`RigidPose::transform`].
+    /// Transforms a point to the body's local space; the inverse of [`RigidPose::transform`].
     pub fn inverse_transform(&self, point: DVec3) -> DVec3 {
         self.rotation.conjugate() * (point - self.translation)
     }
 
-    /// How a point of the body moves that was placed by `before` a tick of `dt` seconds ago, and by `self` now.
-    /// `origin` is where the engine's own stands in the world. `None` unless `dt` is positive and the point's position
-    /// now is finite; `before` is not checked.
+    /// Motion of the body's point `local`, in its local space, over a tick of `dt` seconds. The body's pose was
+    /// `before` at the start of the tick and is `self` now. `origin` is the world position of the poses' origin. `None`
+    /// unless `dt` is positive and the current position is finite; `before` is not checked.
+    ///
+    /// If the two poses are equal, the point counts as [placed](PointMotion::placed).
     pub fn motion_since(
         &self,
         before: &Self,
@@ -91,7 +94,7 @@ impl RigidPose {
             position,
             previous_position,
             velocity: (position - previous_position) / dt,
-            // An engine does not tell a body that was put elsewhere from one that stands still.
+            // An engine's poses do not tell a teleported body from one at rest.
             placed: before == self,
             frame: Some(self.rotation),
             turn: (self.rotation * before.rotation.conjugate()).normalize(),

@@ -33,7 +33,7 @@ impl From<WorldSweepHit> for SweepContact {
 }
 
 impl MaterialPoint {
-    /// A point of a surface: of a triangle, by barycentric coordinates.
+    /// The point of a skinned surface at these barycentric coordinates on a triangle.
     pub fn on_triangle(triangle: TriangleId, barycentric: [f32; 3]) -> Self {
         Self {
             key: u64::from(triangle.0),
@@ -41,15 +41,15 @@ impl MaterialPoint {
         }
     }
 
-    /// The triangle of a point of a surface. Of a point of anything else, such as a rapier collider, it is any number, or
-    /// `None`: ask only where the obstacle is a surface.
+    /// The triangle that the point lies on, if its obstacle is a skinned surface. For a point of any other obstacle,
+    /// such as a rapier collider, the result has no meaning.
     pub fn triangle(&self) -> Option<TriangleId> {
         u32::try_from(self.key).ok().map(TriangleId)
     }
 
-    /// What sticks to this point of a surface, as it is posed now: a splinter where a foot stands. `None` if the surface has
-    /// no such triangle, or no longer, or if the weights are none. A point does not tell which surface it is of: ask the
-    /// one that its contact was found on.
+    /// An anchor at this point of a surface in its current pose, for example for a splinter under a foot. `None` if the
+    /// surface never had the triangle or has removed it, or if the coordinates are not valid barycentric weights. The
+    /// point does not store its surface: pass the one that the contact was found on.
     pub fn anchor_on(&self, surface: &SkinnedSurface) -> Option<Anchor> {
         surface.anchor(self.triangle()?, self.weights()).ok()
     }
@@ -59,7 +59,7 @@ impl MaterialPoint {
     }
 }
 
-/// To the tolerance that an obstacle promises.
+/// Cast options with the tolerance that [`Obstacle::cast_capsule`] promises.
 fn options(capsule: &WorldCapsule, target: TargetMotion) -> CastOptions {
     CastOptions::from(target).with_tolerance(capsule.sweep_tolerance())
 }
@@ -115,7 +115,7 @@ impl Obstacle for SkinnedSurface {
         if !self.is_enabled(triangle) {
             return None;
         }
-        // Its frame is asked for only where the skin has one.
+        // The anchor's own frame is the fallback for collapsed skin, whose frame is not reported below.
         let anchor = Anchor {
             mesh: self.mesh().id(),
             triangle,

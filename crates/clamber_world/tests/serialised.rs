@@ -1,6 +1,6 @@
-//! What a save game holds of the world is the same after it was written as JSON and read again, bit for bit.
+//! The values that a save game stores are the same, bit for bit, after they were written as JSON and read again.
 //!
-//! JSON that is read as the nearest float needs `float_roundtrip` of serde_json.
+//! Reading the nearest float from JSON needs serde_json's feature `float_roundtrip`.
 
 #![expect(
     clippy::unwrap_used,
@@ -58,7 +58,7 @@ fn motion(rng: &mut fastrand::Rng) -> PointMotion {
     }
 }
 
-/// Something on a triangle that moved by `by` metres along X.
+/// The result of following an attachment on a triangle that moved by `by` metres along X.
 fn followed(by: f64) -> Followed {
     let bone = Influence {
         joint: JointId(0),
@@ -106,7 +106,7 @@ fn attachments_and_their_motion_keep_every_bit() {
         );
         let json = to_string(&held).unwrap();
         let read: Held = from_str(&json).unwrap();
-        // `Debug` of a float names exactly one, and its sign.
+        // `Debug` output identifies a float exactly, its sign included.
         assert_eq!(format!("{read:?}"), format!("{held:?}"), "{json}");
     }
 }

@@ -1,11 +1,11 @@
 use super::*;
 use fastrand::Rng;
 
-/// Halvings in search of the least relief, which begins at the largest gap and ends at the rounding of it.
+/// Halvings in the search for the least relief, from the largest gap down to its rounding.
 const HALVINGS: usize = 50;
 
-/// The slow twin: of all sets of at most three planes, the nearest of the points that they hold and
-/// that are above all others; lowered, where there is none, until there is one.
+/// The brute-force reference: of all points that up to three planes determine, the nearest above all the others. Where
+/// there is none, the planes are lowered until there is one.
 fn project_onto_half_spaces_reference(target: DVec3, planes: &[HalfSpace]) -> Projection {
     let size = planes.iter().fold(0.0, |most: f64, plane| {
         most.max(plane.offset - plane.normal.dot(target))
@@ -98,8 +98,8 @@ fn nearest_of_all(walls: &[Wall], relief: f64) -> Option<DVec3> {
     best
 }
 
-/// The point on walls, given for each the step that lifts by 1 from it alone: repeated, since the
-/// steps are rounded.
+/// The point on all walls. `lift` has for each wall a step that raises the point by 1 from this wall alone. Repeated,
+/// since the steps are rounded.
 fn refined(walls: &[&Wall], lift: [DVec3; 3]) -> DVec3 {
     let mut point = DVec3::ZERO;
     for _ in 0..4 {
@@ -121,7 +121,7 @@ fn direction(rng: &mut Rng) -> DVec3 {
     }
 }
 
-/// Directions of which some repeat, oppose, or differ from one another by 1e-12 to 1e-6.
+/// Random directions. Some repeat, oppose others, or differ from them by 1e-12 to 1e-6.
 fn normals(rng: &mut Rng, count: usize) -> Vec<DVec3> {
     let mut normals: Vec<DVec3> = Vec::new();
     for _ in 0..count {
@@ -143,7 +143,7 @@ fn normals(rng: &mut Rng, count: usize) -> Vec<DVec3> {
     normals
 }
 
-/// Planes with a point above them all, on some of them, 0.5 or so from the target.
+/// Planes with a common point above or on them, about 0.5 from the target.
 fn with_room(rng: &mut Rng, normals: &[DVec3]) -> Vec<HalfSpace> {
     let inside = direction(rng) * rng.f64();
     let plane = |&normal: &DVec3| {
@@ -172,8 +172,8 @@ fn size(target: DVec3, planes: &[HalfSpace], found: &Projection) -> f64 {
         })
 }
 
-/// Agreement with the slow twin. What both weigh, miss against distance, is compared in every case;
-/// miss and distance each where there is room.
+/// Compares with the reference. The weighted sum of violation and distance is compared in every case; each of them
+/// alone is compared if there is room.
 fn check(target: DVec3, planes: &[HalfSpace]) {
     let found = project_onto_half_spaces(target, planes);
     let sought = project_onto_half_spaces_reference(target, planes);
@@ -190,7 +190,7 @@ fn check(target: DVec3, planes: &[HalfSpace]) {
         .map(|plane| plane.offset - plane.normal.dot(found.point));
     assert!(
         (missed.fold(0.0, f64::max) - found.missed).abs() <= 1e-15,
-        "what is missed is not what is said: {}",
+        "`missed` is wrong: {}",
         context()
     );
     let weighed = |missed: f64, far: f64| missed + far / STEEPEST;
@@ -202,18 +202,14 @@ fn check(target: DVec3, planes: &[HalfSpace]) {
         context()
     );
     if sought.missed <= 1e-14 {
-        assert!(found.missed <= slack, "intrudes: {}", context());
+        assert!(found.missed <= slack, "violates a plane: {}", context());
         assert!(far <= least + slack, "too far: {}", context());
-        assert!(
-            far >= least - slack,
-            "nearer than all that is allowed: {}",
-            context()
-        );
+        assert!(far >= least - slack, "nearer than allowed: {}", context());
     }
 }
 
 #[test]
-fn room_is_found_as_near_as_by_trying_everything() {
+fn with_room_the_point_agrees_with_brute_force() {
     let mut rng = Rng::with_seed(1);
     for count in 1..=17 {
         for _ in 0..6000 / (count * count) + 12 {
@@ -226,7 +222,7 @@ fn room_is_found_as_near_as_by_trying_everything() {
 }
 
 #[test]
-fn without_room_the_least_miss_is_found() {
+fn without_room_the_least_violation_is_found() {
     let mut rng = Rng::with_seed(2);
     for count in 1..=8 {
         for _ in 0..600 / (count * count) + 4 {
@@ -238,13 +234,13 @@ fn without_room_the_least_miss_is_found() {
 }
 
 #[test]
-fn of_many_planes_none_is_intruded() {
+fn with_room_no_plane_of_many_is_violated() {
     let mut rng = Rng::with_seed(3);
     for _ in 0..4000 {
         let count = rng.usize(1..=40);
         let normals = normals(&mut rng, count);
         let mut planes = with_room(&mut rng, &normals);
-        // Planes that are nearly opposite need room between them.
+        // Nearly opposite planes need room between them.
         for plane in &mut planes {
             plane.offset -= 1e-3;
         }
@@ -277,11 +273,11 @@ fn the_order_of_planes_changes_no_bit() {
 }
 
 #[test]
-fn smaller_and_larger_worlds_are_alike() {
+fn results_scale_with_the_input() {
     let mut rng = Rng::with_seed(5);
     for case in 0..3000 {
         let count = rng.usize(1..=12);
-        // Alike only where a rounding more does not tell a wedge from a wall.
+        // Random directions only: a rounding more must not turn a wedge into a wall.
         let normals: Vec<DVec3> = (0..count).map(|_| direction(&mut rng)).collect();
         let planes = if case % 3 == 0 {
             anyhow(&mut rng, &normals)
@@ -306,7 +302,7 @@ fn smaller_and_larger_worlds_are_alike() {
                 "{target:?} {planes:?}"
             );
         }
-        // On the verge of being a wedge, rounded offsets move the point by the root of theirs.
+        // At the limit of a wedge, rounded offsets move the point by the square root of the rounding.
         let share = if found.missed < 1e-12 { 1e-9 } else { 2e-5 };
         for scale in [1e-6, 1e6] {
             let other = scaled(scale);
@@ -335,7 +331,7 @@ fn expect(target: [f64; 3], planes: &[HalfSpace], point: [f64; 3], missed: f64) 
 }
 
 #[test]
-fn above_all_nothing_moves() {
+fn a_target_above_all_planes_does_not_move() {
     let target = DVec3::new(0.1, 0.2, 0.3);
     let floor = planes([([0.0, 1.0, 0.0], 0.2)]);
     for planes in [&floor[..], &[]] {
@@ -357,7 +353,7 @@ fn a_floor_a_crease_and_a_corner() {
 }
 
 #[test]
-fn a_slab_too_thin_is_missed_on_both_sides() {
+fn a_slab_without_room_is_violated_equally_on_both_sides() {
     let closing = planes([([0.0, 1.0, 0.0], 1.0), ([0.0, -1.0, 0.0], 0.0)]);
     expect([3.0, 0.0, 2.0], &closing, [3.0, 0.5, 2.0], 0.5);
     let beside = planes([
@@ -371,7 +367,7 @@ fn a_slab_too_thin_is_missed_on_both_sides() {
 }
 
 #[test]
-fn walls_that_are_opposite_but_for_rounding_throw_nothing_far() {
+fn walls_within_rounding_of_opposite_throw_nothing_far() {
     for tilt in [0.0, 1e-12, 1e-9, 1e-7, 1e-5] {
         let closing = planes([([tilt, 1.0, 0.0], 0.001), ([tilt, -1.0, 0.0], 0.001)]);
         let found = project_onto_half_spaces(DVec3::ZERO, &closing);
@@ -380,7 +376,7 @@ fn walls_that_are_opposite_but_for_rounding_throw_nothing_far() {
             "tilt {tilt}: {found:?}"
         );
     }
-    // Of a degree of difference, the way out is taken.
+    // With a degree of difference, the body slips out of the wedge.
     let wedge = planes([([0.01, 1.0, 0.0], 0.001), ([0.01, -1.0, 0.0], 0.001)]);
     expect(
         [0.0; 3],
@@ -391,7 +387,7 @@ fn walls_that_are_opposite_but_for_rounding_throw_nothing_far() {
 }
 
 #[test]
-fn a_closed_box_is_missed_evenly() {
+fn a_closed_tetrahedron_is_violated_evenly() {
     let tetrahedron = planes([
         ([1.0, 1.0, 1.0], 1.0),
         ([1.0, -1.0, -1.0], 1.0),
@@ -416,14 +412,14 @@ fn cones_of_many_planes_have_one_apex() {
             .collect();
         let found = project_onto_half_spaces(DVec3::new(0.0, -1.0, 0.0), &cone);
         assert!(found.missed < 1e-12, "tilt {tilt}: {found:?}");
-        // Of flat cones the apex is no nearer than the planes themselves, to second order.
+        // The apex of a flat cone is no nearer than the planes themselves, to second order.
         let far = found.point.distance(DVec3::new(0.0, -1.0, 0.0));
         assert!((far - 1.0).abs() < 1e-9, "tilt {tilt}: {found:?}");
     }
 }
 
 #[test]
-fn normals_of_no_use_are_ignored() {
+fn invalid_half_spaces_are_ignored() {
     let mut all = vec![HalfSpace {
         normal: DVec3::Y,
         offset: 1.0,
@@ -473,7 +469,7 @@ fn extremes_stay_finite() {
     }
 }
 
-/// What [`project_where_it_pays`] minimises, at a point.
+/// The cost that [`project_where_it_pays`] minimises.
 struct Worth<'a> {
     target: DVec3,
     planes: &'a [HalfSpace],
@@ -490,7 +486,7 @@ impl Worth<'_> {
         point.distance(self.target).max(self.free) + self.steepest * missed.fold(0.0, f64::max)
     }
 
-    /// The least cost, by ternary search over the relief: the cost is convex over it. The slow twin finds each point.
+    /// The least cost, by ternary search over the relief, in which the cost is convex. The reference finds each point.
     fn least(&self, gap: f64) -> f64 {
         let cost = |relief: f64| {
             let lowered = self.planes.iter().map(|plane| HalfSpace {
@@ -517,7 +513,7 @@ impl Worth<'_> {
 }
 
 #[test]
-fn no_point_is_worth_more_where_it_has_to_pay() {
+fn no_other_point_has_a_lower_cost() {
     let mut rng = Rng::with_seed(9);
     let (mut relieved, mut beyond) = (0, 0);
     for count in 1..=5 {
@@ -568,10 +564,10 @@ fn no_point_is_worth_more_where_it_has_to_pay() {
     assert!(relieved > 60 && beyond > 30, "{relieved} {beyond}");
 }
 
-/// Two walls that close to a wedge from which it does not pay to slip, and one from which it does: a little less room moves
-/// the body by a little.
+/// Walls that close to a wedge: with some angles it does not pay to slip out, with others it does. In both cases, a
+/// little less room moves the body by a little.
 #[test]
-fn what_pays_changes_continuously() {
+fn the_point_changes_continuously_with_the_room() {
     for (tilt, pays) in [(0.05, false), (0.2, false), (0.3, true), (0.6, true)] {
         let mut before: Option<DVec3> = None;
         for step in 0..=1_000 {

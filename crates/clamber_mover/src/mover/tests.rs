@@ -3,8 +3,7 @@ use std::cell::Cell;
 use super::*;
 use crate::{Arm, Path, Walking};
 
-/// A ball of 1 m that says where it is, so that it is left out where nothing is near; and how often it was asked what
-/// overlaps it.
+/// A ball with a radius of 1 m and with bounds, so that distant queries skip it. It counts its overlap queries.
 struct Ball(DVec3, Cell<usize>);
 
 impl Obstacle for Ball {
@@ -33,7 +32,7 @@ impl Obstacle for Ball {
         displacements: [DVec3; 2],
         _: TargetMotion,
     ) -> Option<SweepContact> {
-        // A ball that moves straight on: the smaller root of a quadratic.
+        // Two balls touch at the smaller root of a quadratic.
         let (from, way) = (capsule.ends[0] - self.0, displacements[0]);
         let (a, b) = (way.length_squared(), from.dot(way));
         let reach = 1.0 + capsule.radius;
@@ -64,7 +63,7 @@ impl Obstacle for Ball {
 }
 
 #[test]
-fn an_endless_ray_meets_what_is_far_along_any_axis() {
+fn an_endless_ray_hits_distant_obstacles_along_any_axis() {
     for direction in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
         for distance in [5.0, 5e4] {
             let ball = Ball(direction * distance, Cell::new(0));
@@ -80,7 +79,7 @@ fn an_endless_ray_meets_what_is_far_along_any_axis() {
             assert_eq!(mover.cast_ray(DVec3::ZERO, direction, f64::NAN), None);
             assert_eq!(mover.cast_ray(DVec3::ZERO, -direction, f64::INFINITY), None);
             assert_eq!(mover.cast_ray(DVec3::ZERO, direction, -1.0), None);
-            // Afterwards what is near is asked for what it touches, and what is far is left out again.
+            // After an endless ray, near obstacles are queried and distant ones are skipped again.
             mover.cast_ray(DVec3::ZERO, direction, f64::INFINITY);
             for (place, is_asked) in [(ball.0, true), (DVec3::ZERO, false)] {
                 ball.1.set(0);
@@ -93,7 +92,7 @@ fn an_endless_ray_meets_what_is_far_along_any_axis() {
 }
 
 #[test]
-fn a_path_that_is_not_finite_leads_nowhere() {
+fn a_path_that_is_not_finite_leaves_the_body_at_its_start() {
     let obstacles: [(ObstacleId, &dyn Obstacle); 0] = [];
     let mut memory = MoverMemory::default();
     let mut mover = Mover::new(&obstacles, 0.1, &mut memory).unwrap();

@@ -1,12 +1,12 @@
-//! The rigid motion nearest to that of some points over a tick.
+//! The rigid motion that best fits the motion of some points over a tick.
 
 use glam::{DMat3, DVec3};
 
-/// Below this share of a point's squared distance, an axis has no points away from it that would say
-/// how they turn about it.
+/// This fraction of the inertia's trace is added to it. About an axis with all points on it, the rotation is not
+/// determined, and comes out as zero.
 const FLAT: f64 = 1e-6;
 
-/// A velocity at the origin, and a rotation about it, axis times radians per second.
+/// A linear velocity at the origin, and an angular velocity, axis times radians a second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RigidMotion {
     pub(super) linear: DVec3,
@@ -14,13 +14,13 @@ pub(super) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// By least squares, over points with a weight, where they were and where they are after `dt`
+    /// Fits by least squares over points: their weights, their previous positions, and their positions after `dt`
     /// seconds.
     ///
-    /// A rotation by an angle a about an axis takes differences of points by `2 tan(a / 2)` times the
-    /// axis, crossed with the mean of before and after (Cayley); that is linear, so finite rotations
-    /// come out as exactly as small ones. The velocity is that which takes the origin along at even
-    /// speed with even turning, as rapier moves bodies.
+    /// A rotation by an angle a about an axis changes differences of points by `2 tan(a / 2)` times the axis, crossed
+    /// with the mean of before and after (Cayley). This is linear, so large rotations are fitted as exactly as small
+    /// ones. The linear velocity is the constant velocity of the origin while the body turns at a constant rate, as
+    /// rapier moves bodies.
     pub(super) fn fit(points: impl Iterator<Item = (f64, DVec3, DVec3)> + Clone, dt: f64) -> Self {
         let (mut weight, mut middle, mut moved) = (0.0, DVec3::ZERO, DVec3::ZERO);
         for (w, before, now) in points.clone() {
@@ -39,7 +39,7 @@ impl RigidMotion {
             inertia += (DMat3::from_diagonal(DVec3::splat(arm.length_squared())) - outer) * w;
             turned += arm.cross(now - before - moved) * w;
         }
-        // About an axis with all points on it nothing is known: nothing turns there.
+        // All points coincide: the rotation is not determined, and nothing turns.
         let size = inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z;
         if size <= 0.0 {
             return Self {
@@ -52,7 +52,7 @@ impl RigidMotion {
         let length = twice_tangent.length();
         let angle = 2.0 * libm::atan(length * 0.5);
         let axis = twice_tangent.normalize_or_zero();
-        // Where the origin goes: the midpoint of its path turns like all others.
+        // The displacement of the origin: the midpoint of its path turns like all others.
         let arm = {
             // (now + before) / 2 - middle of the origin, from now - before = moved + t x arm and
             // before = 0: arm = (moved + t x arm) / 2 - middle.
@@ -71,7 +71,7 @@ impl RigidMotion {
         }
     }
 
-    /// Where a point is taken in `dt` seconds.
+    /// Displacement of a point in `dt` seconds.
     pub(super) fn displacement(&self, point: DVec3, dt: f64) -> DVec3 {
         let angle = self.angular.length() * dt;
         let turned = if angle > 0.0 {
@@ -98,7 +98,7 @@ mod tests {
     ];
 
     #[test]
-    fn rigid_motions_come_out_exactly_however_fast_they_turn() {
+    fn rigid_motions_are_recovered_for_any_angle() {
         let dt = 1.0 / 60.0;
         for angle in [0.0, 1e-9, 0.01, 0.5, 2.0] {
             let turn = rotation_from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_thin_and_single_points_turn_about_nothing_unknown() {
+    fn coplanar_collinear_and_single_points_get_no_undetermined_rotation() {
         let shift = DVec3::new(0.0, 0.3, 0.0);
         for count in [1, 2, 3] {
             let pairs = POINTS[..count].iter().map(|p| (1.0, *p, *p + shift));

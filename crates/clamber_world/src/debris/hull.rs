@@ -1,4 +1,4 @@
-//! The outside of a body, and what of the skin it may reach in a tick.
+//! The outside of a body, and the region that it may reach in a tick.
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::MovingTriangle;
@@ -41,7 +41,7 @@ impl Hull {
         })
     }
 
-    /// The largest distance of its middle from what it holds.
+    /// Radius of a ball about its middle that encloses it.
     pub(super) fn radius(&self) -> f64 {
         if self.is_ball {
             self.half.x
@@ -75,20 +75,20 @@ struct Frame {
     rotation: DQuat,
 }
 
-/// Where a body may get in a tick.
+/// The region that a body may reach in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reach {
     hull: Hull,
-    /// Before the tick, and after it if nothing stops the body.
+    /// Frames before the tick, and after it if nothing stops the body.
     frames: [Frame; 2],
-    /// Half the angle from the one to the other, radians.
+    /// Half the angle between the two frames, radians.
     half_turn: f64,
-    /// By how much its hull is to be larger, metres.
+    /// Enlargement of the hull, metres.
     around: f64,
 }
 
 impl Reach {
-    /// Of a body that goes from one pose to another; skin may be `around` metres away.
+    /// The region of a body that moves from one pose to another, enlarged by `around` metres.
     pub(super) fn new(hull: Hull, poses: [&Pose; 2], around: f64) -> Self {
         let frames = poses.map(|pose| hull.frame_at(pose));
         let cosine = frames[0].rotation.dot(frames[1].rotation).abs().min(1.0);
@@ -105,18 +105,19 @@ impl Reach {
         self.frames[0].middle
     }
 
-    /// How far from its middle it reaches.
+    /// Radius of a ball about its middle that encloses the enlarged hull, metres.
     pub(super) fn radius(&self) -> f64 {
         self.hull.radius() + self.around
     }
 
-    /// In the model space of a surface; `origin` is rapier's in the world.
+    /// The region in the model space of a surface. `origin` is the world position of rapier's origin.
     pub(super) fn on(&self, world_from_model: &Similarity, origin: DVec3) -> ReachOnSurface {
         let to_model = world_from_model.rotation.conjugate();
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
         let half = self.hull.half + self.around;
-        // What is between the two boxes leaves the box around both by as much as a chord cuts off.
+        // Between the two frames, the hull leaves the box around both by at most the height of its arcs over their
+        // chords.
         let cut = self.hull.radius() * (1.0 - libm::cos(self.half_turn));
         let frames = self.frames.map(|frame| {
             let middle = world_from_model.inverse_transform_point(origin + frame.middle);
@@ -144,14 +145,14 @@ impl Reach {
 /// A [`Reach`] in the model space of a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReachOnSurface {
-    /// The corners of a box around all of it.
+    /// Low corner of a box around the whole region; `high` is the other corner.
     pub(super) low: Vec3,
     pub(super) high: Vec3,
-    /// From the model to the body's frame, before and after.
+    /// Transforms from the model to the body's frame, before and after.
     frames: [(Mat3, Vec3); 2],
     half: Vec3,
     is_ball: bool,
-    /// How far the frame turns, radians.
+    /// Angle by which the frame turns, radians.
     turn: f32,
     scale: f32,
 }
@@ -162,13 +163,12 @@ impl ReachOnSurface {
         ((self.high - self.low) * 0.5).max_element()
     }
 
-    /// How far a triangle moves past it, in units of the model: no more than it does, and less where
-    /// it passes by a corner.
+    /// A lower bound of the distance at which a moving triangle passes the region, in units of the model. It is less
+    /// than the distance where the triangle passes by a corner.
     ///
-    /// Corners are taken straight from where they are in the first frame to where they are in the second.
-    /// Seen from a frame that turns by the angle a, a point that moves evenly by m, and is never farther than f
-    /// from the middle, has an acceleration of at most `a^2 f + 2 a m`, and so is at most an eighth
-    /// of that off the straight way.
+    /// Corners are taken to move in straight lines from the first frame to the second. In a frame that turns by the
+    /// angle a, a point that moves evenly by m, and is never farther than f from the middle, has an acceleration of at
+    /// most `a^2 f + 2 a m`. So it is at most an eighth of that off the straight line.
     pub(super) fn apart(&self, moving: &MovingTriangle) -> f32 {
         let [(turn, shift), (last_turn, last_shift)] = self.frames;
         let before = moving.previous.map(|p| turn * p + shift);
@@ -196,7 +196,7 @@ impl ReachOnSurface {
         }
         let farthest = before.into_iter().chain(after).map(Vec3::length_squared);
         let farthest = farthest.fold(0.0, f32::max).sqrt();
-        // In the frame that does not turn: the rest is the turning itself.
+        // An upper bound of the motion in a frame that does not turn.
         let moved = most_moved(before, after) + self.turn * farthest;
         self.turn * (self.turn * farthest + 2.0 * moved) / 8.0
     }
@@ -207,7 +207,7 @@ fn most_moved(before: [Vec3; 3], after: [Vec3; 3]) -> f32 {
     moved(0).max(moved(1)).max(moved(2)).sqrt()
 }
 
-/// A triangle so far from the box around a ball, as a share of its radius, is not measured any more closely.
+/// Triangles farther than this from the box around a ball, as a fraction of its radius, are not measured more closely.
 const AT_ONCE: f32 = 0.1;
 
 #[cfg(test)]
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_box_around_all_that_is_solid_and_enabled() {
+    fn the_hull_is_the_box_around_all_solid_enabled_colliders() {
         let colliders = [
             ColliderBuilder::ball(0.5),
             ColliderBuilder::cuboid(0.1, 0.2, 0.3).translation(Vector::new(1.0, 0.0, 0.0)),
@@ -247,7 +247,7 @@ mod tests {
         assert!(ball.is_ball && ball.radius() == 0.5 && ball.middle == DVec3::Y);
     }
 
-    /// A turn of up to an angle about any axis.
+    /// A rotation by up to an angle about any axis.
     fn turn(rng: &mut fastrand::Rng, most: f64) -> DQuat {
         let axis = vector(rng).normalize_or(DVec3::X);
         rotation_from_axis_angle(axis, rng.f64() * most)
@@ -258,8 +258,8 @@ mod tests {
         DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0
     }
 
-    /// How far a triangle comes to the body's own shape, by trying many times of the tick, in which the
-    /// body turns and moves so far from a first pose.
+    /// Least distance of a triangle from the body's own shape, sampled at many times of the tick. From its first pose,
+    /// the body turns by an angle about an axis and moves by a displacement.
     fn nearest(
         shape: &ColliderBuilder,
         corners: &[[DVec3; 3]; 2],
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn no_triangle_that_comes_near_is_said_to_pass_farther_away() {
+    fn the_distance_of_a_passing_triangle_is_never_overestimated() {
         let mut rng = fastrand::Rng::with_seed(7);
         let shapes = [
             ColliderBuilder::ball(0.5),
@@ -323,7 +323,7 @@ mod tests {
             let nearest = nearest(shape, &corners, &first, (axis, angle, moved));
             let said = f64::from(reach.apart(&moving)) * root.scale;
             assert!(said <= nearest + 1e-4, "{round}: said {said}, is {nearest}");
-            // And what it meets is in its box.
+            // A triangle that meets the body also meets the region's box.
             if nearest < 1e-3 {
                 let slack = Vec3::splat(0.01);
                 assert!(

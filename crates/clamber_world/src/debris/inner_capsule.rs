@@ -1,16 +1,16 @@
-//! The inside of a body that must never be reached by skin.
+//! A capsule inside a body, which skin must never reach.
 
 use glam::{DQuat, DVec3};
 use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::{ColliderSet, Shape, TypedShape};
 use rapier3d::math::Pose;
 
-/// How far rapier looks ahead along the motion of body and skin, as a share of the body's inner radius:
-/// contacts between faces that are farther from each other than they are large come out askew.
+/// Distance at which rapier predicts contacts along the motion of body and skin, as a fraction of the body's inner
+/// radius. Contacts between faces that are farther apart than their own size come out askew.
 const LOOK_AHEAD: f64 = 0.5;
 
-/// A capsule that the body's largest solid collider holds, in the body's space: its segment, of length 0
-/// for a ball, and its radius.
+/// A capsule inside the body's largest solid collider, in the body's local space: its segment, of length 0 for a ball,
+/// and its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct InnerCapsule {
     pub(super) ends: [DVec3; 2],
@@ -83,7 +83,7 @@ impl InnerCapsule {
         }
     }
 
-    /// How far rapier is to look ahead along the motion of body and skin, metres.
+    /// Distance at which rapier predicts contacts along the motion of body and skin, metres.
     pub(super) fn look_ahead(&self) -> f32 {
         (self.radius * LOOK_AHEAD) as f32
     }
@@ -94,7 +94,7 @@ impl InnerCapsule {
     }
 }
 
-/// In f64, so that nothing is lost but the pose's own rounding.
+/// Transforms a point by a pose in f64, so that only the pose's own rounding remains.
 fn place(pose: &Pose, point: DVec3) -> DVec3 {
     let rotation: DQuat = pose.rotation.as_dquat().normalize();
     rotation * point + pose.translation.as_dvec3()
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_longest_capsule_inside() {
+    fn the_inner_capsule_is_the_longest_one_inside() {
         let half = |core: InnerCapsule| (core.ends[1] - core.ends[0]).length() / 2.0;
         for (collider, radius, length) in [
             (ColliderBuilder::ball(0.5), 0.5, 0.0),
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn of_several_colliders_the_largest_counts_where_it_is() {
+    fn the_largest_of_several_colliders_is_used_at_its_own_place() {
         let small = ColliderBuilder::ball(0.1);
         let large = ColliderBuilder::ball(0.4).translation(Vector::new(0.0, 3.0, 0.0));
         let core = core(&[small, large]).unwrap();
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_inside_has_no_core() {
+    fn a_body_without_a_solid_collider_has_no_inner_capsule() {
         assert_eq!(core(&[]), None);
         assert_eq!(core(&[ColliderBuilder::ball(1.0).sensor(true)]), None);
         let corners = vec![Vector::ZERO, Vector::X, Vector::Y];

@@ -1,4 +1,4 @@
-//! No skin passes through a body: what rapier let through is put back in front of it.
+//! Keeps skin from passing through a body: a body that rapier let skin into is put back in front of it.
 
 use clamber_surface::geometry::{Capsule, Similarity, rotation_from_axis_angle};
 use clamber_surface::surface::{CastOptions, Motion, SkinnedSurface, SweepHit};
@@ -6,33 +6,33 @@ use glam::{DVec3, Vec3};
 
 use super::inner_capsule::InnerCapsule;
 
-/// How much of a body's inside is swept, as a share of its radius: skin that rapier pushes out by itself
-/// must not reach it, and skin that does has not yet passed the middle.
+/// Radius of the swept part of a body's inside, as a fraction of the inner radius. Skin that rapier pushes out by
+/// itself must not reach this part; skin that reaches it must not have passed the middle yet.
 pub(super) const SWEPT: f64 = 0.5;
 
-/// How near a sweep comes, as a share of the swept radius.
+/// Tolerance of a sweep, as a fraction of the swept radius.
 const TOLERANCE: f64 = 1e-3;
 
-/// Skin farther than this from a core, as a share of its radius, is met by no sweep.
+/// A sweep meets no skin that stays farther than this from the core's segment, as a fraction of the core's radius.
 pub(super) const MET: f64 = SWEPT * (1.0 + 2.0 * TOLERANCE);
 
-/// Rounds of pushing out: one for each piece of skin that a body can be caught between, and one to find
-/// that it is free. More would help a body in a closing fold no more.
+/// Rounds of pushing out: one for each piece of skin that a body can be caught between, and one to find that it is
+/// free. More rounds would not help a body in a closing fold.
 const ROUNDS: usize = 4;
 
-/// What keeping out came to.
+/// Result of [`keep_out`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kept {
-    /// By how much the body has to be moved, in world space.
+    /// Displacement that puts the body in front of the skin, in world space, metres.
     pub(super) shift: DVec3,
-    /// The normal of the skin that pushed last, and how fast it moves.
+    /// Normal and velocity of the skin that pushed last, in world space; `None` if none did.
     pub(super) pushed: Option<(DVec3, DVec3)>,
-    /// False if skin passes through it still.
+    /// False if skin still passes through the body.
     pub(super) free: bool,
 }
 
 impl Kept {
-    /// Nothing was in its way.
+    /// No skin was in the body's way.
     pub(super) const FREE: Self = Self {
         shift: DVec3::ZERO,
         pushed: None,
@@ -40,8 +40,8 @@ impl Kept {
     };
 }
 
-/// True if the core, which ends there in world space, has met no skin, where skin and it have moved
-/// by at most `motion` metres past each other.
+/// True if the core cannot have touched skin in the tick. It ends at `end` in world space. Skin and core have moved by
+/// at most `motion` metres relative to each other. `None` if the core is out of reach.
 pub(super) fn stays_clear(
     surface: &SkinnedSurface,
     core: &InnerCapsule,
@@ -56,8 +56,8 @@ pub(super) fn stays_clear(
     Some(surface.in_model().closest_to_capsule(&core, near).is_none())
 }
 
-/// Sweeps the core from its ends `start` to `end`, in world space, against skin that moves over a tick of
-/// `dt` seconds.
+/// Sweeps the core from its ends `start` to `end`, in world space, against skin that moves over a tick of `dt` seconds,
+/// and pushes it out of the skin that it meets. `None` if the core is out of reach.
 pub(super) fn keep_out(
     surface: &SkinnedSurface,
     core: &InnerCapsule,
@@ -79,7 +79,7 @@ pub(super) fn keep_out(
         let skin = world_from_model.transform_point_f32(motion.position);
         let touching = touching(world_from_model, &hit, start, shifted);
         let depth = core.radius - (touching - skin).dot(normal);
-        // Behind the skin at the start and in front of it at the end: it came out.
+        // The core was behind the skin at the start and is in front of it at the end: it came out.
         if depth <= 0.0 {
             kept.free = true;
             return Some(kept);
@@ -91,8 +91,8 @@ pub(super) fn keep_out(
     Some(kept)
 }
 
-/// From the skin to the body, now: as they touched, turned as the triangle turned since then; out of the
-/// skin where the body came from behind it.
+/// Direction from the skin to the body at the end of the tick: the separation normal at contact, turned as the triangle
+/// has turned since then. If the body came from behind the skin, the skin's outward normal.
 fn outward(hit: &SweepHit, motion: &Motion, dt: f64) -> DVec3 {
     if hit.separation_normal.dot(hit.normal) <= 0.0 {
         return motion.normal.as_dvec3().normalize_or(DVec3::Y);
@@ -129,7 +129,7 @@ fn sweep(
     Some(surface.in_model().cast_capsule(&core, motions, &options))
 }
 
-/// The point of the core's segment that was touched, where it is at the end of the tick.
+/// The touched point of the core's segment, at its position at the end of the tick.
 fn touching(
     world_from_model: &Similarity,
     hit: &SweepHit,

@@ -1,5 +1,5 @@
-//! What becomes of a body between skin and something that does not move: under a foot, between a flank and a
-//! cliff. Nothing ever pushes a creature, so one of them must give way, and it is the skin.
+//! Bodies caught between skin and something immovable: under a foot, or between a flank and a cliff. Nothing ever
+//! pushes a creature, so the skin gives way: it passes through the body.
 
 use clamber_surface::geometry;
 use clamber_surface::surface::SkinnedSurface;
@@ -17,18 +17,18 @@ use super::keep_out::SWEPT;
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
-/// What of rapier's world does not move out of the way, and is no skin.
+/// The colliders of rapier's world that do not give way and are not skin.
 #[derive(Clone, Copy)]
 pub(super) struct Immovable<'a> {
     pub(super) colliders: &'a ColliderSet,
     pub(super) broad_phase: &'a BroadPhaseBvh,
     pub(super) narrow_phase: &'a NarrowPhase,
-    /// Skin, by ascending handle.
+    /// Colliders of skin patches with their owners, by ascending handle.
     pub(super) skin: &'a [(ColliderHandle, RigidBodyHandle)],
 }
 
 impl Immovable<'_> {
-    /// True if the step found contacts of the body with any of it.
+    /// True if the step found contacts of the body with an immovable collider.
     pub(super) fn touches(&self, bodies: &RigidBodySet, body: &RigidBody) -> bool {
         body.colliders().iter().any(|own| {
             let mut pairs = self.narrow_phase.contact_pairs_with(*own);
@@ -51,8 +51,8 @@ impl Immovable<'_> {
         !body.is_some_and(RigidBody::is_dynamic) && owner_in(self.skin, handle).is_none()
     }
 
-    /// The share of the way from a pose, by `shift` in rapier's space, after which the body's inside meets
-    /// any of it; `None` if it does not.
+    /// The fraction of a displacement, by `shift` from a pose in rapier's space, at which the body's inside meets an
+    /// immovable collider; `None` if it meets none.
     pub(super) fn blocks(
         &self,
         bodies: &RigidBodySet,
@@ -78,7 +78,8 @@ impl Immovable<'_> {
     }
 }
 
-/// The body that a collider is skin for, of pairs by ascending handle of the collider; `None` if it is no skin.
+/// The body that a skin patch's collider is for; `None` for any other collider. `skin` is sorted by the collider's
+/// handle.
 pub(super) fn owner_in(
     skin: &[(ColliderHandle, RigidBodyHandle)],
     collider: ColliderHandle,
@@ -88,8 +89,8 @@ pub(super) fn owner_in(
     Some(skin[index.ok()?].1)
 }
 
-/// True if the body's core touches no skin, and its middle is not inside the creature. `origin` is rapier's in the
-/// world. `None` if it is out of reach.
+/// True if the body's core touches no skin, and its middle is not inside the creature. `origin` is the world position
+/// of rapier's origin. `None` if the body is out of reach.
 pub(super) fn is_outside(
     surface: &SkinnedSurface,
     core: &InnerCapsule,

@@ -1,4 +1,4 @@
-//! Rocks, tree trunks and walls on a moving creature: dynamic bodies of rapier's that collide with skin.
+//! Debris on a moving creature, such as rocks, tree trunks and walls: dynamic rapier bodies that collide with skin.
 
 mod config;
 mod error;

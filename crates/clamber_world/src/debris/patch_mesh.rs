@@ -1,14 +1,14 @@
-//! A patch of skin as a mesh of parry's.
+//! A skin patch as a parry mesh.
 
 use clamber_surface::surface::Patch;
 use rapier3d::geometry::TriMesh;
 use rapier3d::math::Vector;
 use rapier3d::parry::shape::TriMeshFlags;
 
-/// A patch as a mesh, its vertices wherever `place` puts them; `None` without triangles.
+/// A patch as a mesh, with its vertices where `place` puts them; `None` without triangles.
 ///
-/// Flags that would change vertices or triangles, as merging does where vertices coincide, are left
-/// out with all that depends on them: the mesh has the patch's own.
+/// The mesh has the patch's own vertices and triangles. If the flags would change these, for example by merging
+/// coincident vertices, only the flags within [`TriMeshFlags::DEFORMABLE`] are used.
 pub(super) fn trimesh(
     patch: &Patch,
     flags: TriMeshFlags,
@@ -23,7 +23,7 @@ pub(super) fn trimesh(
     with(flags).or_else(|| with(flags & TriMeshFlags::DEFORMABLE))
 }
 
-/// Puts the vertices of such a mesh elsewhere, and refits its tree.
+/// Moves the vertices of such a mesh, and refits its tree.
 pub(super) fn move_trimesh(mesh: &mut TriMesh, place: impl Fn(usize) -> Vector) {
     mesh.update_vertices(|vertices| {
         for (index, vertex) in vertices.iter_mut().enumerate() {

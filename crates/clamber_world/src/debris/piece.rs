@@ -12,8 +12,8 @@ use super::keep_out::{Kept, MET, SWEPT, keep_out, stays_clear};
 use super::skin_patch::{Place, SkinPatch};
 use crate::ObstacleId;
 
-/// Metres beyond what a body's own motion reaches that skin is looked for: more than what gravity adds
-/// within a tick, and rapier's own prediction of 2 cm. More gives rapier more triangles.
+/// Skin is searched this far beyond the reach of a body's own motion, metres: more than gravity adds in a tick at 60 Hz
+/// and rapier's prediction of 2 cm together. A larger value gives rapier more triangles.
 const REACH: f64 = 0.025;
 
 /// One body, and the skin near it.
@@ -22,7 +22,7 @@ pub(super) struct Piece {
     pub(super) body: RigidBodyHandle,
     pub(super) core: InnerCapsule,
     hull: Hull,
-    /// Where it was before the step, and where it would be after it if nothing stopped it.
+    /// The body's pose before the step, and its pose after it if nothing stopped it.
     course: [Pose; 2],
     /// One for each surface of the last tick, by ascending id.
     pub(super) patches: Vec<(ObstacleId, SkinPatch)>,
@@ -39,12 +39,12 @@ impl Piece {
         }
     }
 
-    /// Its colliders have changed.
+    /// Replaces the shapes, after the body's colliders have changed.
     pub(super) fn reshape(&mut self, core: InnerCapsule, hull: Hull) {
         (self.core, self.hull) = (core, hull);
     }
 
-    /// What it is about to do in a step of `dt` seconds, and where skin is wanted for that.
+    /// Stores the body's expected motion in a step of `dt` seconds. Returns where skin is needed for it.
     pub(super) fn set_course(&mut self, body: &RigidBody, origin: DVec3, dt: f64) -> Place {
         let end = body.predict_position_using_velocity(dt as f32);
         self.course = [*body.position(), end];
@@ -56,25 +56,25 @@ impl Piece {
         }
     }
 
-    /// Where it was before the step.
+    /// The body's pose before the step.
     pub(super) fn start(&self) -> &Pose {
         &self.course[0]
     }
 
-    /// Its patch of a surface; `None` if that was not among the surfaces before the step.
+    /// The body's patch of a surface; `None` if that was not among the surfaces before the step.
     pub(super) fn patch(&self, obstacle: ObstacleId) -> Option<&SkinPatch> {
         let index = self.index_of(obstacle).ok()?;
         Some(&self.patches[index].1)
     }
 
-    /// Where its patch of a surface is, or would be.
+    /// Index of the body's patch of a surface, or of where to insert that patch.
     pub(super) fn index_of(&self, obstacle: ObstacleId) -> Result<usize, usize> {
         self.patches
             .binary_search_by_key(&obstacle, |(known, _)| *known)
     }
 
-    /// Has a patch for each of these surfaces, by ascending id, and for no other: those of surfaces that are gone
-    /// are retired to `spare`, and new ones come from there. True if any came or went.
+    /// Gives the body a patch for each of these surfaces, which are by ascending id, and for no other. Patches of other
+    /// surfaces are retired to `spare`, and new ones are taken from there. True if a patch was added or removed.
     pub(super) fn follow(
         &mut self,
         surfaces: &[(ObstacleId, usize)],
@@ -103,7 +103,8 @@ impl Piece {
         changed
     }
 
-    /// What keeps it out of one surface, now that the step took it to a pose.
+    /// Finds how to move the body out of one surface, after the step has moved it to the pose `end`. `None` if it is
+    /// out of reach of the surface.
     pub(super) fn keep_out(
         &self,
         obstacle: ObstacleId,
@@ -125,7 +126,7 @@ impl Piece {
         keep_out(surface, &self.core, in_world, dt)
     }
 
-    /// True if it is seen without a sweep that it met none of the skin that its hull could meet.
+    /// True if it is certain without a sweep that the body has touched none of the skin within its hull's reach.
     fn stays_clear(
         &self,
         patch: &SkinPatch,
@@ -144,8 +145,8 @@ impl Piece {
         Some(far || stays_clear(surface, &self.core, end_in_world, motion)?)
     }
 
-    /// True if its core ended where it was expected to, so far that what of it is swept can have met no
-    /// skin but that which its hull was to meet.
+    /// True if the core ended so near to its expected pose that the swept part of it can have touched only skin within
+    /// the hull's reach.
     fn kept_course(&self, ends: &[DVec3; 2]) -> bool {
         let expected = self.core.ends_at(&self.course[1]);
         let astray = REACH + self.core.radius * (1.0 - SWEPT);

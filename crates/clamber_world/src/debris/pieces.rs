@@ -16,25 +16,26 @@ use crate::ObstacleId;
 /// Dynamic bodies of a rapier world that collide with the skin of moving creatures: rocks, tree trunks,
 /// the stones of a wall.
 ///
-/// Near each body, the skin becomes a kinematic body of rapier's, made of the few triangles that the
-/// body may reach in this tick; it meets that body only, stands where the skin was a tick ago, and moves
-/// to where it is. So rapier's own solver finds contacts and friction against skin that moves. Forces
-/// go one way: nothing ever pushes a creature. What is faster than rapier can tell, such as a limb that
-/// moves by a metre in a tick, is found by sweeping the inside of the body against the moving skin.
+/// Near each body, the skin becomes a kinematic rapier body: a skin patch, made of the few triangles that the body may
+/// reach in this tick. The patch collides with that body only. It starts where the skin was a tick ago, and moves to
+/// where the skin is now, so rapier's own solver finds contacts and friction against moving skin. Forces go one way:
+/// nothing ever pushes a creature. If skin is too fast for rapier, such as a limb that moves by a metre in a tick, a
+/// sweep of the inside of the body against the moving skin finds it.
 ///
-/// A creature that cannot be pushed would drive what it steps on through the ground. Such a body is left
-/// where it is, and the skin passes through it until it is outside again.
+/// A creature cannot be pushed, so it would drive a body that it steps on through the ground. Such a body is left where
+/// it is, and skin passes through it until it is outside the creature again.
 ///
 /// The state of a body against a creature is stored under the creature's [`ObstacleId`], which must stay the same from
-/// tick to tick. The order of the list changes no result; a creature that leaves the list is forgotten.
+/// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
+/// dropped.
 ///
-/// Skin patches are ordinary colliders of the rapier world. A climber that is given the creature and a
-/// [`RapierTerrain`](crate::RapierTerrain) without a filter touches that skin twice. Leave the patches out with
+/// Skin patches are ordinary colliders of the rapier world. If a climber gets both the creature and a
+/// [`RapierTerrain`](crate::RapierTerrain) without a filter, it touches that skin twice. Leave the patches out with
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
 ///
-/// Each tick, in this order; the patches belong to the debris, so its hooks must be among those of the
-/// step:
+/// Make these calls each tick, in this order. `Debris` is the step's [`PhysicsHooks`], which keep a patch from
+/// colliding with anything but its body:
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -88,16 +89,16 @@ pub struct Debris {
     origin: DVec3,
     /// By ascending handle of the body.
     pieces: Vec<Piece>,
-    /// Which body a patch is for, by ascending handle of the patch's collider.
+    /// The body that each patch is for, by ascending handle of the patch's collider.
     owners: Vec<(ColliderHandle, RigidBodyHandle)>,
-    /// Of bodies and surfaces that are gone.
+    /// Patches of bodies and surfaces that are gone, for reuse.
     spare: Vec<SkinPatch>,
-    /// Ids of a call's surfaces, ascending, with their places in its list: memory that is used again.
+    /// Ids of a call's surfaces, ascending, with their indices in its list. Reused memory.
     order: Vec<(ObstacleId, usize)>,
 }
 
 impl Debris {
-    /// None yet.
+    /// Creates debris without any bodies.
     pub const fn new(config: DebrisConfig) -> Self {
         Self {
             config,
@@ -109,16 +110,15 @@ impl Debris {
         }
     }
 
-    /// Where rapier's origin stands in the world, for scenes that are far larger than f32 can
-    /// resolve. Zero if not said.
+    /// Sets the world position of rapier's origin, for scenes far larger than f32 can resolve. Zero by default.
     #[must_use]
     pub fn with_origin(mut self, origin: DVec3) -> Self {
         self.origin = origin;
         self
     }
 
-    /// Lets a dynamic body collide with skin from now on. Its colliders stay as they are: if they
-    /// change, add it again. Rapier's soft continuous collision detection is turned on for it.
+    /// Makes a dynamic body collide with skin from now on. Its colliders are read now: if they change, add the body
+    /// again. Turns on rapier's soft continuous collision detection for the body.
     ///
     /// # Errors
     /// [`DebrisError::NotDynamic`], [`DebrisError::NotSolid`].
@@ -143,11 +143,12 @@ impl Debris {
         Ok(())
     }
 
-    /// The body no longer collides with skin; true if it did. Bodies that rapier no longer has leave by
-    /// themselves.
+    /// Stops a body from colliding with skin; true if it did collide. Bodies that are removed from rapier's set leave
+    /// by themselves.
     ///
-    /// The kinematic bodies of its skin patches and their colliders, disabled, stay in rapier's sets for later bodies.
-    /// They stay there when the `Debris` is dropped, colliders that are enabled then included: remove all bodies first.
+    /// The kinematic bodies of its skin patches stay in rapier's sets for later bodies, with disabled colliders. They
+    /// also stay when the `Debris` is dropped, and colliders that are enabled then stay enabled. So remove all bodies
+    /// first.
     pub fn remove(&mut self, body: RigidBodyHandle, colliders: &mut ColliderSet) -> bool {
         let Ok(index) = self.place_of(body) else {
             return false;
@@ -162,15 +163,14 @@ impl Debris {
         self.pieces.iter().map(|piece| piece.body)
     }
 
-    /// True while skin passes through a body, since it was caught between skin and something that does not
-    /// move.
+    /// True while skin passes through a body because it was caught between skin and something immovable.
     pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
         piece.is_ok_and(|piece| piece.patches.iter().any(|(_, patch)| patch.let_through))
     }
 
-    /// Which surface and which of its triangles a contact is with: `collider` and `subshape` are those
-    /// of a contact's side that is no piece of debris. `None` if it is no skin either.
+    /// The surface and the triangle of a contact. `collider` and `subshape` are those of the contact's side that is not
+    /// a debris body. `None` if that side is not skin.
     pub fn triangle_at(
         &self,
         collider: ColliderHandle,
@@ -185,13 +185,12 @@ impl Debris {
         Some((*obstacle, *triangle))
     }
 
-    /// Puts the skin near each body into rapier's world: after the surfaces were advanced, before the
-    /// step of `dt` seconds.
+    /// Puts the skin near each body into rapier's world. Call it after the surfaces were advanced, and before the step
+    /// of `dt` seconds.
     ///
     /// # Errors
-    /// [`DebrisError::Tick`] or [`DebrisError::TwiceListed`], and then nothing is changed.
-    /// [`DebrisError::OutOfReach`] for a body that is
-    /// not finite, or too far away for a surface; the bodies before it have their skin then.
+    /// [`DebrisError::Tick`] or [`DebrisError::TwiceListed`]; nothing is changed then. [`DebrisError::OutOfReach`] for
+    /// a body whose pose is not finite or too far from a surface; the bodies before it have their skin then.
     pub fn before_step(
         &mut self,
         surfaces: &[(ObstacleId, &SkinnedSurface)],
@@ -204,7 +203,7 @@ impl Debris {
         self.drop_lost(bodies, colliders);
         let mut changed = false;
         let shown = self.show_skin(surfaces, bodies, colliders, dt, &mut changed);
-        // After an error as well: some bodies may have their skin.
+        // Also after an error, since some bodies may have their skin.
         if changed {
             self.list_owners();
         }
@@ -225,7 +224,7 @@ impl Debris {
             };
             let place = piece.set_course(body, self.origin, dt);
             let enabled = body.is_enabled();
-            // Skin that another body had belongs to this one now.
+            // A patch that another body had belongs to this one now.
             *changed |= piece.follow(&self.order, &mut self.spare, colliders);
             for ((_, patch), (obstacle, index)) in piece.patches.iter_mut().zip(&self.order) {
                 if !enabled || patch.let_through {
@@ -245,12 +244,13 @@ impl Debris {
         Ok(())
     }
 
-    /// Puts bodies that skin went into during the step back in front of it, with at least its speed.
-    /// Where that would press it into something else that does not move, skin passes through it from then on.
+    /// Puts bodies that skin entered during the step back in front of it, and makes them at least as fast as the skin.
+    /// If this would press a body into something immovable, skin passes through the body instead, from then on until
+    /// the body is outside.
     ///
     /// # Errors
-    /// As [`Debris::before_step`]. On [`DebrisError::OutOfReach`] earlier bodies have been moved already, and their
-    /// report is lost.
+    /// As for [`Debris::before_step`]. On [`DebrisError::OutOfReach`], earlier bodies have been moved already, and
+    /// their report is lost.
     pub fn after_step(
         &mut self,
         surfaces: &[(ObstacleId, &SkinnedSurface)],
@@ -292,7 +292,7 @@ impl Debris {
                     report.caught += u32::from(patch.let_through);
                     continue;
                 }
-                // Rapier lets a kinematic body press another one into what is fixed.
+                // Rapier lets a kinematic body press a dynamic body into a fixed one.
                 if let Some((_, patch)) = known.and_then(|at| piece.patches.get_mut(at))
                     && !patch.is_empty()
                     && immovable.touches(bodies, body)
@@ -340,12 +340,12 @@ impl Debris {
             .binary_search_by_key(&body.into_raw_parts(), key)
     }
 
-    /// The body that a collider is skin for; `None` if it is no skin.
+    /// The body that a skin patch's collider is for; `None` for any other collider.
     pub(super) fn owner_of(&self, collider: ColliderHandle) -> Option<RigidBodyHandle> {
         owner_in(&self.owners, collider)
     }
 
-    /// Lists the ids of surfaces, ascending, so that the order in which they are given changes nothing.
+    /// Lists the ids of the surfaces in ascending order, so that the order of the argument does not change any result.
     fn set_order(&mut self, surfaces: &[(ObstacleId, &SkinnedSurface)]) -> Result<(), DebrisError> {
         self.order.clear();
         let ids = surfaces.iter().map(|(id, _)| *id);
@@ -393,7 +393,7 @@ impl Debris {
 }
 
 impl PhysicsHooks for Debris {
-    /// A piece of skin meets the body that it is for, and nothing else.
+    /// A skin patch collides with the body that it is for, and with nothing else.
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
         let meets = |skin, body| self.owner_of(skin).is_none_or(|owner| Some(owner) == body);
         let both = meets(context.collider1, context.rigid_body2)

@@ -1,4 +1,4 @@
-//! The skin near one body, as a kinematic body of rapier's.
+//! The skin near one body, as a kinematic rapier body.
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::surface::{MovingTriangle, Patch, PatchChange, SkinnedSurface};
@@ -15,19 +15,19 @@ use super::fit::RigidMotion;
 use super::hull::Reach;
 use super::patch_mesh::{move_trimesh, trimesh};
 
-/// How far beyond the box that a body may reach a patch is filled when it is made, as a share of the
-/// box. More makes it less often, and gives rapier more triangles in every tick.
+/// A new patch is filled this far beyond the box that the body may reach, as a fraction of half the box's longest side.
+/// A larger margin rebuilds patches less often, but gives rapier more triangles in every tick.
 const MARGIN: f32 = 0.02;
 
-/// Without these, bodies that slide catch on edges between triangles. From both sides, since mirrored
-/// joints turn triangles inside out.
+/// Without these, sliding bodies catch on edges between triangles. Two-sided, since mirrored joints turn triangles
+/// inside out.
 const FLAGS: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
 
 /// A piece of skin that collides with one body.
 ///
-/// Its body stands where the piece of debris does and has no rotation of its own. The vertices are put
-/// where they were a tick ago, and the body moves as they do on the whole over the tick that rapier
-/// now steps, so rapier finds contacts where they begin and ends them where the skin is.
+/// The patch's kinematic body is placed at the middle of the debris body, without rotation. Its vertices are placed
+/// where they were a tick ago. It moves as the vertices do as a whole over the tick that rapier now steps. So rapier
+/// finds contacts when they begin, and the patch ends where the skin is now.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SkinPatch {
     patch: Patch,
@@ -36,28 +36,28 @@ pub(super) struct SkinPatch {
     before: Vec<DVec3>,
     now: Vec<DVec3>,
     motion: RigidMotion,
-    /// How far the skin was from the middle of the body's hull a tick ago, if it was measured in this one.
+    /// Distance of the skin from the middle of the body's hull a tick ago; `None` if it was not measured in this tick.
     gap: Option<f64>,
-    /// Skin passes through the body, and none is shown.
+    /// Skin passes through the body, and rapier gets no patch.
     pub(super) let_through: bool,
-    /// Where the surface stands, if the skin shown stood still in it.
+    /// The surface's `world_from_model`, if the patch's skin is at rest in model space.
     still_at: Option<Similarity>,
 }
 
-/// Where a patch is wanted.
+/// Where a patch is needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// Rapier's origin in the world.
+    /// World position of rapier's origin.
     pub(super) origin: DVec3,
-    /// What the body may reach in this tick.
+    /// The region that the body may reach in this tick.
     pub(super) reach: Reach,
-    /// How far rapier is to look ahead along the skin's motion.
+    /// Distance at which rapier predicts contacts along the skin's motion, metres.
     pub(super) look_ahead: f32,
     pub(super) dt: f64,
 }
 
 impl SkinPatch {
-    /// The skin near a place, this tick.
+    /// Updates the patch to the skin near a place in this tick. `None` if the place is out of reach.
     pub(super) fn update(
         &mut self,
         surface: &SkinnedSurface,
@@ -83,7 +83,7 @@ impl SkinPatch {
         self.gap = None;
         let still = self.patch.positions() == self.patch.previous_positions();
         if still && change == PatchChange::Same && self.still_at == Some(*world_from_model) {
-            // Nothing is new. Left alone, rapier lets rocks fall asleep on it.
+            // Nothing has changed. If the patch is left alone, rapier lets rocks fall asleep on it.
             return Some(());
         }
         self.still_at = still.then_some(*world_from_model);
@@ -93,13 +93,13 @@ impl SkinPatch {
         Some(())
     }
 
-    /// Forgets its surface and takes part in nothing, for another surface or body to use.
+    /// Clears the patch and disables its collider, for reuse with another surface or body.
     pub(super) fn retire(&mut self, colliders: &mut ColliderSet) {
         self.rest(colliders);
         self.let_through = false;
     }
 
-    /// Takes part in nothing until the next update that finds skin.
+    /// Clears the patch and disables its collider until an update finds skin again.
     pub(super) fn rest(&mut self, colliders: &mut ColliderSet) {
         self.patch.clear();
         self.gap = None;
@@ -124,14 +124,13 @@ impl SkinPatch {
         self.handles
     }
 
-    /// How far the skin was from the middle of the body's hull before the tick, metres; `None` if that is
-    /// not known.
+    /// Distance of the skin from the middle of the body's hull before the tick, metres; `None` if it is not known.
     pub(super) fn gap(&self) -> Option<f64> {
         self.gap
     }
 
-    /// How far the skin and either end of the body, of which it is said how they moved, moved past each
-    /// other at most, metres.
+    /// The largest motion of the skin relative to either end of the body, metres. `ends` holds the displacements of the
+    /// two ends.
     pub(super) fn most_motion(&self, ends: [DVec3; 2]) -> f64 {
         let pairs = self.before.iter().zip(&self.now);
         let squares =
@@ -150,8 +149,8 @@ impl SkinPatch {
         self.now.extend(self.patch.positions().iter().map(local));
     }
 
-    /// The nearer a vertex the more it counts, and the point nearest to the body counts alone for the
-    /// velocity there: what touches the body first moves as the skin does.
+    /// Fits the patch's rigid motion. Nearer vertices have more weight. The velocity at the point nearest to the body
+    /// is that of this point alone, so the first skin to touch the body moves as the skin does.
     fn fit(&mut self, place: &Place) {
         let reach = place.reach.radius() * place.reach.radius();
         let pairs = self.before.iter().zip(&self.now);
@@ -168,7 +167,7 @@ impl SkinPatch {
         }
     }
 
-    /// Where the material point nearest to the body was and is.
+    /// Previous and current position of the material point nearest to the body.
     fn nearest(&self) -> Option<(DVec3, DVec3)> {
         let mut nearest: Option<(f64, [DVec3; 2])> = None;
         for corners in self.patch.indices() {
@@ -236,7 +235,7 @@ fn insert(
 ) -> (RigidBodyHandle, ColliderHandle) {
     let body = bodies.insert(RigidBodyBuilder::kinematic_velocity_based());
     let collider = ColliderBuilder::new(SharedShape::new(mesh))
-        // Kinematic bodies need no mass, and a mesh's takes long to find.
+        // Kinematic bodies need no mass, and the mass of a mesh is slow to compute.
         .density(0.0)
         .friction(config.friction)
         .restitution(config.restitution)
@@ -246,7 +245,7 @@ fn insert(
     (body, collider)
 }
 
-/// Weights of the corners of a triangle's point closest to the origin.
+/// Barycentric weights of a triangle's point closest to the origin.
 fn closest_to_origin(corners: [DVec3; 3]) -> [f64; 3] {
     let [a, b, c] = corners.map(|corner| corner.as_vec3());
     let triangle = Triangle::new(a, b, c);

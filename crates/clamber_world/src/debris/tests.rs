@@ -1,4 +1,4 @@
-//! Debris on creatures whose skin is known in closed form, so that nothing of the library judges itself.
+//! Debris on creatures whose skin is known in closed form, so that the library is not checked against itself.
 
 mod bookkeeping;
 mod outside;

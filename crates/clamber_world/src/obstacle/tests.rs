@@ -1,4 +1,4 @@
-//! What an obstacle gets that answers three questions only, beside all that it could answer.
+//! The default methods of an obstacle, compared with a surface's own.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::*;
 
-/// A creature's skin behind the three methods that every obstacle has.
+/// A creature's skin as an obstacle with only the three required methods, and bounds if wanted.
 struct Least<'a> {
     skin: &'a SkinnedSurface,
     has_bounds: bool,
@@ -39,7 +39,7 @@ impl Obstacle for Least<'_> {
     }
 }
 
-/// Eighty random triangles within two metres of a place 100 m out.
+/// Eighty random triangles within two metres, on each axis, of a place 100 m from the origin.
 fn rubble() -> (SkinnedSurface, DVec3) {
     let mut rng = fastrand::Rng::with_seed(22);
     let positions: Vec<Vec3> = (0..240).map(|_| random(&mut rng).as_vec3() * 2.0).collect();
@@ -70,7 +70,7 @@ fn random(rng: &mut fastrand::Rng) -> DVec3 {
 }
 
 #[test]
-fn three_methods_answer_rays_and_nearest_points_as_all_would() {
+fn default_rays_and_closest_points_agree_with_the_surfaces_own() {
     let (skin, place) = rubble();
     let mut rng = fastrand::Rng::with_seed(23);
     let mut hits = 0;
@@ -97,9 +97,9 @@ fn three_methods_answer_rays_and_nearest_points_as_all_would() {
                 let ours = least.cast_ray(point, direction, length);
                 let all = skin.cast_ray(point, direction, length);
                 let Some(all) = all else { continue };
-                let ours = ours.expect("a ball of no radius meets what a ray meets");
+                let ours = ours.expect("a ball of radius 0 hits wherever a ray hits");
                 let apart = all.distance - ours.distance;
-                // Short by the tolerance over the sine of the angle at which the ray meets the triangle.
+                // Short by the tolerance over the sine of the angle between ray and triangle.
                 let sine = all.normal.dot(direction.normalize()).abs();
                 let allowed = (2e-6 + 1e-9 * ours.distance) / sine;
                 assert!(
@@ -114,7 +114,7 @@ fn three_methods_answer_rays_and_nearest_points_as_all_would() {
 }
 
 #[test]
-fn defaults_find_nothing_by_what_is_no_number() {
+fn defaults_find_nothing_for_invalid_input() {
     let (skin, place) = rubble();
     let least = Least {
         skin: &skin,

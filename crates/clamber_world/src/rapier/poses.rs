@@ -1,11 +1,11 @@
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
 use rapier3d::math::Pose;
 
-/// Where the bodies of a rapier world stood before a step.
+/// Poses of a rapier world's bodies before a step.
 ///
-/// Velocities of bodies are measured as displacements over the tick, so that a character on a
-/// turning platform goes where its spot goes and not along the tangent. Teleport bodies before `record`: one that is
-/// teleported between `record` and a query is swept along the whole way. Record before each step:
+/// Velocities of bodies are measured as displacements over the tick, so that a character on a turning platform follows
+/// its spot on the platform, not the tangent. Teleport bodies before `record`: a body that is teleported between
+/// `record` and a query is swept over the whole distance. Record before each step:
 ///
 /// ```
 /// use clamber_world::{BodyPoses, RapierTerrain};
@@ -26,12 +26,12 @@ pub struct BodyPoses {
 }
 
 impl BodyPoses {
-    /// None yet: nothing of the world moves.
+    /// An empty set of poses, with which nothing in the world moves.
     pub const fn new() -> Self {
         Self { poses: Vec::new() }
     }
 
-    /// Takes note of every body that can move. Keeps its memory.
+    /// Records the pose of every body that can move, in place of the poses recorded before. Keeps its memory.
     pub fn record(&mut self, bodies: &RigidBodySet) {
         self.poses.clear();
         let moving = bodies.iter().filter(|(_, body)| !body.is_fixed());
@@ -41,7 +41,7 @@ impl BodyPoses {
             .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
     }
 
-    /// The pose of a body when it was last recorded; `None` for a body that is fixed or new.
+    /// The recorded pose of a body. `None` if the body was fixed or did not exist when poses were recorded.
     pub fn get(&self, handle: RigidBodyHandle) -> Option<&Pose> {
         let index = self
             .poses
@@ -52,7 +52,7 @@ impl BodyPoses {
         Some(&self.poses[index].1)
     }
 
-    /// Bodies that are elsewhere than they were.
+    /// Bodies whose pose differs from the recorded one.
     pub(super) fn moved<'a>(
         &'a self,
         bodies: &'a RigidBodySet,

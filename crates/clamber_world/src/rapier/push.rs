@@ -5,11 +5,11 @@ use rapier3d::geometry::{Collider, ColliderSet};
 use super::RapierTerrain;
 use crate::MaterialPoint;
 
-/// Pushes the body that a point of a [`RapierTerrain`](crate::RapierTerrain) lies on, with an impulse in N s at that
-/// point; wakes it up.
+/// Applies an impulse, in N s, at a point of a [`RapierTerrain`](crate::RapierTerrain) to the body there, and wakes it
+/// up.
 ///
-/// What a climber pushes comes back from its step, and goes to rapier before the next one. Bodies that are not dynamic
-/// or not there any more, and impulses that are not finite, are let be.
+/// A climber's step returns its pushes; apply them before rapier's next step. Nothing happens if the body is not
+/// dynamic or has been removed, or if the impulse is not finite.
 ///
 /// ```
 /// use clamber_world::{BodyPoses, Obstacle, RapierTerrain, apply_push};
@@ -50,8 +50,8 @@ pub fn apply_push(
     }
 }
 
-/// [`Obstacle::push_response`](crate::Obstacle::push_response) of a rapier world. Joints are not asked: what hangs on
-/// them answers as if it were free.
+/// [`Obstacle::push_response`](crate::Obstacle::push_response) of a rapier world. Joints are ignored: a jointed body
+/// responds as if it were free.
 pub(super) fn push_response(
     bodies: &RigidBodySet,
     colliders: &ColliderSet,
@@ -79,12 +79,12 @@ fn pushed<'a>(
     Some((collider.parent()?, collider))
 }
 
-/// Where a point is, in rapier's space.
+/// Position of a point in rapier's space.
 fn place(collider: &Collider, point: &MaterialPoint) -> DVec3 {
     super::terrain::pose_of(collider.position()).transform(DVec3::from_array(point.coordinates))
 }
 
-/// The change of the point's speed along a unit direction, for an impulse of 1 along it.
+/// Change of the point's speed along a unit direction for an impulse of 1 N s along it.
 fn response(body: &RigidBody, place: DVec3, direction: DVec3) -> f64 {
     let mass = body.mass_properties();
     let slide = (mass.effective_inv_mass.as_dvec3() * direction).dot(direction);

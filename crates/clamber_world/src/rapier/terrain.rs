@@ -22,13 +22,15 @@ use crate::{
 
 static DISPATCHER: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
-/// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
+/// Rays are searched beyond their end by this fraction of their length, and by this many metres, so that rounding does
+/// not miss a surface at the end.
 const LOOSE: f32 = 1e-4;
 
-/// Whether a collider is seen. Terrain is asked from many threads at once, so this is too; `QueryFilter` need not be.
+/// Decides whether queries see a collider. Many threads query terrain at once, so the filter is `Sync`, which rapier
+/// does not require of a `QueryFilter`.
 type Filter<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> bool + Sync);
 
-/// What a collider is made of.
+/// Returns the tag of a collider.
 type Tags<'a> = &'a (dyn Fn(ColliderHandle, &Collider) -> SurfaceTag + Sync);
 
 pub(super) fn pose_of(pose: &Pose) -> RigidPose {
@@ -40,20 +42,21 @@ fn key_of(handle: ColliderHandle) -> u64 {
     u64::from(generation) << 32 | u64::from(index)
 }
 
-/// A rapier world as one obstacle: its colliders as of the last step (or collision detection),
-/// without sensors.
+/// A rapier world as one obstacle: its enabled colliders as of the last step (or collision detection), without sensors.
 ///
-/// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle,
-/// from both sides; convex shapes are solid. A custom shape without a support map is seen by rays only. Rays are
-/// rapier's own: one that meets an edge between two of its triangles exactly may slip through.
+/// Create one each tick; it only borrows the world. Height fields and triangle meshes report contacts per triangle,
+/// from both sides; convex shapes are solid. A custom shape without a support map is seen by rays only. Ray casts are
+/// rapier's own: a ray that exactly meets an edge between two triangles may slip through.
 ///
-/// The skin patches of [`Debris`](crate::Debris) are ordinary colliders of the world. Without a filter a climber
-/// touches that skin twice: here, and on the creature itself. [`RapierTerrain::with_filter`] leaves them out, by
-/// [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by [`Debris::triangle_at`](crate::Debris::triangle_at).
+/// The skin patches of [`Debris`](crate::Debris) are ordinary colliders of the world. Without a filter, a climber
+/// touches that skin twice: here, and on the creature itself. Leave the patches out with
+/// [`RapierTerrain::with_filter`], by [`DebrisConfig::groups`](crate::DebrisConfig::groups) or by
+/// [`Debris::triangle_at`](crate::Debris::triangle_at).
 ///
-/// Sweeps see each point of a body go straight from where [`BodyPoses`] has it to where it is: for a body that turns by
-/// an angle in a tick, up to `r (1 - cos(angle / 2))` beside its arc. The first of them in a tick looks once through the
-/// bodies that were recorded, and takes memory for those that moved.
+/// In sweeps, each point of a body moves in a straight line from its position in [`BodyPoses`] to its current one. If
+/// the body turns by an angle in a tick, a point at the distance r from the axis is off its arc by up to
+/// `r (1 - cos(angle / 2))`. The first sweep in a tick iterates over all recorded bodies, and allocates memory for
+/// those that moved.
 pub struct RapierTerrain<'a> {
     bodies: &'a RigidBodySet,
     colliders: &'a ColliderSet,
@@ -62,15 +65,15 @@ pub struct RapierTerrain<'a> {
     tags: Option<Tags<'a>>,
     before: &'a BodyPoses,
     origin: DVec3,
-    /// Made when first asked for.
+    /// Built on first use.
     moved: OnceLock<MovedColliders>,
 }
 
-/// Colliders of bodies that are elsewhere than they were, and a tree over the boxes of their ways: rapier's own has them
-/// where they are now.
+/// Colliders of bodies whose pose has changed, and a tree over the boxes of their paths. Rapier's own tree has only
+/// their current boxes.
 struct MovedColliders {
     moved: Vec<(ColliderHandle, Moved)>,
-    /// Leaves are places in `moved`.
+    /// Leaves are indices into `moved`.
     tree: Bvh,
 }
 
@@ -83,8 +86,8 @@ impl MovedColliders {
 }
 
 impl<'a> RapierTerrain<'a> {
-    /// From the sets that an engine owns. `before` tells where bodies stood before the last step;
-    /// with an empty one, nothing of the world moves.
+    /// An obstacle made of rapier's sets. `before` holds the bodies' poses before the last step; if it is empty,
+    /// nothing in the world moves.
     pub fn new(
         bodies: &'a RigidBodySet,
         colliders: &'a ColliderSet,
@@ -103,20 +106,19 @@ impl<'a> RapierTerrain<'a> {
         }
     }
 
-    /// From rapier's all-in-one world.
+    /// An obstacle made of rapier's all-in-one world.
     pub fn of_world(world: &'a PhysicsWorld, before: &'a BodyPoses) -> Self {
         Self::new(&world.bodies, &world.colliders, &world.broad_phase, before)
     }
 
-    /// Where rapier's origin stands in the world, for scenes that are far larger than f32 can
-    /// resolve. Zero if not said.
+    /// Sets the world position of rapier's origin, for scenes far larger than f32 can resolve. Zero by default.
     #[must_use]
     pub fn with_origin(mut self, origin: DVec3) -> Self {
         self.origin = origin;
         self
     }
 
-    /// Restricts what is seen to colliders that a function says yes to: those of groups, or all but a body's own, as
+    /// Restricts queries to the colliders that a function accepts: those of some groups, or all but a body's own, as
     /// `|_, collider| collider.parent() != Some(body)`.
     #[must_use]
     pub fn with_filter(
@@ -127,8 +129,9 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    /// Says what colliders are made of, so that a climber knows fur and ledges, and contacts carry the game's own
-    /// number; without it, everything has the default tag. Bits of a collider's `user_data` are a good place for it.
+    /// Sets a function that returns the tag of a collider, so that a climber recognises fur and ledges, and contacts
+    /// carry the game's own number. Without it, every collider has the default tag. Bits of a collider's `user_data`
+    /// are a good place to store the tag.
     ///
     /// ```
     /// # use clamber_world::{BodyPoses, Obstacle, RapierTerrain, SurfaceKind, SurfaceTag};
@@ -157,14 +160,15 @@ impl<'a> RapierTerrain<'a> {
         self
     }
 
-    /// The collider that a material point of any rapier world lies on. It may have been removed since.
+    /// Handle of the collider that a material point of a rapier world lies on. The collider may have been removed
+    /// since.
     pub fn collider_of(point: &MaterialPoint) -> ColliderHandle {
         ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32)
     }
 
-    /// Whether queries see a collider: it is enabled, no sensor, and the caller's filter lets it through.
+    /// True if queries see a collider: it is enabled, it is no sensor, and the caller's filter accepts it.
     ///
-    /// Asked in every query: rapier's tree keeps a collider that was disabled until the next step.
+    /// Checked in every query, since rapier's tree keeps a disabled collider until the next step.
     fn sees(&self, handle: ColliderHandle, collider: &Collider) -> bool {
         collider.is_enabled()
             && !collider.is_sensor()
@@ -176,7 +180,7 @@ impl<'a> RapierTerrain<'a> {
             .map_or_else(SurfaceTag::default, |tags| tags(handle, collider))
     }
 
-    /// A contact of a sweep with its tag.
+    /// Sets the tag of a sweep's contact.
     fn tagged(&self, mut sweep: SweepContact) -> SweepContact {
         let handle = Self::collider_of(&sweep.contact.material);
         if let Some(collider) = self.colliders.get(handle) {
@@ -185,7 +189,7 @@ impl<'a> RapierTerrain<'a> {
         sweep
     }
 
-    /// Rapier's own queries of what [`RapierTerrain::sees`] lets through.
+    /// Runs rapier's own queries on the colliders that [`RapierTerrain::sees`] accepts.
     fn with_queries<R>(&self, ask: impl FnOnce(&QueryPipeline<'_>) -> R) -> R {
         let sees = |handle, collider: &Collider| self.sees(handle, collider);
         let filter = QueryFilter::new().predicate(&sees);
@@ -228,11 +232,12 @@ impl<'a> RapierTerrain<'a> {
         }
     }
 
-    /// Where a collider was; `None` if it has not moved.
+    /// Pose of a collider before the last step; `None` if it has not moved.
     fn previous_pose(&self, collider: &Collider) -> Option<RigidPose> {
         let body = collider.parent()?;
         let before = self.before.get(body)?;
-        // Poses of colliders are products, which rounding may change where nothing moves.
+        // A collider's pose is a product, which rounding may change although nothing moves. So compare the bodies'
+        // poses.
         if self.bodies.get(body)?.position() == before {
             return None;
         }
@@ -253,7 +258,7 @@ impl<'a> RapierTerrain<'a> {
         })
     }
 
-    /// Tries all that may be met, as it stands now or on its way there.
+    /// Calls `meet` for every collider that the capsule may touch, in its current pose or on the path to it.
     fn meet(&self, first: &mut FirstContact, target: TargetMotion, meet: &mut Meet<'_>) {
         match target {
             TargetMotion::Still => self.meet_near(first, |_| true, meet),
@@ -265,7 +270,7 @@ impl<'a> RapierTerrain<'a> {
         }
     }
 
-    /// Tries what moved, all along its way.
+    /// Calls `meet` for colliders that have moved, over their whole paths.
     fn meet_moved(&self, first: &mut FirstContact, meet: &mut Meet<'_>) {
         let all = self.moved();
         all.tree.traverse(|node| {
@@ -288,7 +293,7 @@ impl<'a> RapierTerrain<'a> {
         });
     }
 
-    /// Tries what the broad phase finds in the way, as it stands now, if it is to be tried.
+    /// Calls `meet` for colliders in the capsule's way, in their current pose, that `is_tried` accepts.
     fn meet_near(
         &self,
         first: &mut FirstContact,
@@ -316,7 +321,7 @@ impl<'a> RapierTerrain<'a> {
         });
     }
 
-    /// A radius about `point` that reaches everything.
+    /// A radius about `point` that contains all colliders.
     fn reach_of_all(&self, point: Vector) -> f64 {
         let all = self.tree().root_aabb();
         let farthest = (all.maxs - point).abs().max((all.mins - point).abs());
@@ -340,7 +345,7 @@ impl Obstacle for RapierTerrain<'_> {
         }
         let collider = self.colliders.get(handle)?;
         let point = ray.point_at(hit.time_of_impact);
-        // Rapier turns the normals of triangles towards the ray; both sides are solid to it.
+        // Rapier turns the normals of triangles towards the ray; a triangle is hit from both sides.
         let distance = f64::from(hit.time_of_impact);
         Some(self.contact(handle, collider, point, hit.normal, distance))
     }

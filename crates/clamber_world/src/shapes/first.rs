@@ -7,10 +7,10 @@ use super::sweep::sweep_shape_where;
 use super::{ShapeTouch, Tick, sweep_shape};
 use crate::{Contact, SweepContact, WorldCapsule};
 
-/// The first contact of a moving capsule among many shapes, the same in whatever order they are tried.
+/// Finds the first contact of a moving capsule among many shapes. The order of the shapes does not matter.
 ///
-/// An engine searches its tree for boxes that [may be met](FirstContact::may_meet), and tries their shapes. Boxes,
-/// poses and the capsule are in the engine's own space.
+/// Descend the engine's tree where [`FirstContact::may_meet`] accepts a box, and pass each shape found there to
+/// [`FirstContact::meet`]. Boxes, poses and the capsule are in the engine's own space.
 ///
 /// ```
 /// use clamber_world::WorldCapsule;
@@ -36,8 +36,8 @@ pub struct FirstContact {
 }
 
 impl FirstContact {
-    /// A search that has tried no shape yet. Each end of the capsule moves by its own displacement. `None` if anything
-    /// is not finite or beyond 2^100, or the radius negative.
+    /// A search without shapes so far. Each end of the capsule moves by its own displacement. `None` if a coordinate is
+    /// not finite or beyond 2^100, or if the radius is negative.
     pub fn new(capsule: &WorldCapsule, displacements: [DVec3; 2]) -> Option<Self> {
         let radius = capsule.radius;
         let end = capsule.with_ends_moved(displacements).ends;
@@ -58,17 +58,18 @@ impl FirstContact {
         })
     }
 
-    /// A box around the whole path of the capsule and everything within its reach.
+    /// Bounding box of the capsule's whole path, enlarged by the tolerance.
     pub fn bounds(&self) -> Aabb {
         self.reach.bounds()
     }
 
-    /// Whether a shape that stays within this box may be met no later than the first contact so far.
+    /// True if a shape that stays within this box may be touched no later than the first contact so far.
     pub fn may_meet(&self, bounds: &Aabb) -> bool {
         self.reach.meets(bounds, self.limit())
     }
 
-    /// Tries a shape on a body.
+    /// Tests a shape of a body whose poses are `tick`, and keeps the contact if it is the first so far. `key` becomes
+    /// the contact's [`MaterialPoint::key`](crate::MaterialPoint::key).
     pub fn meet(&mut self, shape: &dyn Shape, tick: &Tick, key: u64) {
         let sweep = tick.sweep(&self.capsule, self.displacements);
         if let Some(touch) = sweep_shape(shape, &sweep, self.limit()) {
@@ -76,8 +77,8 @@ impl FirstContact {
         }
     }
 
-    /// [`FirstContact::meet`] among the contacts for which `counts` returns true. It gets them in the engine's space,
-    /// with the default tag.
+    /// [`FirstContact::meet`] restricted to the contacts for which `counts` returns true. `counts` gets them in the
+    /// engine's space, with the default tag.
     pub fn meet_where(
         &mut self,
         shape: &dyn Shape,
@@ -99,8 +100,8 @@ impl FirstContact {
         }
     }
 
-    /// The first contact, in world space: `origin` is the position of the engine's origin. It carries the default tag;
-    /// the caller sets it.
+    /// The first contact, in world space; `None` if no shape is touched. `origin` is the world position of the engine's
+    /// origin. The tag is the default; the caller sets it.
     pub fn contact(&self, origin: DVec3) -> Option<SweepContact> {
         self.first.map(|first| SweepContact {
             contact: Contact {
@@ -116,7 +117,7 @@ impl FirstContact {
     }
 }
 
-/// By time, then distance, then key, then place.
+/// Orders by time, then distance, then key, then local coordinates and normal.
 fn precedes(contact: &SweepContact, other: &SweepContact) -> bool {
     let key = |sweep: &SweepContact| {
         let Contact {

@@ -4,15 +4,15 @@ use parry3d::shape::{Shape, TypedShape};
 use super::overlap_shape;
 use crate::WorldCapsule;
 
-/// A material point is gone if the shape is farther than this from it, metres: the shape was exchanged. Above the
-/// rounding of f32 poses a kilometre out, below any change of shape that a player would see.
+/// A material point farther than this from its shape is gone, metres: the shape was replaced. More than the rounding of
+/// f32 poses at 1 km, less than any change of shape that a player would see.
 const GONE: f64 = 1e-3;
 
-/// Whether a point in a shape's own space is in or on it, or within 1 mm: a point of a body's material is still there.
-/// Of triangles only their faces count, not what they enclose.
+/// True if a point in a shape's local space is inside the shape, on it, or within 1 mm of it: a material point there
+/// still exists. For triangle meshes and height fields only the triangles count, not the volume that they enclose.
 pub fn holds(shape: &dyn Shape, point: DVec3) -> bool {
     match shape.as_typed_shape() {
-        // Of the most common shapes one sees it at once.
+        // Fast paths for the most common shapes.
         TypedShape::Ball(ball) => point.length() <= f64::from(ball.radius) + GONE,
         TypedShape::Cuboid(cuboid) => {
             let beyond = point.abs() - cuboid.half_extents.as_dvec3();
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_that_are_part_of_a_shape_are_told_at_once_as_by_overlap() {
+    fn fast_paths_agree_with_the_overlap_test() {
         let mut rng = fastrand::Rng::with_seed(5);
         let shapes: [&dyn Shape; 3] = [
             &Ball::new(0.7),
@@ -54,14 +54,14 @@ mod tests {
             for _ in 0..20_000 {
                 let mut share = || 2.0 * rng.f64() - 1.0;
                 let far = DVec3::new(share(), share(), share());
-                // Half of them within two tolerances of the face.
+                // For half of the points, within two tolerances of the surface.
                 let face = shape.project_local_point(far.as_vec3(), false);
                 let near = face.point.as_dvec3();
                 let local = [far, near + far.normalize() * (share() * 2.0 * GONE)][rng.usize(0..2)];
                 let expected = overlaps(shape, local);
                 let away = shape.distance_to_local_point(local.as_vec3(), true);
                 if (0.9 * GONE..1.9 * GONE).contains(&f64::from(away)) {
-                    // Beside a corner a box reaches a little farther than the distance does.
+                    // Beside a corner, the box test accepts points slightly farther away.
                     continue;
                 }
                 let told = format!("{:?} at {local}", shape.shape_type());

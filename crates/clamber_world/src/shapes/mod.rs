@@ -1,8 +1,8 @@
-//! Queries of parry's shapes, shared by the obstacles of rapier and avian, which so give the same answers.
+//! Queries against parry's shapes. The obstacles of rapier and avian share them, so both give the same answers.
 //!
-//! A shape is a set of parts: triangles, met from both sides by the solver of skinned surfaces, and solid convex
-//! shapes. Of parry only the shapes themselves are asked, their trees and their support points; distances, ways out
-//! and times of contact are computed here in f64.
+//! A shape is a set of parts: triangles, which are two-sided and go through the solver of skinned surfaces, and solid
+//! convex shapes. From parry come only the shapes, their trees and their support points. Distances, minimum
+//! translations and times of contact are computed here, in f64.
 
 mod convex;
 mod first;
@@ -26,13 +26,12 @@ use std::cmp::Ordering;
 
 use crate::Contact;
 
-/// First radius, in metres, of the search for the closest point; it doubles until something lies
-/// within. Larger looks at more triangles where something is near, smaller searches longer where
-/// nothing is.
+/// First search radius for the closest point, metres; it doubles until a contact is found. A larger radius tests more
+/// triangles where something is near; a smaller one takes more rounds where nothing is.
 const FIRST_REACH: f64 = 1.0;
 
-/// The contact of least distance up to `max_distance`, by overlaps of growing radius. `reach_of_all` is a radius
-/// that reaches everything.
+/// The closest contact up to `max_distance` metres, found by overlaps of growing radius. `overlap` appends the contacts
+/// within a radius; `reach_of_all` is a radius that contains the whole obstacle.
 pub fn closest_by_overlap(
     max_distance: f64,
     reach_of_all: f64,
@@ -57,8 +56,8 @@ pub fn closest_by_overlap(
     }
 }
 
-/// By ascending key, and by place and normal within one body, so that the order of its tree does not matter. In
-/// place, so that a steady tick allocates nothing.
+/// Sorts contacts by key, then by local coordinates, then by normal, so that the order of an engine's tree does not
+/// matter. In place, so that a steady tick allocates nothing.
 pub fn sort_contacts(contacts: &mut [Contact]) {
     contacts.sort_unstable_by(compare);
 }

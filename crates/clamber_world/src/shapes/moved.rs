@@ -5,20 +5,21 @@ use parry3d::shape::Shape;
 use super::Tick;
 use crate::RigidPose;
 
-/// Share of coordinates by which a box is off in f32, four times over.
+/// Rounding error of a box in f32, four times over, as a fraction of its largest coordinate.
 const LOOSE: f32 = 1e-6;
 
-/// A body that moved over a tick, with a box around its whole path: an engine's own box may hold its current pose only.
+/// A body that moved over a tick, with a box around its whole path. An engine's own box may cover only the current
+/// pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moved {
-    /// Where it was and is.
+    /// Poses at the start and the end of the tick.
     pub tick: Tick,
-    /// Holds the shape at both poses, and so all lines between.
+    /// A box around the shape at both poses, and so around all straight lines between them.
     pub bounds: Aabb,
 }
 
 impl Moved {
-    /// A shape that went from the one pose to the other.
+    /// A shape whose pose changed from `before` to `now`.
     pub fn new(shape: &dyn Shape, before: RigidPose, now: RigidPose) -> Self {
         let at = |pose: &RigidPose| {
             let pose = Pose::from_parts(pose.translation.as_vec3(), pose.rotation.as_quat());

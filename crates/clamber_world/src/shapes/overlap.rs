@@ -9,21 +9,22 @@ use super::reach::Reach;
 use crate::RigidPose;
 use crate::{Contact, MaterialPoint};
 
-/// Where a shape is touched, in its own space.
+/// A contact with a shape, in its local space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ShapeContact {
-    /// The shape's point.
+    /// Point of the shape.
     pub point: DVec3,
-    /// Out of the shape, of length 1.
+    /// Unit normal that points out of the shape.
     pub normal: DVec3,
-    /// From the capsule's segment. Negative inside a solid: the way out is along the normal, so far.
+    /// Distance from the capsule's segment, metres. Negative inside a solid, where a translation by its magnitude along
+    /// `normal` leads out.
     pub distance: f64,
 }
 
 impl ShapeContact {
-    /// The contact in world space, on the body that `key` names: `pose` places it in a space whose origin is at
-    /// `origin`. It carries the default tag; the caller sets it.
+    /// The contact in world space, with `key` as its [`MaterialPoint::key`]. `pose` places the shape in a space whose
+    /// origin is at `origin` in the world. The tag is the default; the caller sets it.
     pub fn in_world(&self, pose: &RigidPose, origin: DVec3, key: u64) -> Contact {
         Contact {
             point: pose.transform(self.point) + origin,
@@ -38,9 +39,9 @@ impl ShapeContact {
     }
 }
 
-/// Calls `found` for every triangle of a mesh or height field and every convex part within `radius` of the segment
-/// between `ends`, all in the shape's own space, with its nearest point. The radius may be infinite; nothing is found
-/// if anything is NaN, an end not finite or the radius negative.
+/// Calls `found` with the nearest point of each part of a shape within `radius` of the segment between `ends`. Parts
+/// are the triangles of a mesh or height field, and convex solids. Everything is in the shape's local space. The radius
+/// may be infinite. Nothing is found if an end is not finite or beyond 2^100, or if the radius is NaN or negative.
 pub fn overlap_shape(
     shape: &dyn Shape,
     ends: [DVec3; 2],
@@ -91,7 +92,8 @@ fn triangle(corners: [Vec3; 3], still: &MovingCapsule) -> Option<ShapeContact> {
     })
 }
 
-/// With the way out where they overlap.
+/// The contact of a segment with a convex solid. Where the segment meets the core: the minimum translation that leads
+/// out.
 pub(super) fn solid(convex: &Convex<'_>, ends: [DVec3; 2]) -> ShapeContact {
     match MovingConvex::still(convex).nearest(0.0, ends, DVec3::ZERO) {
         Some(nearest) => ShapeContact {

@@ -6,18 +6,18 @@ use parry3d::shape::{HeightField, Shape, TypedShape};
 use super::convex::Convex;
 use crate::RigidPose;
 
-/// What shapes are made of.
+/// A part of a shape.
 pub(super) enum Part<'a> {
     Triangle([Vec3; 3]),
     Convex(Convex<'a>),
-    /// All points whose part along the unit vector is not positive.
+    /// All points whose dot product with this unit vector is not positive.
     HalfSpace(DVec3),
-    /// A shape in a space of its own.
+    /// A shape in a local space of its own, placed by a pose.
     Posed(RigidPose, &'a dyn Shape),
 }
 
-/// Calls `visit` with the parts of a shape whose boxes `reaches` says yes to, asked again for each: it may become more
-/// particular on the way. `bounds` holds all that it says yes to.
+/// Calls `visit` with the parts of a shape, except those whose bounding boxes `reaches` rejects. `reaches` is called
+/// anew for each box and may become stricter during the visit. `bounds` meets every box that `reaches` accepts.
 pub(super) fn visit_parts(
     shape: &dyn Shape,
     bounds: &Aabb,

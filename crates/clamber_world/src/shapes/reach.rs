@@ -2,28 +2,30 @@ use clamber_surface::geometry::MovingCapsule;
 use glam::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 
-/// Share of coordinates by which boxes are widened, so that none is missed by rounding of trees in f32.
+/// Boxes are enlarged by this fraction of their coordinates, so that the rounding of f32 trees hides nothing.
 const LOOSE: f64 = 1e-6;
 
-/// Lengths beyond this count as infinite: their squares are finite in f32.
+/// Lengths are cut to this value, whose square is finite in f32.
 const ENDLESS: f64 = 1e18;
 
-/// Coordinates beyond this find nothing, as for skin: sums of some are finite in f32, products of six in f64.
+/// Queries with a coordinate beyond this find nothing, as on skin. Sums of several such values are finite in f32, and
+/// products of six in f64.
 const FARTHEST: f64 = (1u128 << 100) as f64;
 
-/// Whether a place is finite, and not too far out.
+/// True if a position is finite and no coordinate is beyond [`FARTHEST`].
 pub(super) fn is_usable(place: DVec3) -> bool {
-    // NaN is in no range.
+    // No range contains NaN.
     let within = |x: f64| (-FARTHEST..=FARTHEST).contains(&x);
     within(place.x) && within(place.y) && within(place.z)
 }
 
-/// Whether a radius of what moves is finite, not too large, and not negative.
+/// True if the radius of a moving capsule is finite, not negative and not beyond [`FARTHEST`].
 pub(super) fn is_usable_radius(radius: f64) -> bool {
     (0.0..=FARTHEST).contains(&radius)
 }
 
-/// The box around a moving capsule, at both ends of its way; between them it lies between the two.
+/// Bounding boxes of a moving capsule at the start and the end of its path. In between, its box lies within their
+/// linear interpolation.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach {
     low: [DVec3; 2],
@@ -31,7 +33,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// The box around everything within `distance` of the capsule's segment.
+    /// Boxes around everything within `distance` of the capsule's segment.
     pub fn new(path: &MovingCapsule, distance: f64) -> Self {
         let boxes = [path.start, path.end].map(|[a, b]| {
             let (low, high) = (a.min(b), a.max(b));
@@ -45,8 +47,8 @@ impl Reach {
         }
     }
 
-    /// The box around everything within `radius` of a segment that stands still. The radius may be infinite. `None` if
-    /// an end is not finite or beyond 2^100, or the radius NaN or negative.
+    /// Box around everything within `radius` of a segment at rest. The radius may be infinite. `None` if an end is not
+    /// finite or beyond 2^100, or if the radius is NaN or negative.
     pub fn around(ends: [DVec3; 2], radius: f64) -> Option<Self> {
         let usable = is_usable(ends[0]) && is_usable(ends[1]) && radius >= 0.0;
         let path = MovingCapsule {
@@ -57,7 +59,7 @@ impl Reach {
         usable.then(|| Self::new(&path, radius))
     }
 
-    /// Around all of the way.
+    /// Box around the whole path, rounded outward to f32.
     pub fn bounds(&self) -> Aabb {
         let down = |x: f64| (x as f32).next_down();
         let up = |x: f64| (x as f32).next_up();
@@ -66,7 +68,7 @@ impl Reach {
         Aabb::new(Vec3::from(low), Vec3::from(high))
     }
 
-    /// Whether the box meets another one that stands still, up to the time `limit`.
+    /// True if the moving box meets a box at rest by the time `limit`.
     pub fn meets(&self, other: &Aabb, limit: f64) -> bool {
         let (mut from, mut until) = (0.0, limit);
         for axis in 0..3 {
@@ -81,7 +83,8 @@ impl Reach {
     }
 }
 
-/// Leaves of an interval where the line from the one value at 0 to the other at 1 is not negative, and a little more.
+/// Narrows an interval of times to where the line from `first` at time 0 to `last` at time 1 is not negative, and
+/// slightly beyond.
 fn narrow([first, last]: [f64; 2], from: &mut f64, until: &mut f64) {
     if first < 0.0 && last < 0.0 {
         *until = -1.0;
@@ -97,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_box_is_missed_that_a_step_on_the_way_meets() {
+    fn boxes_that_a_sampled_step_meets_are_never_ruled_out() {
         let mut rng = fastrand::Rng::with_seed(41);
         let mut point =
             |size: f64| DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5) * 2.0 * size;

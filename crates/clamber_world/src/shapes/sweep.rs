@@ -10,40 +10,41 @@ use super::reach::{Reach, is_usable, is_usable_radius};
 use crate::RigidPose;
 use crate::WorldCapsule;
 
-/// [`WorldCapsule::sweep_tolerance`] by the radius alone.
+/// [`WorldCapsule::sweep_tolerance`] from the radius alone.
 fn sweep_tolerance(radius: f64) -> f64 {
     WorldCapsule::ball(DVec3::ZERO, radius).sweep_tolerance()
 }
 
-/// A capsule and a shape over a tick, as seen from where the shape is at its end.
+/// Motion of a capsule and a shape over a tick, in the shape's local space at the end of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeSweep {
-    /// The capsule, in the shape's own space.
+    /// Motion of the capsule, in that space.
     pub path: MovingCapsule,
-    /// Where the shape was at the start, in the same space: its points go on straight lines from there. `None` for what
-    /// stands still.
+    /// Pose of the shape at the start of the tick, in the same space. Its points move in straight lines from there.
+    /// `None` for a shape at rest.
     pub before: Option<RigidPose>,
 }
 
-/// Where a capsule on its way first touches a shape.
+/// The first contact of a moving capsule with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ShapeTouch {
-    /// Share of the way, 0..=1.
+    /// Time of contact as a fraction of the motion, 0..=1.
     pub time: f64,
-    /// The contact point on the shape at rest, with the normal and distance at that time. In the shape's own space.
+    /// The contact's point on the shape at rest, and its normal and distance at `time`, all in the shape's local space.
     pub contact: ShapeContact,
-    /// Unit vector from there towards the capsule's segment; the way out where that lies inside of a solid.
+    /// Unit vector from the contact towards the capsule's segment. Where the segment is inside a solid: the direction
+    /// of the minimum translation that leads out.
     pub separation_normal: DVec3,
-    /// They overlap at the start; the time is 0.
+    /// True if they overlap at the start; the time is then 0.
     pub started_inside: bool,
-    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
+    /// True if the solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
 impl ShapeTouch {
-    /// The earlier; of those at one time the nearer; then by place and direction, so that the order in which parts are
-    /// met does not matter.
+    /// Orders by time, then by distance, then by position and direction, so that the order in which parts are visited
+    /// does not matter.
     fn precedes(&self, other: &Self) -> bool {
         let key = |touch: &Self| {
             let place = (
@@ -56,16 +57,16 @@ impl ShapeTouch {
     }
 }
 
-/// The first contact of a capsule with a shape, up to the time `limit`.
+/// The first contact of a moving capsule with a shape, up to the time `limit`.
 ///
-/// Never later than the true one, at a distance of at most the radius plus [`WorldCapsule::sweep_tolerance`], unless it
-/// is [undecided](ShapeTouch::undecided). Triangles are met from both sides. `None` if anything is not finite or beyond
-/// 2^100, or the radius negative.
+/// The reported time is never later than the true one. The distance at that time is at most the radius plus
+/// [`WorldCapsule::sweep_tolerance`], unless the contact is [undecided](ShapeTouch::undecided). Triangles are
+/// two-sided. Nothing is found if a coordinate is not finite or beyond 2^100, or if the radius is negative.
 pub fn sweep_shape(shape: &dyn Shape, sweep: &ShapeSweep, limit: f64) -> Option<ShapeTouch> {
     search(shape, sweep, limit, None)
 }
 
-/// [`sweep_shape`] among the contacts that count.
+/// [`sweep_shape`] restricted to the contacts that `counts` accepts.
 pub(super) fn sweep_shape_where(
     shape: &dyn Shape,
     sweep: &ShapeSweep,
@@ -108,7 +109,7 @@ fn search(
 }
 
 impl ShapeSweep {
-    /// The capsule as the shape sees it from where it is at each time.
+    /// The capsule's start and end, each relative to the shape's pose at that time.
     fn seen_from_shape(&self) -> MovingCapsule {
         let start = |end: DVec3| match &self.before {
             Some(before) => before.inverse_transform(end),
@@ -120,11 +121,12 @@ impl ShapeSweep {
         }
     }
 
-    /// What comes within reach of the shape at rest.
+    /// The region that the capsule reaches, in the space of the shape at rest.
     ///
-    /// Let x go straight, as the shape sees it, from x0 to x1, and R be the turn. In this space that is
-    /// `t (1 - t) (1 - R) (x1 - x0)` off a straight line: at most half the sine of half the angle, times the length of
-    /// the way. And points on straight lines come nearer to each other meanwhile, by the cosine at most.
+    /// Let a point of the capsule move in a straight line from x0 to x1 relative to the shape, and let R be the shape's
+    /// rotation. In this space the point deviates from a straight line by `t (1 - t) (1 - R) (x1 - x0)`. This is at
+    /// most half the sine of half the angle, times the length of the line. In between, points of the shape that move in
+    /// straight lines also come closer to each other: by a factor of no less than the cosine of half the angle.
     fn reach(&self) -> Reach {
         let path = self.seen_from_shape();
         let touch = path.radius + 2.0 * sweep_tolerance(path.radius);
@@ -168,7 +170,7 @@ impl ShapeSweep {
                     separation_normal: pose.rotation * touch.separation_normal,
                     ..*touch
                 };
-                // Its parts have been asked about one by one.
+                // `search` has called `counts` for each of its parts.
                 let touch = match counts {
                     Some(counts) => {
                         let mut counts = |touch: &ShapeTouch| counts(&outer(touch));
@@ -224,7 +226,7 @@ impl ShapeSweep {
                     distance: nearest.distance - convex.round,
                 }
             }
-            // At the start; or, of radius zero, when the segment comes to lie on the core.
+            // The segment meets the core: at the start, or at any time if the radius is zero.
             None => {
                 let place = moving.place(time);
                 let contact = solid(convex, ends.map(|end| place.inverse_transform(end)));
@@ -243,7 +245,7 @@ impl ShapeSweep {
         })
     }
 
-    /// As seen from the half space: all of it that turns would be endlessly fast somewhere.
+    /// Solved relative to the half-space: the points of an infinite solid that turns have no largest speed.
     fn meet_half_space(&self, normal: DVec3) -> Option<ShapeTouch> {
         let path = self.seen_from_shape();
         let starts = path.start.map(|end| normal.dot(end) - path.radius);

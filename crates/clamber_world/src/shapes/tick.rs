@@ -6,27 +6,27 @@ use super::{ShapeSweep, ShapeTouch};
 use crate::RigidPose;
 use crate::{Contact, MaterialPoint, SweepContact, WorldCapsule};
 
-/// Where a body stood a tick ago and stands now.
+/// Poses of a body at the start and the end of a tick.
 ///
-/// Its points are taken to go on straight lines from where they were to where they are, as the vertices of skin do. For
-/// a body that turns by an angle meanwhile, a point at a distance r from what it turns about is off by at most
-/// `r (1 - cos(angle / 2))`: 0.3 mm at 2 rad/s, 60 ticks a second and 2 m.
+/// Each point of the body is taken to move in a straight line from its previous to its current position, as the
+/// vertices of skin do. If the body turns by an angle over the tick, a point at the distance r from the axis is off its
+/// arc by at most `r (1 - cos(angle / 2))`: 0.3 mm at 2 rad/s, 60 ticks a second and 2 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// At time 0; `None` for what stands still.
+    /// Pose at time 0; `None` for a body at rest.
     pub before: Option<RigidPose>,
-    /// At time 1.
+    /// Pose at time 1.
     pub now: RigidPose,
 }
 
 impl Tick {
-    /// Of what stands still.
+    /// The tick of a body at rest.
     pub const fn still(now: RigidPose) -> Self {
         Self { before: None, now }
     }
 
-    /// A capsule whose ends go by a displacement each, as seen from where the body is now. All are in the space that the
-    /// poses place the body in.
+    /// The sweep of a capsule in the body's current local space. Each end of the capsule moves by its own displacement;
+    /// both are given in the space of the poses.
     pub fn sweep(&self, capsule: &WorldCapsule, displacements: [DVec3; 2]) -> ShapeSweep {
         let local = |ends: [DVec3; 2]| ends.map(|end| self.now.inverse_transform(end));
         ShapeSweep {
@@ -41,8 +41,8 @@ impl Tick {
         }
     }
 
-    /// A touch of such a sweep in the space of the poses, on the body that `key` names. It carries the default tag; the
-    /// caller sets it.
+    /// Converts the result of such a sweep to the space of the poses. `key` becomes the [`MaterialPoint::key`]. The tag
+    /// is the default; the caller sets it.
     pub fn contact(&self, touch: &ShapeTouch, key: u64) -> SweepContact {
         let separation_normal =
             (self.now.rotation * touch.separation_normal).normalize_or(DVec3::Y);

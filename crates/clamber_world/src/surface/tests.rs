@@ -26,7 +26,7 @@ fn square() -> SkinnedSurface {
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-/// Far out, ten times as large, a quarter turn about X: the square stands upright and faces +Z.
+/// 100 km from the origin, ten times as large, turned by 90 degrees about X: the square is upright and faces +Z.
 fn placed() -> (SkinnedSurface, Similarity) {
     let world_from_model = Similarity {
         rotation: rotation_from_axis_angle(DVec3::X, core::f64::consts::FRAC_PI_2),
@@ -40,7 +40,7 @@ fn placed() -> (SkinnedSurface, Similarity) {
 }
 
 #[test]
-fn queries_are_in_metres_of_the_world_wherever_the_creature_stands() {
+fn queries_are_in_world_metres_wherever_the_creature_stands() {
     let (surface, world_from_model) = placed();
     let center = world_from_model.translation;
     let p = center + DVec3::new(1.0, 2.0, 4.0);
@@ -92,7 +92,7 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
     let frame = motion.frame.unwrap();
     assert!((frame * DVec3::Y - turned.rotation * DVec3::Y).length() < 1e-5);
 
-    // The same, asked as an anchor.
+    // An anchor at the point gives the same.
     let anchor = material.anchor_on(&surface).unwrap();
     let anchored = surface.in_world().motion(&anchor, dt).unwrap();
     assert_eq!(anchored.position, motion.position);
@@ -105,7 +105,7 @@ fn a_material_point_moves_with_root_and_skin_in_world_units() {
 }
 
 #[test]
-fn material_that_has_collapsed_has_no_frame() {
+fn collapsed_material_has_no_frame() {
     let (mut surface, world_from_model) = placed();
     let material = surface.closest_point(world_from_model.translation, 1.0);
     let material = material.unwrap().material;
@@ -122,7 +122,7 @@ fn material_that_has_collapsed_has_no_frame() {
 }
 
 #[test]
-fn what_is_not_finite_or_gone_finds_nothing() {
+fn bad_input_and_removed_triangles_find_nothing() {
     let (mut surface, world_from_model) = placed();
     let center = world_from_model.translation;
     let mut contacts = Vec::new();
@@ -149,7 +149,7 @@ fn what_is_not_finite_or_gone_finds_nothing() {
 }
 
 #[test]
-fn bounds_hold_the_creature_over_the_tick_and_little_more() {
+fn bounds_enclose_the_creature_over_the_tick_tightly() {
     let (mut surface, world_from_model) = placed();
     let moved = Similarity {
         translation: world_from_model.translation + DVec3::X * 40.0,
@@ -158,7 +158,7 @@ fn bounds_hold_the_creature_over_the_tick_and_little_more() {
     let palette = Palette::from_matrices([Affine::IDENTITY]);
     surface.advance(&palette, moved).unwrap();
     let (center, radius) = Obstacle::bounds(&surface).unwrap();
-    // A corner then and now.
+    // Each corner, before and now.
     for from in [&world_from_model, &moved] {
         for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)] {
             let corner = from.transform_point(DVec3::new(x, 0.0, z));
@@ -166,7 +166,7 @@ fn bounds_hold_the_creature_over_the_tick_and_little_more() {
             assert!(apart <= radius, "{corner}: {apart} of {radius}");
         }
     }
-    // The box is that of a ball about the square, 14.2 m in radius, at both places.
+    // The bounds are those of the box around two balls of 14.2 m, one about the square at each place.
     assert!(radius < 40.0, "{radius}");
     surface.sleep();
     let (center, radius) = Obstacle::bounds(&surface).unwrap();
@@ -175,7 +175,7 @@ fn bounds_hold_the_creature_over_the_tick_and_little_more() {
 }
 
 #[test]
-fn capsules_meet_a_creature_in_metres_of_the_world() {
+fn capsule_queries_are_in_world_metres() {
     // The square is 20 m wide, upright, and faces +Z.
     let (mut surface, world_from_model) = placed();
     let center = world_from_model.translation;
@@ -200,7 +200,8 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
         None
     );
 
-    // A rod that leans towards it: 4 m and 2 m away, its near end beyond the square's edge by 10 cm.
+    // A rod that leans towards the square, with its ends at 4 m and 2 m. The near end is 10 cm beyond the square's
+    // edge.
     let rod = WorldCapsule {
         ends: [at(1.0, 4.0), at(10.1, 2.0)],
         radius: 0.5,
@@ -214,13 +215,14 @@ fn capsules_meet_a_creature_in_metres_of_the_world() {
     }
     let nearest = contacts.iter().map(|contact| contact.distance);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
-    // On the line from 4 m to 2 m, 9.1 m along, the place over the edge is 2.022 m high; a little nearer, aslant.
+    // Along 9.1 m the rod's distance falls from 4 m to 2 m; over the edge it is 2.022 m, and measured aslant a little
+    // less.
     assert!((1.98..2.01).contains(&nearest), "{contacts:?}");
     let met =
         Obstacle::cast_capsule(&surface, &rod, [DVec3::Z * -3.0; 2], TargetMotion::Still).unwrap();
     assert!((met.time - 0.5).abs() < 0.02, "{met:?}");
 
-    // It comes nearer by 2 m over the tick.
+    // The square moves 2 m nearer over the tick.
     let moved = Similarity {
         translation: center + DVec3::Z * 2.0,
         ..world_from_model
@@ -293,7 +295,7 @@ fn capsules_that_are_not_finite_meet_nothing() {
 }
 
 #[test]
-fn both_spaces_say_the_same() {
+fn world_and_model_queries_agree() {
     let (mut surface, before) = placed();
     let turned = Similarity {
         rotation: rotation_from_axis_angle(DVec3::X, 0.3) * before.rotation,
@@ -332,7 +334,7 @@ fn both_spaces_say_the_same() {
     world.cast_ray_all(DVec3::NAN, DVec3::X, 9.0, &mut hits);
     assert!(hits.is_empty());
 
-    // From above and from below, to a tolerance that can be seen.
+    // From above and from below; the larger tolerance is visible in the result.
     for (start, way) in [
         (above, displacement),
         (Vec3::new(0.2, -2.0, 0.1), -displacement),
@@ -355,7 +357,8 @@ fn both_spaces_say_the_same() {
                 aim(expected.separation_normal) * scale,
             );
             close(found.hit.normal * scale, aim(expected.normal) * scale);
-            // The skin's own is the same from either side, the other one points to where the ball comes from.
+            // The skin's own normal is the same from either side; the separation normal points to where the ball comes
+            // from.
             let sides = found.separation_normal.dot(found.hit.normal);
             assert!(
                 sides * f64::from(start.y) * f64::from(expected.normal.y) > 0.9,
@@ -363,7 +366,7 @@ fn both_spaces_say_the_same() {
             );
         }
     }
-    // Beside an edge the ball is not above the skin.
+    // Beside an edge, the separation normal differs from the skin's normal.
     let aside = Vec3::new(1.2, 1.0, 0.0);
     let ball = WorldCapsule::ball(place(aside), 0.5 * scale);
     let down = [turned.transform_vector(DVec3::NEG_Y * 2.0); 2];

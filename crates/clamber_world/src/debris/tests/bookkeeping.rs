@@ -8,7 +8,7 @@ use crate::debris::{Debris, DebrisConfig, DebrisError};
 
 const HALF: Vec3 = Vec3::new(4.0, 0.5, 4.0);
 
-/// Rocks on a heaving back for some seconds, seen from `origin`.
+/// Rocks on a heaving back over some ticks, with rapier's origin at `origin`.
 fn run(origin: DVec3, ticks: u32) -> Scene {
     let mut scene = Scene::new(slab(HALF, 0.6, 3));
     scene.debris = Debris::new(DebrisConfig::default()).with_origin(origin);
@@ -60,7 +60,7 @@ fn far_from_the_origin_rocks_ride_as_they_do_near_it() {
 }
 
 #[test]
-fn the_creature_does_not_feel_them() {
+fn rocks_do_not_change_the_creature() {
     let with = run(DVec3::ZERO, 120);
     let mut without = slab(HALF, 0.6, 3);
     for tick in 0..120 {
@@ -81,7 +81,7 @@ fn the_creature_does_not_feel_them() {
 }
 
 #[test]
-fn a_piece_of_skin_meets_its_own_rock_only_and_contacts_name_its_triangles() {
+fn a_patch_collides_with_its_own_rock_only_and_contacts_name_its_triangles() {
     let mut scene = run(DVec3::ZERO, 90);
     let palette = lifted(3, |_| 0.0);
     scene.tick(&palette, Similarity::IDENTITY);
@@ -108,7 +108,7 @@ fn a_piece_of_skin_meets_its_own_rock_only_and_contacts_name_its_triangles() {
                 };
                 let (surface, triangle) = scene.debris.triangle_at(skin, subshape).unwrap();
                 assert_eq!(surface, CREATURE);
-                // It is the triangle there, within rapier's prediction and a tick of motion.
+                // The triangle is near the contact, within rapier's prediction and a tick of motion.
                 let corners = scene.surface.mesh().triangles()[triangle.index()];
                 let corners =
                     corners.map(|v| scene.surface.in_model().previous_position(v).unwrap());
@@ -125,7 +125,7 @@ fn a_piece_of_skin_meets_its_own_rock_only_and_contacts_name_its_triangles() {
 }
 
 #[test]
-fn bodies_come_and_go() {
+fn patches_are_reused_when_bodies_come_and_go() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
     let palette = lifted(1, |_| 0.0);
     let place = Vector::new(0.0, 0.8, 0.0);
@@ -136,7 +136,7 @@ fn bodies_come_and_go() {
     scene.world.remove_body(first);
     scene.tick(&palette, Similarity::IDENTITY);
     assert_eq!(scene.debris.bodies().len(), 0);
-    // The next one takes over the skin of the one that is gone.
+    // The next body takes over the patch of the removed one.
     let (second, _) = scene.drop(ColliderBuilder::ball(0.3), place);
     let report = scene.tick(&palette, Similarity::IDENTITY);
     assert_eq!((report.near, scene.world.bodies.len()), (1, bodies));
@@ -150,7 +150,7 @@ fn bodies_come_and_go() {
 }
 
 #[test]
-fn skin_that_moves_wakes_what_sleeps_on_it() {
+fn moving_skin_wakes_a_sleeping_rock() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
     let palette = lifted(1, |_| 0.0);
     let (rock, _) = scene.drop(
@@ -161,7 +161,7 @@ fn skin_that_moves_wakes_what_sleeps_on_it() {
         scene.tick(&palette, Similarity::IDENTITY);
     }
     assert!(scene.world.bodies[rock].is_sleeping());
-    // Slower than what rapier lets fall asleep.
+    // Slow enough that rapier would let the rock sleep.
     for tick in 0..600 {
         let x = 0.02 * DT * f64::from(tick);
         scene.tick(&palette, at(DVec3::X * x, DVec3::Y, 0.0));

@@ -1,4 +1,4 @@
-//! When a body is outside of a creature again, against the solid angle.
+//! When a body is outside a creature again, checked against the winding number.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::scene::{at, lifted};
 use crate::debris::inner_capsule::InnerCapsule;
 use crate::debris::let_through::is_outside;
 
-/// Closed boxes, each from a low corner to a high one, as one creature of one joint; they may overlap.
+/// One creature on one joint, made of closed boxes, each given by its low and high corner. The boxes may overlap.
 fn boxes(corners: &[[Vec3; 2]]) -> SkinnedSurface {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for [low, high] in corners {
@@ -68,8 +68,8 @@ fn ball(radius: f64) -> InnerCapsule {
 }
 
 #[test]
-fn a_body_is_outside_where_nothing_winds_around_it_and_it_touches_nothing() {
-    // Their overlaps hold skin of one box inside of another.
+fn a_body_is_outside_if_its_winding_number_is_0_and_it_touches_nothing() {
+    // Where the boxes overlap, skin of one box is inside another.
     let mut surface = boxes(&[
         [Vec3::new(-2.0, -1.0, -1.0), Vec3::new(2.0, 1.0, 1.0)],
         [Vec3::new(-0.5, 0.2, -0.6), Vec3::new(0.5, 3.0, 0.6)],

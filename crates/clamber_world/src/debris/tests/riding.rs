@@ -5,7 +5,7 @@ use super::scene::{DT, Scene, at, lifted, slab};
 
 const HALF: Vec3 = Vec3::new(6.0, 0.5, 3.0);
 
-/// Seconds of a tick.
+/// Time of a tick, seconds.
 fn seconds(tick: u32) -> f64 {
     f64::from(tick) * DT
 }
@@ -35,7 +35,7 @@ fn a_stone_laid_on_a_walking_back_rides_by_friction() {
         if let Some(laid) = laid {
             let drift = (place - laid).with_y(0.0).length();
             assert!(drift < 0.05, "tick {tick}: {drift} m off its place");
-            // It turns with the back.
+            // The stone turns with the back.
             let ahead = scene.world.bodies[stone].rotation().as_dquat() * DVec3::X;
             let ahead = scene.surface.world_from_model().rotation.conjugate() * ahead;
             assert!(ahead.with_y(0.0).z.abs() < 0.05, "tick {tick}: {ahead}");
@@ -47,7 +47,7 @@ fn a_stone_laid_on_a_walking_back_rides_by_friction() {
 }
 
 #[test]
-fn it_slides_off_when_the_back_tilts_and_not_before() {
+fn a_stone_slides_off_when_the_back_tilts_and_not_before() {
     let mut scene = Scene::new(slab(HALF, 0.6, 1));
     scene.ground(-12.0);
     let (stone, _) = scene.drop(
@@ -57,7 +57,7 @@ fn it_slides_off_when_the_back_tilts_and_not_before() {
     let palette = lifted(1, |_| 0.0);
     let mut slid_at = None;
     for tick in 0..900 {
-        // 8 degrees a second up to 60; friction of 0.8 holds up to 38.7.
+        // The back tilts by 8 degrees a second up to 60; friction of 0.8 holds up to 38.7.
         let angle = (seconds(tick) * 8.0).min(60.0).to_radians();
         scene.tick(&palette, at(DVec3::ZERO, DVec3::Z, angle));
         let off = (scene.in_model(stone) - DVec3::new(1.0, 0.8, 0.0)).length();
@@ -72,7 +72,7 @@ fn it_slides_off_when_the_back_tilts_and_not_before() {
 }
 
 #[test]
-fn what_has_settled_is_not_deep_in_the_skin() {
+fn settled_bodies_are_not_deep_in_the_skin() {
     let joints = 4;
     let mut scene = Scene::new(slab(Vec3::new(8.0, 1.0, 8.0), 0.7, joints));
     let mut rng = fastrand::Rng::with_seed(4);
@@ -94,7 +94,7 @@ fn what_has_settled_is_not_deep_in_the_skin() {
     }
     let palette = lifted(joints, |_| 0.0);
     for tick in 0..600 {
-        // Heaves for six seconds, then stands.
+        // The back heaves for six seconds, then stands still.
         let t = seconds(tick).min(6.0);
         let heave = 0.3 * (1.0 - libm::cos(t * core::f64::consts::PI));
         scene.tick(&palette, at(DVec3::Y * heave, DVec3::Y, 0.0));

@@ -15,8 +15,8 @@ pub(super) const DT: f64 = 1.0 / 60.0;
 /// The one creature of most scenes.
 pub(super) const CREATURE: ObstacleId = ObstacleId(5);
 
-/// A closed box around the origin, its faces cut into cells of about `cell` metres, on `joints` joints
-/// evenly along x, each vertex on the two nearest.
+/// A closed box around the origin, its faces divided into cells of about `cell` metres. It has `joints` joints evenly
+/// along x, and each vertex is weighted to the two nearest.
 pub(super) fn slab(half: Vec3, cell: f32, joints: usize) -> SkinnedSurface {
     let mut positions: Vec<Vec3> = Vec::new();
     let mut triangles = Vec::new();
@@ -74,7 +74,7 @@ pub(super) fn slab(half: Vec3, cell: f32, joints: usize) -> SkinnedSurface {
     SkinnedSurface::new(Arc::new(mesh))
 }
 
-/// Every joint lifted by as much as `height` says for its number.
+/// Every joint lifted by the height that `height` returns for its index.
 pub(super) fn lifted(joints: usize, height: impl Fn(usize) -> f64) -> Palette {
     Palette::from_matrices((0..joints).map(|joint| {
         let mut matrix = Affine::IDENTITY;
@@ -162,8 +162,8 @@ impl Scene {
             .inverse_transform_point(place)
     }
 
-    /// Whether a body's middle went through the box `half` of model space, 5 cm of its walls aside, on
-    /// its way from where it was in model space.
+    /// True if a body's middle passed through the box `half` of model space, less 5 cm on each side, since it was at
+    /// `before` in model space.
     pub(super) fn went_through(&self, body: RigidBodyHandle, before: DVec3, half: Vec3) -> bool {
         let (now, half) = (self.in_model(body), half.as_dvec3() - 0.05);
         let (mut enter, mut leave) = (0.0f64, 1.0f64);
@@ -184,8 +184,8 @@ impl Scene {
         enter <= leave
     }
 
-    /// How deep a body's collider reaches into the box `half` of model space: over points all over
-    /// the collider, the largest way out.
+    /// How deep a body's collider reaches into the box `half` of model space: the deepest of many points all over the
+    /// collider.
     pub(super) fn depth(&self, body: RigidBodyHandle, half: Vec3) -> f64 {
         let found = &self.world.bodies[body];
         let collider = &self.world.colliders[found.colliders()[0]];

@@ -1,4 +1,4 @@
-//! Several creatures: what debris remembers belongs to an obstacle, not to a place in the list.
+//! Several creatures: the state of debris belongs to an obstacle's id, not to an index in the list.
 
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::rig::Palette;
@@ -12,7 +12,7 @@ use crate::debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
 
 const RADIUS: f64 = 0.3;
 
-/// One rock of 0.3 m, and rapier's world.
+/// One rock with a radius of 0.3 m, and rapier's world.
 struct Rock {
     world: PhysicsWorld,
     debris: Debris,
@@ -93,8 +93,8 @@ fn placed(surface: &mut SkinnedSurface, place: DVec3) {
         .unwrap();
 }
 
-/// Two hands clap at a speed on a rock in mid-air, which has less room between them than it needs; the hand with
-/// number `first` comes first in the list.
+/// Two hands clap at a speed on a rock in mid-air, and leave it less room than it needs. The hand with index `first` is
+/// first in the list.
 fn clap(speed: f64, first: usize) -> Vec<(Vec<u32>, DebrisReport)> {
     let mut hands = [0, 1].map(|_| stone(Vec3::new(0.5, 2.0, 2.0)));
     let mut rock = Rock::new(Vector::ZERO);
@@ -129,7 +129,7 @@ fn the_order_of_the_list_changes_no_bit() {
 }
 
 #[test]
-fn a_creature_that_leaves_the_list_leaves_what_the_others_hold_alone() {
+fn a_creature_that_leaves_the_list_does_not_change_the_state_against_the_others() {
     // A foot stands on a rock and is let through it. In the tick in which the foot leaves the list, an arm reaches
     // the rock.
     const GONE: i32 = 60;
@@ -173,21 +173,21 @@ fn a_creature_that_leaves_the_list_leaves_what_the_others_hold_alone() {
     }
 }
 
-/// How a creature that stands still gets elsewhere.
+/// How a resting creature gets to another place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     Palette,
     Root,
-    /// Another surface takes over its id.
+    /// Another surface takes over the creature's id.
     Successor,
-    /// Another surface comes, under an id of its own.
+    /// Another surface appears, under an id of its own.
     Other,
 }
 
 #[test]
 fn a_creature_that_was_placed_elsewhere_holds_rocks_there() {
     for way in [Way::Palette, Way::Root, Way::Successor, Way::Other] {
-        // Up to where the rock sleeps already.
+        // After 400 ticks the rock is asleep.
         for calm in [20, 400] {
             for up in [-0.1, -0.03, -0.002, 0.005, 0.03, 0.1] {
                 let mut one = stone(Vec3::new(4.0, 1.0, 4.0));
@@ -247,7 +247,7 @@ fn a_rock_falls_when_its_creature_leaves_the_list_and_lies_on_one_that_comes() {
     }
     let fallen = rock.place().y;
     assert!(fallen < 1.25, "{fallen}");
-    // It takes over the skin of the one that is gone.
+    // The rock takes over the patch of the creature that is gone.
     placed(&mut back, DVec3::NEG_Y);
     for _ in 0..200 {
         moved(&mut back, DVec3::NEG_Y);
@@ -288,7 +288,7 @@ fn one_id_for_two_surfaces_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn skin_that_a_rock_takes_over_belongs_to_it() {
+fn a_reused_patch_belongs_to_its_new_rock() {
     let back = stone(Vec3::new(4.0, 1.0, 4.0));
     let list = [(ObstacleId(3), &back)];
     let mut rock = Rock::new(Vector::new(0.2, 1.31, 0.3));

@@ -5,22 +5,22 @@ use rapier3d::prelude::*;
 
 use super::scene::{DT, Scene, at, lifted, slab};
 
-/// Of the foot.
+/// Half extents of the foot.
 const HALF: Vec3 = Vec3::new(1.2, 1.0, 1.2);
 
-/// How high the sole is over the ground: it comes down at so many metres a second, stands and lifts again.
+/// Height of the sole over the ground: it comes down at `speed` metres a second, stands and lifts again.
 fn sole(seconds: f64, speed: f64) -> f64 {
     let down = 1.8 - speed * (seconds - 0.5).max(0.0);
     let up = speed.min(4.0) * (seconds - 5.0).max(0.0);
     down.max(-0.05) + up.min(3.0)
 }
 
-/// The foot comes down on a rock on level ground, stands, lifts, and shoves the rock aside; true if it
-/// came down on it.
+/// The foot comes down on a rock on level ground, stands and lifts; beside the rock again, it shoves the rock aside.
+/// True if the foot came down on the rock.
 fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: bool) -> bool {
     let mut scene = Scene::new(slab(HALF, 0.5, 2));
     if plate {
-        // Without an inside.
+        // Ground without an inside.
         let flat = Array2::new(21, 21, vec![0.0; 441]);
         let ground = ColliderBuilder::heightfield(flat, Vector::new(400.0, 1.0, 400.0));
         scene.world.insert_collider(ground, None);
@@ -29,7 +29,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
     }
     let (rock, _) = scene.drop(shape.clone(), Vector::ZERO);
     scene.world.bodies[rock].set_position(start, true);
-    // What the wedge of a tilted sole squeezes out does not roll away for ever.
+    // A rock that a tilted sole squeezes out must not roll away for ever.
     scene.world.bodies[rock].set_angular_damping(5.0);
     let kind = shape.shape.shape_type();
     let case = format!("plate {plate}, {kind:?} at {start:?}, {speed} m/s, tilt {tilt}");
@@ -54,7 +54,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
     body.set_angvel(Vector::ZERO, true);
     let stamped = scene.caught > 0;
     assert!(!scene.debris.is_let_through(rock), "{case}");
-    // It is skin to it again.
+    // The foot collides with the rock again.
     let from = f64::from(place.x - HALF.x) - 1.0;
     let beside = |x: f64| at(DVec3::new(x, 1.1, f64::from(place.z)), DVec3::Y, 0.0);
     scene.surface.place(&still, beside(from)).unwrap();
@@ -68,7 +68,7 @@ fn stamp(shape: &ColliderBuilder, start: Pose, speed: f64, tilt: f64, plate: boo
 }
 
 #[test]
-fn what_a_foot_stamps_on_is_not_driven_into_the_ground_and_lies_there_when_the_foot_lifts() {
+fn a_rock_under_a_stamping_foot_is_not_driven_into_the_ground_and_stays_there() {
     let mut rng = fastrand::Rng::with_seed(1);
     let mut between = |low: f32, high: f32| low + (high - low) * rng.f32();
     let (mut all, mut stamped) = (0, 0);

@@ -30,7 +30,7 @@ fn nothing_passes_through_an_arm_that_sweeps_at_up_to_60_metres_a_second() {
             }
         }
         let palette = lifted(1, |_| 0.0);
-        // Falls are over when the arm comes.
+        // The bodies have landed when the arm comes.
         let wait = 60;
         let start = -3.0;
         scene
@@ -63,7 +63,7 @@ fn nothing_passes_through_an_arm_that_sweeps_at_up_to_60_metres_a_second() {
 }
 
 #[test]
-fn what_is_put_back_leaves_at_least_as_fast_as_the_skin_that_pushed_it() {
+fn a_body_that_is_put_back_leaves_at_least_as_fast_as_the_skin() {
     let mut put_back = 0;
     for speed in [25.0, 40.0, 60.0] {
         for (index, shape) in shapes().into_iter().enumerate() {
@@ -92,7 +92,7 @@ fn what_is_put_back_leaves_at_least_as_fast_as_the_skin_that_pushed_it() {
 
 #[test]
 fn an_arm_that_swings_about_its_shoulder_lets_nothing_through() {
-    // The end of 8 m moves at 60 m/s.
+    // The far end, 8 m from the shoulder, moves at 60 m/s.
     let spin = 60.0 / 8.0;
     let mut scene = Scene::new(slab(ARM, 0.4, 1));
     scene.world.gravity = Vector::ZERO;
@@ -147,7 +147,7 @@ fn a_stacked_wall_stands_until_the_arm_comes() {
         }
     }
     let palette = lifted(1, |_| 0.0);
-    // Low enough that nothing goes under it.
+    // The arm is so low that nothing passes under it.
     let stand = at(DVec3::new(-4.0, 0.55, 0.0), DVec3::Y, 0.0);
     scene.surface.place(&palette, stand).unwrap();
     for _ in 0..120 {

@@ -5,7 +5,7 @@ use crate::{BodyPoses, Obstacle, RapierTerrain};
 
 static NO_POSES: BodyPoses = BodyPoses::new();
 
-/// A box of its own mass, somewhere, turned, its middle not on its body's origin.
+/// A box of random size and pose, whose centre is not at its body's origin.
 fn free_box(rng: &mut fastrand::Rng, body: RigidBodyBuilder) -> (PhysicsWorld, RigidBodyHandle) {
     let mut world = PhysicsWorld {
         gravity: Vector::ZERO,
@@ -34,7 +34,7 @@ fn direction(rng: &mut fastrand::Rng) -> DVec3 {
     DVec3::new(rng.f64() - 0.5, rng.f64() - 0.5, rng.f64() - 0.5).normalize()
 }
 
-/// The change of speed along an impulse that it makes, of the point in the next step.
+/// The speed along an impulse that the point gains in the next step, for each N s.
 fn response_by_step(
     world: &mut PhysicsWorld,
     body: RigidBodyHandle,
@@ -56,7 +56,7 @@ fn response_by_step(
 }
 
 #[test]
-fn responses_are_those_of_rapiers_own_step() {
+fn responses_agree_with_rapiers_own_step() {
     let mut rng = fastrand::Rng::with_seed(81);
     for round in 0..200 {
         let (mut world, body) = free_box(&mut rng, RigidBodyBuilder::dynamic());
@@ -64,7 +64,7 @@ fn responses_are_those_of_rapiers_own_step() {
         let along = direction(&mut rng);
         let terrain = RapierTerrain::of_world(&world, &NO_POSES);
         let expected = terrain.push_response(&contact.material, along);
-        // So that the point moves by about a centimetre: far beyond rounding, and hardly turned.
+        // Makes the point move by about a centimetre: far more than rounding, and with hardly any rotation.
         let impulse = along * (0.6 / expected);
         let seen = response_by_step(&mut world, body, &contact, impulse);
         assert!(
@@ -105,7 +105,7 @@ fn impulses_change_velocities_by_exactly_the_response() {
 }
 
 #[test]
-fn what_cannot_be_pushed_answers_with_zero_and_is_let_be() {
+fn a_body_that_cannot_be_pushed_responds_with_zero_and_stays_unchanged() {
     let mut rng = fastrand::Rng::with_seed(83);
     let locked = RigidBodyBuilder::dynamic();
     let kinds = [
@@ -153,7 +153,7 @@ fn what_cannot_be_pushed_answers_with_zero_and_is_let_be() {
 }
 
 #[test]
-fn a_push_wakes_what_sleeps() {
+fn a_push_wakes_a_sleeping_body() {
     let mut rng = fastrand::Rng::with_seed(84);
     let (mut world, handle) = free_box(&mut rng, RigidBodyBuilder::dynamic().sleeping(true));
     let contact = touched(&world, &mut rng);

@@ -12,7 +12,7 @@ fn world_of(collider: ColliderBuilder) -> PhysicsWorld {
     world
 }
 
-/// Level ground of 8 m at height 1, as each kind of shape that has triangles.
+/// Level ground, 8 m wide, at height 1, as each kind of shape with triangles.
 fn grounds() -> Vec<(&'static str, ColliderBuilder)> {
     let heights = Array2::new(5, 5, vec![1.0; 25]);
     let corners = [(-4., -4.), (-4., 4.), (4., 4.), (4., -4.)];
@@ -104,7 +104,7 @@ fn compounds_answer_per_part() {
 }
 
 #[test]
-fn an_origin_of_its_own_keeps_far_scenes_exact() {
+fn a_world_origin_keeps_far_scenes_exact() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     let origin = DVec3::new(3e6, -2e6, 1e6);
     let terrain = RapierTerrain::of_world(&world, &NO_POSES).with_origin(origin);
@@ -153,7 +153,7 @@ fn points_of_a_turning_body_move_on_arcs() {
     assert!((turned - expected).length() < 1e-5, "{turned}");
 }
 
-/// Series are enough for a tenth of a radian.
+/// Power series, precise enough for a tenth of a radian.
 fn libm_sin(x: f64) -> f64 {
     x - x * x * x / 6.0 + x * x * x * x * x / 120.0
 }
@@ -163,18 +163,18 @@ fn libm_cos(x: f64) -> f64 {
 }
 
 #[test]
-fn threads_may_share_it() {
+fn terrain_is_sync() {
     fn shared<T: Sync>(_: &T) {}
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     shared(&RapierTerrain::of_world(&world, &NO_POSES));
 }
 
 #[test]
-fn sensors_and_what_a_filter_excludes_are_not_there() {
+fn queries_do_not_see_sensors_and_filtered_colliders() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0).sensor(true));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
-    // A filter of the caller's does not bring sensors back.
+    // A caller's filter does not bring sensors back.
     let terrain = terrain.with_filter(&|_, _| true);
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
@@ -184,7 +184,7 @@ fn sensors_and_what_a_filter_excludes_are_not_there() {
     assert_eq!(terrain.closest_point(DVec3::ZERO, 9.0), None);
 }
 
-/// Which queries see a moving box about the origin: a ray, the closest point, an overlap, a cast, a sweep, its motion.
+/// Which queries see a moving box about the origin: a ray, the closest point, an overlap, a cast, a sweep, a motion.
 fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
     let capsule = WorldCapsule::ball(DVec3::Y * 3.0, 0.4);
     let way = DVec3::Y * -2.5;
@@ -204,9 +204,9 @@ fn seen(terrain: &RapierTerrain<'_>, material: &MaterialPoint) -> [bool; 6] {
     ]
 }
 
-/// As rapier's tree has it: a collider that was disabled or became a sensor stays in it until the next step.
+/// Rapier's tree keeps a collider that was disabled or became a sensor until the next step.
 #[test]
-fn no_query_sees_what_has_no_motion() {
+fn no_query_sees_disabled_colliders_sensors_or_filtered_ones() {
     type Change = fn(&mut Collider);
     let hide: [(&str, Change, Change); 2] = [
         (
@@ -264,7 +264,7 @@ fn no_query_sees_what_has_no_motion() {
 }
 
 #[test]
-fn what_is_not_finite_or_gone_finds_nothing() {
+fn bad_input_and_removed_colliders_find_nothing() {
     let mut world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     let material = {
         let terrain = RapierTerrain::of_world(&world, &NO_POSES);

@@ -1,39 +1,41 @@
-//! First contact of a moving capsule with a convex solid, which may move, too, by directional conservative advancement,
-//! as for the triangles of skinned surfaces (`clamber_surface::geometry`, whose solver says more).
+//! First contact of a moving capsule with a convex solid, which may also move, by directional conservative advancement.
+//! The triangles of skinned surfaces use the same method; their solver, in `clamber_surface::geometry`, documents it in
+//! more detail.
 //!
-//! Along a direction n, |n| <= 1, the gap `min n.p_i(t) - extent(t)` over the segment's ends p_i is at most the distance,
-//! whatever the solid. Ends and points of the solid go on straight lines: the extent, a maximum of linear functions, is
-//! convex, and the gap is concave. So a line between its values at two times is nowhere more than it, and where both are
-//! not below the radius, there is no contact between, however poor n is. n is taken from the nearest points; what takes
-//! more than a few steps looks ahead, and lets n turn.
+//! For a direction n, |n| <= 1, the gap `min n.p_i(t) - extent(t)` over the segment's ends p_i is at most the distance,
+//! for any solid. The ends and the points of the solid move in straight lines. So the extent, a maximum of linear
+//! functions, is convex, and the gap is concave: between two times it is never below the line between its values there.
+//! If the gap is at least the radius at both times, there is no contact between them, however poor n is. n is taken
+//! from the nearest points. After a few steps the solver also looks ahead in time and lets n turn.
 
 use clamber_surface::geometry::MovingCapsule;
 use glam::DVec3;
 
 use super::{ClosestPoints, MovingConvex};
 
-/// Most steps. In the tests half of the ways take two at most, 99 of 100 up to six, and long levers that swing up to 21.
+/// Most steps. In the tests, half of the casts take at most two steps and 99 of 100 at most six. Long swinging levers
+/// take at most 21.
 const STEPS: u32 = 256;
 
-/// From this step on, directions are taken from ahead as well.
+/// From this step on, the solver also tries directions from ahead in time.
 const SLOW: u32 = 4;
 
-/// How far ahead at most, as a share of the way to where the gap would close.
+/// Farthest look ahead, as a fraction of the time until the gap would close.
 const FARTHEST_AHEAD: f64 = 0.875;
 
-/// What arithmetic may take off a gap, as a share of the lengths involved.
+/// Largest rounding error of a gap, as a fraction of the lengths involved.
 const LOST: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// How often a shorter while is looked at for a better line, of what turns.
+/// For solids that turn: how often the interval is shortened in search of a better line.
 const HALVINGS: u32 = 5;
 
 /// A time that is never reached.
 const NEVER: f64 = 2.0;
 
-/// Where a moving capsule touches a solid first.
+/// The first contact of a moving capsule with a solid.
 pub(in crate::shapes) struct ConvexTouch {
     pub(in crate::shapes) time: f64,
-    /// `None` where the segment meets the core.
+    /// `None` if the segment meets the core.
     pub(in crate::shapes) nearest: Option<ClosestPoints>,
     pub(in crate::shapes) undecided: bool,
 }
@@ -41,13 +43,13 @@ pub(in crate::shapes) struct ConvexTouch {
 struct Gap<'a> {
     solid: &'a MovingConvex<'a>,
     path: &'a MovingCapsule,
-    /// What the gap has to keep: radius and rounding.
+    /// The least gap without contact: radius plus rounding.
     floor: f64,
 }
 
 impl MovingConvex<'_> {
-    /// Up to the time `limit`. Never later than the first contact, at a distance of at most radius and `tolerance`
-    /// unless it says undecided.
+    /// The first contact up to the time `limit`. The time is never later than the true one. The distance is at most the
+    /// radius plus `tolerance`, unless the contact is undecided.
     pub(in crate::shapes) fn first_contact(
         &self,
         path: &MovingCapsule,
@@ -113,15 +115,15 @@ impl MovingConvex<'_> {
 }
 
 impl Gap<'_> {
-    /// What is left along a direction at a time, of the gap beyond the floor.
+    /// The gap along a direction at a time, less the floor.
     fn left(&self, n: DVec3, time: f64) -> f64 {
         let ends = self.path.at(time).map(|end| n.dot(end));
         let farthest = self.solid.point(time, self.solid.support(time, n));
         ends[0].min(ends[1]) - n.dot(farthest) - self.floor
     }
 
-    /// Until when the gap along a direction is large enough, from a time on; [`NEVER`] if it stays so to the end, `None`
-    /// if it is not so then.
+    /// The time until which the gap along a direction stays above the floor, from `time` on. [`NEVER`] if it does so to
+    /// the end, `None` if it is below the floor at `time`.
     fn until(&self, n: DVec3, time: f64) -> Option<f64> {
         let first = self.left(n, time);
         if first < 0.0 {
@@ -136,7 +138,7 @@ impl Gap<'_> {
             let share = first / (first - last) * (1.0 - 1e-15);
             let root = time * (1.0 - share) + horizon * share;
             best = f64::max(best, root);
-            // Of what turns, the line up to then falls faster than the gap now.
+            // If the solid turns, the line to `horizon` falls faster than the gap does at `time`.
             let nearer = time + 2.0 * (best - time);
             if self.solid.before.is_none() || nearer >= horizon {
                 break;
@@ -146,7 +148,7 @@ impl Gap<'_> {
         Some(best)
     }
 
-    /// Whether the gap along a direction falls at a time.
+    /// True if the gap along a direction falls at a time.
     fn falls(&self, n: DVec3, time: f64) -> bool {
         let at = self.path.at(time).map(|end| n.dot(end));
         let end = usize::from(at[1] < at[0]);
@@ -156,9 +158,9 @@ impl Gap<'_> {
         n.dot(slide - turn) < 0.0
     }
 
-    /// A time up to which there is no contact either, beyond the later of the two that the step went from and to:
-    /// by a direction of shortly before the gap would close, if that went on as since the step before, or by one that
-    /// turns from that of `nearest` to it.
+    /// A time after `time` up to which there is no contact either, if one is found. The step went from `begin` to
+    /// `time`. Tries the direction of the nearest points shortly before the gap would close at its latest rate, and
+    /// then a direction that turns from the one of `nearest` to that one.
     fn look_ahead(
         &self,
         [begin, time]: [f64; 2],
@@ -179,16 +181,16 @@ impl Gap<'_> {
         held.filter(|held| *held > time)
     }
 
-    /// Whether the gap is large enough all the time between two along a direction that turns linearly from the one to
-    /// the other. It is quadratic for each end and point, and nowhere less than the least coefficient of its Bernstein
-    /// basis; of the solid's points the largest of each stands for all.
+    /// True if the gap stays above the floor between two times along a direction that turns linearly from `n` to `m`.
+    /// For each end and point the gap is quadratic, and never less than its least Bernstein coefficient. For the points
+    /// of the solid, the largest value of each coefficient stands for all.
     fn holds_turning(&self, [n, m]: [DVec3; 2], times: [f64; 2]) -> bool {
         let along = |direction: DVec3, time: f64| {
             let point = self.solid.support(time, direction);
             self.solid.point(time, point).dot(direction)
         };
         let [first, last] = times;
-        // Of `n.place(last) + m.place(first)` over the points of the solid.
+        // The largest `n.point(last) + m.point(first)` over the points of the solid.
         let (a, b) = (self.solid.at_rest(last, n), self.solid.at_rest(first, m));
         let point = self.solid.convex.support(a + b);
         let middle = n.dot(self.solid.point(last, point)) + m.dot(self.solid.point(first, point));

@@ -1,4 +1,4 @@
-//! Solid convex shapes in f64, as a core of which only support points are known, and what is rounded around it.
+//! Solid convex shapes in f64: a core of which only support points are known, and a radius by which it is rounded.
 
 mod first_contact;
 mod moving_convex;
@@ -12,7 +12,7 @@ pub(super) use nearest::ClosestPoints;
 use glam::{DVec3, Vec3};
 use parry3d::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};
 
-/// All points within a distance of a convex core.
+/// All points within the distance `round` of a convex core.
 pub(super) struct Convex<'a> {
     core: Core<'a>,
     /// Metres, not negative.
@@ -30,18 +30,18 @@ enum Core<'a> {
         half_height: f64,
         radius: f64,
     },
-    /// Along Y, the tip above.
+    /// Along Y, the tip at the top.
     Cone {
         half_height: f64,
         radius: f64,
     },
     Polyhedron(&'a ConvexPolyhedron),
-    /// A shape that someone else made.
+    /// A shape defined outside parry.
     Custom(&'a dyn SupportMap),
 }
 
 impl<'a> Convex<'a> {
-    /// `None` for what is not convex.
+    /// `None` for a shape that is not convex.
     pub(super) fn new(shape: &'a dyn Shape) -> Option<Self> {
         let (core, round) = match shape.as_typed_shape() {
             TypedShape::Ball(ball) => (Core::Few([DVec3::ZERO; 3], 1), ball.radius),
@@ -103,7 +103,8 @@ impl<'a> Convex<'a> {
         }
     }
 
-    /// A point of the core that lies farthest along a direction of any length; any of it for zero.
+    /// A point of the core that is farthest along a direction of any length; any point of the core for a zero
+    /// direction.
     fn support(&self, direction: DVec3) -> DVec3 {
         match &self.core {
             Core::Few(points, count) => farthest(points[..*count].iter().copied(), direction),
@@ -166,13 +167,13 @@ fn with_signs(half: DVec3, direction: DVec3) -> DVec3 {
     )
 }
 
-/// Of a circle about Y the point farthest along a direction; its centre where all are as far.
+/// The point of a circle about Y that is farthest along a direction; its centre if all points are equally far.
 fn rim(direction: DVec3, radius: f64) -> DVec3 {
     let level = DVec3::new(direction.x, 0.0, direction.z);
     level.normalize_or_zero() * radius
 }
 
-/// The first of the points that lie farthest along a direction; the origin if there is none.
+/// The first of the points that are farthest along a direction; the origin if there are no points.
 fn farthest(points: impl Iterator<Item = DVec3>, direction: DVec3) -> DVec3 {
     let mut best = (f64::NEG_INFINITY, DVec3::ZERO);
     for point in points {

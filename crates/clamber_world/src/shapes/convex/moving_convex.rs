@@ -4,12 +4,13 @@ use glam::DVec3;
 use super::Convex;
 use crate::RigidPose;
 
-/// A solid over a tick: each of its points goes on a straight line from where a pose puts it at time 0 to where it is in
-/// the solid's own space at time 1. What is rounded around the core stays as it is.
+/// A solid that moves over a tick. Each of its points moves in a straight line from its position under the pose
+/// `before` at time 0 to its position in the solid's local space at time 1. The radius by which the core is rounded
+/// stays the same.
 #[derive(Clone, Copy)]
 pub(in crate::shapes) struct MovingConvex<'a> {
     pub(in crate::shapes) convex: &'a Convex<'a>,
-    /// `None` for what stands still.
+    /// Pose at time 0; `None` for a solid at rest.
     pub(in crate::shapes) before: Option<RigidPose>,
 }
 
@@ -21,7 +22,7 @@ impl<'a> MovingConvex<'a> {
         }
     }
 
-    /// Where a point of the solid is at a time.
+    /// Position of the solid's point at a time.
     pub(in crate::shapes) fn point(&self, time: f64, point: DVec3) -> DVec3 {
         match &self.before {
             Some(before) => before.transform(point) * (1.0 - time) + point * time,
@@ -29,7 +30,7 @@ impl<'a> MovingConvex<'a> {
         }
     }
 
-    /// Where the solid is at a time, as a rigid body would be: its points are there at both ends of the tick.
+    /// Pose of a rigid body that moves along with the solid. At both ends of the tick the solid has exactly this pose.
     pub(in crate::shapes) fn place(&self, time: f64) -> RigidPose {
         let now = RigidPose::IDENTITY;
         self.before.map_or(now, |before| RigidPose {
@@ -38,13 +39,14 @@ impl<'a> MovingConvex<'a> {
         })
     }
 
-    /// The point of the resting core that lies farthest along a direction at a time. All places are affine in the
-    /// point, so it is farthest along the direction that the transposed map makes of it.
+    /// The point of the core at rest that is farthest along a direction at a time. A position is an affine function of
+    /// the point at rest, so this is the support point along [`MovingConvex::at_rest`].
     pub(super) fn support(&self, time: f64, direction: DVec3) -> DVec3 {
         self.convex.support(self.at_rest(time, direction))
     }
 
-    /// The direction along which points of the resting solid differ as they do along `direction` at a time.
+    /// The direction at rest that corresponds to `direction` at a time: the transposed linear part of the motion
+    /// applied to it.
     pub(in crate::shapes) fn at_rest(&self, time: f64, direction: DVec3) -> DVec3 {
         match &self.before {
             Some(before) => {

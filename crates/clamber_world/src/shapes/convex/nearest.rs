@@ -6,29 +6,30 @@ use glam::DVec3;
 use super::MovingConvex;
 use super::simplex::{Corner, Simplex};
 
-/// Most rounds. In the tests' thousands of cases cores with corners take four, at most nine, and cores with rims fourteen,
-/// at most 61: those a micrometre away.
+/// Most rounds. In the tests' thousands of cases, cores with corners take four, at most nine; cores with rims take
+/// fourteen, at most 61, at a distance of a micrometre.
 const ROUNDS: u32 = 128;
 
-/// What another corner has to gain, as a share of the square of the distance: directions are then right to a millionth.
+/// Least gain of another corner for the search to go on, as a fraction of the squared distance. Directions are then
+/// accurate to a millionth.
 const GAIN: f64 = 1e-13;
 
-/// A distance that is rounding, as a share of the lengths involved: they meet.
+/// Core and segment meet if their distance is less than this fraction of the lengths involved, which is rounding.
 const MEETING: f64 = 1e-14;
 
 /// The nearest points of a core and a segment that do not meet.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shapes) struct ClosestPoints {
-    /// Where the core's lies at rest.
+    /// The core's point, at rest.
     pub(in crate::shapes) on_core: DVec3,
-    /// Unit vector from the core's to the segment's: of all directions tried that of the widest gap.
+    /// Unit vector from core to segment: of all directions tried, the one with the widest gap.
     pub(in crate::shapes) normal: DVec3,
     pub(in crate::shapes) distance: f64,
 }
 
 impl MovingConvex<'_> {
-    /// Begins with the direction from core to segment that is guessed, of any length, zero for none. `None` where core
-    /// and segment meet.
+    /// The nearest points at a time; `None` if core and segment meet. `guess` is the direction from core to segment to
+    /// begin with, of any length; zero if there is none.
     pub(in crate::shapes) fn nearest(
         &self,
         time: f64,
@@ -65,10 +66,11 @@ impl MovingConvex<'_> {
             if length_sq - kept <= length_sq * GAIN || simplex.has(&next) {
                 break;
             }
-            // What a plane parts does not meet, whatever rounding makes of four corners that are all but flat.
+            // A plane separates the two, so they do not meet, whatever rounding makes of four corners that are nearly
+            // flat.
             let wider = simplex.with(next, gap > 0.0)?;
             let nearest = wider.nearest();
-            // Rounding allows no more.
+            // Rounding allows no further progress.
             if nearest.apart.length_squared() >= length_sq {
                 break;
             }

@@ -1,13 +1,13 @@
 use glam::DVec3;
 
-/// A point of the difference of core and segment, and where the core's lies at rest.
+/// A point of the Minkowski difference of core and segment, with the core's point at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Corner {
     pub(super) apart: DVec3,
     pub(super) on_core: DVec3,
 }
 
-/// Up to four corners, and the weights of their point nearest to the origin.
+/// Up to four corners, and the weights of the point between them that is nearest to the origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Simplex {
     corners: [Corner; 4],
@@ -29,8 +29,8 @@ impl Simplex {
         corners.any(|known| known.apart == corner.apart)
     }
 
-    /// With one corner more, reduced to those that carry the point nearest to the origin. `None` if the origin lies
-    /// inside, which is not asked where it is known to be apart: four corners of a rim are all but flat.
+    /// Adds a corner and keeps those that support the point nearest to the origin. `None` if the origin is inside. This
+    /// is not tested if `apart` says that it is outside: four corners on a rim are nearly flat.
     pub(super) fn with(&self, corner: Corner, apart: bool) -> Option<Self> {
         let mut all = *self;
         all.corners[all.count] = corner;
@@ -70,7 +70,7 @@ impl Simplex {
     }
 }
 
-/// Weights of four corners, and how far from the origin their point is.
+/// Weights of four corners, and the distance of the weighted point from the origin.
 #[derive(Clone, Copy)]
 struct ClosestPoint {
     weights: [f64; 4],
@@ -108,8 +108,8 @@ impl ClosestPoint {
         Self::new(p, weights)
     }
 
-    /// The best of the edges and, where it falls inside, the foot of the perpendicular: each is a point of the
-    /// triangle and is measured, so that no sign decides alone.
+    /// The nearest point on an edge or, where it is inside, the foot of the perpendicular. Each of these is a point of
+    /// the triangle and its distance is measured, so that no sign decides alone.
     fn of_triangle(p: [DVec3; 4], [i, j, k]: [usize; 3]) -> Self {
         let edges = Self::of_segment(p, [i, j])
             .or_nearer(Self::of_segment(p, [j, k]))
@@ -133,7 +133,7 @@ impl ClosestPoint {
     }
 }
 
-/// Whether the origin lies inside of a tetrahedron that is not flat: on the same side of each face as the fourth corner.
+/// True if the origin is inside a tetrahedron that is not flat, on the same side of each face as the opposite corner.
 fn is_inside(p: [DVec3; 4]) -> bool {
     let same_side = |[a, b, c]: [DVec3; 3], opposite: DVec3| {
         let normal = (b - a).cross(c - a);

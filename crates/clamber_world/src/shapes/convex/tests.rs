@@ -8,7 +8,7 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, RoundShape, SharedShape, Triangle
 
 use super::{Convex, MovingConvex};
 
-/// A shape, and how far a point outside of its core is from that by another road; 0 inside.
+/// A shape, and a second way to compute how far a point is from its core; 0 inside.
 struct Case {
     name: &'static str,
     shape: SharedShape,
@@ -20,7 +20,7 @@ impl Case {
         Convex::new(&*self.shape).unwrap()
     }
 
-    /// From a segment to the core: along it the distance of a point is convex.
+    /// Distance from a segment to the core. Along the segment, the distance of a point is convex.
     fn distance(&self, [a, b]: [DVec3; 2]) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..120 {
@@ -42,7 +42,7 @@ fn to_segment([a, b]: [DVec3; 2], p: DVec3) -> f64 {
     (p - a - along * share).length()
 }
 
-/// To a solid polygon in the plane of distance from the axis and height, given its outline beyond the axis.
+/// Distance to a solid of revolution about Y, given its outline as (radius, height).
 fn to_lathe(outline: &[DVec3], p: DVec3) -> f64 {
     let p = DVec3::new(DVec3::new(p.x, 0.0, p.z).length(), p.y, 0.0);
     let sides = outline.windows(2);
@@ -57,7 +57,7 @@ fn to_lathe(outline: &[DVec3], p: DVec3) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Triangles with all points behind them; parry's own faces are up to a degree off.
+/// All triangles with every point behind them. Parry's own faces are up to a degree off.
 fn faces(points: &[Vec3]) -> Vec<[Vec3; 3]> {
     let mut faces = Vec::new();
     for &a in points {
@@ -67,7 +67,7 @@ fn faces(points: &[Vec3]) -> Vec<[Vec3; 3]> {
                 let normal = (q - p).cross(r - p);
                 let is_behind =
                     |x: &Vec3| [a, b, c].contains(x) || normal.dot(x.as_dvec3() - p) < 0.0;
-                // Once, not in all three turns of it.
+                // Each triangle once, not in all three rotations of its corners.
                 let first = a.to_array() < b.to_array() && a.to_array() < c.to_array();
                 if first && b != c && points.iter().all(is_behind) {
                     faces.push([a, b, c]);
@@ -120,7 +120,7 @@ fn cases(rng: &mut fastrand::Rng) -> Vec<Case> {
     let hull = hull(rng);
     let faces = faces(hull.points());
     let half_extents = half.as_vec3();
-    // What the shape stores, rounded to f32.
+    // The values that the shape stores, rounded to f32.
     let exact = |p: DVec3| p.as_vec3().as_dvec3();
     let (cylinder, cone) = (cylinder.map(exact), cone.map(exact));
     let half = exact(half);
@@ -195,7 +195,7 @@ fn direction(rng: &mut fastrand::Rng) -> DVec3 {
     }
 }
 
-/// A segment of up to two metres; sometimes a point, upright or level.
+/// A segment of up to two metres; sometimes a single point, vertical or level.
 fn segment(rng: &mut fastrand::Rng, size: f64) -> [DVec3; 2] {
     let a = point(rng, size);
     let along = match rng.u32(0..6) {

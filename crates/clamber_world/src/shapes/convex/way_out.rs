@@ -1,33 +1,33 @@
-//! The shortest way out of a convex core, for a segment that meets it.
+//! The minimum translation that moves a segment out of a convex core that it meets.
 //!
-//! Along any direction, the core's extent less that of the segment's end that is farthest behind is enough of a way.
-//! Where core and segment have faces and edges only, the shortest is along the normal of a face, or upright on an edge
-//! and the segment, and each is tried. Rims are searched. What is found is a way out in any case; it is the shortest to
-//! within the search's steps, and in polyhedra to within a fiftieth, as parry drops edges between faces that are nearly
-//! in a plane.
+//! Along any direction, a translation by the core's extent minus the extent of the segment's rear end leads out. If
+//! core and segment have only faces and edges, the shortest one is along the normal of a face, or perpendicular to an
+//! edge and the segment; all of these are tried. For rims the directions are searched. Every result leads out. It is
+//! the shortest within the steps of the search, and within a fiftieth for polyhedra, since parry drops edges between
+//! nearly coplanar faces.
 
 use glam::DVec3;
 
 use super::{Convex, Core, MovingConvex};
 use crate::shapes::ShapeContact;
 
-/// Directions tried around the segment, where the core has rims.
+/// Directions tried around the segment if the core has rims.
 const AROUND: u32 = 48;
 
-/// How often the step between them is halved about the best.
+/// How often the step between them is halved around the best one.
 const HALVINGS: u32 = 30;
 
-/// The first step of refining the best direction on a rim, radians; about that between the directions tried. And how
-/// often: each time the step is halved, or is gone.
+/// First step, in radians, and number of rounds to refine the best direction on a rim. The step is about that between
+/// the directions tried. Each round takes a step or halves it.
 const OF_RIMS: (f64, u32) = (0.13, 96);
 
-/// The same for polyhedra, of which parry takes faces for one whose normals are up to 1.4 degrees apart.
+/// The same for polyhedra, where parry merges faces whose normals are up to 1.4 degrees apart.
 const OF_FACES: (f64, u32) = (0.025, 32);
 
 struct Search<'a> {
     convex: &'a Convex<'a>,
     ends: [DVec3; 2],
-    /// Least way so far, and along what.
+    /// Least depth so far, and its direction.
     best: (f64, DVec3),
 }
 
@@ -37,7 +37,7 @@ impl Search<'_> {
         self.convex.extent(direction) - behind[0].min(behind[1])
     }
 
-    /// A direction of any length and its opposite; the first of equals stays.
+    /// Tries a direction of any length and its opposite; of equal depths the first stays.
     fn offer(&mut self, direction: DVec3) {
         if let Some(unit) = direction.try_normalize() {
             for direction in [unit, -unit] {
@@ -49,13 +49,13 @@ impl Search<'_> {
         }
     }
 
-    /// Upright on an edge and on the segment.
+    /// Tries the direction perpendicular to an edge and to the segment.
     fn offer_edge(&mut self, edge: DVec3) {
         self.offer(edge.cross(self.ends[1] - self.ends[0]));
     }
 
-    /// Upright on the segment, in all directions: there the depths of both ends are equal, a ridge that steps to all
-    /// sides do not follow.
+    /// Tries all directions perpendicular to the segment. There both ends are equally deep: a ridge that the steps of
+    /// [`Search::refine`] do not follow.
     fn offer_circle(&mut self, along: DVec3) {
         let (u, v) = along.any_orthonormal_pair();
         let at = |angle: f64| u * libm::cos(angle) + v * libm::sin(angle);
@@ -95,7 +95,7 @@ impl Search<'_> {
 }
 
 impl Convex<'_> {
-    /// For a segment that meets the core; the distance is negative or zero.
+    /// The contact of a segment that meets the core, at the minimum translation. Its distance is negative or zero.
     pub(in crate::shapes) fn way_out(&self, ends: [DVec3; 2]) -> ShapeContact {
         let mut search = Search {
             convex: self,
@@ -106,7 +106,7 @@ impl Convex<'_> {
         let (depth, normal) = search.best;
         let behind = ends.map(|end| normal.dot(end));
         let deepest = ends[usize::from(behind[1] < behind[0])];
-        // Where that leaves the core beside a face, the face's point next to it.
+        // If the segment leaves the core beside a face, take the face's nearest point.
         let out = deepest + normal * depth;
         let on_core = MovingConvex::still(self).nearest(0.0, [out; 2], normal);
         let on_core = on_core.map_or(out, |nearest| nearest.on_core);
@@ -126,7 +126,7 @@ impl Convex<'_> {
                 search.offer((b - a).cross(c - a));
                 for edge in [b - a, c - b, a - c] {
                     search.offer_edge(edge);
-                    // For what is flat, or parallel to the segment, or a point.
+                    // For flat cores, for edges parallel to the segment, and for points.
                     search.offer(edge.any_orthogonal_vector());
                 }
                 search.offer(along.any_orthogonal_vector());
@@ -158,7 +158,7 @@ impl Convex<'_> {
         }
     }
 
-    /// For bodies that are round about Y, whose sides rise by `rise` for each unit outwards.
+    /// For cores that are round about Y. `rise` is the Y part of the normal of their sides for each unit outwards.
     fn offer_around(&self, rise: DVec3, search: &mut Search<'_>) {
         for axis in [DVec3::Y, DVec3::X, DVec3::Z] {
             search.offer(axis);

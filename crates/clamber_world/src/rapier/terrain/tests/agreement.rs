@@ -1,4 +1,4 @@
-//! The same triangles as skin and as a body of rapier's.
+//! The same triangles as skin and as a rapier body give the same answers.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use glam::{DQuat, Vec3};
 
 use super::*;
 
-/// At the origin and 100 km out.
+/// At the origin and 100 km from it.
 const ORIGINS: [DVec3; 2] = [DVec3::ZERO, DVec3::new(8e4, -3e3, 6e4)];
 
 /// A bumpy patch of about 4 m, and a lone sliver above it.
@@ -46,7 +46,7 @@ struct Both {
 }
 
 impl Both {
-    /// Moved over a tick from the one place to the other, both relative to the origin.
+    /// Both move over a tick from the first place to the second, relative to the origin.
     fn new(rng: &mut fastrand::Rng, origin: DVec3, places: [Pose; 2]) -> Self {
         let (positions, triangles) = patch(rng);
         let influence = Influence {
@@ -110,7 +110,7 @@ fn capsule(rng: &mut fastrand::Rng, center: DVec3) -> WorldCapsule {
     }
 }
 
-/// Where the patch is before and after a tick in which it turns by an angle and goes some way.
+/// Poses of the patch before and after a tick, in which it turns by an angle and moves.
 fn places(rng: &mut fastrand::Rng, angle: f64) -> [Pose; 2] {
     let first = rotation_from_axis_angle(random_point(rng, 1.0).normalize(), 1.0);
     let turn = rotation_from_axis_angle(random_point(rng, 1.0).normalize(), angle);
@@ -129,7 +129,7 @@ fn places(rng: &mut fastrand::Rng, angle: f64) -> [Pose; 2] {
 }
 
 #[test]
-fn overlaps_are_the_same() {
+fn overlaps_agree() {
     let mut rng = fastrand::Rng::with_seed(61);
     let mut found = 0;
     for round in 0..60 {
@@ -141,7 +141,7 @@ fn overlaps_are_the_same() {
                 let (mut of_skin, mut of_body) = (Vec::new(), Vec::new());
                 both.surface.overlap_capsule(&capsule, &mut of_skin);
                 both.terrain().overlap_capsule(&capsule, &mut of_body);
-                // A body's contacts are sorted by place, skin's by triangle.
+                // A body's contacts are sorted by position, a skin's by triangle.
                 for contacts in [&mut of_skin, &mut of_body] {
                     contacts.retain(|contact| contact.distance < capsule.radius - 1e-5);
                     contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -162,18 +162,19 @@ fn overlaps_are_the_same() {
     assert!(found > 500, "{found}");
 }
 
-/// How two answers to one question differ.
+/// Counts of how the two answers to a query differ.
 #[derive(Default, Debug)]
 struct Tally {
-    /// Both met something.
+    /// Both found a contact.
     met: u32,
     inside: u32,
-    /// One only met something: at the very end, or all but sideways.
+    /// Only one found a contact: at the very end, or at a grazing angle.
     grazed: u32,
 }
 
 impl Tally {
-    /// `way` is what the capsule makes as the patch sees it; ways may differ by `slack` metres.
+    /// `way` is the displacement of the capsule relative to the patch. The two distances travelled may differ by
+    /// `slack` metres for a perpendicular impact.
     fn compare(
         &mut self,
         [skin, body]: [Option<SweepContact>; 2],
@@ -195,7 +196,7 @@ impl Tally {
             assert!((0.0..=1.0).contains(&met.time), "{input:?}: {met:?}");
             assert!(!met.started_inside || met.time == 0.0, "{input:?}: {met:?}");
         }
-        // A gap that closes slowly takes long to close by the tolerance.
+        // If the gap closes slowly, the tolerance makes a larger difference in time.
         let slowness = |met: &SweepContact| {
             (met.separation_normal.dot(way) / way.length())
                 .abs()
@@ -231,7 +232,7 @@ impl Tally {
 }
 
 #[test]
-fn casts_are_the_same() {
+fn casts_agree() {
     let mut rng = fastrand::Rng::with_seed(62);
     let mut tally = Tally::default();
     for _ in 0..60 {
@@ -259,7 +260,7 @@ fn casts_are_the_same() {
 }
 
 #[test]
-fn sweeps_of_what_slides_are_the_same() {
+fn sweeps_agree_for_sliding_bodies() {
     let mut rng = fastrand::Rng::with_seed(63);
     let mut tally = Tally::default();
     for _ in 0..60 {
@@ -288,7 +289,7 @@ fn sweeps_of_what_slides_are_the_same() {
 }
 
 #[test]
-fn sweeps_of_what_turns_are_the_same() {
+fn sweeps_agree_for_turning_bodies() {
     let mut rng = fastrand::Rng::with_seed(64);
     let mut tally = Tally::default();
     for round in 0..60 {
@@ -306,7 +307,7 @@ fn sweeps_of_what_turns_are_the_same() {
                 let body = both
                     .terrain()
                     .cast_capsule(&capsule, by, TargetMotion::Moving);
-                // How fast they close on each other is not asked of what turns.
+                // For turning bodies, the speed at which the gap closes is not taken into account.
                 let off = |a: SweepContact, b: SweepContact| (a.time - b.time).abs();
                 match (skin, body) {
                     (Some(a), Some(b)) => {

@@ -1,11 +1,11 @@
-//! Capsules that overlap, are cast and swept.
+//! Overlaps, casts and sweeps of capsules.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use rapier3d::parry::shape::HalfSpace;
 
 use super::*;
 
-/// Bodies that go from the one pose to the other over a tick.
+/// Bodies that move from the first pose to the second over a tick.
 struct Moving {
     world: PhysicsWorld,
     before: BodyPoses,
@@ -123,15 +123,15 @@ fn falling_ball_meets_every_kind_of_shape() {
 }
 
 #[test]
-fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
-    // Half a metre in 1/60 s; the wall is 10 cm thick, the capsule at rest.
+fn a_wall_at_thirty_metres_a_second_hits_a_resting_capsule() {
+    // The wall moves half a metre in 1/60 s and is 10 cm thick. The capsule is at rest.
     let wall = || ColliderBuilder::cuboid(0.05, 3.0, 3.0);
     let moving = Moving::new([(wall(), slide([-1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]))]);
     let at = |x: f64| WorldCapsule {
         ends: [DVec3::new(x, 0.0, 0.0), DVec3::new(x, 1.0, 0.0)],
         radius: 0.3,
     };
-    // Its side goes from -0.95 to -0.45.
+    // The wall's face moves from -0.95 to -0.45.
     let met = moving
         .terrain()
         .cast_capsule(&at(-0.4), [DVec3::ZERO; 2], TargetMotion::Moving)
@@ -145,7 +145,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
         (motion.velocity - DVec3::X * 30.0).length() < 1e-3,
         "{motion:?}"
     );
-    // With it, it never catches up; against it, it does so sooner.
+    // A capsule that moves with the wall is never reached; one that moves against it is reached sooner.
     let with = moving
         .terrain()
         .cast_capsule(&at(-0.4), [DVec3::X * 0.5; 2], TargetMotion::Moving);
@@ -155,7 +155,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
             .terrain()
             .cast_capsule(&at(-0.4), [DVec3::X * -0.5; 2], TargetMotion::Moving);
     assert!((against.unwrap().time - 0.25).abs() < 2e-4, "{against:?}");
-    // Not there yet, and as it stands now a cast sees it.
+    // The wall does not reach a capsule farther ahead. A cast sees the wall where it stands now.
     assert_eq!(
         moving
             .terrain()
@@ -169,7 +169,7 @@ fn a_wall_at_thirty_metres_a_second_is_seen_when_it_passes() {
 }
 
 #[test]
-fn what_rests_is_met_alike_however_it_hangs_on_its_body() {
+fn sweeps_and_casts_agree_on_a_resting_body_whatever_its_colliders_offset() {
     let mut rng = fastrand::Rng::with_seed(72);
     for _ in 0..200 {
         let mut vector =
@@ -198,8 +198,8 @@ fn what_rests_is_met_alike_however_it_hangs_on_its_body() {
 }
 
 #[test]
-fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
-    // 1 mm thick, 1.67 m a tick: far beyond the box that it has now.
+fn a_thin_plate_at_a_hundred_metres_a_second_hits_a_resting_ball() {
+    // 1 mm thick, 1.67 m a tick: far beyond its current bounding box.
     let plate = ColliderBuilder::cuboid(0.0005, 1.0, 1.0);
     let moving = Moving::new([(plate, slide([-0.8, 0.0, 0.0], [0.8667, 0.0, 0.0]))]);
     for radius in [0.0, 0.001, 0.2] {
@@ -231,8 +231,9 @@ fn a_thin_plate_at_a_hundred_metres_a_second_does_not_pass_unseen() {
 }
 
 #[test]
-fn a_bar_that_turns_sweeps_over_a_ball() {
-    // Four metres each way, a sixth of a turn about Y; the ball lies where the bar neither was nor is.
+fn a_turning_bar_hits_a_resting_ball() {
+    // The bar reaches 4 m each way and turns by a sixth of a turn about Y. The ball is where the bar neither was nor
+    // is.
     let angle = core::f64::consts::FRAC_PI_3;
     let turned = rotation_from_axis_angle(DVec3::Y, angle).as_quat();
     let poses = [Pose::IDENTITY, Pose::from_parts(Vector::ZERO, turned)];
@@ -247,8 +248,8 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
             .terrain()
             .cast_capsule(&ball, [DVec3::ZERO; 2], TargetMotion::Moving)
             .unwrap();
-        // Its near side comes about 0.2 m before its middle, of some 2.1 m of way; and points go straight, not round:
-        // up to 2 (1 - cos(30 degrees)) = 0.27 m off.
+        // The bar's near side arrives about 0.2 m before its middle, on a path of about 2.1 m. Points move in straight
+        // lines, up to 2 (1 - cos(30 degrees)) = 0.27 m off the arc.
         let expected = share - 0.2 / 2.1;
         assert!((met.time - expected).abs() < 0.06, "{share}: {met:?}");
         assert!(met.contact.distance <= 0.1001, "{met:?}");
@@ -265,7 +266,7 @@ fn a_bar_that_turns_sweeps_over_a_ball() {
 }
 
 #[test]
-fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
+fn an_overlap_at_the_start_is_a_hit_at_time_zero_with_the_minimum_translation() {
     let moving = Moving::new([(
         ColliderBuilder::cuboid(1.0, 1.0, 1.0),
         slide([0.0, 0.0, 0.0], [5.0, 0.0, 0.0]),
@@ -279,7 +280,7 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
         .cast_capsule(&rod, [DVec3::ZERO; 2], TargetMotion::Moving)
         .unwrap();
     assert!(met.started_inside && met.time == 0.0, "{met:?}");
-    // Where the box was, not where it is.
+    // The contact is with the box at its previous position.
     assert!((met.contact.distance + 0.2).abs() < 1e-6, "{met:?}");
     assert!(
         (met.separation_normal - DVec3::Y).length() < 1e-9,
@@ -311,7 +312,7 @@ fn what_overlaps_at_the_start_is_met_at_once_with_a_way_out() {
 }
 
 #[test]
-fn what_is_not_finite_is_met_nowhere() {
+fn input_that_is_not_finite_meets_nothing() {
     let world = world_of(ColliderBuilder::cuboid(1.0, 1.0, 1.0));
     let terrain = RapierTerrain::of_world(&world, &NO_POSES);
     let good = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
@@ -356,14 +357,14 @@ fn what_is_not_finite_is_met_nowhere() {
     assert!(!meets(&good.with_radius(-0.1), by));
     assert!(!meets(&WorldCapsule::ball(DVec3::splat(1e300), 0.5), by));
     assert!(!meets(&good, DVec3::X * 1e300));
-    // Zeros are fine.
+    // A radius or displacement of zero is valid.
     assert!(meets(&good.with_radius(0.0), by));
     assert!(!meets(&good, DVec3::ZERO));
     assert!(meets(&WorldCapsule::ball(DVec3::Y, 0.5), DVec3::ZERO));
 }
 
 #[test]
-fn the_order_in_which_bodies_were_made_does_not_matter() {
+fn the_order_of_insertion_does_not_matter() {
     let mut rng = fastrand::Rng::with_seed(71);
     let mut bodies = Vec::new();
     for k in 0..60 {
@@ -400,7 +401,7 @@ fn the_order_in_which_bodies_were_made_does_not_matter() {
                 .collect();
             assert!(keys.is_sorted(), "{keys:?}");
             contacts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-            // Handles differ, as bodies were made in another order.
+            // Handles differ, since the bodies were made in another order.
             let shown = |contact: crate::Contact| (contact.point, contact.normal, contact.distance);
             let sweep = |met: SweepContact| (met.time, shown(met.contact), met.separation_normal);
             let contacts: Vec<_> = contacts.into_iter().map(shown).collect();

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn nearest_points_agree_with_a_search_and_part_the_two() {
+fn nearest_points_agree_with_a_search_and_a_plane_separates_the_two() {
     let mut rng = fastrand::Rng::with_seed(51);
     let mut apart = 0;
     for round in 0..400 {
@@ -21,7 +21,7 @@ fn nearest_points_agree_with_a_search_and_part_the_two() {
                 (distance - expected).abs() < 2e-7,
                 "{name} {round} {ends:?}: {found:?} for {expected}"
             );
-            // No part of either is on the wrong side of the plane between.
+            // A plane separates the two.
             let gap = ends.map(|end| end.dot(found.normal) - convex.extent(found.normal));
             let gap = gap[0].min(gap[1]);
             assert!(
@@ -38,7 +38,7 @@ fn nearest_points_agree_with_a_search_and_part_the_two() {
 }
 
 #[test]
-fn far_out_and_very_near_they_agree_as_well() {
+fn nearest_points_are_right_from_a_micrometre_to_a_kilometre() {
     let mut rng = fastrand::Rng::with_seed(52);
     for round in 0..200 {
         for case in cases(&mut rng) {

@@ -3,7 +3,7 @@ use crate::RigidPose;
 
 const TOLERANCE: f64 = 1e-4;
 
-/// What moves and turns by up to a quarter turn, in the frame of the shape.
+/// A capsule that moves, and in half of the cases turns by up to 1.5 rad, in the frame of the shape.
 fn path(rng: &mut fastrand::Rng, radius: f64) -> MovingCapsule {
     let start = segment(rng, 3.0);
     let by = point(rng, 3.0) - start[0];
@@ -22,7 +22,7 @@ fn path(rng: &mut fastrand::Rng, radius: f64) -> MovingCapsule {
 }
 
 #[test]
-fn contacts_are_never_late_and_always_near() {
+fn contacts_are_never_late_and_within_the_tolerance() {
     let mut rng = fastrand::Rng::with_seed(55);
     let (mut met, mut missed, mut inside) = (0, 0, 0);
     for round in 0..150 {
@@ -34,7 +34,7 @@ fn contacts_are_never_late_and_always_near() {
             let reach = radius + convex.round;
             let touch = MovingConvex::still(&convex).first_contact(&path, TOLERANCE, 1.0);
             let until = touch.as_ref().map_or(1.0, |touch| touch.time);
-            // Nothing before: where the distance is least between steps, too.
+            // No contact before. Each step is too short for the gap to close, or 1e-3.
             let (mut time, fastest) = (0.0, speed(&path));
             while time < until {
                 let gap = case.distance(path.at(time)) - reach;
@@ -70,7 +70,7 @@ fn speed(path: &MovingCapsule) -> f64 {
 }
 
 #[test]
-fn what_slides_along_a_side_or_leaves_is_no_contact() {
+fn sliding_along_a_side_and_leaving_are_no_contacts() {
     let side = SharedShape::cuboid(50.0, 1.0, 1.0);
     let convex = Convex::new(&*side).unwrap();
     let along = |height: f64, by: DVec3| {
@@ -97,7 +97,7 @@ fn what_slides_along_a_side_or_leaves_is_no_contact() {
 }
 
 #[test]
-fn nothing_later_than_the_limit_is_said_and_all_before_is() {
+fn a_contact_at_the_limit_is_found_and_no_limit_changes_its_time() {
     let mut rng = fastrand::Rng::with_seed(56);
     for round in 0..200 {
         for case in cases(&mut rng) {
@@ -117,7 +117,7 @@ fn nothing_later_than_the_limit_is_said_and_all_before_is() {
 }
 
 #[test]
-fn solids_that_turn_are_met_in_time_as_well() {
+fn contacts_of_turning_solids_are_never_late() {
     let mut rng = fastrand::Rng::with_seed(57);
     let (mut met, mut missed, mut undecided) = (0, 0, 0);
     for round in 0..100 {
@@ -144,7 +144,7 @@ fn solids_that_turn_are_met_in_time_as_well() {
                 let Some(nearest) = nearest else {
                     return -reach;
                 };
-                // Both are where it says, and a plane parts them.
+                // The distance is the gap along the normal, so a plane separates the two.
                 let normal = nearest.normal;
                 let ends = path.at(time).map(|end| end.dot(normal));
                 let extent = moving.point(time, moving.support(time, normal)).dot(normal);
@@ -184,8 +184,9 @@ fn solids_that_turn_are_met_in_time_as_well() {
 }
 
 #[test]
-fn long_levers_are_neither_late_nor_undecided() {
-    // Rods of some metres that swing about one end, or about the middle, past what is small; and what swings itself.
+fn contacts_of_long_levers_are_neither_late_nor_undecided() {
+    // Rods of some metres that swing past a small solid about one end or about the middle. Half of the solids swing as
+    // well.
     let mut rng = fastrand::Rng::with_seed(58);
     let (mut met, mut missed) = (0, 0);
     for round in 0..200 {

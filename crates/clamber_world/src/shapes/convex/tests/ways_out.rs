@@ -1,6 +1,6 @@
 use super::*;
 
-/// The least depth among many directions, and all their neighbours in the end.
+/// The least depth over many random directions, with a local search from the best four.
 fn depth_by_search(convex: &Convex<'_>, ends: [DVec3; 2], rng: &mut fastrand::Rng) -> f64 {
     let depth = |n: DVec3| {
         let behind = ends.map(|end| n.dot(end));
@@ -29,7 +29,7 @@ fn depth_by_search(convex: &Convex<'_>, ends: [DVec3; 2], rng: &mut fastrand::Rn
 }
 
 #[test]
-fn ways_out_lead_out_and_none_is_shorter() {
+fn minimum_translations_lead_out_and_none_is_shorter() {
     let mut rng = fastrand::Rng::with_seed(53);
     let mut inside = 0;
     for round in 0..120 {
@@ -49,7 +49,7 @@ fn ways_out_lead_out_and_none_is_shorter() {
             let depth = -out.distance - convex.round;
             assert!(depth >= 0.0, "{name} {out:?}");
             let expected = depth_by_search(&convex, ends, &mut rng);
-            // Edges between faces that parry takes for one are not tried.
+            // Edges between faces that parry merges are not tried.
             let slack = if name == "hull" {
                 0.02 * expected
             } else {
@@ -70,7 +70,7 @@ fn ways_out_lead_out_and_none_is_shorter() {
 }
 
 #[test]
-fn way_out_of_what_lies_in_the_middle_is_usable() {
+fn a_segment_through_the_middle_has_a_minimum_translation() {
     let mut rng = fastrand::Rng::with_seed(54);
     let lines = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z * 1e-9];
     for case in cases(&mut rng) {
