@@ -7,20 +7,22 @@ use crate::{
     CustomMode, StepReport,
 };
 
-/// Whether a climber may grip something, and hold on to it.
+/// Decides whether a climber may grip a contact of an obstacle.
+///
+/// Called while the climber looks for a grip or climbs, not while it keeps still on its hold.
 pub type CanGrip<'a> = dyn Fn(ObstacleId, &Contact) -> bool + 'a;
 
-/// What a game adds to a step: [`Climber::step_with`].
+/// A game's own rules for a step, passed to [`Climber::step_with`].
 #[derive(Clone, Copy)]
 pub struct StepRules<'a> {
-    /// What can be gripped. Fur, unless said otherwise.
+    /// Which contacts can be gripped. By default those whose tag is [fur](clamber_world::SurfaceKind::Fur).
     pub can_grip: &'a CanGrip<'a>,
-    /// Handlers of the game's own modes, in the order in which they are asked whether they begin. None, unless given.
+    /// Handlers of the game's custom modes. In this order they are asked whether they begin. By default none.
     pub modes: &'a [&'a dyn CustomMode],
 }
 
 impl<'a> StepRules<'a> {
-    /// Grips what a function says can be gripped.
+    /// Rules with a function that decides what can be gripped, without custom modes.
     pub const fn gripping(can_grip: &'a CanGrip<'a>) -> Self {
         Self {
             can_grip,
@@ -28,7 +30,7 @@ impl<'a> StepRules<'a> {
         }
     }
 
-    /// Grips fur, and has modes of its own.
+    /// Rules with custom modes, by which fur can be gripped.
     pub fn with_modes(modes: &'a [&'a dyn CustomMode]) -> Self {
         Self {
             modes,
@@ -46,17 +48,17 @@ impl Default for StepRules<'_> {
     }
 }
 
-/// A kinematic character: configuration, state, and the memory that a step needs.
+/// A kinematic character: its configuration, its state, and the contacts of its last step.
 #[derive(Clone, Debug)]
 pub struct Climber {
     config: ClimberConfig,
     state: ClimberState,
-    /// Kept for its memory; holds the contacts of the last step.
+    /// Kept so that its memory is reused. Holds the contacts of the last step.
     scratch: Scratch,
 }
 
 impl Climber {
-    /// A climber in the air, the centre of its ball at `position`, in world space, at rest.
+    /// A climber at rest in the air. `position` is the centre of its ball, in world space.
     ///
     /// # Errors
     /// [`ClimberError`] for a configuration outside its ranges or a position that is not finite.
@@ -72,17 +74,19 @@ impl Climber {
         })
     }
 
-    /// Its configuration.
+    /// The configuration.
     pub fn config(&self) -> &ClimberConfig {
         &self.config
     }
 
-    /// Changes the configuration: another gravity, a faster walk, a mode switched on or off. The state stays; a body that
-    /// has grown is pushed out of what it overlaps in the next step.
+    /// Replaces the configuration: another gravity, a faster walk, a mode switched on or off.
+    ///
+    /// The state stays, except that the heading is made level with the new up. In the next step, a body that has grown
+    /// is pushed out of the obstacles that it overlaps.
     ///
     /// # Errors
-    /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one without the mode
-    /// that the climber is in. Nothing is changed then.
+    /// [`ClimberError`] for a configuration outside its ranges, and [`ClimberError::ModeInUse`] for one that switches
+    /// off the climber's current mode. Nothing is changed then.
     pub fn set_config(&mut self, config: ClimberConfig) -> Result<(), ClimberError> {
         config.validate()?;
         let mode = self.state.mode;
@@ -103,28 +107,29 @@ impl Climber {
         Ok(())
     }
 
-    /// Its state after the last step.
+    /// The state after the last step.
     pub fn state(&self) -> &ClimberState {
         &self.state
     }
 
-    /// What touched it in the last step: first what was met on the way, in the order in which it was met, then its
-    /// support. Empty before the first step and after [`Climber::restore`].
+    /// Contacts of the last step: those of its movements, in the order in which they were found, then its support.
+    /// Empty before the first step and after [`Climber::restore`].
     pub fn contacts(&self) -> &[ClimberContact] {
         &self.scratch.contacts
     }
 
-    /// What it is to the world: where it stands after the last step.
+    /// The body's capsule after the last step, in world space, margin included.
     pub fn body(&self) -> WorldCapsule {
         crate::step::body(&self.config, &self.state).at(self.state.position)
     }
 
-    /// Puts it back into a state, of this or another run.
+    /// Sets the state, to one from this or another run.
     ///
     /// # Errors
-    /// [`ClimberError::NotFinite`] if the state is not finite, [`ClimberError::Support`] if it stands, holds or hangs
-    /// from nothing, or falls with a support, [`ClimberError::OutOfRange`] for shares that are none, lengths and times below
-    /// zero, and a heading that is no unit vector.
+    /// [`ClimberError::NotFinite`] if the state is not finite. [`ClimberError::Support`] if it stands, grips or hangs
+    /// without a support, or has a support in another mode of this crate. [`ClimberError::OutOfRange`] if stamina, hit
+    /// points or the progress of a pull-up are not from 0 to 1, a length or time is negative, or the heading is not a
+    /// unit vector. Nothing is changed then.
     pub fn restore(&mut self, state: ClimberState) -> Result<(), ClimberError> {
         state.validate()?;
         self.state = state;
@@ -132,13 +137,14 @@ impl Climber {
         Ok(())
     }
 
-    /// One tick of `dt` seconds. Obstacles must already stand where they stand at its end. Fur can be gripped.
+    /// Steps the climber by one tick of `dt` seconds. Fur can be gripped.
     ///
-    /// Obstacles may come in any order; of two with the same id the first counts.
+    /// Pose and move obstacles first: the step expects them where they are at the tick's end. They may come in any
+    /// order. If two have the same id, the first counts.
     ///
     /// # Errors
-    /// [`ClimberError`] if `dt` is not positive, the input is not finite, or a blow's damage is no share; the climber is
-    /// unchanged then.
+    /// [`ClimberError`] if `dt` is not positive and finite, the input is not finite, or a blow's damage is not from 0
+    /// to 1. The climber is unchanged then.
     pub fn step(
         &mut self,
         input: &ClimberInput,
@@ -148,10 +154,10 @@ impl Climber {
         self.step_with(input, obstacles, &StepRules::default(), dt)
     }
 
-    /// [`Climber::step`] by a game's own rules: what can be gripped, and modes of its own.
+    /// [`Climber::step`] by a game's own rules: what can be gripped, and custom modes.
     ///
     /// # Errors
-    /// As [`Climber::step`], and [`ClimberError::SameMode`] if two of the modes have one number.
+    /// As [`Climber::step`], and [`ClimberError::SameMode`] if two of the modes have the same id.
     pub fn step_with(
         &mut self,
         input: &ClimberInput,

@@ -1,36 +1,36 @@
 use clamber_world::{MaterialPoint, ObstacleId, SurfaceTag};
 use glam::DVec3;
 
-/// Something that touched a climber in a tick.
+/// A contact between a climber and an obstacle in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClimberContact {
     /// The obstacle.
     pub obstacle: ObstacleId,
-    /// The point of its material.
+    /// The touched point of its material.
     pub material: MaterialPoint,
-    /// What it is made of, with the game's own number.
+    /// Tag of the obstacle's material there, with the game's own number.
     pub tag: SurfaceTag,
-    /// Where, in world space.
+    /// Position of the contact, in world space.
     pub position: DVec3,
-    /// Unit vector from the obstacle to the climber.
+    /// Separation normal: unit vector from the contact towards the climber, in world space.
     pub normal: DVec3,
-    /// How fast obstacle and climber approached each other along the normal before the contact, metres a second;
-    /// negative while they part.
+    /// Speed at which obstacle and climber approached each other along the normal before the contact, metres a second.
+    /// Negative if they were separating; 0 for the support.
     pub closing_speed: f64,
-    /// In which phase of the tick.
+    /// The phase of the tick that found the contact.
     pub phase: ContactPhase,
 }
 
-/// In which phase of a tick something touched a climber.
+/// The phase of a tick that found a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ContactPhase {
-    /// The climber wanted to stay where its support carries it: this was in the way there, or struck it.
+    /// It was in the way of the climber, or struck it, while its support carried it and it did not move on its own.
     Carried,
-    /// It was met by the sweep of the climber's own movement.
+    /// The sweep of the climber's own movement hit it.
     Swept,
-    /// It overlapped the climber at the tick's end, and pushed it out.
+    /// It overlapped the climber after its own movement, at the tick's end, and pushed it out.
     Overlapped,
     /// The climber stands on it at the tick's end.
     Ground,

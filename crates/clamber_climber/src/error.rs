@@ -2,33 +2,36 @@ use thiserror::Error;
 
 use crate::ClimberMode;
 
-/// Why a climber could not be made or stepped. Nothing was changed.
+/// Why a climber could not be made, configured, restored or stepped. Nothing was changed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ClimberError {
-    /// A position, velocity or input is infinite or NaN.
+    /// A position, state, configuration or input contains an infinity or NaN.
     #[error("{0} must be finite")]
     NotFinite(&'static str),
     /// `support` is inconsistent with `mode`.
-    #[error("a state has a support if and only if it stands, holds or hangs; this one is {0:?}")]
-    Support(ClimberMode),
-    /// A new configuration switches the mode off that the climber is in.
     #[error(
-        "a climber that is {0:?} cannot take a configuration without what that needs (`grip`, `ledge` or `tumble` is \
-         `None`); let it end the mode first: step it without `ClimberInput::grip`, or until it has got up"
+        "the `support` of a state must be `Some` in the modes Standing, Holding, Hanging and LedgeHanging, and `None` \
+         in the other modes of this crate; this state's mode is {0:?}"
+    )]
+    Support(ClimberMode),
+    /// A new configuration switches off the climber's current mode.
+    #[error(
+        "the climber is in mode {0:?}, which the new configuration switches off (`grip`, `ledge` or `tumble` is \
+         `None`); end the mode first: step the climber without `ClimberInput::grip`, or until it has got up"
     )]
     ModeInUse(ClimberMode),
-    /// Two handlers of modes have the same number.
-    #[error("two modes have the number {0}")]
+    /// Two custom modes have the same id.
+    #[error("two custom modes have the id {0}")]
     SameMode(u16),
     /// A number is outside its range.
     #[error("{name} must be {range}, found {found}")]
     OutOfRange {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// What it may be.
+        /// The allowed range, in words.
         range: &'static str,
-        /// What it is.
+        /// The value found.
         found: f64,
     },
 }

@@ -3,153 +3,165 @@ use glam::DVec3;
 
 use crate::ClimberMode;
 
-/// Something that happened in a tick.
+/// Something that happened to a climber in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ClimberEvent {
-    /// Came down on something that can be stood on.
+    /// Landed on ground that can be stood on.
     Landed {
-        /// On what.
+        /// The ground.
         obstacle: ObstacleId,
-        /// Speed towards it, metres a second.
+        /// Speed towards the ground, relative to it, metres a second.
         speed: f64,
     },
-    /// Jumped, off the ground or off a hold.
+    /// Jumped off the ground, a hold or a ledge.
     Jumped,
-    /// What it stood on, or hung from, became too steep.
+    /// The ground that it stood on or the ledge that it hung from is too steep now: it tipped, or the climber came onto
+    /// a steeper part.
     Slipped,
-    /// What it stood on or held ended, was removed, went out of its reach, or left it no room.
+    /// Lost its support, because that ended, was removed, went out of reach, or left it no room.
     LostFooting {
-        /// What was lost.
+        /// The support that was lost.
         from: Attachment,
     },
-    /// What supports it moved otherwise than once since the last step: the creature was advanced twice, or the climber
-    /// was stepped twice. Sweeps saw only the last move.
+    /// Its support did not move exactly once since the last step: the creature was advanced twice, or the climber was
+    /// stepped twice. Sweeps saw only the last move. An obstacle of the game's own also causes this if the motion that
+    /// it reports does not begin where the last one ended.
     MovedRepeatedly {
-        /// The obstacle.
+        /// The obstacle of the support.
         obstacle: ObstacleId,
     },
     /// The ground was pulled away from under its feet.
     Thrown {
-        /// How hard, metres a second squared beyond gravity.
+        /// Acceleration of the ground away from the feet, metres a second squared beyond gravity.
         acceleration: f64,
         /// The ground that was lost.
         from: Attachment,
     },
     /// Gripped something.
     Grabbed {
-        /// What.
+        /// The obstacle that it grips.
         obstacle: ObstacleId,
-        /// Where, in world space.
+        /// The gripped point, in world space.
         point: DVec3,
     },
     /// Climbed around a corner, convex or concave.
     TurnedCorner {
-        /// Between what it held before and holds now, radians.
+        /// Angle between the normals of the face that it held before and the one that it holds now, radians.
         angle: f64,
     },
     /// Caught a ledge with its hands.
     LedgeCaught {
-        /// Of what.
+        /// The obstacle of the ledge.
         obstacle: ObstacleId,
-        /// Where, in world space.
+        /// The point that its hands hold, in world space.
         point: DVec3,
     },
-    /// Climbed over a ledge.
+    /// Pulled itself up over a ledge, and stands on top.
     Mantled,
-    /// Let go, as was asked.
+    /// Let go because [`ClimberInput::grip`](crate::ClimberInput::grip) ended.
     Released,
-    /// Its strength was used up, and the grip opened.
+    /// Its stamina was used up, and its grip opened.
     ShakenOff {
-        /// The shake at that time, metres a second squared; below what costs strength it was just tired.
+        /// The shake at that time, metres a second squared. Not above
+        /// [`StaminaConfig::shake_threshold`](crate::StaminaConfig::shake_threshold), holding on alone tired it.
         shake: f64,
         /// The hold that was lost.
         from: Attachment,
     },
-    /// Knocked off its feet, or off its hold.
+    /// Knocked over: off its feet, off its hold, or in the air.
     Tumbled {
-        /// What it stood on or held; `None` in the air.
+        /// Its support at that time; `None` if it had none, in the air or sliding.
         from: Option<Attachment>,
         /// Which obstacle dealt the blow, if one did.
         by: Option<ObstacleId>,
     },
     /// Pushed off its feet or its hold by a blow that does not make it tumble.
     KnockedOff {
-        /// What it stood on or held.
+        /// Its support at that time.
         from: Attachment,
         /// Which obstacle dealt the blow, if one did.
         by: Option<ObstacleId>,
     },
-    /// Obstacles leave it too little room, or it is still inside what it was pressed into.
+    /// Obstacles leave its body too little room, or it is still inside something that it was pressed into.
     Crushed {
-        /// How deep they overlap beyond the margin, metres.
+        /// The room that is missing beyond the margin, metres.
         depth: f64,
     },
     /// Lost hit points.
     Hurt {
-        /// How many, 0 to 1.
+        /// How many it lost, 0 to 1.
         damage: f64,
     },
-    /// Is doing something else now.
+    /// Changed its mode.
     Changed {
-        /// Before.
+        /// The mode before.
         from: ClimberMode,
-        /// Now.
+        /// The mode now.
         to: ClimberMode,
     },
-    /// Something that a mode of the game's own reports.
+    /// Reported by a custom mode ([`ModeContext::report`](crate::ModeContext::report)).
     Custom {
-        /// Which mode.
+        /// Id of the mode.
         mode: u16,
-        /// What happened, as the mode defines.
+        /// What happened; the mode defines its meaning.
         what: u32,
-        /// How much of it, as the mode defines.
+        /// A value; the mode defines its meaning.
         value: f64,
     },
-    /// Obstacles answered with numbers that are not finite: nothing else happened in this tick.
+    /// An obstacle or a custom mode gave numbers that are not finite. The state is as it was before the tick, and
+    /// this is the tick's only event.
     NotFinite,
 }
 
-/// What a climber gave to something that can be pushed.
+/// An impulse that a climber gives to an obstacle that can be pushed.
 ///
-/// What it stands on, grips or hangs from is given its weight: mass times gravity, at the point that supports it, however
-/// it walks or climbs there. What it lands on or strikes in the air is given, along the contact, the momentum that brings
-/// both to one speed; what it runs into likewise, but at most [`BodyConfig::push_force`](crate::BodyConfig::push_force).
-/// Several that are pushed at once share that. No push comes of a jump, or of its feet as it begins to walk.
+/// - The support gets the climber's weight, mass times gravity, at the supporting point, however the climber walks or
+///   climbs there.
+/// - An obstacle that it lands on or hits in the air gets, along the contact normal, the impulse that brings both to
+///   the same speed.
+/// - An obstacle that it runs into gets the same, but at most
+///   [`BodyConfig::push_force`](crate::BodyConfig::push_force) times the tick.
+///
+/// If it hits several obstacles at once, each of these impulses is divided by their number. Jumping off and starting to
+/// walk push nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Push {
-    /// To what.
+    /// The obstacle that is pushed.
     pub obstacle: ObstacleId,
-    /// Which point of its material.
+    /// The point of its material that is pushed.
     pub material: MaterialPoint,
-    /// Where, in world space.
+    /// Where the impulse acts, in world space.
     pub point: DVec3,
-    /// Newton seconds, in world space.
+    /// The impulse, newton seconds, in world space.
     pub impulse: DVec3,
 }
 
-/// What a step did, beside the new state.
+/// What happened in a step, beside the new state.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {
-    /// In the order in which they happened; empty in most ticks, and then without memory.
+    /// Events, in the order in which they happened. Empty in most ticks, and then not allocated.
     pub events: Vec<ClimberEvent>,
-    /// What it pushed; apply it to the bodies before their next step, or do not. Without memory where nothing can be
-    /// pushed.
+    /// Impulses for the obstacles that it pushed. Apply them to their bodies before the next physics step, or ignore
+    /// them. Not allocated where nothing can be pushed.
     pub pushes: Vec<Push>,
-    /// By how much contacts moved it away from where it was carried and wanted to go.
+    /// Displacement by contacts, away from where its support and its own movement would have taken it, metres, in world
+    /// space.
     pub pushed_out: DVec3,
-    /// How deep anything is in the core, below the margin, metres: 0 but when crushed, or when rounds did not suffice.
+    /// How deep an obstacle is in the body's core, below the margin, metres. 0 unless the climber is crushed or the
+    /// rounds did not suffice.
     pub penetration: f64,
-    /// Rounds that the movement took.
+    /// Rounds of the solver in this tick, over all movements; each movement takes at most 8.
     pub rounds: u32,
-    /// Changes of mode in this tick.
+    /// Number of mode changes in this tick.
     pub mode_changes: u32,
-    /// More changes were wanted than a tick allows (4): the rest follows in the next.
+    /// True if the tick's limit of 4 mode changes was reached before a mode moved the body. The handler of the new mode
+    /// runs in the next tick.
     pub changes_left: bool,
-    /// The rounds sufficed: there is nothing on the way from where it was to where it is. What the body began inside of,
-    /// or is crushed by, does not count. Of a body whose support was put elsewhere it says nothing: it is pushed out of what
-    /// is there.
+    /// True if the rounds sufficed: nothing is on the way from where the body was to where it is. Obstacles that the
+    /// body began inside of, or is crushed by, do not count. Says nothing if the support was placed elsewhere in this
+    /// tick: the body is not swept then, only pushed out of obstacles.
     pub is_clear: bool,
 }

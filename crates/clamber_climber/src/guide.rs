@@ -1,5 +1,5 @@
 #![doc = include_str!("guide/start.md")]
-// Pages lose the empty lines at their ends, which Markdown asks for about a picture and a table.
+// `include_str!` drops the blank lines at a page's ends, which Markdown needs around a picture and a table.
 #![doc = ""]
 #![doc = include_str!("guide/modes.svg")]
 #![doc = ""]
@@ -7,6 +7,6 @@
 #![doc = ""]
 #![doc = include_str!("guide/details.md")]
 
-/// What the pages link to.
+/// The items that the pages link to.
 #[cfg(doc)]
 use crate::*;

@@ -3,29 +3,32 @@ use glam::DVec3;
 
 use crate::ClimberError;
 
-/// What a player wants of a climber this tick.
+/// The player's input to a climber for one tick, and the blow that struck it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClimberInput {
-    /// Direction to go in, in world space; its length, at most 1, is the share of full speed. The part along up does not
-    /// count. On a hold it is tilted as the hold is from level ground: pushing against a wall climbs it, pulling away
-    /// climbs down.
+    /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
+    /// The component along up is ignored. On a hold, the direction is rotated with the hold from level ground: pushing
+    /// against a wall climbs up, pulling away climbs down.
     pub walk: DVec3,
-    /// Direction to climb in, in world space, of which the part along the hold counts; if it is zero, `walk` does. For
-    /// those who know where they want to go: bots, and cameras that look at the wall.
+    /// Direction to climb in, in world space, on holds and ledges. Only its component along the hold counts. Zero:
+    /// `walk` is used instead. For bots, and for cameras that look at the wall.
     pub climb: DVec3,
-    /// True to jump, off the ground or off a hold. Once is enough: what comes a little early or late counts.
+    /// True in the tick in which the player asks for a jump, off the ground or off a hold. A jump that comes a little
+    /// early or late still counts ([`GroundConfig::jump_buffer`](crate::GroundConfig::jump_buffer),
+    /// [`GroundConfig::coyote_time`](crate::GroundConfig::coyote_time)).
     pub jump: bool,
-    /// True as long as the jump button is down. Matters only with
+    /// True as long as the jump button is down. Used only with
     /// [`GroundConfig::jump_release_gravity`](crate::GroundConfig::jump_release_gravity) above 1.
     pub jump_held: bool,
-    /// True as long as it grips, or wants to.
+    /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
     pub grip: bool,
-    /// What struck it.
+    /// A blow that struck the climber since the last tick.
     pub blow: Option<Blow>,
-    /// Buttons of the game's own, one a bit, for modes of its own.
+    /// The game's own buttons, one bit each, for its custom modes. This crate ignores them.
     pub actions: u32,
-    /// Where the player aims: a direction in world space of any length, for modes of the game's own.
+    /// Where the player aims: a direction in world space, of any length, for the game's custom modes. This crate
+    /// ignores it.
     pub aim: DVec3,
 }
 
@@ -33,16 +36,16 @@ pub struct ClimberInput {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Blow {
-    /// By how much it changes the climber's velocity, in world space, metres a second.
+    /// Change of the climber's velocity, in world space, metres a second.
     pub velocity: DVec3,
-    /// Hit points that it costs, 0 to 1.
+    /// Hit points that it costs, 0 to 1. Ignored without [`ClimberConfig::health`](crate::ClimberConfig::health).
     pub damage: f64,
-    /// Which obstacle dealt it, if one did.
+    /// The obstacle that dealt the blow, if one did. Events repeat it.
     pub by: Option<ObstacleId>,
 }
 
 impl ClimberInput {
-    /// Wants nothing.
+    /// No input.
     pub const IDLE: Self = Self {
         walk: DVec3::ZERO,
         climb: DVec3::ZERO,

@@ -1,4 +1,5 @@
-// Of two targets of a link the first counts: here the README's picture is in no folder.
+// Markdown takes a link's first target. The README's own target is a file that rustdoc's pages do not have, so the
+// picture itself comes first.
 #![doc = include_str!("guide/modes_link.md")]
 #![doc = include_str!("../README.md")]
 
@@ -23,7 +24,7 @@ pub use config::{
 pub use contact::{ClimberContact, ContactPhase};
 pub use error::ClimberError;
 pub use event::{ClimberEvent, Push, StepReport};
-/// The crate whose vectors and quaternions are used here.
+/// The crate of the vectors and quaternions in this API.
 pub use glam;
 pub use input::{Blow, ClimberInput};
 pub use obstacle::ClimberObstacle;

@@ -1,4 +1,4 @@
-//! A climber as an obstacle to others.
+//! A climber as an obstacle to other climbers.
 
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, PointMotion, SurfaceTag, SweepContact, TargetMotion,
@@ -8,14 +8,14 @@ use glam::DVec3;
 
 use crate::Climber;
 
-/// Most steps of a sweep. Two capsules that pass take a few; what just grazes a few dozen.
+/// Most steps of a sweep. Capsules that pass each other take a few, capsules that just graze a few dozen.
 const STEPS: u32 = 64;
 
-/// What a climber is to other climbers in a tick: a solid capsule that goes on as it went.
+/// A climber as an obstacle to other climbers: for one tick, a solid capsule that keeps its velocity.
 ///
-/// Take the bodies of all before any is stepped, and give each climber those of the others: then it does not matter in
-/// which order, or on which threads, they are stepped. They stop each other, and neither pushes the other: the velocity
-/// of its points is told as zero, though they go on.
+/// Make the obstacles of all climbers before any of them is stepped, and give each climber those of the others. Then
+/// the results do not depend on the order, or the threads, in which they are stepped. Climbers stop each other but do
+/// not push each other: the obstacle moves, but reports a velocity of zero.
 ///
 /// ```
 /// use clamber_climber::{Climber, ClimberObstacle, ClimberConfig, ClimberInput};
@@ -37,26 +37,27 @@ const STEPS: u32 = 64;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimberObstacle {
-    /// At the end of the tick, if it goes on.
+    /// The capsule at the tick's end if the climber keeps its velocity, in world space.
     now: WorldCapsule,
-    /// Its way there.
+    /// Its displacement over the tick, metres.
     way: DVec3,
 }
 
-/// How two capsules lie.
+/// The nearest points of two capsules' axes.
 struct Apart {
-    /// From the other's axis to this one's, unit; any where the axes meet.
+    /// Unit vector from this body's axis to the other's; where the axes meet, a vector perpendicular to this body's
+    /// axis.
     away: DVec3,
-    /// Between the axes.
+    /// Distance between the axes, metres.
     distance: f64,
-    /// The nearest point of this body's axis.
+    /// The nearest point on this body's axis.
     on_axis: DVec3,
-    /// The nearest point of the other's axis, as a share from its first end.
+    /// The nearest point on the other's axis, as a share of its length from its first end.
     on_other: f64,
 }
 
 impl ClimberObstacle {
-    /// Of a climber before a tick of `dt` seconds.
+    /// The obstacle of a climber for the next tick of `dt` seconds; call it before the climber is stepped.
     pub fn new(climber: &Climber, dt: f64) -> Self {
         let way = climber.state().velocity * dt;
         Self {
@@ -79,7 +80,8 @@ impl ClimberObstacle {
         }
     }
 
-    /// The first contact of a capsule whose ends move by `ways` relative to this body, which ends where it is now.
+    /// The first contact of a capsule whose ends move by `ways`, with this body at rest at its position at the tick's
+    /// end.
     fn meet(&self, capsule: &WorldCapsule, ways: [DVec3; 2]) -> Option<SweepContact> {
         let sum = self.now.radius + capsule.radius;
         if !capsule.is_valid() || !ways.iter().all(|way| way.is_finite()) {
@@ -93,7 +95,7 @@ impl ClimberObstacle {
             let there = ways[0].lerp(ways[1], apart.on_other);
             let is_near = gap <= capsule.sweep_tolerance();
             let touches = gap <= 0.0 || is_near && apart.away.dot(there) < 0.0;
-            // Both stay on their sides of the plane between them until one of the ends gets there.
+            // The plane between both separates them until one end of the capsule reaches it.
             let gets_there = |(end, way): (DVec3, DVec3)| {
                 let closing = -apart.away.dot(way);
                 let left = apart.away.dot(end - apart.on_axis) - sum;
@@ -104,7 +106,7 @@ impl ClimberObstacle {
             if !touches && next > 1.0 {
                 return None;
             }
-            // At the last step it is said to touch rather than missed: no contact is late.
+            // At the last step a contact is reported rather than missed, so that no contact is late.
             if touches || step == STEPS {
                 return Some(SweepContact {
                     time,
@@ -119,7 +121,7 @@ impl ClimberObstacle {
     }
 }
 
-/// The nearest points of two axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
+/// The nearest points of two capsules' axes (Ericson 2005, *Real-Time Collision Detection*, 5.1.9).
 fn between(body: &WorldCapsule, other: &WorldCapsule) -> Apart {
     let ([a, b], [c, d]) = (body.ends, other.ends);
     let (u, v, w) = (b - a, d - c, a - c);
@@ -179,7 +181,7 @@ impl Obstacle for ClimberObstacle {
         if target == TargetMotion::Still {
             return self.meet(capsule, displacements);
         }
-        // As seen from this body, which then stands where it ends.
+        // In the frame of this body, which is then at rest at its final position.
         let ways = displacements.map(|way| way - self.way);
         let mut hit = self.meet(&capsule.moved(self.way), ways)?;
         hit.contact.point -= self.way * (1.0 - hit.time);
@@ -190,7 +192,7 @@ impl Obstacle for ClimberObstacle {
         let position = self.now.ends[0] + DVec3::from_array(point.coordinates);
         let usable = dt > 0.0 && position.is_finite();
         usable.then(|| PointMotion {
-            // Otherwise two climbers that run into each other would swap their speeds, as balls do.
+            // Otherwise two climbers that run into each other would swap their velocities, as balls do.
             velocity: DVec3::ZERO,
             placed: self.way == DVec3::ZERO,
             ..PointMotion::translated(position - self.way, position, dt)

@@ -1,93 +1,93 @@
-//! A body that hangs by its hands from a point that moves.
+//! A pendulum: a body that hangs by its hands from a moving pivot.
 //!
 //! While the arm is taut, velocity Verlet on the sphere: half a kick of gravity, a turn along the
 //! great circle, half a kick (RATTLE of Andersen 1983, whose projection is exact for a sphere). It
-//! keeps energy over any time; projecting positions instead loses it at a rate that depends on the
-//! tick. The arm pulls and never pushes: it goes slack when its tension would be negative, the body
-//! flies, and where the arm ends its speed along it is lost.
+//! conserves energy over any time; projecting positions instead loses energy at a rate that depends
+//! on the tick. The arm pulls and never pushes. It goes slack when its tension would be negative;
+//! then the body flies until the arm is at full length, where its speed along the arm is lost.
 //!
-//! All in the frame of the pivot, which does not turn. What the pivot's velocity changes by in a
-//! tick acts on the body at once, at the tick's start.
+//! Everything is in the frame of the pivot, which does not turn. The change of the pivot's velocity
+//! over a tick acts on the body as an impulse at the tick's start.
 
 use glam::DVec3;
 
-/// Largest angle of a step of the integrator, radians, by the pendulum's own frequency and by its
-/// turning: the period is off by a 24th of its square, 0.04 %.
+/// Largest angle of a step of the integrator, radians, both as phase at the pendulum's natural
+/// frequency and as angle turned. The error of the period is 1/24 of its square, 0.04 %.
 const STEP: f64 = 0.1;
 
-/// Most steps in a tick: enough for 1.5 m and a quarter of a second twice over. Shorter arms are
-/// integrated coarsely, which gravity times the length bounds.
+/// Most steps in a tick: twice what an arm of 1.5 m needs for a tick of 0.25 s. Shorter arms are
+/// integrated more coarsely; gravity times the length bounds their error.
 const STEPS: f64 = 32.0;
 
-/// How often an arm may go slack or be caught within a tick. More often is rounding.
+/// How often an arm may go slack or become taut within a tick. More changes than this are rounding.
 const EVENTS: usize = 8;
 
-/// An arm short of its length by no more than this share is taut.
+/// An arm is taut if it is short of its full length by at most this share.
 const TAUT: f64 = 1e-9;
 
-/// Arms no longer than this, metres, have no direction.
+/// An arm of this length or less, metres, has no direction.
 const SHORTEST: f64 = 1e-9;
 
-/// Pieces of a flight that are searched for the arm's end. What leaves and comes back within one
-/// was never out by more than a graze.
+/// Pieces of a flight that are searched for the time at which the arm is at full length. A body that
+/// leaves the sphere and returns within one piece was barely outside.
 const PIECES: usize = 8;
 
-/// Halvings of a piece: until its ends are neighbours.
+/// Bisections of a piece, until its ends are neighbouring numbers.
 const HALVINGS: usize = 52;
 
 /// A body at the end of an arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pendulum {
-    /// From the pivot to the body's centre, metres.
+    /// Vector from the pivot to the body's centre, metres.
     pub arm: DVec3,
-    /// Of the body, relative to the pivot, metres a second.
+    /// Velocity of the body relative to the pivot, metres a second.
     pub velocity: DVec3,
 }
 
-/// What acts on a [`Pendulum`] for a tick.
+/// The input of a [`Pendulum`]'s tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PendulumTick {
     /// Greatest distance of the body from the pivot, metres. Below a nanometre the body rests at
     /// the pivot.
     pub length: f64,
-    /// Metres a second squared.
+    /// Gravity, metres a second squared.
     pub gravity: DVec3,
-    /// By how much the pivot's velocity changes over the tick, metres a second.
+    /// Change of the pivot's velocity over the tick, metres a second.
     pub pivot_change: DVec3,
-    /// Share of the swing's velocity that is lost, per second; a body in flight loses none.
+    /// Damping rate of the swing's velocity, per second. A body in flight is not damped.
     pub damping: f64,
-    /// Seconds.
+    /// Length of the tick, seconds.
     pub dt: f64,
 }
 
-/// Whether an arm pulls.
+/// Whether an arm is taut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ArmTension {
-    /// The body flies.
+    /// The arm does not pull: the body flies.
     #[default]
     Slack,
-    /// The body swings.
+    /// The arm pulls: the body swings.
     Taut,
 }
 
-/// What a tick of a [`Pendulum`] did.
+/// The result of a [`Pendulum`]'s tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PendulumReport {
-    /// At the end of the tick.
+    /// Whether the arm is taut at the end of the tick.
     pub arm: ArmTension,
-    /// Of the arm at the end of the tick, per mass, with the mean of the pivot's pull over the tick:
-    /// metres a second squared; 0 if slack.
+    /// Tension of the arm per mass, metres a second squared: at the end of the tick, plus the mean
+    /// pull of the pivot over the tick. 0 if slack.
     pub tension: f64,
-    /// Speed along the arm that was lost where a slack arm ended, summed over the tick, metres a
-    /// second.
+    /// Speed along the arm that was lost when a slack arm became taut, summed over the tick, metres
+    /// a second.
     pub caught: f64,
 }
 
 impl Pendulum {
-    /// One tick. Afterwards the body is no farther than `length` from the pivot.
+    /// Advances the pendulum by one tick. Afterwards the body is at most `length` from the pivot.
     ///
-    /// A body that is farther at the start is brought in along the arm. Nothing happens if an
-    /// argument or the result is not finite, or `dt` not positive.
+    /// A body that is farther away at the start is pulled in along the arm. Nothing changes if an
+    /// argument or the result is not finite, or `dt` is not positive.
     pub(crate) fn step(&mut self, tick: &PendulumTick) -> PendulumReport {
         let mut next = *self;
         let report = next.integrate(tick);
@@ -119,7 +119,7 @@ impl Pendulum {
             }
             match report.arm {
                 ArmTension::Taut => {
-                    // The last may not let go any more: the tick has to end.
+                    // The last swing may not go slack any more, so that the tick ends.
                     left = self.swing(tick, left, pull, event + 1 == EVENTS);
                     if left > 0.0 {
                         report.arm = ArmTension::Slack;
@@ -141,8 +141,8 @@ impl Pendulum {
         report
     }
 
-    /// Whether the arm is taut after the pivot's jerk. Then it takes what of the jerk is along it:
-    /// `pull` becomes its mean over the tick, which is negative where the pivot follows the body.
+    /// Whether the arm is taut after the pivot's impulse. A taut arm takes up the component along
+    /// it: `pull` becomes the mean of this over the tick, negative if the pivot follows the body.
     fn take_hold(&mut self, tick: &PendulumTick, pull: &mut f64) -> ArmTension {
         if self.arm.length() < tick.length * (1.0 - TAUT) {
             return ArmTension::Slack;
@@ -152,9 +152,9 @@ impl Pendulum {
         let outward = self.velocity.dot(along);
         let swing = self.velocity - along * outward;
         let tension = tick.gravity.dot(along) + swing.length_squared() / tick.length;
-        // Less than what the arm holds over a tick: it gives way to the pivot and stays taut.
+        // The arm stays taut while an inward impulse is less than the arm's pull over the tick.
         if tension + outward / tick.dt < 0.0 {
-            // What moves outward is kept in any case.
+            // The arm stops an outward motion in any case.
             if outward > 0.0 {
                 self.velocity = swing;
             }
@@ -165,12 +165,12 @@ impl Pendulum {
         ArmTension::Taut
     }
 
-    /// Per mass, of a taut arm, without the pivot's pull.
+    /// Tension of a taut arm per mass, without the pivot's pull.
     fn tension(&self, tick: &PendulumTick) -> f64 {
         tick.gravity.dot(self.arm / tick.length) + self.velocity.length_squared() / tick.length
     }
 
-    /// Swings for a time, or until the arm goes slack unless it is `rigid`; gives the time left.
+    /// Swings for a time, or until an arm that is not `rigid` goes slack. Returns the time left.
     fn swing(&mut self, tick: &PendulumTick, time: f64, pull: f64, rigid: bool) -> f64 {
         let frequency = libm::sqrt(tick.gravity.length() / tick.length);
         let turning = self.velocity.length() / tick.length;
@@ -181,8 +181,8 @@ impl Pendulum {
         let damped = libm::exp(-0.5 * tick.damping.max(0.0) * h);
         for step in 0..steps as u32 {
             self.kick(tick, 0.5 * h);
-            // Damping around the turn, not around the kicks: at rest in a frame that accelerates
-            // the body moves between ticks, and in the middle of them stands still.
+            // Damping around the turn, not around the kicks: a body at rest in an accelerating frame
+            // has a velocity between ticks, but none in the middle of a tick.
             self.velocity *= damped;
             self.turn(tick.length, h);
             self.velocity *= damped;
@@ -194,13 +194,13 @@ impl Pendulum {
         0.0
     }
 
-    /// Gravity, but for its part along the arm.
+    /// Adds gravity for a time, without its component along the arm.
     fn kick(&mut self, tick: &PendulumTick, h: f64) {
         let along = self.arm / tick.length;
         self.velocity += (tick.gravity - along * tick.gravity.dot(along)) * h;
     }
 
-    /// Along the great circle of the velocity, which is square to the arm.
+    /// Turns the arm along the great circle of the velocity, which is perpendicular to the arm.
     fn turn(&mut self, length: f64, h: f64) {
         let speed = self.velocity.length();
         if speed == 0.0 {
@@ -214,11 +214,11 @@ impl Pendulum {
         self.velocity = velocity - turned * velocity.dot(turned);
     }
 
-    /// Flies for a time, or until the arm ends; gives the time left.
+    /// Flies for a time, or until the arm is at full length. Returns the time left.
     fn fly(&mut self, tick: &PendulumTick, time: f64) -> f64 {
         let start = *self;
         let at = |t: f64| start.arm + (start.velocity + tick.gravity * (0.5 * t)) * t;
-        // A body that has just let go begins at the end of its arm.
+        // A body whose arm has just gone slack begins at the arm's full length.
         let most = tick.length * (1.0 + 0.1 * TAUT);
         let beyond = |t: f64| at(t).length() > most;
         let mut flown = time;
@@ -241,14 +241,14 @@ impl Pendulum {
         self.arm = at(flown);
         self.velocity = start.velocity + tick.gravity * flown;
         if flown < time {
-            // Also where nothing of the time is left, which does not make it a flight.
+            // More than zero even if no time is left, so that the flight counts as ended.
             (time - flown).max(f64::MIN_POSITIVE)
         } else {
             0.0
         }
     }
 
-    /// Ends the flight on the sphere; gives the speed lost.
+    /// Ends the flight on the sphere. Returns the speed lost.
     fn catch(&mut self, length: f64) -> f64 {
         let along = self.arm.normalize_or_zero();
         let outward = self.velocity.dot(along);

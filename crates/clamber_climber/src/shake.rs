@@ -1,12 +1,13 @@
-//! How hard a hold is shaken: its acceleration through a low-pass filter, and what of it is too much.
+//! How hard a support shakes: its acceleration through a low-pass filter, and the excess above a threshold.
 //!
-//! The filter answers a velocity change of V within a tick by V / time constant, however short the
-//! tick: it is exact for an acceleration that is constant over each tick. Accelerations themselves
-//! have no limit on animation that is keyed by straight lines, and cannot be compared with anything.
+//! The filter is exact for an acceleration that is constant over each tick. Its response to a
+//! velocity change V within a tick is V / time constant, however short the tick. Unfiltered
+//! accelerations could not be compared with a threshold: on animation with linear interpolation
+//! between keys they grow without bound as ticks get shorter.
 
 use glam::DVec3;
 
-/// The filtered acceleration of what is held on to.
+/// The filtered acceleration of a support.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shake {
     /// Metres a second squared, in the space of the velocities.
@@ -14,10 +15,11 @@ pub(crate) struct Shake {
 }
 
 impl Shake {
-    /// One tick of `dt` seconds in which the velocity changed by `velocity_change`, metres a second.
+    /// Filters one tick of `dt` seconds in which the velocity changed by `velocity_change`, metres a
+    /// second.
     ///
-    /// A time constant of zero or less does not filter. Nothing changes if `dt` is not positive, or
-    /// the result would not be finite.
+    /// A time constant of zero or less does not filter. Nothing changes if `dt` is not positive and
+    /// finite, or the result would not be finite.
     pub(crate) fn step(&mut self, velocity_change: DVec3, time_constant: f64, dt: f64) {
         if !(dt > 0.0 && dt.is_finite()) {
             return;
@@ -36,13 +38,13 @@ impl Shake {
 }
 
 /// The integral of `max(0, |acceleration| - threshold)` over a tick, metres a second, by the
-/// trapezoid of its ends.
+/// trapezoidal rule.
 ///
-/// Of a shake with ten ticks a swing, summed over swings, it is within 5 % of the integral; with
-/// twenty, within 3. The straight line between the accelerations was tried: it cuts every crest
-/// and loses twice that, where the trapezoid gains on the flanks what it loses on the crests.
+/// Summed over many swings, the error is within 5 % at ten ticks per swing, and within 3 % at
+/// twenty. Interpolating the accelerations linearly was tried: it cuts off every crest and has twice
+/// the error, whereas the trapezoid gains on the flanks what it loses on the crests.
 ///
-/// Zero if an argument is not finite or `dt` is not positive; a threshold below zero counts as zero.
+/// Zero if an argument is not finite or `dt` is not positive. A negative threshold counts as zero.
 pub(crate) fn excess(before: &Shake, after: &Shake, threshold: f64, dt: f64) -> f64 {
     if !(threshold.is_finite() && dt > 0.0) {
         return 0.0;

@@ -1,23 +1,26 @@
 use super::check;
 use crate::ClimberError;
 
-/// Shape and weight of a climber.
+/// Shape, mass and strength of a climber's body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyConfig {
-    /// Of its ball, metres, positive; its position is the ball's centre. 0.4. Raise it to bridge rougher skin, lower it
-    /// to reach into folds.
+    /// Radius of the body's ball, metres, positive. The climber's position is the ball's centre. Default 0.4. Raise it
+    /// to bridge rougher skin, lower it to reach into folds.
     pub radius: f64,
-    /// How far a second ball of the same radius stands above, metres; the body is the capsule around both while it
-    /// stands, slides or falls, and the ball alone while it crouches on a hold. 0: always the ball.
+    /// Height of a second ball of the same radius above the first, centre to centre, metres, not negative. The body is
+    /// the capsule around both balls while it stands, slides, falls, tumbles or is in a custom mode. It is the first
+    /// ball alone while the climber grips or hangs, and where there is no room to stand up. Default 0: always a ball.
     pub height: f64,
-    /// Outer layer of the ball and capsule that may overlap what it touches, metres, less than the radius. 0.01. The core
-    /// below it enters nothing. Wider forgives rougher deformation, and shows more overlap.
+    /// Thickness of the body's outer layer, which may overlap obstacles, metres, not negative and less than the radius.
+    /// Default 0.01. The core inside it enters nothing, unless the climber is crushed or the solver's rounds do not
+    /// suffice ([`StepReport::is_clear`](crate::StepReport::is_clear)). A wider margin forgives rougher deformation and
+    /// shows more overlap.
     pub margin: f64,
-    /// Kilograms, positive. 80. What it stands on and runs into feels it, if it can be pushed.
+    /// Mass, kilograms, positive. Default 80. Obstacles that can be pushed feel it ([`Push`](crate::Push)).
     pub mass: f64,
-    /// With what it pushes what it runs into at most, newtons, not negative. 600. Its weight, and what it strikes in the
-    /// air, are not limited by it.
+    /// Largest force with which it pushes obstacles that it runs into, newtons, not negative. Default 600. Neither its
+    /// weight nor the impulse of an airborne climber is limited by it.
     pub push_force: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Ranges that numbers of a configuration are held to.
+//! Range checks for the numbers of a configuration.
 
 use crate::ClimberError;
 
@@ -28,7 +28,7 @@ pub(super) fn not_negative(name: &'static str, x: f64) -> Result<(), ClimberErro
     )
 }
 
-/// A limit that may be infinite: never reached.
+/// A limit may be infinite: it is never reached then.
 pub(super) fn limit(name: &'static str, x: f64) -> Result<(), ClimberError> {
     check(name, "not negative", x, x >= 0.0)
 }

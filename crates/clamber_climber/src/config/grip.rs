@@ -2,23 +2,27 @@ use super::check;
 use super::ground::DEGREE;
 use crate::ClimberError;
 
-/// Gripping what can be gripped, and climbing on it.
+/// Gripping and climbing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GripConfig {
-    /// How far beyond its ball it grips, metres, not negative. 0.35: an arm. Raise it to grab more easily in flight.
+    /// How far from its ball it can grip, metres, not negative. Default 0.35, an arm. Raise it to grab more easily in
+    /// flight.
     pub reach: f64,
-    /// Speed along what is gripped, metres a second, not negative. 1.5.
+    /// Climbing speed under full input, metres a second, not negative. Default 1.5.
     pub climb_speed: f64,
-    /// How far what is gripped may lean over, radians from level ground, beyond which it hangs. 180 degrees: it climbs
-    /// along ceilings. 120 hangs from all that leans over by 30.
+    /// Steepest surface that it climbs on, radians from level ground: a vertical wall is 90 degrees, a ceiling 180.
+    /// From a steeper one it only hangs. Not negative. Default 180 degrees: it climbs along ceilings. At 120 degrees it
+    /// hangs from walls that lean over by more than 30.
     pub max_overhang: f64,
-    /// Shake from which it only hangs, metres a second squared, not negative. 15. Below seven tenths of it for
-    /// `calm_time` it climbs again.
+    /// Shake above which it only hangs, metres a second squared, not negative, may be infinite. Default 15. It climbs
+    /// again once the shake has stayed below seven tenths of this for `calm_time`.
     pub hang_acceleration: f64,
-    /// Seconds, not negative. 0.4.
+    /// How long a hold has to be calm before a hanging climber pulls itself in to climb, seconds, not negative. Default
+    /// 0.4.
     pub calm_time: f64,
-    /// Speed at which a jump leaves a hold, away from it and upwards, metres a second, not negative. 4.
+    /// Speed at which a jump leaves a hold or a ledge, away from it and upwards, metres a second, not negative. Default
+    /// 4. A faster blow takes the climber off its hold.
     pub jump_speed: f64,
 }
 

@@ -1,39 +1,43 @@
 use super::check;
 use crate::ClimberError;
 
-/// Standing, walking, jumping.
+/// Standing, walking and jumping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GroundConfig {
-    /// Steepest slope to stand on, radians, below a right angle. 50 degrees. Who stands stays up to 2 degrees beyond it.
+    /// Steepest slope to stand on, radians from level, from 0 to below a right angle. Default 50 degrees. A climber
+    /// that stands already stays on slopes up to 2 degrees steeper.
     pub max_slope: f64,
-    /// Speed along the ground under full input, metres a second, not negative. 3.
+    /// Speed along the ground under full input, metres a second, not negative. Default 3.
     pub walk_speed: f64,
-    /// Speed along up that a jump adds, metres a second, not negative. 5: 1.3 m high.
+    /// Upward speed that a jump adds, metres a second, not negative. Default 5, which jumps 1.3 m high.
     pub jump_speed: f64,
-    /// How far below it a walking climber still finds the ground, metres, not negative. 0.2: a step down, or how far a
-    /// slope falls away in a tick. Raise it for coarse ground, lower it to fly off edges sooner.
+    /// How far below its feet a walking climber looks for ground to stay on, metres, not negative. Default 0.2. It has
+    /// to cover a step down, and how far a slope falls away in a tick. Raise it for coarse ground, lower it to fly off
+    /// edges sooner.
     pub snap_distance: f64,
-    /// Highest step that walking climbs, metres, not negative. 0.3.
+    /// Highest step that walking climbs, metres, not negative. Default 0.3.
     pub step_height: f64,
-    /// For how long a jump still works after the ground has ended, seconds, not negative. 0.1.
+    /// How long after the ground has ended a jump still works, seconds, not negative. Default 0.1.
     pub coyote_time: f64,
-    /// For how long before it lands a jump is remembered, seconds, not negative. 0.15.
+    /// How long a jump that came too early is remembered, seconds, not negative. Default 0.15.
     pub jump_buffer: f64,
-    /// How fast velocity along the ground comes to what is wanted, metres a second squared, not negative. 1,000: at once.
-    /// Lower feels like ice, or heavy. Speed beyond `walk_speed` is braked by `friction` in its place.
+    /// Acceleration along the ground towards the velocity that the input asks for, metres a second squared, not
+    /// negative. Default 1,000: practically at once. Lower values feel like ice, or heavy. Speed above `walk_speed` is
+    /// braked by `friction` instead.
     pub acceleration: f64,
-    /// How fast speed along the ground beyond `walk_speed` is braked, metres a second squared, not negative: after a
-    /// landing at speed, or a blow. 15.
+    /// Deceleration along the ground while the climber is faster than `walk_speed`, as after a fast landing, or slides
+    /// from a blow, metres a second squared, not negative. Default 15.
     pub friction: f64,
-    /// How fast input changes velocity in the air, metres a second squared, not negative. 0: it steers nothing. 10 is
-    /// what platformers have.
+    /// Acceleration by input in the air, metres a second squared, not negative. Default 0: no steering. Platformers
+    /// have about 10.
     pub air_acceleration: f64,
-    /// Gravity is multiplied by this while a jump still rises and its button is up, at least 1. 1: jumps have one height.
-    /// 3 lets a tap jump a third as high.
+    /// Factor on gravity while a jump still rises and [`jump_held`](crate::ClimberInput::jump_held) is false, at least
+    /// 1 and finite. Default 1: every jump is equally high. At 3 a tap jumps a third as high.
     pub jump_release_gravity: f64,
-    /// How hard the ground has to be pulled away to be lost, metres a second squared beyond gravity, as a shake is
-    /// measured; not negative. 20. Infinite: feet stick to any ground. Lower is thrown sooner.
+    /// Acceleration of the ground away from the feet above which it throws the climber off, metres a second squared
+    /// beyond gravity, not negative. Measured as a shake ([`ClimberState::shake`](crate::ClimberState::shake)). Default
+    /// 20. Lower values throw sooner; at infinity, feet stick to any ground.
     pub throw_acceleration: f64,
 }
 
@@ -78,5 +82,5 @@ impl GroundConfig {
     }
 }
 
-/// Radians.
+/// One degree in radians.
 pub(super) const DEGREE: f64 = core::f64::consts::PI / 180.0;

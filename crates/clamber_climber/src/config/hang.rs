@@ -1,16 +1,18 @@
 use super::check;
 use crate::ClimberError;
 
-/// A body that hangs by its hands: a pendulum.
+/// Hanging by the hands from a grip, as a pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HangConfig {
-    /// From the hands to the centre of its ball at full stretch, metres, positive. 0.9.
+    /// Distance from the hands to the centre of the ball at full stretch, metres, positive. Default 0.9.
     pub arm_length: f64,
-    /// From there to the end of the legs, which collide as well, metres, not negative. They are drawn in where there is
-    /// no room for them, and come down in the tick after it begins to hang. 0.6.
+    /// Distance from the centre of the ball to the centre of an equal ball at the end of the legs, metres, not
+    /// negative. Default 0.6. Legs collide, from the second tick of hanging on. They are drawn in where there is no
+    /// room for them.
     pub leg_length: f64,
-    /// Of the swing, per second, not negative. 0.4: a third is left after three seconds.
+    /// Damping rate of the swing's velocity, per second, not negative. Default 0.4: about a third of the swing's energy
+    /// is left after three seconds.
     pub damping: f64,
 }
 

@@ -1,21 +1,25 @@
 use super::check;
 use crate::ClimberError;
 
-/// Being knocked off one's feet.
+/// When a climber is knocked over, and how it tumbles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TumbleConfig {
-    /// Shake that knocks down who stands, metres a second squared, not negative. 30. Infinite: none does.
+    /// Shake above which a standing climber is knocked down, metres a second squared, not negative. Default 30.
+    /// Infinite: never.
     pub knock_acceleration: f64,
-    /// Blow that knocks down, or off a hold, metres a second, not negative. 3.
+    /// Speed of a blow above which it knocks the climber down, or off a hold, metres a second, not negative, may be
+    /// infinite. Default 3.
     pub knock_speed: f64,
-    /// Speed of a landing that ends on the back, metres a second, not negative. 11: a fall of six metres.
+    /// Speed of a landing, towards the ground or along it, above which the climber tumbles, metres a second, not
+    /// negative, may be infinite. Default 11, a fall of six metres.
     pub landing_speed: f64,
-    /// Coefficient of friction of who lies and slides, not negative. 0.6.
+    /// Coefficient of friction of a tumbling climber, not negative. Default 0.6.
     pub friction: f64,
-    /// Share of the speed that it bounces back with, 0 to 1. 0.2.
+    /// Coefficient of restitution: share of the impact speed that it bounces back with, 0 to 1. Default 0.2.
     pub restitution: f64,
-    /// For how long it has to lie still on what can be stood on before it gets up, seconds, not negative. 0.5.
+    /// How long it has to lie still on ground that can be stood on before it gets up, seconds, not negative. Default
+    /// 0.5.
     pub recover_time: f64,
 }
 
@@ -39,13 +43,16 @@ impl TumbleConfig {
     }
 }
 
-/// Being hurt. Hit points are 1 when whole; at 0 the climber is as good as dead, which is the game's to act on.
+/// Damage from falls and blows.
+///
+/// Hit points are 1 for an unhurt climber. Nothing happens by itself at 0: death is up to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HealthConfig {
-    /// Fastest landing that does not hurt, metres a second, not negative. 10: a fall of five metres.
+    /// Fastest landing that does no damage, metres a second towards the ground, not negative, may be infinite. Default
+    /// 10, a fall of five metres.
     pub safe_speed: f64,
-    /// Hit points that each metre a second beyond it costs, not negative. 0.05.
+    /// Hit points lost per metre a second above `safe_speed`, not negative. Default 0.05.
     pub fall_damage: f64,
 }
 

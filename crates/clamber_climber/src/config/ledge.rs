@@ -1,19 +1,19 @@
 use super::check;
 use crate::ClimberError;
 
-/// Hanging from ledges, and climbing over them.
+/// Hanging from ledges and climbing over them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LedgeConfig {
-    /// How far above its centre a ledge may be to be caught, metres, not negative. 0.9.
+    /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9.
     pub reach_up: f64,
-    /// How far beyond its ball, metres, not negative. 0.35.
+    /// Greatest distance of the wall in front from the ball, metres, not negative. Default 0.35.
     pub reach: f64,
-    /// How far below the ledge its centre hangs, metres, not negative. 0.6.
+    /// Depth of the ball's centre below the ledge while the climber hangs from it, metres, not negative. Default 0.6.
     pub drop: f64,
-    /// Speed along a ledge, metres a second, not negative. 1.
+    /// Speed along a ledge, metres a second, not negative. Default 1.
     pub shimmy_speed: f64,
-    /// How long pulling up takes, seconds, positive. 0.6.
+    /// Duration of a pull-up, seconds, positive. Default 0.6.
     pub pull_up_time: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What a climber is made of and how it moves, by topic.
+//! A climber's configuration, by topic.
 
 mod body;
 mod check;
@@ -21,38 +21,40 @@ use glam::DVec3;
 
 use crate::ClimberError;
 
-/// What a climber is made of and how it moves.
+/// A climber's body and abilities.
 ///
-/// Begin with a preset, and change what differs. What is `None` is off, and costs nothing.
+/// Start from a preset, [`ClimberConfig::walker`] or [`ClimberConfig::colossus_climber`], and change fields. An ability
+/// that is `None` is off, and costs nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClimberConfig {
-    /// Metres a second squared; up is against it, any direction will do. 9.81 downwards along Y.
+    /// Gravity in world space, metres a second squared. Any direction and size; up is opposite to it, or +Y if it is
+    /// zero. Default 9.81 along -Y.
     pub gravity: DVec3,
-    /// Over how many seconds a shake is felt, positive. 0.1. Longer forgives blows and tires less by fast trembling; at
-    /// a tick or less it is noise.
+    /// Time constant of the low-pass filter that measures shake, seconds, positive. Default 0.1. A longer time forgives
+    /// jolts, and makes fast trembling cost less stamina. At the length of a tick or less, the measured shake is noise.
     pub shake_time: f64,
-    /// Shape and weight.
+    /// Shape, mass and strength.
     pub body: BodyConfig,
-    /// Standing, walking, jumping.
+    /// Standing, walking and jumping.
     pub ground: GroundConfig,
-    /// Gripping fur and climbing on it.
+    /// Gripping and climbing.
     pub grip: Option<GripConfig>,
-    /// Hanging from a grip that is too unstable to climb.
+    /// Hanging from a grip that shakes or leans over too far to climb on.
     pub hang: HangConfig,
-    /// Hanging from ledges, and climbing over them.
+    /// Hanging from ledges and climbing over them.
     pub ledge: Option<LedgeConfig>,
-    /// What holding on costs.
+    /// How much stamina holding on costs.
     pub stamina: Option<StaminaConfig>,
-    /// Being knocked off one's feet.
+    /// Being knocked over, and tumbling.
     pub tumble: Option<TumbleConfig>,
-    /// Being hurt.
+    /// Damage from falls and blows.
     pub health: Option<HealthConfig>,
 }
 
 impl ClimberConfig {
-    /// Stands, walks, jumps, slides and falls, and never tires: a character controller for level ground, slopes and
-    /// platforms. The default.
+    /// A character controller for level ground, slopes and platforms: stands, walks, jumps, slides and falls; does
+    /// not grip, and never tires. The default.
     pub const fn walker() -> Self {
         Self {
             gravity: DVec3::new(0.0, -9.81, 0.0),
@@ -68,7 +70,7 @@ impl ClimberConfig {
         }
     }
 
-    /// All that a climber can do, tuned for a person on a creature of 5 to 50 m.
+    /// Every ability on, tuned for a person on a creature of 5 to 50 m.
     pub const fn colossus_climber() -> Self {
         Self {
             grip: Some(GripConfig::DEFAULT),
@@ -80,7 +82,7 @@ impl ClimberConfig {
         }
     }
 
-    /// Against gravity; world Y where there is none.
+    /// Unit vector opposite to gravity; world +Y if gravity is zero.
     pub fn up(&self) -> DVec3 {
         (-self.gravity).normalize_or(DVec3::Y)
     }

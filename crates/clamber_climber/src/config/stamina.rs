@@ -1,17 +1,20 @@
 use super::check;
 use crate::ClimberError;
 
-/// What holding on costs. Stamina is 1 when rested; at 0 the grip opens.
+/// How much stamina holding on costs. Stamina is 1 for a rested climber; at 0 its grip opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StaminaConfig {
-    /// Spent on holding, a second, not negative. 1/40: forty seconds on a creature that keeps still.
+    /// Stamina spent per second of holding on, not negative. Default 1/40: forty seconds on a creature that keeps
+    /// still.
     pub hold_drain: f64,
-    /// Shake that costs nothing, metres a second squared, not negative. 4: a walk.
+    /// Shake up to which holding on costs no more, metres a second squared, not negative. Default 4, a walk.
     pub shake_threshold: f64,
-    /// Spent on what is beyond it, per metre a second, not negative. 1/60: a shake of 10 beyond it lasts six seconds.
+    /// Stamina spent per second and per m/s² of shake above the threshold, not negative. Default 1/60: a shake of 10
+    /// m/s² above the threshold uses up a rested climber's stamina in six seconds, not counting `hold_drain`.
     pub shake_drain: f64,
-    /// Regained while standing on what does not shake, a second, not negative. 1/5.
+    /// Stamina regained per second while the climber stands on ground whose shake is not above the threshold, not
+    /// negative. Default 1/5.
     pub refill: f64,
 }
 

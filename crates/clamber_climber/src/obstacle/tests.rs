@@ -15,7 +15,7 @@ fn capsule(rng: &mut fastrand::Rng) -> WorldCapsule {
     }
 }
 
-/// The distance of two axes by halving, over and over, the range of either around its best of many points.
+/// Distance of two axes by a numeric search: repeatedly halves the range around the best of sampled points.
 fn distance_by_search(a: &WorldCapsule, b: &WorldCapsule) -> f64 {
     let at = |c: &WorldCapsule, s: f64| c.ends[0].lerp(c.ends[1], s);
     let (mut s, mut width) = (0.5, 0.5);
@@ -29,7 +29,7 @@ fn distance_by_search(a: &WorldCapsule, b: &WorldCapsule) -> f64 {
 }
 
 #[test]
-fn axes_are_as_far_apart_as_a_search_finds() {
+fn axis_distances_match_a_numeric_search() {
     let mut rng = fastrand::Rng::with_seed(1);
     for _ in 0..2_000 {
         let (a, mut b) = (capsule(&mut rng), capsule(&mut rng));
@@ -48,7 +48,7 @@ fn axes_are_as_far_apart_as_a_search_finds() {
 }
 
 #[test]
-fn sweeps_stop_where_small_steps_first_touch() {
+fn sweeps_agree_with_small_steps() {
     let mut rng = fastrand::Rng::with_seed(2);
     let (mut met, mut early) = (0, 0);
     for case in 0..3_000 {
@@ -60,7 +60,7 @@ fn sweeps_stop_where_small_steps_first_touch() {
             displacements[1] = random();
         }
         if case % 3 == 0 {
-            // All but touching as the tick begins.
+            // Nearly touching when the tick begins.
             let apart = between(&now.moved(-way), &other);
             let gap = apart.distance - now.radius - other.radius;
             other = other.moved(-apart.away * (gap - 0.01 * near));
@@ -99,11 +99,11 @@ fn sweeps_stop_where_small_steps_first_touch() {
             early += u32::from(!is_near);
         }
     }
-    // What turns beside the other, all but touching, may be said to touch when the steps are over.
+    // A capsule that turns beside the other, nearly touching, may be reported as touching when the steps run out.
     assert!(met > 800 && early < met / 100, "{met} {early}");
 }
 
-/// Climbers without weight that are pushed at each other, in an order.
+/// Weightless climbers that fly at each other, stepped in a given order.
 fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
     let mut config = ClimberConfig::walker();
     config.gravity = DVec3::ZERO;
@@ -138,7 +138,7 @@ fn crowd(order: &[usize], ticks: u32) -> Vec<ClimberState> {
 }
 
 #[test]
-fn a_crowd_stops_before_itself_in_any_order() {
+fn climbers_of_a_crowd_stop_each_other_in_any_step_order() {
     let states = crowd(&[0, 1, 2, 3], 200);
     for (index, state) in states.iter().enumerate() {
         assert_eq!(state.mode, ClimberMode::Falling);
@@ -155,7 +155,7 @@ fn a_crowd_stops_before_itself_in_any_order() {
 }
 
 #[test]
-fn what_is_no_query_finds_nothing() {
+fn invalid_queries_find_nothing() {
     let body = ClimberObstacle {
         now: WorldCapsule::ball(DVec3::ZERO, 0.5),
         way: DVec3::ZERO,
@@ -164,7 +164,7 @@ fn what_is_no_query_finds_nothing() {
     for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
         let ray = body.cast_ray(DVec3::X * 2.0, -DVec3::X, bad);
         assert_eq!((bad.to_bits(), ray), (bad.to_bits(), None));
-        // Behind, where a length less than nothing would lead.
+        // Behind the ray's origin, where a negative length would lead.
         assert_eq!(body.cast_ray(DVec3::X * 2.0, DVec3::X, bad), None);
         assert_eq!(body.closest_point(DVec3::ZERO, bad), None);
         let ball = WorldCapsule::ball(DVec3::ZERO, bad);
@@ -205,7 +205,7 @@ fn what_is_no_query_finds_nothing() {
 }
 
 #[test]
-fn grazes_are_never_late() {
+fn grazing_contacts_are_never_reported_late() {
     let body = ClimberObstacle {
         now: WorldCapsule {
             ends: [DVec3::ZERO, DVec3::Y],
@@ -213,7 +213,7 @@ fn grazes_are_never_late() {
         },
         way: DVec3::ZERO,
     };
-    // Past a round end, deeper by less and less.
+    // Past a round end, with ever smaller depth.
     for exponent in 0..40 {
         let deep = libm::exp2(-f64::from(exponent)) * 0.1;
         let ball = WorldCapsule::ball(DVec3::new(-30.0, 1.0 + 0.8 - deep, 0.0), 0.4);

@@ -30,7 +30,7 @@ fn energy(pendulum: &Pendulum) -> f64 {
     0.5 * pendulum.velocity.length_squared() + G * (pendulum.arm.y + LENGTH)
 }
 
-/// Seconds a swing, over many of them; the arm is rigid, for angles from which a hand would fall.
+/// Mean period over many swings, seconds. The arm is rigid, so that it does not go slack at large angles.
 fn period(degrees: f64, hz: f64) -> f64 {
     let (mut pendulum, tick) = (at_angle(degrees.to_radians()), tick(hz));
     let mut crossings = Vec::new();
@@ -46,7 +46,7 @@ fn period(degrees: f64, hz: f64) -> f64 {
 }
 
 #[test]
-fn the_period_is_that_of_the_elliptic_integral() {
+fn the_period_matches_the_elliptic_integral() {
     for degrees in [3.0, 60.0, 120.0_f64] {
         let (mut a, mut b) = (1.0, libm::cos(0.5 * degrees.to_radians()));
         for _ in 0..6 {
@@ -68,7 +68,7 @@ fn the_period_is_that_of_the_elliptic_integral() {
 }
 
 #[test]
-fn energy_neither_grows_nor_fades() {
+fn an_undamped_swing_conserves_energy() {
     for degrees in [3.0, 60.0, 85.0_f64] {
         let (mut pendulum, tick) = (at_angle(degrees.to_radians()), tick(60.0));
         let first = energy(&pendulum);
@@ -86,7 +86,7 @@ fn energy_neither_grows_nor_fades() {
 }
 
 #[test]
-fn a_cone_takes_its_time_and_keeps_its_momentum() {
+fn a_conical_pendulum_keeps_its_period_and_angular_momentum() {
     let slant = 0.5;
     let mut pendulum = at_angle(slant);
     let rate = libm::sqrt(G / (LENGTH * libm::cos(slant)));
@@ -115,7 +115,7 @@ fn a_cone_takes_its_time_and_keeps_its_momentum() {
 }
 
 #[test]
-fn a_kick_of_the_pivot_swings_as_high_as_its_energy() {
+fn a_pivot_impulse_swings_to_the_height_of_its_energy() {
     let speed = 3.0;
     let expected = libm::acos(1.0 - speed * speed / (2.0 * G * LENGTH));
     for (hz, allowed) in [(30.0, 2e-3), (60.0, 1e-3), (120.0, 1e-3), (240.0, 1e-3)] {
@@ -138,7 +138,7 @@ fn a_kick_of_the_pivot_swings_as_high_as_its_energy() {
 }
 
 #[test]
-fn in_an_accelerating_frame_it_hangs_aslant() {
+fn an_accelerating_pivot_tilts_the_rest_position() {
     for a in [
         DVec3::X * 4.0,
         DVec3::new(-3.0, 5.0, 0.0),
@@ -169,7 +169,7 @@ fn in_an_accelerating_frame_it_hangs_aslant() {
 }
 
 #[test]
-fn from_a_falling_pivot_it_turns_evenly() {
+fn a_freely_falling_pivot_gives_uniform_rotation() {
     let (mut pendulum, mut tick) = (at_angle(0.0), tick(60.0));
     tick.pivot_change = tick.gravity * tick.dt;
     pendulum.velocity = DVec3::X * 3.0;
@@ -189,7 +189,7 @@ fn from_a_falling_pivot_it_turns_evenly() {
 }
 
 #[test]
-fn no_catch_adds_energy() {
+fn catching_a_slack_arm_adds_no_energy() {
     let mut rng = Rng::with_seed(1);
     let mut vector = move || DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0;
     let (mut catches, mut most) = (0, 0.0_f64);
@@ -232,13 +232,13 @@ fn no_catch_adds_energy() {
 }
 
 #[test]
-fn thrown_down_it_goes_slack_and_is_caught() {
+fn a_pivot_jerked_down_makes_the_arm_slack_then_taut() {
     let (mut pendulum, mut tick) = (at_angle(0.0), tick(60.0));
     tick.pivot_change = DVec3::Y * -3.0;
     let first = pendulum.step(&tick);
     assert_eq!(first.arm, ArmTension::Slack, "{pendulum:?}");
     tick.pivot_change = DVec3::ZERO;
-    // Thrown up at 3 m/s relative to the pivot, back at the arm's end after 2 V / g.
+    // The body moves up at 3 m/s relative to the pivot, and is at the arm's full length again after 2 V / g.
     let mut time = tick.dt;
     let caught = loop {
         let report = pendulum.step(&tick);
@@ -254,8 +254,8 @@ fn thrown_down_it_goes_slack_and_is_caught() {
 }
 
 #[test]
-fn over_the_top_needs_the_speed_to_stay_taut() {
-    // At the bottom, sqrt(5 g L) goes round; less, above sqrt(2 g L), falls out of the circle.
+fn looping_needs_the_speed_that_keeps_the_arm_taut() {
+    // A speed of sqrt(5 g L) at the bottom makes a full circle. Between sqrt(2 g L) and that, the arm goes slack.
     for (share, round) in [(1.01, true), (0.99, false), (0.7, false)] {
         let (mut pendulum, tick) = (at_angle(0.0), tick(60.0));
         pendulum.velocity = DVec3::X * (share * libm::sqrt(5.0 * G * LENGTH));
@@ -267,7 +267,7 @@ fn over_the_top_needs_the_speed_to_stay_taut() {
             }
         }
         assert_eq!(slack.is_none(), round, "{share}: {slack:?}");
-        // Where cos = (V^2 - 2 g L) / (3 g L) above the horizontal.
+        // The arm goes slack where its sine above the horizontal is (V^2 - 2 g L) / (3 g L).
         let expected = (5.0 * share * share - 2.0) / 3.0;
         assert!(
             slack.is_none_or(|height| (height - expected).abs() < 0.06),
@@ -277,7 +277,7 @@ fn over_the_top_needs_the_speed_to_stay_taut() {
 }
 
 #[test]
-fn damping_does_not_depend_on_the_tick() {
+fn damping_does_not_depend_on_the_tick_rate() {
     let left = |hz: f64| {
         let (mut pendulum, mut tick) = (at_angle(0.8), tick(hz));
         tick.damping = 0.5;
@@ -330,7 +330,7 @@ fn extremes_stay_finite_and_within_the_arm() {
 }
 
 #[test]
-fn nonsense_changes_nothing() {
+fn invalid_arguments_change_nothing() {
     let mut pendulum = at_angle(0.5);
     let before = pendulum;
     for (length, dt) in [

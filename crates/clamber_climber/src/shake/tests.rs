@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 /// Seconds.
 const TIME_CONSTANT: f64 = 0.1;
 
-/// Seconds until the integral of what is above the threshold reaches the budget, and the largest
+/// Seconds until the integral of the excess above the threshold reaches the budget, and the largest
 /// filtered acceleration until then.
 fn held(velocity: impl Fn(f64) -> DVec3, threshold: f64, budget: f64, hz: f64) -> (f64, f64) {
     let (mut shake, mut spent, mut peak) = (Shake::default(), 0.0, 0.0_f64);
@@ -22,13 +22,13 @@ fn held(velocity: impl Fn(f64) -> DVec3, threshold: f64, budget: f64, hz: f64) -
     (f64::INFINITY, peak)
 }
 
-/// 0.25 m to and fro, three times a second.
+/// Velocity of a point that swings by 0.25 m to either side, three times a second.
 fn sway(t: f64) -> DVec3 {
     DVec3::X * (0.25 * 3.0 * TAU * libm::cos(3.0 * TAU * t))
 }
 
 #[test]
-fn the_same_shake_takes_as_long_at_any_rate() {
+fn a_shake_uses_up_a_budget_in_the_same_time_at_any_tick_rate() {
     let at = |hz: f64| held(sway, 30.0, 20.0, hz);
     let (exact, peak) = at(240.0);
     assert!(
@@ -38,7 +38,7 @@ fn the_same_shake_takes_as_long_at_any_rate() {
     for hz in [30.0, 60.0, 120.0, 240.0] {
         let (time, peak) = at(hz);
         println!("{hz} Hz: {time} s, peak {peak}; at 240 Hz {exact} s");
-        // Ten ticks a swing, and more.
+        // At 30 Hz ten ticks per swing, otherwise more.
         let share = if hz < 60.0 { 0.05 } else { 0.03 };
         assert!(
             (time / exact - 1.0).abs() < share,
@@ -48,11 +48,11 @@ fn the_same_shake_takes_as_long_at_any_rate() {
 }
 
 #[test]
-fn a_jolt_counts_by_its_change_of_velocity_alone() {
+fn a_jolt_is_judged_by_its_velocity_change_alone() {
     let threshold = 20.0;
     for hz in [15.0, 30.0, 60.0, 120.0, 240.0, 1000.0] {
         let jolt = |share: f64| {
-            // Within a tick the filter forgets what it is told; the limit of short ticks is V / tau.
+            // The filter's response decays within the tick already; its limit for short ticks is V / tau.
             let forgets = -libm::expm1(-1.0 / (hz * TIME_CONSTANT)) * hz * TIME_CONSTANT;
             let change = DVec3::Y * threshold * TIME_CONSTANT * share / forgets;
             held(
@@ -66,7 +66,7 @@ fn a_jolt_counts_by_its_change_of_velocity_alone() {
         assert_eq!(jolt(0.98), f64::INFINITY, "{hz} Hz");
         assert!(jolt(1.02) < 1.01 / hz, "{hz} Hz: {}", jolt(1.02));
     }
-    // At 240 Hz and more what is forgotten is within 2 %, as said.
+    // At 240 Hz and more, this decay is within 2 %.
     for (share, expected) in [(0.96, false), (1.04, true)] {
         let change = DVec3::Y * threshold * TIME_CONSTANT * share;
         let step = |t| if t > 0.0 { change } else { DVec3::ZERO };
@@ -79,12 +79,12 @@ fn a_jolt_counts_by_its_change_of_velocity_alone() {
 }
 
 #[test]
-fn uniform_motion_is_no_shake_and_rotation_is_its_centripetal_acceleration() {
+fn uniform_motion_does_not_shake_and_rotation_shakes_centripetally() {
     assert_eq!(
         held(|_| DVec3::X * 300.0, 0.0, 1e-12, 60.0).0,
         f64::INFINITY
     );
-    // 2 m at 2 rad/s: 8 m/s^2, of which the filter lets through 1 in sqrt(1 + (2 * 0.1)^2).
+    // A radius of 2 m at 2 rad/s gives 8 m/s^2. The filter passes a share of 1 / sqrt(1 + (2 * 0.1)^2).
     let turn = |t: f64| DVec3::new(-libm::sin(2.0 * t), 0.0, libm::cos(2.0 * t)) * 4.0;
     for hz in [30.0, 60.0, 240.0] {
         let (_, peak) = held(turn, 100.0, 1.0, hz);
@@ -112,13 +112,13 @@ fn noise_of_a_millimetre_stays_small() {
             peak = peak.max(shake.acceleration.length());
         }
         println!("noise at {hz} Hz: {peak} m/s^2");
-        // Below half of the weight of a body at 60 Hz: no threshold lies there.
+        // Below half of gravity at 60 Hz, where no threshold lies.
         assert!(peak < 4.0 * hz / 60.0, "{hz} Hz: {peak}");
     }
 }
 
 #[test]
-fn half_as_fast_a_shake_is_a_quarter_of_it() {
+fn half_the_frequency_gives_a_quarter_of_the_unfiltered_shake() {
     let slow = |t: f64| sway(0.5 * t) * 0.5;
     let filtered = |w: f64| 0.25 * w * w / libm::sqrt(1.0 + w * w * TIME_CONSTANT * TIME_CONSTANT);
     for (velocity, w) in [
@@ -139,7 +139,7 @@ fn half_as_fast_a_shake_is_a_quarter_of_it() {
 }
 
 #[test]
-fn the_excess_is_that_of_both_ends() {
+fn the_excess_is_the_mean_over_both_ends_of_the_tick() {
     let [low, high] = [5.0, 9.0].map(|size| Shake {
         acceleration: DVec3::new(0.0, 0.6, -0.8) * size,
     });
@@ -163,7 +163,7 @@ fn the_excess_is_that_of_both_ends() {
 }
 
 #[test]
-fn nonsense_changes_nothing() {
+fn invalid_arguments_change_nothing() {
     let mut shake = Shake {
         acceleration: DVec3::X,
     };

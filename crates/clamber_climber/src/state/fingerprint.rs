@@ -3,8 +3,8 @@ use glam::DVec3;
 use super::ClimberState;
 
 impl ClimberState {
-    /// A number that differs, in all likelihood, if any bit of the state does: 64-bit FNV-1a over
-    /// its fields. For comparing runs, not for hash tables.
+    /// A 64-bit hash of the state, for comparing runs: FNV-1a over the bits of its fields, except the support's tag.
+    /// Not for hash tables.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = Fnv::default();
         for v in self.vectors() {

@@ -12,60 +12,70 @@ use crate::step::{
     FlyingMemory, HangingMemory, LedgeHangingMemory, StandingMemory, TumblingMemory,
 };
 
-/// Everything a climber remembers between ticks: a small plain value. Restored, it continues with
-/// the same bits.
+/// Everything that a climber remembers between ticks.
+///
+/// A small plain value: save it, and [`Climber::restore`](crate::Climber::restore) continues the run with the same
+/// bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClimberState {
-    /// Centre of its ball, in world space, metres.
+    /// Centre of its ball, in world space, metres. For a capsule, centre of the lower ball.
     pub position: DVec3,
-    /// In world space, metres a second: of the last tick.
+    /// Velocity after the last tick, in world space, metres a second. Corrections of position, such as steps up, are
+    /// not part of it.
     pub velocity: DVec3,
-    /// Of what supports it, or supported it last, in world space, metres a second: what its own motion is measured
-    /// against, so that a fall and a late jump are the same in every frame that moves steadily.
+    /// Velocity of its support, or of its last one, in world space, metres a second. The climber's own motion is
+    /// measured against it, so that a fall or a late jump is the same in every frame that moves steadily.
     pub base_velocity: DVec3,
-    /// Unit vector, perpendicular to up: where it faces.
+    /// Direction that it faces: a unit vector perpendicular to up, in world space.
     pub heading: DVec3,
-    /// What it is doing.
+    /// The current mode.
     pub mode: ClimberMode,
-    /// The ground underfoot, the hold that it grips, or the ledge it hangs from; `None` in the air.
+    /// The ground underfoot, the hold that it grips, or the ledge that it hangs from. `None` in the air, while sliding
+    /// or tumbling, and optional in a custom mode.
     pub support: Option<Support>,
-    /// Velocity of what supports it over the last tick; `None` when that was just found, or was put elsewhere.
+    /// Velocity of its support over the last tick, in world space, metres a second. `None` without a support, and after
+    /// it was placed elsewhere or pushed by the climber's landing.
     pub support_velocity: Option<DVec3>,
-    /// Acceleration of what supports it as it is felt, metres a second squared: filtered.
+    /// Shake: the acceleration of its support, low-pass filtered over
+    /// [`ClimberConfig::shake_time`](crate::ClimberConfig::shake_time), in world space, metres a second squared. Decays
+    /// while it has no support.
     pub shake: DVec3,
-    /// 0 to 1.
+    /// Strength left for holding on, 0 (its grip opens) to 1 (rested).
     pub stamina: f64,
-    /// 0 to 1.
+    /// Hit points left, 0 to 1 (unhurt).
     pub hit_points: f64,
-    /// For how long a jump still works without ground, seconds.
+    /// Time left in which a jump still works without ground, seconds
+    /// ([`GroundConfig::coyote_time`](crate::GroundConfig::coyote_time)).
     pub coyote: f64,
-    /// For how long a jump is still remembered, seconds.
+    /// Time left in which a jump that came early is remembered, seconds
+    /// ([`GroundConfig::jump_buffer`](crate::GroundConfig::jump_buffer)).
     pub jump_buffer: f64,
-    /// For how long it grips nothing after it has let go, seconds.
+    /// Time left in which it grips nothing after it let go, seconds.
     pub open_handed: f64,
-    /// Only its ball stands in the way: there is no room to stand up.
+    /// True if its body is the ball alone although [`BodyConfig::height`](crate::BodyConfig::height) is not 0: it holds
+    /// on, was crushed, or has no room to stand up.
     pub crouched: bool,
-    /// What closed in on it left it too little room in the last tick.
+    /// True if obstacles left it too little room in the last tick.
     pub crushed: bool,
-    /// What it remembers while it stands.
+    /// Memory of [`ClimberMode::Standing`].
     pub standing: StandingMemory,
-    /// What it remembers while it falls or slides.
+    /// Memory of [`ClimberMode::Falling`] and [`ClimberMode::Sliding`].
     pub flying: FlyingMemory,
-    /// What it remembers while it lies knocked over.
+    /// Memory of [`ClimberMode::Tumbling`].
     pub tumbling: TumblingMemory,
-    /// What it remembers while it hangs by its hands.
+    /// Memory of [`ClimberMode::Hanging`].
     pub hanging: HangingMemory,
-    /// What it remembers while it hangs from a ledge.
+    /// Memory of [`ClimberMode::LedgeHanging`].
     pub ledge_hanging: LedgeHangingMemory,
-    /// Numbers of modes of the game's own, in whatever mode it is: timers, directions. Any finite values.
+    /// Memory of the game's custom modes, such as timers and directions; kept in every mode. Any finite values.
     pub memory: [f64; MEMORY],
 }
 
-/// How many numbers modes of a game's own may remember.
+/// How many numbers a game's custom modes can remember, together.
 pub const MEMORY: usize = 8;
 
-/// How far from 1 the length of a unit vector may be that was written down and read again.
+/// How much the length of the heading may differ from 1, so that a state can be saved with rounded decimals.
 const UNIT: f64 = 1e-6;
 
 impl ClimberState {
@@ -95,7 +105,7 @@ impl ClimberState {
         }
     }
 
-    /// Refuses what no climber can be in.
+    /// Refuses states that no climber can be in.
     pub(crate) fn validate(&self) -> Result<(), ClimberError> {
         if !self.is_finite() {
             return Err(ClimberError::NotFinite("state"));
@@ -137,7 +147,7 @@ impl ClimberState {
         ]
     }
 
-    /// Each with its name.
+    /// Every number, with its name.
     fn numbers(&self) -> [(&'static str, f64); 9] {
         [
             ("stamina", self.stamina),

@@ -1,29 +1,32 @@
-/// What a climber is doing.
+/// What a climber is doing: one of seven modes of this crate, or a custom mode of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClimberMode {
-    /// On its feet, carried by what it stands on.
+    /// Stands or walks, carried by its ground.
     Standing,
-    /// Down what is too steep to stand on.
+    /// Slides down ground that is too steep to stand on.
     Sliding,
-    /// Crouched on what it grips, and climbs.
+    /// Grips a hold, crouched on it, and can climb.
     Holding,
-    /// By its hands from a grip that is too unstable to climb: it can only hold on.
+    /// Hangs by its hands from a grip that shakes or leans over too far to climb on, or swings after a blow. It can
+    /// only hold on or let go.
     Hanging,
-    /// By its hands from a ledge.
+    /// Hangs by its hands from a ledge.
     LedgeHanging,
-    /// In the air.
+    /// In the air, falling or jumping.
     Falling,
-    /// Knocked off its feet.
+    /// Knocked over: falls, bounces, slides or lies.
     Tumbling,
-    /// A mode of the game's own, by the number of its [`CustomMode`](crate::CustomMode).
+    /// A mode of the game's own, with the id of its [`CustomMode`](crate::CustomMode).
     Custom(u16),
 }
 
 use ClimberMode::{Custom, Falling, Hanging, Holding, LedgeHanging, Sliding, Standing, Tumbling};
 
-/// Every change between the modes of this crate: from, to, and why. Several may happen in one tick: a climber that lets
-/// go of a slope stands, and slips. Modes of a game's own may begin from any mode, and end in any.
+/// Every change between the modes of this crate: from, to, and why.
+///
+/// Several changes may happen in one tick: a climber that lets go on a slope stands, then slips. Custom modes may begin
+/// in any mode and end in any mode.
 pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (Standing, Sliding, "the ground is or becomes too steep"),
     (Standing, Holding, "grips"),
@@ -46,7 +49,7 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         Holding,
         Standing,
-        "climbs onto what can be stood on, or lets go there",
+        "climbs onto ground that can be stood on, or lets go there",
     ),
     (
         Holding,
@@ -70,9 +73,9 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     (
         LedgeHanging,
         Standing,
-        "pulls itself up, or the wall tips to ground",
+        "pulls itself up, or the wall tips and becomes ground",
     ),
-    (LedgeHanging, Holding, "climbs down onto what it grips"),
+    (LedgeHanging, Holding, "climbs down and grips the wall"),
     (
         LedgeHanging,
         Falling,
@@ -80,16 +83,20 @@ pub const TRANSITIONS: &[(ClimberMode, ClimberMode, &str)] = &[
     ),
     (LedgeHanging, Tumbling, "is struck by a blow"),
     (Falling, Standing, "lands"),
-    (Falling, Sliding, "lands on what is too steep"),
+    (Falling, Sliding, "lands on ground that is too steep"),
     (Falling, Holding, "grips"),
     (Falling, LedgeHanging, "catches a ledge"),
     (Falling, Tumbling, "is struck by a blow"),
-    (Tumbling, Standing, "lies still on what can be stood on"),
-    (Tumbling, Falling, "its configuration knows no tumbling"),
+    (
+        Tumbling,
+        Standing,
+        "has lain still on ground that can be stood on",
+    ),
+    (Tumbling, Falling, "`ClimberConfig::tumble` is `None`"),
 ];
 
 impl ClimberMode {
-    /// All of this crate's.
+    /// All modes of this crate, without custom modes.
     pub const ALL: [Self; 7] = [
         Standing,
         Sliding,
@@ -100,19 +107,20 @@ impl ClimberMode {
         Tumbling,
     ];
 
-    /// It is attached to something that carries it: its state has a support then, and otherwise none. A mode of a game's
-    /// own may have a support or not; this says false of it.
+    /// True for the modes in which a support carries the climber:
+    /// [`ClimberState::support`](crate::ClimberState::support) is `Some` in these, and `None` in the other modes of
+    /// this crate. False for custom modes, which may have a support or not.
     pub const fn is_supported(self) -> bool {
         matches!(self, Standing | Holding | Hanging | LedgeHanging)
     }
 
-    /// It is a mode of a game's own.
+    /// True for a custom mode.
     pub const fn is_custom(self) -> bool {
         matches!(self, Custom(_))
     }
 
-    /// A number for each mode, the same in every version: 0 to 6 for this crate's, 65,536 plus its own for a mode of a
-    /// game's. For recordings and fingerprints.
+    /// A number for each mode, the same in every version of this crate, for recordings and fingerprints. 0 to 6 for
+    /// this crate's modes, 65,536 plus its id for a custom mode.
     pub const fn number(self) -> u32 {
         match self {
             Falling => 0,
@@ -126,7 +134,7 @@ impl ClimberMode {
         }
     }
 
-    /// The mode of a [`ClimberMode::number`]; `None` if no mode has it.
+    /// The mode with a [`ClimberMode::number`]; `None` if no mode has this number.
     pub fn from_number(number: u32) -> Option<Self> {
         let custom = || {
             number
@@ -137,13 +145,13 @@ impl ClimberMode {
         built_in.or_else(|| custom().map(Custom))
     }
 
-    /// It holds on with its hands, which tires.
+    /// True for the modes in which the climber holds on with its hands, which costs stamina.
     pub const fn is_holding(self) -> bool {
         matches!(self, Holding | Hanging | LedgeHanging)
     }
 
-    /// Whether it may stay or become another: what [`TRANSITIONS`] lists, and everything to and from a mode of a game's
-    /// own.
+    /// True if this mode can change to `other`, or `other` is the same mode. The changes are those that [`TRANSITIONS`]
+    /// lists, and every change to or from a custom mode.
     pub fn may_become(self, other: Self) -> bool {
         self == other
             || self.is_custom()

@@ -1,19 +1,19 @@
 use clamber_world::{Attachment, SurfaceTag};
 use glam::DVec3;
 
-/// What a climber stands on, grips, or hangs from: a point of the material, which carries it.
+/// The material point that a climber stands on, grips or hangs from, and that carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Support {
-    /// The material point, which changes only when the climber lands, goes or grips; the climber's position is attached
-    /// to it.
+    /// The material point, with the climber's position attached to it. The point stays the same until the climber moves
+    /// on its own, is pushed onto other ground, or takes a new support.
     pub attachment: Attachment,
-    /// Unit vector from the material to the climber, in the frame of the material.
+    /// Separation normal: unit vector from the material point to the climber, in the frame of the material.
     pub normal: DVec3,
-    /// Outward unit normal of the last face that it lay on flat, in the frame of the material: corners are counted
-    /// from face to face.
+    /// Outward unit normal of the last face that the climber lay flat on, in the frame of the material. A corner is
+    /// turned when the climber lies flat on a face with another normal.
     pub face: DVec3,
-    /// What the material is made of, as of when it was found.
+    /// Tag of the material, as it was when the support was found.
     pub tag: SurfaceTag,
 }
 

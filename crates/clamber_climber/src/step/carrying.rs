@@ -1,4 +1,4 @@
-//! Being carried by a material point, attaching to one, and leaving it.
+//! Being carried by a material point, attaching to one, and detaching from it.
 
 use clamber_mover::Touch;
 use clamber_world::{Attachment, Continuity, PointMotion};
@@ -7,22 +7,24 @@ use glam::{DQuat, DVec3};
 use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode, Support};
 
-/// A material point that was this far from where it is said to have been a tick ago, as a share of the radius, did not
-/// move there in one step. Far above rounding, far below what one sees.
+/// Largest gap, as a share of the radius, between the position that a support had after the last tick and the previous
+/// position that its obstacle reports. Beyond it, the support did not move in one step. Far above rounding, far below
+/// what is visible.
 const CONTINUOUS: f64 = 0.025;
 
-/// What has carried a climber since the last tick.
+/// How a support has carried the climber since the last tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Carried {
     pub(super) support: Support,
     pub(super) motion: PointMotion,
-    /// Velocity of the support over the tick before; `None` if it was just found, or was put elsewhere.
+    /// Velocity of the support over the previous tick; `None` if that is not known, or the support was placed
+    /// elsewhere.
     pub(super) velocity_before: Option<DVec3>,
-    /// Where the climber was a tick ago; where it would have been, had its support been put elsewhere.
+    /// The climber's position a tick ago. If the support was placed elsewhere, where the climber would have been there.
     pub(super) start: DVec3,
-    /// Where its support has carried it.
+    /// The position to which its support has carried it.
     pub(super) position: DVec3,
-    /// False if the support was put elsewhere: the way there was not made.
+    /// False if the support was placed elsewhere: the body did not move there, and is not swept.
     pub(super) swept: bool,
 }
 
@@ -37,7 +39,7 @@ impl Carried {
 }
 
 impl Tick<'_> {
-    /// Follows the support to where it is now, and feels how it moves. A support that is gone is lost.
+    /// Follows the support to its current position, and measures its shake. A support that is gone is lost.
     pub(super) fn be_carried(&mut self) {
         let Some(mut support) = self.state.support else {
             return;
@@ -82,27 +84,27 @@ impl Tick<'_> {
         });
     }
 
-    /// Where it is before its own movement of this tick.
+    /// Its position before its own movement in this tick.
     pub(super) fn place(&self) -> DVec3 {
         self.carried
             .map_or(self.state.position, |carried| carried.position)
     }
 
-    /// Its own velocity at the tick's beginning, relative to what carries it, and turned with that.
+    /// Its own velocity at the tick's beginning: relative to its support, and rotated with it.
     pub(super) fn own_velocity(&self) -> DVec3 {
         let own = self.was - self.base_was;
         self.carried
             .map_or(own, |carried| carried.motion.turn * own)
     }
 
-    /// Its material can carry the climber: its motion is known. An obstacle that queries see but that tells no motion is in
-    /// the way, and nothing to stand on or hold.
+    /// True if the material can carry the climber, which means that its motion is known. An obstacle that answers
+    /// queries but reports no motion blocks the climber, but cannot be stood on or held.
     pub(super) fn carries(&self, touch: &Touch) -> bool {
         let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
         motion.is_some()
     }
 
-    /// Attaches the climber, at a position, to something that it touches.
+    /// Attaches the climber, at a position, to a contact.
     pub(super) fn attach(&mut self, touch: &Touch, position: DVec3) {
         let motion = self.mover.motion(touch.obstacle, &touch.contact.material);
         let attachment =
@@ -117,7 +119,8 @@ impl Tick<'_> {
         self.state.support = Some(support);
         self.state.support_velocity = motion.map(|motion| motion.velocity);
         self.state.base_velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
-        // It felt what carried it until now; the new support is already where it is at the tick's end.
+        // The last support has carried it in this tick already. The new one is at its final position, so it adds no
+        // motion.
         self.carried = motion.map(|motion| Carried {
             support,
             motion: PointMotion {
@@ -132,7 +135,7 @@ impl Tick<'_> {
         });
     }
 
-    /// Keeps its support, at another position relative to it.
+    /// Keeps its support, with another position relative to it.
     pub(super) fn keep_support(&mut self, carried: &Carried, position: DVec3) {
         self.state.position = position;
         self.state.support = Some(Support {
@@ -141,20 +144,20 @@ impl Tick<'_> {
         });
     }
 
-    /// Is attached to nothing any more.
+    /// Drops the support.
     pub(super) fn detach(&mut self) {
         self.state.support = None;
         self.state.support_velocity = None;
         self.carried = None;
     }
 
-    /// Into the air, with the velocity that it has.
+    /// Drops the support, keeps the velocity, and changes to a mode.
     pub(super) fn leave(&mut self, mode: ClimberMode) -> NextMode {
         self.detach();
         NextMode::Change(mode)
     }
 
-    /// [`Tick::leave`], with the event of having lost its support.
+    /// [`Tick::leave`] for a fall, with [`ClimberEvent::LostFooting`].
     pub(super) fn lose_footing(&mut self) -> NextMode {
         if let Some(support) = self.state.support {
             let from = support.attachment;
@@ -163,7 +166,7 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// The attachment that it has.
+    /// The attachment of its support.
     pub(super) fn attachment(&self) -> Option<Attachment> {
         self.state.support.map(|support| support.attachment)
     }

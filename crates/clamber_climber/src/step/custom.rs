@@ -1,4 +1,4 @@
-//! Modes of a game's own.
+//! Custom modes: modes of the game's own.
 
 use clamber_mover::{Ground, Moved, Mover, MoverBody, Touch};
 use glam::DVec3;
@@ -8,42 +8,46 @@ use super::moving::Intent;
 use crate::state::MEMORY;
 use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState};
 
-/// What a mode's handler answers.
+/// The mode after a handler has run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextMode {
-    /// The mode stays.
+    /// The mode goes on.
     Stay,
-    /// Another mode comes next: in the same tick, unless the body has made its movement.
+    /// Change to another mode. Its handler runs in the same tick, or in the next one if the body has already moved.
     Change(ClimberMode),
 }
 
-/// A mode of a game's own: a dash, a vault, a wall run, swimming.
+/// A custom mode: a mode of the game's own, such as a dash, a vault, a wall run or swimming.
 ///
-/// Handlers are given to [`Climber::step_with`](crate::Climber::step_with) with every step. They keep nothing: what a mode
-/// remembers is in [`ModeContext::memory`], which is part of the climber's state, so that it is recorded, saved and
-/// rolled back with it.
+/// Handlers are given to every [`Climber::step_with`](crate::Climber::step_with), and keep no state of their own. A
+/// mode stores what it remembers in [`ModeContext::memory`], which is part of the climber's state, so that it is
+/// recorded, saved and rolled back with it.
 pub trait CustomMode {
-    /// Its number: the climber is in [`ClimberMode::Custom`] of it. No two modes of a game have the same.
+    /// Id of the mode, unique among the game's modes. The climber's mode is [`ClimberMode::Custom`] with this id.
     fn id(&self) -> u16;
 
-    /// Whether the mode begins now. Asked in ticks in which the climber is in another mode, after its support has carried
-    /// it and before it moves; modes are asked in the order in which they are given, and those after one that begins are
-    /// not asked in that tick. Also the place to count down a timer such as a cooldown; while the mode itself runs,
-    /// [`CustomMode::step`] is.
+    /// Whether the mode begins now.
+    ///
+    /// Called once in a tick while the climber is in another mode, after its support has carried it and before it
+    /// moves. Modes are asked in the order in which they are given; after one begins, the rest are not asked in that
+    /// tick. This is also the place to count down a timer such as a cooldown. While the mode itself runs, use
+    /// [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
-    /// One tick of the mode: moves the body at most once, by one of the context's movements, and says what comes next.
-    /// A tick without a movement leaves the climber to its support, or to its velocity.
+    /// Runs one tick of the mode, and returns what comes next.
+    ///
+    /// Move the body at most once, by [`ModeContext::move_to`] or [`ModeContext::move_by`]. Without a movement, the
+    /// climber is carried by its support, or goes on at its velocity if it has none.
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode;
 }
 
-/// What a mode of a game's own sees of a tick, and can do in it.
+/// The tick as a custom mode sees it, and the actions that it can take.
 pub struct ModeContext<'t, 'a> {
     tick: &'t mut Tick<'a>,
 }
 
 impl Tick<'_> {
-    /// Asks the game's modes whether one of them begins.
+    /// Starts the first of the game's modes that begins, if one does.
     pub(super) fn start_custom_mode(&mut self) {
         let modes = self.rules.modes;
         for mode in modes {
@@ -59,14 +63,14 @@ impl Tick<'_> {
         let modes = self.rules.modes;
         match modes.iter().find(|mode| mode.id() == id) {
             Some(mode) => mode.step(&mut ModeContext { tick: self }),
-            // A step without the handler knows no such mode: the climber goes on through the air as fast as it was.
+            // A step without this mode's handler ends the mode: the climber falls at its velocity.
             None => ModeContext { tick: self }.let_go(),
         }
     }
 }
 
 impl<'a> ModeContext<'_, 'a> {
-    /// What the player wants.
+    /// The player's input.
     pub fn input(&self) -> &ClimberInput {
         self.tick.input
     }
@@ -76,7 +80,7 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.config
     }
 
-    /// The state as it is at this point of the tick.
+    /// The state at this point of the tick.
     pub fn state(&self) -> &ClimberState {
         &self.tick.state
     }
@@ -86,35 +90,35 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.dt()
     }
 
-    /// Unit vector, against gravity.
+    /// Unit vector opposite to gravity, in world space; +Y if gravity is zero.
     pub fn up(&self) -> DVec3 {
         self.tick.config.up()
     }
 
-    /// The mode began in this tick.
+    /// True if the climber's current mode began in this tick.
     pub fn has_entered(&self) -> bool {
         self.tick.has_entered
     }
 
-    /// The numbers that a game's modes remember; all modes share them. A value that is not finite ends the tick with
-    /// [`ClimberEvent::NotFinite`], and nothing happens.
+    /// The numbers that the game's modes remember. All modes share them. After a value that is not finite, the whole
+    /// tick is undone and [`ClimberEvent::NotFinite`] is reported.
     pub fn memory(&mut self) -> &mut [f64; MEMORY] {
         &mut self.tick.state.memory
     }
 
-    /// The shape that is moved.
+    /// The body's shape at this point of the tick.
     pub fn body(&self) -> MoverBody {
         self.tick.body()
     }
 
-    /// The world: casts, overlaps, probes for ground, grips and ledges.
+    /// Queries of the world: casts, overlaps, and probes for ground, grips and ledges.
     pub fn mover(&mut self) -> &mut Mover<'a> {
         &mut self.tick.mover
     }
 
-    /// Where the climber is before its own movement, in world space, as of the tick's end: where its support has carried
-    /// it, else where [`ModeContext::base_velocity`] has. Obstacles stand there at that time, too. What it is after its
-    /// movement is in [`ModeContext::state`].
+    /// The climber's position at the tick's end before its own movement, in world space: where its support has carried
+    /// it, or without a support where [`ModeContext::base_velocity`] has. Obstacles are at their positions of the same
+    /// time. [`ModeContext::state`] has the position after the movement.
     pub fn position(&self) -> DVec3 {
         let tick = &self.tick;
         match &tick.carried {
@@ -124,7 +128,8 @@ impl<'a> ModeContext<'_, 'a> {
         }
     }
 
-    /// Its velocity before its own movement, in world space, metres a second, a blow included: of its support, and its own.
+    /// The climber's velocity before its own movement, in world space, metres a second. It is the sum of its support's
+    /// velocity and its own, including a blow.
     pub fn velocity(&self) -> DVec3 {
         let tick = &self.tick;
         match &tick.carried {
@@ -133,20 +138,23 @@ impl<'a> ModeContext<'_, 'a> {
         }
     }
 
-    /// Velocity of what supports it, or supported it last: what its own motion is measured against.
+    /// Velocity of its support, or of its last one, in world space, metres a second. Its own motion is measured against
+    /// it.
     pub fn base_velocity(&self) -> DVec3 {
         let carried = self.tick.carried;
         carried.map_or(self.tick.state.base_velocity, |carried| carried.velocity())
     }
 
-    /// Measures its own motion against another velocity from now on, in world space, metres a second: of the water that
-    /// it swims in, of the wind. A support that it has, or gets, counts in its place.
+    /// Sets the velocity that its own motion is measured against from now on, in world space, metres a second, such as
+    /// that of water or wind. While it has a support, the support's velocity is used instead, and replaces it.
     pub fn set_base_velocity(&mut self, velocity: DVec3) {
         self.tick.state.base_velocity = velocity;
     }
 
-    /// Sweeps the body to a target at the tick's end, in world space, and says where it came. `velocity` is what it
-    /// meant to have, in world space; it keeps what the contacts let it. A climber with a support keeps that.
+    /// Sweeps the body to `target`, a position in world space at the tick's end, and returns where it got.
+    ///
+    /// `velocity` is the velocity that it would have without contacts, in world space, metres a second. The state gets
+    /// this velocity, clipped by the contacts. A support is kept.
     pub fn move_to(&mut self, target: DVec3, velocity: DVec3) -> Moved {
         let path = self.tick.path(target);
         let moved = self.tick.slide(&path, Intent::Go);
@@ -158,20 +166,21 @@ impl<'a> ModeContext<'_, 'a> {
         moved
     }
 
-    /// [`ModeContext::move_to`] where a velocity leads in this tick: in world space, that of the support included.
+    /// [`ModeContext::move_to`] for one tick at a velocity in world space, metres a second, the support's velocity
+    /// included.
     pub fn move_by(&mut self, velocity: DVec3) -> Moved {
-        // Where it is carried is in the position already.
+        // The position already includes how the support has carried it.
         let own = velocity - self.base_velocity();
         self.move_to(self.position() + own * self.dt(), velocity)
     }
 
-    /// What the last movement touched.
+    /// Contacts of the last movement.
     pub fn touched(&self) -> &[Touch] {
         self.tick.mover.touched()
     }
 
-    /// Ground below the climber, up to `reach` metres below its feet: where its movement has led, else where it is before
-    /// that.
+    /// Ground up to `reach` metres below the climber's feet, at its position after its movement, or before it if it has
+    /// not moved yet. `None` if there is none, or it reports no motion.
     pub fn ground_below(&mut self, reach: f64) -> Option<Ground> {
         let position = self.here();
         self.tick.ground_below(position, reach)
@@ -185,45 +194,46 @@ impl<'a> ModeContext<'_, 'a> {
         }
     }
 
-    /// The contact of the last movement that holds the climber up, if one does.
+    /// Ground among the contacts of the last movement, if one of them holds the climber up.
     pub fn held_up(&mut self) -> Option<Ground> {
         let slope = self.tick.config.ground.max_slope;
         let position = self.tick.state.position;
         self.tick.held_up(position, slope)
     }
 
-    /// Attaches the climber to a contact, which carries it from now on: to a wall that it runs along, or before it stands
-    /// or holds.
+    /// Attaches the climber to a contact, which carries it from now on, such as a wall that it runs along. Call it
+    /// before a change to a mode that needs a support.
     pub fn attach(&mut self, touch: &Touch) {
         let place = self.here();
         self.tick.attach(touch, place);
     }
 
-    /// Attaches the climber to ground and puts it there, in the mode that it is in.
+    /// Attaches the climber to ground and puts it there, without a change of mode.
     pub fn attach_to_ground(&mut self, ground: &Ground) {
         self.tick.state.position = ground.position;
         self.tick.attach(&ground.touch, ground.position);
     }
 
-    /// Attaches the climber to ground and puts it there; answer with this to stand.
+    /// Attaches the climber to ground and puts it there. Return the result from [`CustomMode::step`] to stand.
     pub fn stand_on(&mut self, ground: &Ground) -> NextMode {
         self.attach_to_ground(ground);
         NextMode::Change(ClimberMode::Standing)
     }
 
-    /// Lets go of what supports the climber; answer with this to fall, with a velocity in world space.
+    /// Drops the support and sets the velocity, in world space, metres a second. Return the result from
+    /// [`CustomMode::step`] to fall.
     pub fn fall(&mut self, velocity: DVec3) -> NextMode {
         self.tick.state.velocity = velocity;
         self.tick.leave(ClimberMode::Falling)
     }
 
-    /// [`ModeContext::fall`] with the velocity that it has.
+    /// [`ModeContext::fall`] with the climber's current velocity.
     pub fn let_go(&mut self) -> NextMode {
         self.detach();
         NextMode::Change(ClimberMode::Falling)
     }
 
-    /// Lets go of what supports the climber, and goes on in this mode, with the velocity that it has.
+    /// Drops the support, and keeps the mode and the climber's current velocity.
     pub fn detach(&mut self) {
         let moved = self.tick.has_moved;
         let velocity = if moved {
@@ -235,13 +245,13 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.state.velocity = velocity;
     }
 
-    /// Turns the climber to face a direction, as far as it is level.
+    /// Turns the climber to face the level component of a direction. No change if that is zero.
     pub fn face(&mut self, direction: DVec3) {
         self.tick.face(direction);
     }
 
-    /// Reports [`ClimberEvent::Custom`]. `mode` is the number of the mode that reports: [`CustomMode::begins`] runs while
-    /// the climber is in another one.
+    /// Reports [`ClimberEvent::Custom`]. `mode` is the id of the reporting mode, which may differ from the climber's
+    /// current mode: [`CustomMode::begins`] is called in other modes.
     pub fn report(&mut self, mode: u16, what: u32, value: f64) {
         self.tick.event(ClimberEvent::Custom { mode, what, value });
     }

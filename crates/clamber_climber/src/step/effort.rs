@@ -1,4 +1,4 @@
-//! What shakes, tires and hurts a climber.
+//! Blows, shakes, stamina and damage.
 
 use clamber_world::{ObstacleId, PointMotion};
 use glam::DVec3;
@@ -7,14 +7,19 @@ use super::{NextMode, Tick};
 use crate::shake::{Shake, excess};
 use crate::{ClimberEvent, ClimberMode};
 
-/// For how long it grips nothing after its strength was used up, seconds.
+/// How long it grips nothing after its stamina was used up, seconds.
 const EXHAUSTED: f64 = 1.0;
 
 impl Tick<'_> {
-    /// What struck it since the last tick. A blow above the knocking speed knocks the climber over, if it can tumble. In the
-    /// air any other blow adds its velocity. A standing climber slides along the ground until friction has braked it, and is
-    /// lifted off the ground if the blow points off it. A blow that is faster than a jump off a hold takes a holding climber
-    /// off; a weaker one lets it swing from the hold, and does nothing to a climber that hangs from a ledge.
+    /// Applies the blow of this tick's input.
+    ///
+    /// A blow faster than the knock speed knocks the climber over, if it can tumble. For other blows:
+    ///
+    /// - In the air, while sliding or tumbling, and in a custom mode, the blow's velocity is added.
+    /// - A standing climber slides along the ground until friction has braked it, or is lifted off if the blow points
+    ///   away from the ground.
+    /// - A blow faster than a jump off a hold takes a climber off its hold or ledge. A slower one makes it swing from
+    ///   its hold, and does nothing to a climber that hangs from a ledge.
     pub(super) fn be_struck(&mut self) {
         let Some(blow) = self.input.blow else {
             return;
@@ -47,7 +52,7 @@ impl Tick<'_> {
         self.was = self.state.velocity;
     }
 
-    /// A velocity without its part into the ground underfoot, which has held that up: a climber that is knocked over as it
+    /// A velocity without its component into the ground underfoot, so that a climber that is knocked over while it
     /// walks onto the edge of a step does not bounce off it.
     fn off_the_ground(&self, velocity: DVec3) -> DVec3 {
         let Some(support) = self.state.support else {
@@ -58,7 +63,7 @@ impl Tick<'_> {
         velocity - normal * into
     }
 
-    /// The fastest blow that arms hold against, metres a second.
+    /// The fastest blow that does not take it off its hold, metres a second.
     fn holds_against(&self) -> f64 {
         let grip = self.config.grip;
         grip.map_or(self.config.ground.jump_speed, |grip| grip.jump_speed)
@@ -70,7 +75,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Off its feet or its hold by a blow, with the velocity that it has.
+    /// Leaves its support because of a blow, with its current velocity.
     pub(super) fn be_knocked_off(&mut self) -> NextMode {
         let by = self.input.blow.and_then(|blow| blow.by);
         if let Some(from) = self.attachment() {
@@ -79,7 +84,8 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Feels how its support moves. What was put elsewhere, or is just found, has no acceleration.
+    /// Updates the shake from the motion of its support. A support that was placed elsewhere, or whose last velocity is
+    /// not known, adds no acceleration.
     pub(super) fn feel(&mut self, motion: &PointMotion, was_placed: bool) {
         let change = match self.state.support_velocity {
             Some(before) if !was_placed => motion.velocity - before,
@@ -97,7 +103,7 @@ impl Tick<'_> {
         self.state.shake = shake.acceleration;
     }
 
-    /// Drains or refills stamina, and opens the grip when it is used up.
+    /// Drains or refills stamina, and opens the grip when stamina is used up.
     pub(super) fn update_stamina(&mut self, shake_before: DVec3) {
         if !self.state.mode.is_supported() {
             self.shake_by(DVec3::ZERO);
@@ -129,7 +135,7 @@ impl Tick<'_> {
         self.follow_at_once(next);
     }
 
-    /// The ground goes away from under its feet, faster than it falls and than they follow.
+    /// Throws the climber off if the ground accelerates away from its feet by more than the threshold beyond gravity.
     pub(super) fn be_thrown(&mut self, normal: DVec3) -> Option<NextMode> {
         let acceleration = -self.state.shake.dot(normal) - -self.config.gravity.dot(normal);
         if acceleration <= self.config.ground.throw_acceleration {
@@ -142,7 +148,7 @@ impl Tick<'_> {
         Some(self.leave(ClimberMode::Falling))
     }
 
-    /// A shake knocks it off its feet.
+    /// Knocks the climber over if the ground shakes too hard.
     pub(super) fn be_knocked_down(&mut self) -> Option<NextMode> {
         let tumble = self.config.tumble?;
         if self.state.shake.length() <= tumble.knock_acceleration {

@@ -1,4 +1,4 @@
-//! In the air, down what is too steep, or knocked over: gravity, and what is in the way.
+//! Falling, sliding and tumbling: motion under gravity, with contacts.
 
 use clamber_mover::Ground;
 use glam::DVec3;
@@ -8,30 +8,30 @@ use super::moving::Intent;
 use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
 
-/// A body that comes down more slowly does not bounce, as a share of the speed of a jump.
+/// A tumbling body bounces if its impact speed is above this share of the speed of a jump.
 const BOUNCE: f64 = 0.1;
 
-/// Slower than this, relative to the ground, is lying still, as a share of the speed of a jump.
+/// A tumbling body lies still if its speed relative to the ground is below this share of the speed of a jump.
 const STILL: f64 = 0.1;
 
-/// What a climber remembers while it falls or slides.
+/// Memory of a climber that falls or slides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlyingMemory {
-    /// It rises from a jump.
+    /// True while it rises from a jump.
     pub jumping: bool,
 }
 
-/// What a climber remembers while it lies knocked over.
+/// Memory of a climber that tumbles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TumblingMemory {
-    /// For how long it has lain still, seconds.
+    /// How long it has lain still, seconds.
     pub still: f64,
 }
 
 impl Tick<'_> {
-    /// In the air, or down what is too steep.
+    /// Falls, or slides down ground that is too steep.
     pub(super) fn fly(&mut self) -> NextMode {
         if self.state.coyote > 0.0 && self.state.jump_buffer > 0.0 {
             self.jump_late();
@@ -41,14 +41,14 @@ impl Tick<'_> {
         }
         self.steer();
         let falling = self.fall();
-        // At the tick's end, where obstacles are as well.
+        // After the movement: its position and those of the obstacles are then of the same time.
         match self.grip_or_catch() {
             Some(next) => next,
             None => self.land(falling),
         }
     }
 
-    /// A jump shortly after the ground has ended.
+    /// Jumps shortly after the ground has ended.
     fn jump_late(&mut self) {
         let up = self.config.up();
         let rising = (self.state.velocity - self.state.base_velocity).dot(up);
@@ -57,7 +57,7 @@ impl Tick<'_> {
         self.begin_jump();
     }
 
-    /// What the input changes of the velocity in the air.
+    /// Changes the velocity in the air as the input asks.
     fn steer(&mut self) {
         let ground = &self.config.ground;
         let up = self.config.up();
@@ -73,9 +73,9 @@ impl Tick<'_> {
         self.state.velocity += steered - along;
     }
 
-    /// One tick of a fall; gives the velocity that it would have had without contacts.
+    /// Moves the body through one tick of free fall. Returns the velocity that it would have had without contacts.
     ///
-    /// The parabola is exact at every tick's end: constant acceleration over the tick.
+    /// Positions are exactly on the parabola at each tick's end: the acceleration is constant over the tick.
     fn fall(&mut self) -> DVec3 {
         self.has_flown = true;
         let (up, dt) = (self.config.up(), self.dt());
@@ -95,7 +95,7 @@ impl Tick<'_> {
         falling
     }
 
-    /// Stands on what it came down on, or slides down it. What crushes it is no place to stand.
+    /// Stands on the ground that it came down on, or slides down it. A crushed climber does neither.
     fn land(&mut self, falling: DVec3) -> NextMode {
         if self.state.crushed {
             return NextMode::Stay;
@@ -116,7 +116,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Comes down on ground; keeps its speed along it.
+    /// Lands on ground, and keeps its speed along it.
     fn land_on(&mut self, ground: &Ground, falling: DVec3) -> NextMode {
         let touch = &ground.touch;
         let own = falling - self.mover.velocity_of(touch);
@@ -141,7 +141,7 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Knocked over: bounces, slides to a halt, and gets up once it has lain still.
+    /// Falls, bounces and slides to a halt, and gets up once it has lain still.
     pub(super) fn tumble(&mut self) -> NextMode {
         let Some(tumble) = self.config.tumble else {
             return NextMode::Change(ClimberMode::Falling);
@@ -149,7 +149,7 @@ impl Tick<'_> {
         let falling = self.fall();
         let slope = self.config.ground.max_slope;
         let held_up = self.held_up(self.state.position, slope);
-        // What crushes it is no place to get up.
+        // A crushed climber does not get up.
         let Some(ground) = held_up.filter(|_| !self.state.crushed) else {
             self.state.tumbling.still = 0.0;
             return NextMode::Stay;

@@ -1,4 +1,4 @@
-//! What is underfoot.
+//! Finding the ground underfoot.
 
 use clamber_mover::{Ground, GroundProbe, Touch};
 use glam::DVec3;
@@ -11,7 +11,7 @@ impl Tick<'_> {
         self.config.ground.max_slope + SLOPE_HYSTERESIS
     }
 
-    /// Ground for the body as it stands, up to `reach` below its feet.
+    /// A probe for ground up to `reach` below the feet, for the body at its current height.
     pub(super) fn ground_probe(&self, reach: f64) -> GroundProbe {
         GroundProbe {
             body: self.body(),
@@ -28,9 +28,9 @@ impl Tick<'_> {
     }
 
     /// The contact of the last movement that holds the climber up at a position, and the position at which it stands on
-    /// it: a turning obstacle keeps a landing climber off by some millimetres.
+    /// it. The two positions differ because a turning obstacle keeps a landing climber some millimetres away.
     ///
-    /// `None` if what was met on the way is not there any more: the climber was pushed off it since.
+    /// `None` if no contact holds it up, or if the climber was pushed off the contact later in the same movement.
     pub(super) fn held_up(&mut self, position: DVec3, max_slope: f64) -> Option<Ground> {
         let up = self.config.up();
         let met = self.mover.holding_up(up, max_slope)?;
@@ -48,8 +48,8 @@ impl Tick<'_> {
         Some(Ground { touch, position })
     }
 
-    /// A slope that tips is slipped on; over the edge of level ground, the ground ends, whichever of the two faces that meet
-    /// there is said to touch.
+    /// True if the climber touches a slope that is too steep, where no level ground ends. At the edge of level ground
+    /// the ground counts as ended, whichever of the two faces that meet there is reported as the contact.
     pub(super) fn is_on_slope(&mut self, position: DVec3, max_slope: f64) -> bool {
         let up = self.config.up();
         let body = self.body();
@@ -68,7 +68,7 @@ impl Tick<'_> {
         touched.any(|touch| touch.normal.dot(up) > GRAZING && is_steep(touch) && !ends(touch))
     }
 
-    /// A slope is within the margin.
+    /// True if a slope, of any steepness up to nearly vertical, is within the margin.
     pub(super) fn is_beside_slope(&mut self, position: DVec3) -> bool {
         let up = self.config.up();
         let body = self.body();
@@ -77,5 +77,5 @@ impl Tick<'_> {
     }
 }
 
-/// Cosine of the angle from up at which a wall is a slope.
+/// Cosine from up of a contact normal above which a face is a slope, and not a wall.
 pub(super) const GRAZING: f64 = 0.05;

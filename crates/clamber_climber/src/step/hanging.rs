@@ -1,4 +1,4 @@
-//! By its hands: a pendulum that can only hold on.
+//! Hanging by the hands from a grip: a pendulum that can only hold on.
 
 use clamber_mover::{Arm, HalfSpace, Moved, Path};
 use glam::DVec3;
@@ -11,32 +11,32 @@ use crate::config::GripConfig;
 use crate::pendulum::{Pendulum, PendulumTick};
 use crate::{ClimberEvent, ClimberMode};
 
-/// How fast it pulls itself in once its hold is calm, as a share of the climbing speed.
+/// Speed at which it pulls itself in once its hold is calm, as a share of the climbing speed.
 const PULL: f64 = 4.0 / 3.0;
 
-/// Below this share of what made it hang, shake is calm.
+/// A hold is calm if its shake is at most this share of the shake that makes the climber hang.
 const CALM: f64 = 0.7;
 
-/// How fast arms that something has stretched get short again once it lets them, of their lengths a second: 4.5 m/s.
+/// Speed at which stretched arms shorten again, in arm lengths a second: 4.5 m/s for arms of 0.9 m.
 const SHORTEN: f64 = 5.0;
 
-/// Arms that something stretches beyond their length by this factor let go.
+/// Arms let go when they are stretched to this multiple of their length.
 const STRETCH: f64 = 1.5;
 
-/// As close to its hands as this share of its radius, it climbs again. Not five quarters: the arms of the default
+/// Distance from its hands at which it climbs again, as a share of its radius. Not 1.25: the arms of the default
 /// configuration get exactly that short in a whole number of ticks, and rounding would decide.
 const CLOSE: f64 = 1.27;
 
-/// What a climber remembers while it hangs by its hands.
+/// Memory of a climber that hangs by its hands from a grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HangingMemory {
-    /// Length of its arm, metres: shorter than at full stretch while it pulls itself in.
+    /// Length of its arms, metres. Shorter than at full stretch while it pulls itself in.
     pub arm: f64,
-    /// For how long its hold has been calm enough to climb on, seconds.
+    /// How long its hold has been calm enough to climb on, seconds.
     pub calm: f64,
-    /// Where its legs ended after the last tick, from its position, metres; zero while they are
-    /// drawn in.
+    /// End of its legs after the last tick, relative to its position, in world space, metres. Zero while they are drawn
+    /// in.
     pub legs: DVec3,
 }
 
@@ -52,7 +52,7 @@ impl Tick<'_> {
             return self.leave(ClimberMode::Falling);
         }
         let now = carried.velocity();
-        // A climber that has just let its legs go hangs at rest below its hands, but for a blow.
+        // A climber that has just begun to hang is at rest below its hands, except for a blow.
         let (pivot_was, relative) = match carried.velocity_before {
             Some(before) if !self.has_entered => (before, self.was - before),
             _ => (now, self.struck),
@@ -61,7 +61,7 @@ impl Tick<'_> {
         self.swing(&carried, pivot_was, relative)
     }
 
-    /// Lets its arms go long, or pulls itself in once it has been calm.
+    /// Stretches its arms, or pulls itself in once the hold has been calm for long enough.
     fn reach_or_pull(&mut self, carried: &Carried, grip: &GripConfig) {
         let leans_over = self.config.slope(carried.normal()) > grip.max_overhang;
         let shakes = self.state.shake.length() > CALM * grip.hang_acceleration;
@@ -82,7 +82,8 @@ impl Tick<'_> {
         }
     }
 
-    /// Swings below its hands, which moved at `pivot_was` until now; `relative` is its own velocity beyond that.
+    /// Swings below its hands. `pivot_was` is the velocity of the hands in the last tick, and `relative` the body's
+    /// velocity relative to that.
     fn swing(&mut self, carried: &Carried, pivot_was: DVec3, relative: DVec3) -> NextMode {
         let hang = &self.config.hang;
         let pivot = carried.motion.position;
@@ -115,12 +116,12 @@ impl Tick<'_> {
         } else {
             self.clipped_by_arm(velocity, carried, moved.position - pivot)
         };
-        // A blow that it swings from leaves the hold calm: only a while of it ends the swing.
+        // After a blow it swings although the hold is calm: the swing ends only after `calm_time`.
         let calm_time = self.config.grip.map_or(0.0, |grip| grip.calm_time);
         let longest = hang.arm_length.max(radius) * STRETCH;
         let reach = moved.position.distance(pivot);
         if reach > longest {
-            // Something in its way has torn it off.
+            // An obstacle in its way has torn it off.
             self.state.open_handed = OPEN_HANDED;
             return self.lose_footing();
         }
@@ -130,8 +131,8 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Moves a body whose legs end at `legs`, seen from its position. Obstacles stop legs as they stop the body. Legs
-    /// without room are drawn in, and come down again in a later tick, where there is room.
+    /// Moves the body with its legs, which end at `legs` relative to its position. Obstacles stop legs as they stop the
+    /// body. Legs without room are drawn in, and let down again in a later tick in which there is room.
     fn slide_with_legs(&mut self, path: &Path, legs: DVec3) -> Moved {
         let were = self.state.hanging.legs;
         if were != DVec3::ZERO {
@@ -152,7 +153,7 @@ impl Tick<'_> {
         moved
     }
 
-    /// A velocity without its parts into what it touches and beyond its arms.
+    /// Clips a velocity by the contacts and by the arms, if they are taut.
     fn clipped_by_arm(&self, velocity: DVec3, carried: &Carried, arm: DVec3) -> DVec3 {
         if self.state.crushed {
             return self.state.base_velocity;

@@ -1,4 +1,4 @@
-//! Crouched on what it grips.
+//! Gripping a hold and climbing on it.
 
 use clamber_mover::Touch;
 use glam::{DQuat, DVec3};
@@ -9,29 +9,31 @@ use super::{NextMode, Tick};
 use crate::config::GripConfig;
 use crate::{ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 
-/// How fast arms draw the body to what they grip, as a share of the climbing speed.
+/// Speed at which arms draw the body to its hold, as a share of the climbing speed.
 const DRAW: f64 = 8.0 / 3.0;
 
-/// After a jump off a hold, or after letting go, it grips nothing for so many seconds.
+/// How long it grips nothing after it jumped off a hold, let go or was torn off, seconds.
 pub(super) const OPEN_HANDED: f64 = 0.3;
 
-/// Faces that differ by more than this meet in a corner, radians: 40 degrees.
+/// Faces whose normals differ by more than this angle meet in a corner, radians: 40 degrees.
 const CORNER: f64 = 0.7;
 
-/// Cosine of the angle up to which it lies flat on a face: 10 degrees.
+/// Cosine of the largest angle between a face's normal and the separation normal at which it lies flat on the face: 10
+/// degrees.
 const FLAT: f64 = 0.985;
 
-/// A climber that makes less than this share of a step upwards is as high as the hold goes, and looks for a ledge.
+/// A climber that makes less than this share of an upward step is at the top of its hold, and looks for a ledge.
 const STUCK: f64 = 0.25;
 
-/// With this share of its input along the hold it climbs at full speed; with less slower.
+/// Share of the input along the hold above which it climbs at full speed. Below, it climbs more slowly.
 const FULL: f64 = 0.1;
 
-/// What opposes its way by more than this cosine is climbed onto rather than along.
+/// A face that opposes the input's direction by more than this cosine is climbed onto, not along.
 const AHEAD: f64 = 0.3;
 
 impl Tick<'_> {
-    /// Grips what is in reach, or catches a ledge, if it is asked to and has the strength.
+    /// Takes hold of the best grip in reach, or catches a ledge, if the input asks for it, stamina is left and its
+    /// hands are ready.
     pub(super) fn grip_or_catch(&mut self) -> Option<NextMode> {
         if !self.input.grip || self.state.stamina == 0.0 || self.state.open_handed > 0.0 {
             return None;
@@ -45,7 +47,7 @@ impl Tick<'_> {
         self.catch_ledge(place)
     }
 
-    /// Grips something from a position.
+    /// Grips a contact from a position.
     pub(super) fn take_hold(&mut self, touch: &Touch, place: DVec3) -> NextMode {
         self.attach(touch, place);
         self.face(-touch.normal);
@@ -78,7 +80,7 @@ impl Tick<'_> {
         self.climb(&carried, &grip, wish)
     }
 
-    /// Opens its hands.
+    /// Lets go: stands on ground that is level enough, else falls.
     fn let_go(&mut self, carried: &Carried) -> NextMode {
         self.event(ClimberEvent::Released);
         if self.config.slope(carried.normal()) <= self.config.ground.max_slope {
@@ -88,7 +90,7 @@ impl Tick<'_> {
         self.leave(ClimberMode::Falling)
     }
 
-    /// Away from its hold, and up.
+    /// Jumps off its hold, away from it and upwards.
     pub(super) fn jump_off(&mut self, normal: DVec3, speed: f64) -> NextMode {
         let up = self.config.up();
         self.state.velocity += (normal + up).normalize_or(normal) * speed;
@@ -144,26 +146,26 @@ impl Tick<'_> {
         if let Some(next) = self.catch_ledge(position) {
             return next;
         }
-        // Nothing to grip there: it stays.
+        // Nothing to grip there: the climber stays where it was.
         let moved = self.slide(&self.path(carried.position), Intent::Stay);
         self.settle(carried, moved.position, carried.velocity());
         NextMode::Stay
     }
 
-    /// Farthest that its centre may be from what it holds, metres: arms at full stretch, and what they give.
+    /// Largest distance of its centre from its hold, metres: arms at full stretch, and some give.
     fn reach(&self, grip: &GripConfig) -> f64 {
         self.config.body.radius * 1.25 + grip.reach
     }
 
-    /// Something has pushed it off, farther than its arms reach.
+    /// Loses its hold, because an obstacle has pushed it farther away than its arms reach, or crushed it.
     pub(super) fn be_torn_off(&mut self, carried: &Carried) -> NextMode {
         self.state.open_handed = OPEN_HANDED;
-        // Not with the speed of being pressed out.
+        // Without the speed of being pushed out.
         self.state.velocity = carried.velocity();
         self.lose_footing()
     }
 
-    /// What it touches at its place can be stood on: it does.
+    /// Stands on ground among its contacts, if one holds it up.
     pub(super) fn stand_where_it_hangs(&mut self) -> Option<NextMode> {
         let ground = self.held_up(self.state.position, self.config.ground.max_slope)?;
         self.state.position = ground.position;
@@ -172,8 +174,9 @@ impl Tick<'_> {
         Some(NextMode::Change(ClimberMode::Standing))
     }
 
-    /// What it grips at a position: the nearest that can be gripped and reached, and of those as near the one that it
-    /// climbs onto: against which it pushes, and which does not lead it back against what it `holds` now, in a crease.
+    /// The grip at a position: the nearest contact that can be gripped and reached. Of contacts about as near, the one
+    /// that the input pushes against is taken, unless climbing on it leads back against the hold whose normal is
+    /// `holds`, as in a crease. `None` if there is no grip, or it cannot carry the climber.
     pub(super) fn find_grip(
         &mut self,
         position: DVec3,
@@ -192,7 +195,8 @@ impl Tick<'_> {
         self.carries(&touch).then_some(touch)
     }
 
-    /// Attaches it to what it climbs on to. A corner is turned when it lies flat on a face that differs from the last.
+    /// Attaches it to the contact that it climbs onto. It turns a corner when it lies flat on a face whose normal
+    /// differs from that of the last one.
     fn climb_on_to(&mut self, carried: &Carried, touch: &Touch, position: DVec3) {
         let face = carried.support.attachment.frame * carried.support.face;
         self.attach(touch, position);
@@ -211,7 +215,7 @@ impl Tick<'_> {
     }
 }
 
-/// Where the input wants to go along a hold; its length is the share of full speed.
+/// The input's direction along a hold; its length is the share of full speed.
 fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) -> DVec3 {
     let up = config.up();
     let (wanted, share) = if input.climb == DVec3::ZERO {
@@ -221,13 +225,13 @@ fn climb_direction(config: &ClimberConfig, input: &ClimberInput, normal: DVec3) 
         (input.climb, input.climb.length().min(1.0))
     };
     let along = wanted - normal * wanted.dot(normal);
-    // Pushed straight into the hold it goes nowhere: rounding must not decide where.
+    // Input straight into the hold does not move the climber: rounding would decide its direction.
     let fade = (along.length() / (FULL * wanted.length())).min(1.0);
     along.normalize_or_zero() * if fade.is_finite() { share * fade } else { 0.0 }
 }
 
-/// How much more than a little it pushes against one face while it holds another, if the other does not push it
-/// back.
+/// How much the input pushes against `face`, beyond a threshold, while the climber holds a face of normal `held`. Zero
+/// if climbing on `face` would lead back against the held one.
 fn leads_on(config: &ClimberConfig, input: &ClimberInput, held: DVec3, face: DVec3) -> f64 {
     let wish = climb_direction(config, input, held);
     let beyond = climb_direction(config, input, face);
@@ -239,7 +243,7 @@ fn leads_on(config: &ClimberConfig, input: &ClimberInput, held: DVec3, face: DVe
     }
 }
 
-/// The shortest rotation from one unit vector to another; about some level axis where they are opposite.
+/// The shortest rotation from one unit vector to another. If they are opposite, its axis is any perpendicular one.
 fn turn_to(from: DVec3, to: DVec3) -> DQuat {
     let axis = from.cross(to);
     let real = 1.0 + from.dot(to);

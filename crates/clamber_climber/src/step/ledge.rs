@@ -1,4 +1,4 @@
-//! By its hands from a ledge: found by queries, on terrain and on skin alike.
+//! Hanging from a ledge, climbing along it and over it. Ledges are found by queries, on terrain and on skin alike.
 
 use clamber_mover::{Ledge, LedgeProbe, Moved};
 use glam::DVec3;
@@ -10,38 +10,38 @@ use super::{NextMode, Tick};
 use crate::config::LedgeConfig;
 use crate::{ClimberEvent, ClimberMode};
 
-/// How fast arms draw the body under the ledge, as a share of the speed along it.
+/// Speed at which arms draw the body into place below the ledge, as a share of the speed along it.
 const DRAW: f64 = 3.0;
 
-/// Share of the pull-up after which it goes in over the ledge; before it goes up.
+/// Share of the pull-up in which it goes up. In the rest it goes in over the ledge.
 const OVER: f64 = 0.6;
 
-/// How far it may be kept back on the way that pulling up leads before it counts as blocked, as a share of its radius:
-/// under an overhang it goes out as it goes up, and lags.
+/// How far it may lag behind a pull-up's path before it counts as blocked, as a share of its radius. It lags below an
+/// overhang, where it goes outwards as it goes up.
 const KEPT: f64 = 0.5;
 
-/// Drawn by less than this share of what its arms draw it in a tick, it is as near to its place as it comes.
+/// A climber that makes less than this share of a tick's draw into place is as near to its place as it can get.
 const DRAWN: f64 = 0.5;
 
-/// Farther from its place than this share of its radius, it is drawn there before it pulls itself up.
+/// A climber farther from its place than this share of its radius is drawn there before it pulls itself up.
 const OUT_OF_PLACE: f64 = 0.1;
 
-/// What a climber remembers while it hangs from a ledge.
+/// Memory of a climber that hangs from a ledge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LedgeHangingMemory {
-    /// How far it has pulled itself up, 0 to 1.
+    /// Progress of a pull-up, 0 (hangs) to 1 (stands on top).
     pub pull_up: f64,
 }
 
 impl Tick<'_> {
-    /// Hangs from a ledge in front of a position, if there is one.
+    /// Catches the ledge in front of a position, if there is one.
     pub(super) fn catch_ledge(&mut self, place: DVec3) -> Option<NextMode> {
         let config = self.config.ledge?;
         let Ledge { touch, facing, .. } = self.find_ledge(place, self.facing(), &config)?;
         let lift = (touch.contact.point - place).dot(self.config.up()) - config.drop;
         if self.state.mode == ClimberMode::Standing && lift <= 0.0 {
-            // It would hang with its feet on the ground.
+            // It would hang no higher than it stands.
             return None;
         }
         self.attach(&touch, place);
@@ -55,7 +55,7 @@ impl Tick<'_> {
         Some(NextMode::Change(ClimberMode::LedgeHanging))
     }
 
-    /// Where it looks for a ledge: where it wants to go, else where it faces.
+    /// Direction in which it looks for a ledge: that of `walk`, or the heading without input.
     fn facing(&self) -> DVec3 {
         let up = self.config.up();
         let walk = self.input.walk;
@@ -112,7 +112,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Grips what is at a position, if it can: the wall that it hangs before.
+    /// Grips at a position, if there is a grip, such as the wall below its ledge.
     fn grip_at(&mut self, place: DVec3) -> Option<NextMode> {
         let grip = self.config.grip?;
         let touch = self.find_grip(place, &grip, None)?;
@@ -135,18 +135,18 @@ impl Tick<'_> {
         }
     }
 
-    /// Where it hangs: its ball at the wall, below the edge.
+    /// Its position while it hangs: the ball at the wall, below the edge.
     fn hanging_place(&self, carried: &Carried, config: &LedgeConfig) -> DVec3 {
         let out = self.ledge_probe(self.state.heading, config).hands_ahead();
         carried.motion.position - self.state.heading * out - self.config.up() * config.drop
     }
 
-    /// The part of a way that arms make in a tick.
+    /// The part of a displacement that arms make in a tick.
     fn drawn(&self, way: DVec3, config: &LedgeConfig) -> DVec3 {
         way.clamp_length_max(DRAW * config.shimmy_speed * self.dt())
     }
 
-    /// Hangs still, or goes along the ledge.
+    /// Hangs still, or moves along the ledge.
     fn shimmy(&mut self, carried: &Carried, config: &LedgeConfig, aside: DVec3) -> NextMode {
         let place = self.hanging_place(carried, config);
         let drawn = self.drawn(place - carried.position, config);
@@ -181,14 +181,15 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Its ledge leaves it no room, or something holds it out of its reach: it would be dragged on through what is there.
+    /// True if its ledge leaves it no room, or an obstacle holds it out of reach. If it held on, it would be dragged
+    /// through that obstacle.
     fn is_pressed_off(&self, place: DVec3, moved: &Moved, config: &LedgeConfig) -> bool {
         let is_crushed = moved.missing_room > self.config.body.margin;
         let reach = self.config.body.radius + config.reach + config.reach_up;
         is_crushed || moved.position.distance(place) > reach
     }
 
-    /// Up, and in over the ledge.
+    /// Pulls itself up, and in over the ledge.
     fn pull_up(&mut self, carried: &Carried, config: &LedgeConfig) -> NextMode {
         let before = self.state.ledge_hanging.pull_up;
         let place = self.hanging_place(carried, config);
@@ -203,7 +204,7 @@ impl Tick<'_> {
                 level.lerp(over, (share - OVER) / (1.0 - OVER))
             }
         };
-        // It was caught farther off: first to where the pull-up begins.
+        // It caught the ledge from farther away: first draw it to where the pull-up begins.
         let is_out_of_place =
             before == 0.0 && place.distance(carried.position) > OUT_OF_PLACE * body.radius;
         let share = self.dt() / config.pull_up_time;
@@ -225,15 +226,15 @@ impl Tick<'_> {
         if is_out_of_place {
             let made = (moved.position - carried.position).dot(way.normalize_or_zero());
             if made < DRAWN * (target - carried.position).length() {
-                // Something bulges into its place: up from where it is.
+                // An obstacle bulges into its place: pull up from where it is.
                 self.state.ledge_hanging.pull_up = share;
             }
             return NextMode::Stay;
         }
-        // Walls and grounds that bulge push it ahead or aside; only what keeps it back is in its way.
+        // Bulging walls and ground push it ahead or aside. Only obstacles that keep it back are in its way.
         let onwards = (at(after) - at(before)).normalize_or_zero();
         if (at(after) - moved.position).dot(onwards) > KEPT * body.radius {
-            // No room: back down, unless it is carried on in the next tick.
+            // No room: go back down, unless there is room in the next tick.
             self.state.ledge_hanging.pull_up = (before - share).max(0.0);
             return NextMode::Stay;
         }
@@ -243,7 +244,7 @@ impl Tick<'_> {
         }
         let Some(ground) = self.ground_below(moved.position, self.config.ground.snap_distance)
         else {
-            // Fur that is too steep to stand on is gripped from here.
+            // If the top is too steep to stand on, grip it, or lose the ledge.
             let gripped = self.grip_at(moved.position);
             return gripped.unwrap_or_else(|| self.lose_footing());
         };
@@ -259,11 +260,11 @@ impl Tick<'_> {
     }
 }
 
-/// What the input asks for on a ledge.
+/// The input, relative to a ledge.
 #[derive(Clone, Copy, Debug)]
 struct LedgeWish {
-    /// Over it; negative down the wall.
+    /// Up and over the ledge; negative: down the wall.
     up: f64,
-    /// Along it, in world space.
+    /// Along the ledge, in world space.
     aside: DVec3,
 }

@@ -1,8 +1,8 @@
-//! One tick, in this order: blows, timers, being carried by the support, modes until one of them has moved the body,
-//! standing up, stamina, weight on the support, contacts.
+//! One tick, in this order: blow, timers, carrying by the support, modes until one of them has moved the body, standing
+//! up, stamina, weight on the support, contacts.
 //!
-//! [`Tick::run`] reads the same way. Modes are handlers: each returns whether it stays or which mode comes next, and one
-//! bounded loop runs them. None calls another.
+//! [`Tick::run`] reads the same way. Each mode has a handler, which returns whether the mode stays or which mode comes
+//! next. One bounded loop runs the handlers; no handler calls another.
 
 mod carrying;
 mod custom;
@@ -33,24 +33,24 @@ use crate::{
 };
 use carrying::Carried;
 
-/// Most changes of mode in a tick; what is wanted beyond that follows in the next.
+/// Most changes of mode in a tick. Further changes follow in the next tick.
 const MOST_CHANGES: u32 = 4;
 
-/// A standing climber stays up to this many radians beyond the slope on which it would come to stand:
-/// 2 degrees, more than the wobble of a breathing animal, so that it does not flicker.
+/// A standing climber stays on slopes up to this many radians steeper than those on which it lands: 2 degrees, more
+/// than the wobble of a breathing animal, so that the mode does not flicker.
 const SLOPE_HYSTERESIS: f64 = 0.035;
 
-/// What a climber keeps from tick to tick beside its state: memory alone.
+/// Memory that a climber reuses from tick to tick. Of its contents, only the contacts of the last tick are used later.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     mover: MoverMemory,
     pub(crate) contacts: Vec<ClimberContact>,
 }
 
-/// Room for contacts from the first tick on.
+/// Capacity for contacts, reserved from the first tick on.
 const CONTACTS: usize = 64;
 
-/// What a tick is given.
+/// The arguments of a tick.
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'a> {
     pub(crate) input: &'a ClimberInput,
@@ -60,7 +60,7 @@ pub(crate) struct Asked<'a> {
     pub(crate) dt: f64,
 }
 
-/// One tick of one climber, as its phases see it.
+/// One tick of one climber: what its phases read and write.
 pub(crate) struct Tick<'a> {
     config: &'a ClimberConfig,
     input: &'a ClimberInput,
@@ -71,23 +71,24 @@ pub(crate) struct Tick<'a> {
     contacts: &'a mut Vec<ClimberContact>,
     /// Position at the tick's beginning.
     began: DVec3,
-    /// Velocity at the tick's beginning, a blow included.
+    /// Velocity at the tick's beginning, including a blow.
     was: DVec3,
-    /// It was crushed in the last tick.
+    /// True if it was crushed in the last tick.
     was_crushed: bool,
-    /// Velocity of its support, or of the last that it had, at the tick's beginning.
+    /// Velocity of its support, or of its last one, at the tick's beginning.
     base_was: DVec3,
-    /// Velocity of a blow that the climber takes on its feet or its hold.
+    /// Velocity of a blow that does not end the mode by itself: the climber stays on its feet or its hold. Zero if
+    /// none.
     struck: DVec3,
-    /// Where its support has carried it.
+    /// How its support has carried it in this tick.
     carried: Option<Carried>,
-    /// It was to go where no number leads.
+    /// True if the target of a movement was not finite.
     is_lost: bool,
-    /// It has made its movement.
+    /// True if the body has made its movement.
     has_moved: bool,
-    /// It has moved through the air.
+    /// True if that movement was through the air.
     has_flown: bool,
-    /// Its mode began in this tick.
+    /// True if its mode began in this tick.
     has_entered: bool,
 }
 
@@ -150,7 +151,7 @@ impl<'a> Tick<'a> {
         self.weigh_down();
         self.list_support();
         if self.is_lost || !self.state.is_finite() {
-            // Obstacles of one's own may answer nonsense; the climber waits for better.
+            // A game's own obstacle may return numbers that are not finite. The climber waits where it is.
             self.contacts.clear();
             let report = StepReport {
                 events: vec![ClimberEvent::NotFinite],
@@ -161,7 +162,7 @@ impl<'a> Tick<'a> {
         (self.state, self.report)
     }
 
-    /// Timers of what is forgiven.
+    /// Counts down the timers of late jumps, early jumps and open hands.
     fn count_down(&mut self) {
         let dt = self.dt();
         let ground = &self.config.ground;
@@ -178,7 +179,7 @@ impl<'a> Tick<'a> {
         self.state.open_handed = (self.state.open_handed - dt).max(0.0);
     }
 
-    /// Runs handlers until one of them stays, or has moved the body.
+    /// Runs handlers until a mode stays or the body has been moved.
     fn run_modes(&mut self) {
         self.start_custom_mode();
         loop {
@@ -210,7 +211,7 @@ impl<'a> Tick<'a> {
         self.keep_consistent();
     }
 
-    /// Does something else from now on.
+    /// Changes the mode.
     fn change_to(&mut self, mode: ClimberMode) {
         let from = self.state.mode;
         if mode != from {
@@ -223,7 +224,7 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// What only one mode needs ends with it.
+    /// Clears the memory of the mode that was left.
     fn forget(&mut self, left: ClimberMode) {
         let state = &mut self.state;
         match left {
@@ -239,8 +240,8 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// No mode that stands or holds is without a support, and none of the others of this crate has one: a mode of a
-    /// game's own may have left it so.
+    /// Makes `support` consistent with `mode`, which a custom mode may have left inconsistent: a mode that needs a
+    /// support falls without one, and the other modes of this crate drop theirs.
     fn keep_consistent(&mut self) {
         let mode = self.state.mode;
         if mode.is_supported() && self.state.support.is_none() {
@@ -250,7 +251,7 @@ impl<'a> Tick<'a> {
         }
     }
 
-    /// Uncrouches where there is room.
+    /// Crouches while it holds on, and stands up where there is room.
     fn stand_up(&mut self) {
         let height = self.config.body.height;
         if height == 0.0 {
@@ -277,7 +278,7 @@ impl<'a> Tick<'a> {
         self.report.events.push(event);
     }
 
-    /// Faces a direction, as far as it is level.
+    /// Turns to face the level component of a direction; no change if that is zero.
     fn face(&mut self, direction: DVec3) {
         let up = self.config.up();
         let level = direction - up * direction.dot(up);

@@ -1,4 +1,4 @@
-//! Moving the body, and noting what it touched.
+//! Moving the body, and recording its contacts.
 
 use clamber_mover::{Begin, Moved, Path, Touch};
 use glam::DVec3;
@@ -7,17 +7,17 @@ use super::Tick;
 use super::carrying::Carried;
 use crate::{ClimberContact, ClimberEvent, ClimberMode, ContactPhase};
 
-/// What a movement is for.
+/// Whether the climber or only its support moves the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Intent {
-    /// The climber goes where its support carries it.
+    /// Only its support: the climber stays in place on it.
     Stay,
-    /// It goes on its own.
+    /// The climber itself.
     Go,
 }
 
 impl Tick<'_> {
-    /// The path of the body as it stands from where it was to a target. Its frame is the support.
+    /// The path of the body, in its current shape, from its position a tick ago to a target. Its frame is the support.
     pub(super) fn path(&self, target: DVec3) -> Path {
         let body = self.body();
         let crushed = self.was_crushed;
@@ -40,19 +40,19 @@ impl Tick<'_> {
         }
     }
 
-    /// Moves the body; the state's position is the caller's to set.
+    /// Moves the body along a path. The caller sets the state's position.
     pub(super) fn slide(&mut self, path: &Path, intent: Intent) -> Moved {
         let wanted = (path.target - path.start) / self.dt();
         self.slide_at(path, intent, wanted)
     }
 
-    /// [`Tick::slide`] with a velocity that contacts feel, where that is not the mean over the tick.
+    /// [`Tick::slide`] with the velocity by which contacts are judged, where that is not the mean over the tick.
     pub(super) fn slide_at(&mut self, path: &Path, intent: Intent, wanted: DVec3) -> Moved {
         let moved = self.mover.slide(path);
         self.note(path, intent, wanted, moved)
     }
 
-    /// [`Tick::slide`], unless there is no room for the body, or its way is not clear: then nothing has happened.
+    /// [`Tick::slide`], or `None`, with nothing recorded, if the body has no room or its way is not clear.
     pub(super) fn slide_if_there_is_room(&mut self, path: &Path) -> Option<Moved> {
         let wanted = (path.target - path.start) / self.dt();
         let moved = self.mover.slide(path);
@@ -60,7 +60,7 @@ impl Tick<'_> {
         has_room.then(|| self.note(path, Intent::Go, wanted, moved))
     }
 
-    /// Notes what a movement met.
+    /// Records the result of a movement: in the report, the contacts, the pushes, and whether the body is crushed.
     fn note(&mut self, path: &Path, intent: Intent, wanted: DVec3, moved: Moved) -> Moved {
         self.has_moved = true;
         self.is_lost |= !path.target.is_finite();
@@ -70,7 +70,7 @@ impl Tick<'_> {
         self.report.is_clear &= moved.is_clear;
         self.state.crushed = moved.missing_room > path.body.margin;
         if self.state.crushed {
-            // Down to its ball, which needs least room.
+            // Only the ball is left, which needs the least room.
             self.state.crouched = true;
             self.event(ClimberEvent::Crushed {
                 depth: moved.missing_room - path.body.margin,
@@ -81,8 +81,8 @@ impl Tick<'_> {
         moved
     }
 
-    /// A velocity without the parts that go into the contacts of the last movement, in the frame of the support. What is
-    /// crushed has none of its own: between what closes in on it there is no velocity that does not lead into something.
+    /// Clips a velocity by the contacts of the last movement, relative to the support. A crushed climber gets the
+    /// support's velocity: between obstacles that close in on it, every other velocity leads into one of them.
     pub(super) fn clipped(&self, velocity: DVec3) -> DVec3 {
         let base = self.state.base_velocity;
         if self.state.crushed {
@@ -91,7 +91,7 @@ impl Tick<'_> {
         self.mover.clip_velocity(velocity, base, None)
     }
 
-    /// Goes on as it went, where more changes of mode were wanted than a tick allows.
+    /// Carries the body on at its velocity, in ticks in which no mode has moved it.
     pub(super) fn coast(&mut self) {
         if let Some(carried) = self.carried {
             let moved = self.slide(&self.path(carried.position), Intent::Stay);
@@ -136,7 +136,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Lists the support among the contacts.
+    /// Adds the support to the contacts.
     pub(super) fn list_support(&mut self) {
         let Some(support) = self.state.support else {
             return;
@@ -158,7 +158,7 @@ impl Tick<'_> {
         });
     }
 
-    /// Where it stands or holds after a movement that its support carries it through.
+    /// Keeps its support at a position, and clips the wanted velocity by the contacts.
     pub(super) fn settle(&mut self, carried: &Carried, position: DVec3, wanted: DVec3) {
         self.keep_support(carried, position);
         self.state.velocity = self.clipped(wanted);

@@ -1,9 +1,9 @@
-//! The support feels the climber's weight, and obstacles in its way are pushed, if they can be.
+//! Weight on the support, and impulses on the obstacles in the climber's way, if they can be pushed.
 //!
 //! An airborne climber transfers its momentum to what it hits: the impulse that brings both to one speed, this tick's
-//! gravity included. A climber that stands or holds on does not strike its support, however firmly walking presses it
-//! there: the support feels its weight, and other obstacles in the way feel a push of limited force. None of this changes
-//! where the climber goes.
+//! gravity included. A climber that stands or holds on transfers no momentum to its support, however firmly walking
+//! presses it there: the support gets its weight, and other obstacles in the way get a push of limited force. None of
+//! this changes where the climber goes.
 
 use clamber_mover::Touch;
 use clamber_world::{MaterialPoint, ObstacleId};
@@ -14,7 +14,8 @@ use crate::ClimberMode;
 use crate::event::Push;
 
 impl Tick<'_> {
-    /// Pushes what kept the body from where it wanted to be, but for what it is on.
+    /// Pushes the obstacles that kept the body from moving at the velocity `wanted`, except those that it stands on or
+    /// holds.
     pub(super) fn push_aside(&mut self, wanted: DVec3) {
         let body = &self.config.body;
         let dt = self.dt();
@@ -44,13 +45,14 @@ impl Tick<'_> {
                 impulse: -touch.normal * together.min(most),
             });
         }
-        // Colliders may belong to one body, which all of them together must not make faster than the climber.
+        // The obstacles may be colliders of one body, which the pushes together must not make faster than the climber.
         let pushes = &mut self.report.pushes[first..];
         let share = 1.0 / pushes.len() as f64;
         pushes.iter_mut().for_each(|push| push.impulse *= share);
     }
 
-    /// Puts its weight on what supports it. In a tick in the air, what it struck has felt it already.
+    /// Puts its weight on its support, except after a movement through the air: then the support got the impulse of the
+    /// hit.
     pub(super) fn weigh_down(&mut self) {
         let Some(support) = self.state.support else {
             return;
@@ -58,7 +60,7 @@ impl Tick<'_> {
         let attachment = support.attachment;
         if self.has_flown {
             if self.is_pushed(attachment.obstacle, &attachment.material) {
-                // It will go otherwise than it went, which is no shake.
+                // The impulse will change the support's velocity, which must not count as shake.
                 self.state.support_velocity = None;
             }
             return;
@@ -80,7 +82,8 @@ impl Tick<'_> {
         });
     }
 
-    /// It stands on this or holds it: its support, and what else is level enough to be underfoot.
+    /// True for contacts that it stands on or holds: its support, and while standing all that are level enough to be
+    /// underfoot.
     fn is_on(&self, touch: &Touch) -> bool {
         let is_underfoot = self.state.mode == ClimberMode::Standing
             && self.config.slope(touch.normal) <= self.standing_slope();

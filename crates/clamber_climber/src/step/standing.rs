@@ -1,4 +1,4 @@
-//! On its feet.
+//! Standing, walking and jumping.
 
 use clamber_mover::{Ground, GroundProbe, Path, StepUp, Walking};
 use glam::DVec3;
@@ -8,27 +8,27 @@ use super::moving::Intent;
 use super::{NextMode, Tick};
 use crate::{ClimberEvent, ClimberMode};
 
-/// Pushed farther than this share of the radius from where it would stand upright on its material point, be it by and
-/// by, it looks for new ground.
+/// A climber that was pushed, at once or over many ticks, farther than this share of its radius from where it would
+/// stand upright on its material point looks for new ground.
 const SHOVED: f64 = 0.1;
 
-/// Crushed into its ground by up to this share of its radius it still stands on it.
+/// A climber that is crushed into its ground by up to this share of its radius still stands on it.
 const SUNK: f64 = 0.5;
 
-/// Its own speed off the ground from which a blow lifts it off, as a share of the speed of a jump.
+/// A blow lifts the climber off if its own speed away from the ground is then above this share of the speed of a jump.
 const LIFTS: f64 = 0.1;
 
-/// With this share of the margin it is pressed onto the ground that it walks on.
+/// A walking climber is pressed onto its ground by this share of the margin.
 const PRESS: f64 = 0.5;
 
-/// Faster than its walking speed by this factor is excess speed; less is rounding.
+/// Speed above this multiple of the walking speed is braked by friction; less may be rounding.
 const EXCESS: f64 = 1.05;
 
-/// What a climber remembers while it stands.
+/// Memory of a climber that stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StandingMemory {
-    /// A blow shoves it along the ground: friction brakes it, not its feet.
+    /// True while it slides along the ground after a blow, braked by friction instead of its feet.
     pub shoved: bool,
 }
 
@@ -62,7 +62,7 @@ impl Tick<'_> {
         }
     }
 
-    /// A blow that points off the ground lifts it off.
+    /// Lifts the climber off the ground if a blow moves it fast enough away from it.
     fn be_lifted_off(&mut self, normal: DVec3, own: DVec3) -> Option<NextMode> {
         let lifts = own.dot(normal) > LIFTS * self.config.ground.jump_speed;
         (lifts && self.struck != DVec3::ZERO).then(|| {
@@ -71,7 +71,7 @@ impl Tick<'_> {
         })
     }
 
-    /// Off the ground, with the velocity of what it leaves.
+    /// Jumps, with the velocity of the ground that it leaves.
     fn jump(&mut self, walk: DVec3) -> NextMode {
         self.state.velocity += walk + self.config.up() * self.config.ground.jump_speed;
         self.begin_jump();
@@ -85,18 +85,18 @@ impl Tick<'_> {
         self.state.flying.jumping = true;
     }
 
-    /// Stays on its material point, leaning where it is pushed.
+    /// Stays on its material point; obstacles may push it aside a little.
     fn stay(&mut self, carried: &Carried) -> NextMode {
         let moved = self.slide(&self.path(carried.position), Intent::Stay);
         self.state.position = moved.position;
         let radius = self.config.body.radius;
         let upright = carried.motion.position + carried.normal() * radius;
         let apart = moved.position - upright;
-        // What crushes it into its ground does not push it off.
+        // An obstacle that crushes it into its ground does not push it off.
         let into = apart.dot(carried.normal()).clamp(-SUNK * radius, 0.0);
         let is_shoved = (apart - carried.normal() * into).length() > SHOVED * radius;
         if is_shoved && moved.missing_room > self.config.body.margin {
-            // Crushed away from its ground: whatever is below it now is no place to stand.
+            // Crushed away from its ground: it does not stand on what is below it now.
             self.state.velocity = carried.velocity();
             return self.lose_footing();
         }
@@ -110,14 +110,15 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Walks relative to what carried it, and finds new ground.
+    /// Walks relative to its ground, and finds the ground at its new position.
     fn walk(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
         if self.input.walk != DVec3::ZERO {
             self.face(walk);
         }
         let limit = self.standing_slope();
         let (up, normal) = (self.config.up(), carried.normal());
-        // Pressed onto the ground, so that the ground is among what it touches; between slopes onto all of them alike.
+        // Pressed onto the ground, so that the ground is among the contacts; between steep slopes, onto all of them
+        // alike.
         let onto = if self.config.slope(normal) > limit {
             up
         } else {
@@ -137,7 +138,7 @@ impl Tick<'_> {
         self.state.position = moved.position;
         if let Some(position) = self.step_up(carried, target) {
             self.state.position = position;
-            // It has the speed of its walk, but not the rise of the edge that it came from.
+            // It keeps its speed, but not the rise by which it rolled up the step's edge.
             let level = walk - up * walk.dot(up).max(0.0);
             let walk = level.normalize_or_zero() * walk.length();
             return self.find_new_ground(carried, walk);
@@ -164,7 +165,8 @@ impl Tick<'_> {
             .then_some(position)
     }
 
-    /// Nothing came by where a correction of its movement leads it.
+    /// True if no moving obstacle passed through where a correction of its movement leads. Always true if the support
+    /// was placed elsewhere, since nothing is swept then.
     pub(super) fn is_corrected_clear(&mut self, carried: &Carried, corrected: DVec3) -> bool {
         let moved = self.state.position;
         let body = self.body();
@@ -174,7 +176,7 @@ impl Tick<'_> {
                 .is_clear_with(&body, [carried.start, moved], corrected - moved)
     }
 
-    /// Stands on ground; keeps of its own velocity what the last movement lets it.
+    /// Stands on ground, with its own velocity clipped by the contacts of the last movement.
     fn stand_on(&mut self, ground: &Ground, own: DVec3) -> NextMode {
         self.state.position = ground.position;
         self.attach(&ground.touch, ground.position);
@@ -182,7 +184,7 @@ impl Tick<'_> {
         NextMode::Stay
     }
 
-    /// Stands on what is below it now, or leaves the ground.
+    /// Stands on the ground below it now, or leaves the ground.
     fn find_new_ground(&mut self, carried: &Carried, walk: DVec3) -> NextMode {
         let reach = self.config.ground.snap_distance;
         if let Some(ground) = self.ground_below(self.state.position, reach)
@@ -208,7 +210,7 @@ impl Tick<'_> {
         }
     }
 
-    /// Slopes on all sides hold it up.
+    /// True if steep slopes on all sides hold it up.
     fn is_wedged(&mut self, carried: &Carried) -> bool {
         let up = self.config.up();
         let path = self.path(carried.position - up * self.config.body.margin);
@@ -216,14 +218,14 @@ impl Tick<'_> {
         self.mover.holding_up(up, 0.0).is_some()
     }
 
-    /// Its own velocity along the ground: what it was, brought towards what the input asks for.
+    /// Its own velocity along the ground, accelerated towards the velocity that the input asks for.
     fn walk_velocity(&mut self, normal: DVec3, own: DVec3) -> DVec3 {
         let ground = &self.config.ground;
         let up = self.config.up();
         let walk = self.input.walk;
         let level = walk - up * walk.dot(up);
         let share = level.length().min(1.0);
-        // Along the ground in the direction that the input has as seen from above.
+        // Along the ground, in the input's direction as seen from above.
         let rise = up * (-level.dot(normal) / normal.dot(up).max(f64::MIN_POSITIVE));
         let along = (level + rise).try_normalize().unwrap_or(DVec3::ZERO);
         let wanted = along * (share * ground.walk_speed);

@@ -24,7 +24,7 @@ fn grips_a_wall_of_fur_in_flight_and_stays_on_it() {
     let events = run(&mut climber, &[&wall], &HOLD, 60);
     assert!(events.is_empty(), "{events:?}");
     assert_mode(&climber, ClimberMode::Holding);
-    // It fell for a tick, and grips where it came.
+    // It fell for one tick, and grips from there.
     let fallen = 9.81 * DT * DT * 0.5;
     let off = climber.state().position - DVec3::new(0.3, 2.0 - fallen, 1.4);
     assert!(off.length() < 1e-4, "{:?}", climber.state().position);
@@ -97,11 +97,11 @@ fn climbs_around_convex_corners_all_around_a_block() {
         turned += libm::atan2(p.z * q.x - p.x * q.z, p.x * q.x + p.z * q.z);
         angle = angle.max((q - p).length());
     }
-    // 22.5 m along a way of 8 m and four quarters of a circle of 0.4 m.
+    // It climbs 22.5 m around the block: one round is 8 m of faces and a full circle of radius 0.4 m at the corners.
     assert!(turned > 12.0, "{turned}");
     assert_eq!(
         corners,
-        // It lies flat on the next face a little after its middle has passed the edge.
+        // It lies flat on the next face shortly after its centre has passed the edge.
         (turned / std::f64::consts::FRAC_PI_2 + 0.5 - 0.12) as usize,
         "{turned}"
     );
@@ -145,7 +145,7 @@ fn climbs_from_one_part_onto_another_and_from_one_creature_onto_another() {
 }
 
 #[test]
-fn fur_that_ends_at_stone_is_not_left() {
+fn climbing_stops_where_fur_ends_at_stone() {
     let tag = |p: Vec3| if p.y > 2.0 { STONE } else { FUR };
     let wall = cuboid_with(Vec3::new(5.0, 10.0, 1.0), tag);
     let mut climber = climber(DVec3::new(0.3, 0.0, 1.4));

@@ -1,4 +1,4 @@
-//! What becomes of a body that was pressed into something.
+//! Recovery of a body that was pressed into the ground.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::scene::{DT, STONE, assert_mode, cuboid, placed, scaled_down};
 
 #[test]
-fn who_was_pressed_into_the_ground_comes_out_where_it_went_in() {
+fn a_body_pressed_into_the_ground_comes_out_on_the_side_it_went_in() {
     let mut coarse = cuboid(Vec3::new(4.0, 1.0, 4.0), STONE);
     placed(&mut coarse, DVec3::new(0.0, -1.0, 0.0), DQuat::IDENTITY);
     come_out_of(&coarse);
@@ -19,7 +19,7 @@ fn who_was_pressed_into_the_ground_comes_out_where_it_went_in() {
     come_out_of(&fine);
 }
 
-/// Its centre at, just above or just below the skin, in faces, on edges and on vertices.
+/// Starts with the climber's centre on, just above or just below the skin: in faces, on edges and on vertices.
 fn come_out_of(ground: &SkinnedSurface) {
     for depth in [-0.3, -0.1, -1e-3, -1e-8, 0.0, 1e-8, 1e-4, 0.01, 0.1, 0.19] {
         for (x, z) in [(0.0, 0.0), (0.5, 0.5), (0.5, 0.0), (0.3, -1.2), (1.0, 0.25)] {

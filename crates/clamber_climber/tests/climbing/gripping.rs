@@ -1,4 +1,4 @@
-//! The tick in which it gets hold of something that moves.
+//! The tick in which a climber takes hold of a moving obstacle.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_world::{Obstacle, ObstacleId};
@@ -6,9 +6,9 @@ use glam::{DQuat, DVec3, Vec3};
 
 use crate::scene::{DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, moved, placed};
 
-/// A wall comes as fast as a limb that strikes, and is gripped in flight.
+/// In flight, the climber grips a wall that moves as fast as a striking limb.
 #[test]
-fn who_grips_what_comes_at_it_stays_in_front_of_it() {
+fn gripping_an_approaching_wall_keeps_the_climber_in_front_of_it() {
     for tag in [FUR, STONE] {
         for start in 0..20 {
             let mut wall = cuboid(Vec3::new(4.0, 3.0, 0.3), tag);
@@ -34,9 +34,9 @@ fn who_grips_what_comes_at_it_stays_in_front_of_it() {
     }
 }
 
-/// What it hangs from swings it against a wall that stands: the arm gives way, not the wall.
+/// The hold swings the climber against a wall at rest: the arm gives way, not the wall.
 #[test]
-fn who_is_dragged_against_a_wall_is_torn_off_and_not_dragged_through() {
+fn a_climber_dragged_against_a_wall_is_torn_off_not_dragged_through() {
     let wall = cuboid(Vec3::new(0.5, 6.0, 6.0), STONE);
     let mut beam = cuboid(Vec3::new(1.0, 0.3, 1.0), FUR);
     let mut config = ClimberConfig::colossus_climber();
@@ -57,7 +57,7 @@ fn who_is_dragged_against_a_wall_is_torn_off_and_not_dragged_through() {
     }
     assert_mode(&climber, ClimberMode::Hanging);
     for tick in 1..=40 {
-        // Over the wall's top and down on its other side.
+        // The beam goes over the wall's top and down on its other side.
         moved(
             &mut beam,
             at(tick) - DVec3::Y * 0.04 * f64::from(tick),
@@ -70,9 +70,9 @@ fn who_is_dragged_against_a_wall_is_torn_off_and_not_dragged_through() {
     }
 }
 
-/// However fast the ground goes, who grips it is carried in that tick as in any other.
+/// In the tick in which it grips the ground, the climber is carried as in any other tick, at any speed.
 #[test]
-fn who_grips_the_ground_that_it_stands_on_stays_where_it_is_on_it() {
+fn gripping_the_ground_underfoot_keeps_the_climber_on_its_point() {
     for velocity in [DVec3::X * 20.0, DVec3::Y * 9.0, DVec3::Y * -25.0] {
         let mut ground = cuboid(Vec3::new(4.0, 1.0, 4.0), FUR);
         let mut config = ClimberConfig::colossus_climber();

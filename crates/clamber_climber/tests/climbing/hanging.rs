@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3, Vec3};
 
 use crate::scene::{FUR, HOLD, assert_mode, climber, cuboid, moved, placed, run, step};
 
-/// Hangs from whatever leans over by more than 30 degrees.
+/// A climber that hangs from walls that lean over by more than 30 degrees.
 fn hanger(position: DVec3) -> Climber {
     hanger_beyond(120.0, position)
 }
@@ -62,7 +62,7 @@ fn hangs_while_its_hold_shakes_and_climbs_again_when_it_is_calm() {
 
 #[test]
 fn legs_lie_against_a_convex_belly() {
-    // Hangs from the upper edge of a block that leans out below: the body lies on it, and goes nowhere.
+    // It hangs from the upper edge of a block that leans out below. The body lies on the block and stays there.
     let mut block = cuboid(Vec3::new(4.0, 4.0, 1.0), FUR);
     let lean = DQuat::from_xyzw(0.1305, 0.0, 0.0, 0.9914).normalize();
     placed(&mut block, DVec3::ZERO, lean);

@@ -6,7 +6,7 @@ use crate::scene::{
     DT, FUR, HOLD, STONE, assert_mode, climber, cuboid, cuboid_with, moved, placed, run, step,
 };
 
-/// Hangs from the upper front edge of a block of stone.
+/// A climber that hangs from the upper front edge of a block of stone.
 fn hung(block: &clamber_surface::surface::SkinnedSurface) -> clamber_climber::Climber {
     let mut climber = climber(DVec3::new(0.3, 2.75, 3.5));
     let toward = ClimberInput {
@@ -73,7 +73,7 @@ fn goes_along_a_ledge_and_stops_at_its_end() {
 }
 
 #[test]
-fn drops_and_jumps_away() {
+fn drops_or_jumps_off_a_ledge() {
     let block = block();
     let mut climber = hung(&block);
     let events = run(&mut climber, &[&block], &ClimberInput::default(), 1);
@@ -92,7 +92,7 @@ fn a_ledge_that_tips_away_drops_and_one_that_tips_back_becomes_ground() {
         let mut climber = hung(&block);
         let mut modes = Vec::new();
         for tick in 0..240 {
-            // About the far lower edge, so that the ledge tips over it, or lies down.
+            // The block turns about its far lower edge, so that the ledge tips over that edge, or the wall lies down.
             let angle = sign * 0.4 * f64::from(tick) * DT;
             let half = angle * 0.5;
             let turn = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
@@ -132,7 +132,7 @@ fn caught(events: &[ClimberEvent]) -> bool {
 }
 
 #[test]
-fn who_stands_or_slides_before_a_ledge_catches_it() {
+fn a_standing_or_sliding_climber_catches_the_ledge_in_front() {
     let block = block();
     let mut step_below = cuboid(Vec3::new(4.0, 2.0, 2.0), STONE);
     placed(&mut step_below, DVec3::new(0.0, 0.0, 5.0), DQuat::IDENTITY);
@@ -169,7 +169,7 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
     let events = run(&mut climber, &[&block], &toward(1.0), 240);
     assert!(caught(&events), "{events:?} {:?}", climber.state());
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
-    // Hung from it again, and down to the fur.
+    // Again from hanging, down to the fur.
     let mut climber = hung(&block);
     let events = run(&mut climber, &[&block], &toward(-1.0), 60);
     let gripped = |event: &ClimberEvent| matches!(event, ClimberEvent::Grabbed { .. });
@@ -183,7 +183,7 @@ fn climbs_up_to_a_ledge_over_it_and_down_again() {
 }
 
 #[test]
-fn who_stands_leaves_ledges_alone_that_would_not_lift_its_feet() {
+fn a_standing_climber_ignores_ledges_that_would_not_lift_its_feet() {
     let ground = cuboid(Vec3::new(6.0, 1.0, 6.0), STONE);
     for (height, lifts) in [(0.9, false), (1.2, true)] {
         let mut block = cuboid(Vec3::new(4.0, 1.0, 1.0), STONE);
@@ -204,7 +204,7 @@ fn who_stands_leaves_ledges_alone_that_would_not_lift_its_feet() {
 #[test]
 fn pulls_itself_up_out_from_under_an_overhang() {
     let mut block = block();
-    // The wall leans over by 35 degrees, its edge in front.
+    // The wall leans over by 35 degrees, so that its upper edge is in front.
     let half = 17.5f64.to_radians();
     let lean = DQuat::from_xyzw(libm::sin(half), 0.0, 0.0, libm::cos(half));
     placed(&mut block, DVec3::ZERO, lean);
@@ -219,8 +219,8 @@ fn pulls_itself_up_out_from_under_an_overhang() {
     assert!(events.contains(&ClimberEvent::Mantled), "{events:?}");
 }
 
-/// Pressed between a ledge that leans over, the ground and a wall behind it, a climber that wants up lets go, and is not
-/// dragged into it.
+/// A ledge that leans over presses a climber that pulls itself up against the ground and a wall behind it. The climber
+/// lets go, and is not dragged into them.
 #[test]
 fn a_ledge_that_crushes_it_lets_go() {
     let ground = cuboid(Vec3::new(8.0, 1.0, 8.0), STONE);

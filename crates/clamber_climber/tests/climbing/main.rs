@@ -1,4 +1,4 @@
-//! Gripping, climbing, hanging, ledges and what shakes a climber off.
+//! Gripping, climbing, hanging, ledges, and being shaken off.
 
 #![expect(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! Boxes of fur and stone that move by their root, and a climber among them.
+//! Boxes of fur and stone that move by their root transform, and a climber among them.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub(crate) fn cuboid(half: Vec3, tag: SurfaceTag) -> SkinnedSurface {
     cuboid_with(half, |_| tag)
 }
 
-/// With a tag for each triangle, by its middle.
+/// A [`cuboid`] with a tag for each triangle, chosen by the triangle's centre.
 pub(crate) fn cuboid_with(half: Vec3, tag: impl Fn(Vec3) -> SurfaceTag) -> SkinnedSurface {
     let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
     for axis in 0..3 {
@@ -94,7 +94,7 @@ pub(crate) fn moved(surface: &mut SkinnedSurface, translation: DVec3, rotation: 
         .unwrap();
 }
 
-/// A tenth as large, where it is.
+/// Scales a surface to a tenth about its own origin.
 pub(crate) fn scaled_down(surface: &mut SkinnedSurface) {
     let world_from_model = Similarity {
         scale: 0.1,
@@ -119,7 +119,7 @@ pub(crate) fn climber(position: DVec3) -> Climber {
     Climber::new(ClimberConfig::colossus_climber(), position).unwrap()
 }
 
-/// One tick among some surfaces.
+/// Steps the climber by one tick among some surfaces.
 pub(crate) fn step(
     climber: &mut Climber,
     surfaces: &[&SkinnedSurface],
@@ -136,7 +136,7 @@ pub(crate) fn step(
     report
 }
 
-/// Some ticks with one input; all events.
+/// Steps the climber by some ticks with the same input. Returns all events.
 pub(crate) fn run(
     climber: &mut Climber,
     surfaces: &[&SkinnedSurface],

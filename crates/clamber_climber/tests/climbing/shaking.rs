@@ -45,12 +45,12 @@ fn held(wall: &SkinnedSurface) -> Climber {
 }
 
 #[test]
-fn a_blow_to_its_hold_hangs_it_above_the_threshold_and_not_below() {
+fn a_jolt_of_the_hold_makes_it_hang_only_above_the_threshold() {
     for (share, mode) in [(0.98, ClimberMode::Holding), (1.02, ClimberMode::Hanging)] {
         let mut wall = cuboid(Vec3::new(50.0, 50.0, 1.0), FUR);
         let mut climber = held(&wall);
         let config = *climber.config();
-        // As fast as the filter takes for the threshold in one tick.
+        // The velocity change for which the filter's output reaches the threshold in one tick.
         let tick = crate::scene::DT;
         let gain = -libm::expm1(-tick / config.shake_time) / tick;
         let speed = share * config.grip.unwrap().hang_acceleration / gain;
@@ -78,13 +78,13 @@ fn noise_of_a_millimetre_never_shakes_off() {
 }
 
 #[test]
-fn a_teleport_is_no_shake() {
+fn a_teleport_does_not_count_as_shake() {
     let mut wall = cuboid(Vec3::new(5.0, 10.0, 1.0), FUR);
     let mut climber = held(&wall);
     let held_at = climber.state().position;
     let mut at = DVec3::ZERO;
     for tick in 0..240 {
-        // Up to 3 m/s, gently.
+        // Accelerates gently to 3 m/s.
         at.z += 0.05 * (f64::from(tick) / 60.0).min(1.0);
         if tick == 180 {
             at += DVec3::new(100.0, 30.0, -20.0);

@@ -1,4 +1,4 @@
-//! Blows on a climber that stands or holds on.
+//! Blows on a climber that stands or holds on, without tumbling.
 
 use clamber_climber::ClimberMode;
 use clamber_climber::{Blow, Climber, ClimberConfig, ClimberError, ClimberEvent, ClimberInput};
@@ -41,7 +41,7 @@ fn a_blow_moves_a_climber_on_its_feet() {
             assert_eq!(report.events.iter().filter(hurt).count(), 1, "{told}");
             run.steps((5.0 * hz) as u32, &IDLE);
             let moved = run.position().x;
-            // Braked by friction all the way down: what slides is not brought to a halt by its feet.
+            // Friction alone brakes it to rest: feet do not stop a climber that slides.
             let expected = speed * speed / (2.0 * run.config().ground.friction);
             let slack = 0.02 * expected + speed / hz;
             assert!(
@@ -83,10 +83,10 @@ fn a_blow_moves_a_climber_on_its_hold() {
             let told = format!("{speed} m/s along {direction}: {farthest} m, {events:?}");
             assert!(farthest > if aside { 0.1 } else { 0.05 }, "{told}");
             let knocked = |event: &ClimberEvent| matches!(event, ClimberEvent::KnockedOff { .. });
-            // Faster than it jumps off a hold takes it off.
+            // A blow faster than a jump off a hold takes it off.
             assert_eq!(events.iter().any(knocked), speed > 4.0, "{told}");
         }
-        // From a ledge only the fast one takes it off.
+        // Only the fast blow takes it off a ledge.
         let mut climber = Climber::new(without_tumble(), v(0.3, 2.75, 3.5)).unwrap();
         let toward = ClimberInput {
             walk: -DVec3::Z * 0.1,
@@ -107,7 +107,7 @@ fn a_blow_moves_a_climber_on_its_hold() {
 }
 
 #[test]
-fn damage_that_is_no_share_is_refused() {
+fn damage_outside_0_to_1_is_refused() {
     for damage in [7.0, -1.0, 1.0 + 1e-9, -f64::MIN_POSITIVE] {
         let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::ZERO).unwrap();
         let before = *climber.state();

@@ -1,4 +1,4 @@
-//! What several of the tests need.
+//! Helpers that several of the tests share.
 
 use clamber_climber::{Climber, ClimberEvent, ClimberInput, ClimberState, StepReport, StepRules};
 use clamber_surface::surface::SkinnedSurface;
@@ -16,7 +16,7 @@ pub(crate) const fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Where a surface first stands.
+/// Places a surface at its first position.
 pub(crate) fn at(mut surface: SkinnedSurface, place: DVec3) -> SkinnedSurface {
     placed(&mut surface, place, DQuat::IDENTITY);
     surface
@@ -28,7 +28,7 @@ pub(crate) fn list<'a>(obstacles: &[&'a dyn Obstacle]) -> Vec<(ObstacleId, &'a d
     ids.zip(obstacles.iter().copied()).collect()
 }
 
-/// A tick at 60 Hz.
+/// Steps a climber by one tick at 60 Hz.
 pub(crate) fn tick(
     climber: &mut Climber,
     obstacles: &[&dyn Obstacle],
@@ -37,7 +37,7 @@ pub(crate) fn tick(
     climber.step(input, &list(obstacles), DT).unwrap()
 }
 
-/// A tick at 60 Hz in which anything, or nothing, can be gripped.
+/// Steps a climber by one tick at 60 Hz in which everything, or nothing, can be gripped.
 pub(crate) fn tick_gripping(
     climber: &mut Climber,
     obstacles: &[&dyn Obstacle],
@@ -51,7 +51,7 @@ pub(crate) fn tick_gripping(
         .unwrap()
 }
 
-/// Puts a climber somewhere at a velocity, otherwise as it is.
+/// Sets a climber's position and velocity, and keeps the rest of its state.
 pub(crate) fn put(climber: &mut Climber, position: DVec3, velocity: DVec3) {
     let state = ClimberState {
         position,
@@ -73,7 +73,7 @@ pub(crate) fn is_landed(event: &ClimberEvent) -> bool {
     matches!(event, ClimberEvent::Landed { .. })
 }
 
-/// Took hold of something, or came to stand on it.
+/// True if the climber gripped something, caught a ledge or landed.
 pub(crate) fn is_attached(event: &ClimberEvent) -> bool {
     is_landed(event)
         || matches!(
@@ -82,7 +82,7 @@ pub(crate) fn is_attached(event: &ClimberEvent) -> bool {
         )
 }
 
-/// An obstacle that queries see, and whose motion is told only while it `tells`.
+/// An obstacle that answers queries, but reports motion only while `tells` is true.
 pub(crate) struct Mute<'a> {
     pub(crate) inner: &'a dyn Obstacle,
     pub(crate) tells: bool,
@@ -115,7 +115,7 @@ impl Obstacle for Mute<'_> {
     }
 }
 
-/// A shape as a triangle mesh of rapier.
+/// A shape as a triangle mesh collider of rapier.
 pub(crate) fn trimesh(shape: &Shape) -> ColliderBuilder {
     let corners: Vec<Vector> = shape.positions.iter().map(|p| p.as_vec3()).collect();
     ColliderBuilder::trimesh(corners, shape.triangles.clone()).unwrap()

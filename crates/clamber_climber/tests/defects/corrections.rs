@@ -1,4 +1,4 @@
-//! Corrections of position: step-ups, snaps down, mantles and push-outs are no motion.
+//! Corrections of position (step-ups, snaps down, mantles and push-outs) do not become velocity.
 
 use clamber_climber::{
     Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberObstacle,
@@ -19,7 +19,7 @@ fn configs() -> [(&'static str, ClimberConfig); 2] {
     ]
 }
 
-/// One step of 0.28 m, and below it a floor, that both move.
+/// A climber before a step of 0.28 m. The step and the floor below it move at `frame`.
 fn one_step(hz: f64, config: ClimberConfig, frame: DVec3) -> Run {
     let shape = Shape::stairs(1, 0.28, 1.0, 4.0);
     let stage =
@@ -27,7 +27,7 @@ fn one_step(hz: f64, config: ClimberConfig, frame: DVec3) -> Run {
     Run::new(stage, config, v(0.1, 0.0, -1.0)).settle()
 }
 
-/// Until it has just stepped up.
+/// A run up to the tick in which the climber has just stepped up.
 fn stepped_up(hz: f64, config: ClimberConfig) -> Run {
     let mut run = one_step(hz, config, DVec3::ZERO);
     let mut was = run.position();
@@ -41,8 +41,8 @@ fn stepped_up(hz: f64, config: ClimberConfig) -> Run {
     panic!("at {hz} Hz it never stepped up");
 }
 
-/// A tick of walking along Z. What it reports is its support's velocity and its walk along the ground that it walked on, or
-/// walks on now.
+/// Walks along Z for a tick. Asserts that the reported velocity is that of the support, plus that of the walk along the
+/// last ground or the current one.
 fn assert_walks(run: &mut Run, told: &str) {
     let speed = run.config().ground.walk_speed;
     let before = *run.state();
@@ -51,7 +51,7 @@ fn assert_walks(run: &mut Run, told: &str) {
     let own = state.velocity - state.base_velocity;
     let is_off = [before, *state].iter().any(|state| state.support.is_none());
     if is_off {
-        // Over an edge it may leave the ground for a moment, at the speed of its walk.
+        // At an edge it may leave the ground for a moment, at its walking speed.
         let most = 1.01 * speed + 9.81 * run.stage.dt;
         assert!(own.length() <= most, "{told}: {own} of its own, {state:?}");
         return;
@@ -64,9 +64,9 @@ fn assert_walks(run: &mut Run, told: &str) {
     });
     let off = grounds.map(|normal| {
         let along = (DVec3::Z - DVec3::Y * (normal.z / normal.y)).normalize() * speed;
-        // It came down on the ground that it walks on now.
+        // Its velocity if it landed on the current ground.
         let stopped = along - grounds[1] * along.dot(grounds[1]).min(0.0);
-        // It has stepped up, which is on a level.
+        // Its velocity if it stepped up, which leads onto level ground.
         let level = DVec3::Z * speed;
         [along, stopped, level].map(|velocity| own.distance(velocity))
     });
@@ -82,7 +82,7 @@ fn steps_up_do_not_become_velocity() {
     for hz in RATES {
         for (name, config) in configs() {
             for frame in [DVec3::ZERO, v(2.0, 1.0, 0.0), v(0.0, -3.0, 5.0)] {
-                // The frame begins to move all at once.
+                // The frame starts to move in one tick, which must not throw or knock down the climber.
                 let mut config = config;
                 config.tumble = None;
                 config.ground.throw_acceleration = f64::INFINITY;
@@ -135,7 +135,8 @@ fn stairs_do_not_become_velocity() {
     }
 }
 
-/// How high it flies above the ground, or without ground above where it was, with an input in the first tick.
+/// The greatest height within a second, with an input in the first tick: above the ground, or above the start without
+/// ground.
 fn rises(run: &mut Run, first: &ClimberInput, keeps_ground: bool) -> f64 {
     let from = run.position().y;
     let mut highest = 0.0f64;
@@ -174,7 +175,7 @@ fn level_blow(tumbles: bool) -> ClimberInput {
 }
 
 #[test]
-fn nothing_is_thrown_up_right_after_a_step_up() {
+fn a_climber_is_not_thrown_up_right_after_a_step_up() {
     let (mut worst, mut all) = (0.0f64, String::new());
     for hz in RATES {
         for (name, config) in configs() {
@@ -196,7 +197,7 @@ fn nothing_is_thrown_up_right_after_a_step_up() {
 }
 
 #[test]
-fn a_level_blow_right_after_any_step_of_stairs_throws_nothing_up() {
+fn a_level_blow_right_after_a_step_of_stairs_does_not_throw_the_climber_up() {
     let (mut worst, mut all) = (0.0f64, String::new());
     for hz in RATES {
         let stairs = || {
@@ -219,7 +220,7 @@ fn a_level_blow_right_after_any_step_of_stairs_throws_nothing_up() {
                 worst = worst.max(risen);
             }
             run.step(&walk(DVec3::Z));
-            // Higher than it rolls over an edge by itself.
+            // A step-up rises faster than rolling over an edge.
             let rolls = state.velocity.y.max(run.state().velocity.y) / hz;
             has_stepped = run.position().y - state.position.y > rolls + 0.02;
             state = *run.state();
@@ -259,7 +260,7 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
         let off = (state.velocity - frame).length();
         assert!(off <= 0.03, "{hz} Hz: {off} m/s after a mantle, {state:?}");
 
-        // A wall is put into a standing climber, which is pushed out of it.
+        // A wall is placed in a standing climber, which is pushed out of it.
         for deep in [0.05, 0.2, 0.35] {
             let floor = at(cuboid(Vec3::new(6.0, 1.0, 6.0), STONE), v(0.0, -1.0, 0.0));
             let wall = at(
@@ -284,7 +285,7 @@ fn a_mantle_and_a_push_out_do_not_become_velocity() {
 }
 
 #[test]
-fn a_climber_as_an_obstacle_is_where_it_is_expected() {
+fn a_climber_obstacle_predicts_the_climbers_position() {
     for hz in RATES {
         for (name, config) in configs() {
             let mut run = one_step(hz, config, DVec3::ZERO);
@@ -297,8 +298,8 @@ fn a_climber_as_an_obstacle_is_where_it_is_expected() {
                 let expected = expected + way * 0.5;
                 run.step(&walk(DVec3::Z));
                 let off = expected.distance(run.position());
-                // What it steps up in this tick is not expected; it is in no later one. At 30 Hz its walk turns by
-                // 0.03 m where it rolls off the edge.
+                // A step up in this tick cannot be expected, and must not show in later ticks. At 30 Hz its path bends
+                // by 0.03 m where it rolls off the edge.
                 let rise = (run.position().y - from.y).max(0.0);
                 assert!(
                     off <= 0.04 + rise && rise < 0.3,

@@ -1,4 +1,4 @@
-//! Crushed against trimesh ground, and let go.
+//! A climber that was crushed against trimesh ground recovers on the right side.
 
 use clamber_climber::{Climber, ClimberConfig};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, Vector};
@@ -8,7 +8,8 @@ use crate::common::{tick, trimesh, v};
 use crate::scene::DT;
 use crate::stage::{IDLE, Shape};
 
-/// A solid of the same world, or of another one, comes down on a climber on trimesh ground, and lifts again.
+/// A solid, of the ground's rapier world or of another one, comes down on a climber on trimesh ground, and lifts again.
+/// Returns the number of runs, and those that ended below the ground.
 fn stomped(ground: &Shape, other: usize, foot: &ColliderBuilder) -> (u32, Vec<String>) {
     let (mut runs, mut below) = (0, Vec::new());
     let lows = [
@@ -61,7 +62,7 @@ fn stomped(ground: &Shape, other: usize, foot: &ColliderBuilder) -> (u32, Vec<St
 }
 
 #[test]
-fn a_solid_that_comes_down_leaves_nobody_below_trimesh_ground() {
+fn a_stomping_solid_does_not_press_the_climber_through_trimesh_ground() {
     let field = Shape::field(v(-6.0, 0.0, -6.0), 1.0, [12, 12], |_, _| 0.0);
     let solid = ColliderBuilder::cuboid(1.0, 0.5, 1.0).translation(Vector::new(0.0, 0.5, 0.0));
     let mesh = trimesh(&Shape::boxed(v(-1.0, 0.0, -1.0), v(1.0, 1.0, 1.0)));
@@ -84,17 +85,17 @@ fn a_solid_that_comes_down_leaves_nobody_below_trimesh_ground() {
 }
 
 #[test]
-fn a_piston_presses_nobody_out_of_a_trimesh_room() {
+fn a_piston_does_not_press_the_climber_out_of_a_trimesh_room() {
     assert_stays_in_the_room(0);
 }
 
 #[test]
-fn a_piston_of_another_world_presses_nobody_out_of_a_trimesh_room() {
+fn a_piston_of_another_world_does_not_press_the_climber_out_of_a_trimesh_room() {
     assert_stays_in_the_room(1);
 }
 
-/// A room of trimesh, whose piston of trimesh, of the same world or another one, presses a climber against the wall, and
-/// goes back.
+/// In a trimesh room, a trimesh piston of the same rapier world or of another one presses a climber against the wall,
+/// and goes back.
 fn assert_stays_in_the_room(other: usize) {
     let room = Shape::boxed(v(-5.0, 0.0, -5.0), v(5.0, 5.0, 5.0)).flipped();
     let piston = Shape::boxed(v(-1.0, 0.0, -1.0), v(1.0, 2.0, 1.0));

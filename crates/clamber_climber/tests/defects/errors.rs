@@ -1,4 +1,4 @@
-//! Error messages are true of the value that they name.
+//! Error messages name the value that is wrong, and are true of it.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberError, ClimberInput, ClimberState, HangConfig,
@@ -24,7 +24,7 @@ const NUMBERS: [f64; 8] = [
     f64::NAN,
 ];
 
-/// Whether a number is what the words of a range say.
+/// Whether a number is in a range that is given in words.
 fn holds(range: &str, x: f64) -> bool {
     match range {
         "positive" => x > 0.0,
@@ -38,7 +38,7 @@ fn holds(range: &str, x: f64) -> bool {
         "1" => x == 1.0,
         // The test's body has a radius of 0.4 m.
         "not negative and less than the radius" => (0.0..0.4).contains(&x),
-        _ => panic!("no such range is known here: {range}"),
+        _ => panic!("this test does not know the range {range}"),
     }
 }
 
@@ -61,7 +61,7 @@ fn assert_true(told: &str, error: &ClimberError, number: f64) {
 type Set<T> = fn(&mut T, f64);
 
 #[test]
-fn of_configurations() {
+fn messages_about_configurations_are_true() {
     let sets: [(&str, Set<ClimberConfig>); 30] = [
         ("gravity", |c, x| c.gravity = DVec3::new(0.0, x, 0.0)),
         ("shake_time", |c, x| c.shake_time = x),
@@ -141,7 +141,7 @@ fn of_configurations() {
 }
 
 #[test]
-fn of_steps_inputs_and_states() {
+fn messages_about_steps_inputs_and_states_are_true() {
     for number in NUMBERS {
         let mut climber = Climber::new(ClimberConfig::colossus_climber(), DVec3::ZERO).unwrap();
         match climber.step(&IDLE, &[], number) {
@@ -166,7 +166,7 @@ fn of_steps_inputs_and_states() {
             let mut state = *climber.state();
             set(&mut state, number);
             if let Err(error) = climber.restore(state) {
-                // Of a heading its length is named, which may underflow.
+                // For a heading the message has its length, which may underflow.
                 let found = match &error {
                     ClimberError::OutOfRange { found, .. } if index == 5 => *found,
                     _ => number,
@@ -178,7 +178,7 @@ fn of_steps_inputs_and_states() {
 }
 
 #[test]
-fn of_movers() {
+fn messages_about_movers_are_true() {
     for number in NUMBERS {
         let mut memory = MoverMemory::default();
         if let Err(error) = Mover::new(&[], number, &mut memory) {
@@ -197,7 +197,7 @@ fn of_movers() {
 }
 
 #[test]
-fn of_debris_and_surfaces() {
+fn messages_about_debris_and_surfaces_are_true() {
     let surface: SkinnedSurface = cuboid(Vec3::ONE, STONE);
     let anchor = Anchor {
         mesh: surface.mesh().id(),

@@ -1,4 +1,4 @@
-//! Hands do not reach through what is solid.
+//! Hands do not reach through solid obstacles.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ fn does_not_grip_fur_behind_a_plate() {
     for thick in [0.02, 0.1, 0.3] {
         for gap in [0.0, 0.01, 0.05] {
             for off in [0.38, 0.4, 0.42, 0.6] {
-                // The fur's front is at z = 0.
+                // The front face of the fur is at z = 0.
                 let fur = at(cuboid(Vec3::new(4.0, 3.0, 1.0), FUR), v(0.0, 0.0, -1.0));
                 let half = thick * 0.5;
                 let plate = at(
@@ -67,7 +67,7 @@ fn does_not_grip_fur_below_a_floor() {
     }
 }
 
-/// Sheets that face +Z.
+/// Parallel sheets that face +Z, each at a depth and with a tag.
 fn sheets(each: &[(f32, clamber_surface::mesh::SurfaceTag)]) -> SkinnedSurface {
     let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
     for (z, tag) in each {
@@ -112,7 +112,7 @@ fn does_not_grip_fur_below_a_stone_shell_of_the_same_mesh() {
     }
 }
 
-/// Climbs along fur that a plate covers from its middle on.
+/// Climbs along fur that is covered by a plate on the way.
 #[test]
 fn climbing_does_not_move_a_hold_behind_a_plate() {
     for thick in [0.02, 0.1, 0.3] {
@@ -123,7 +123,7 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
         ] {
             let half = thick * 0.5;
             let fur = at(cuboid(Vec3::new(4.0, 4.0, 1.0), FUR), v(0.0, 0.0, -1.0));
-            // Its edge is a metre ahead.
+            // The plate's edge is a metre ahead.
             let size = Vec3::new(2.0, 2.0, half as f32);
             let middle = v(
                 way.x.signum() * 3.0 * way.x.abs().ceil(),
@@ -151,7 +151,7 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
                 let apart = (hold.point - middle).abs();
                 let is_behind = hold.obstacle == ObstacleId(0) && apart.x < 1.98 && apart.y < 1.98;
                 assert!(!is_behind, "{told}: holds {}", hold.point);
-                // A hand's way is free.
+                // Nothing is between the body and the hold.
                 let reach = hold.point - state.position;
                 let clear = reach.length() - 0.02;
                 let hit = plate.cast_ray(state.position, reach, clear);
@@ -161,9 +161,9 @@ fn climbing_does_not_move_a_hold_behind_a_plate() {
     }
 }
 
-/// Fur that goes aside behind a plate takes nothing along.
+/// Fur that moves sideways behind a plate does not carry the climber.
 #[test]
-fn fur_behind_a_fence_drags_nobody_along() {
+fn fur_behind_a_plate_does_not_drag_the_climber_along() {
     let mut fur = at(cuboid(Vec3::new(4.0, 3.0, 1.0), FUR), v(0.0, 0.0, -1.0));
     let plate = at(cuboid(Vec3::new(4.0, 3.0, 0.05), STONE), v(0.0, 0.0, 0.06));
     let mut climber = climber(v(0.0, 0.0, 0.53));

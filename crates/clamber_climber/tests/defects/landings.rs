@@ -1,4 +1,4 @@
-//! Landings: only on what holds the climber up, and not to a standstill.
+//! Landings happen only on ground that holds the climber up, and keep its speed along the ground.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_world::Obstacle;
@@ -8,7 +8,7 @@ use crate::common::{at, count, is_landed, put, tick, v};
 use crate::scene::{DT, STONE, cuboid, moved, placed};
 use crate::stage::{IDLE, Played, Run, Shape, Stage};
 
-/// Falls onto the edge of a block while a wall sweeps it off.
+/// The climber falls onto the edge of a block while a wall sweeps it off.
 #[test]
 fn lands_only_where_it_is_held_up() {
     let block = at(cuboid(Vec3::new(2.0, 1.0, 3.0), STONE), v(-2.0, -1.0, 0.0));
@@ -76,7 +76,7 @@ fn a_fast_landing_slides_or_tumbles_on() {
                     let was = run.position().x;
                     let report = run.step(&IDLE);
                     let way = run.position().x - was;
-                    // No tick takes more than half of it.
+                    // No tick loses more than half of the speed.
                     assert!(way > 0.5 * speed / 60.0 * 0.9, "{told}: {way} m in a tick");
                     if count(&report.events, is_landed) > 0 {
                         landed = Some(was);
@@ -93,7 +93,7 @@ fn a_fast_landing_slides_or_tumbles_on() {
                 }
                 assert_eq!(run.mode(), ClimberMode::Standing, "{told}");
                 let slid = run.position().x - landed;
-                // At 40 m/s what its feet brake in the end is less than a percent.
+                // From 40 m/s, the final braking by its feet is less than a percent of the distance.
                 let feet = if speed < 40.0 {
                     1.05 * config.ground.walk_speed
                 } else {

@@ -1,4 +1,4 @@
-//! Ledges that are met obliquely or caught from anywhere.
+//! Ledges that are approached obliquely, or caught from anywhere in reach.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode};
 use glam::{DVec3, Vec3};
@@ -10,7 +10,7 @@ fn is_caught(event: &ClimberEvent) -> bool {
     matches!(event, ClimberEvent::LedgeCaught { .. })
 }
 
-/// At 0 to 70 degrees from straight at the wall, to either side.
+/// The climber approaches at 0 to 70 degrees from straight at the wall, to either side.
 #[test]
 fn oblique_ledges_are_caught_faced_and_followed() {
     let block = cuboid(Vec3::new(8.0, 3.0, 3.0), STONE);
@@ -70,7 +70,7 @@ fn oblique_ledges_are_caught_faced_and_followed() {
     }
 }
 
-/// From everywhere around the edge where it can be caught, at rest and in flight.
+/// The climber starts anywhere around the edge where it can catch it.
 #[test]
 fn catching_a_ledge_moves_no_faster_than_arms_do() {
     let block = cuboid(Vec3::new(4.0, 3.0, 3.0), STONE);
@@ -95,7 +95,7 @@ fn catching_a_ledge_moves_no_faster_than_arms_do() {
                 let way = state.position.distance(before.position);
                 let is_new = events.iter().any(is_caught);
                 caught += u32::from(is_new);
-                // The fall into the catch is its own.
+                // In the tick of the catch, it may also fall.
                 let falling = if is_new {
                     before.velocity.length() * DT + 9.81 * DT * DT
                 } else {

@@ -1,4 +1,4 @@
-//! Defects that players, or players of other games, would have met: one test for each, which fails if it comes back.
+//! Regression tests for defects that a player would notice, here or in other games: one test each.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! No tick moves the body farther than it goes and reaches, and what is out of reach is let go.
+//! No tick moves the body farther than its speed and its reach allow, and a support out of reach is let go.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::common::{at, tick, v};
 use crate::scene::{DT, FUR, HOLD, STONE, cuboid, moved};
 
-/// Watches a climber: how far a tick moves it, and for how long it keeps what it does not reach.
+/// Checks how far each tick moves a climber, and how long it keeps a support that is out of reach.
 #[derive(Default)]
 struct Watch {
     out_of_reach: u32,
@@ -96,7 +96,7 @@ fn hollow() -> [SkinnedSurface; 5] {
 }
 
 #[test]
-fn in_a_hollow() {
+fn climbing_in_a_hollow_keeps_within_reach() {
     let walls = hollow();
     let obstacles: Vec<&dyn Obstacle> = walls.iter().map(|wall| wall as &dyn Obstacle).collect();
     for first in directions() {
@@ -118,9 +118,9 @@ fn in_a_hollow() {
     }
 }
 
-/// Around the edges of a block, one of which a plate blocks.
+/// Climbs around the edges of a block, where a plate blocks one of them.
 #[test]
-fn at_a_blocked_edge() {
+fn climbing_around_a_blocked_edge_keeps_within_reach() {
     let block = cuboid(Vec3::ONE, FUR);
     for gap in [0.1, 0.3, 0.5, 0.7, 0.85] {
         let plate = at(
@@ -141,8 +141,8 @@ fn at_a_blocked_edge() {
     }
 }
 
-/// What it holds, hangs from or stands on goes away, and a post keeps the climber back; or comes along, and crushes it
-/// against the post.
+/// The support moves away while a post holds the climber back; or moves towards the post, and crushes the climber
+/// against it.
 fn against_a_post(is_crushed: bool) {
     for (name, start, walk, out) in [
         ("fur", v(0.0, 1.0, 3.42), DVec3::ZERO, DVec3::Z),
@@ -178,11 +178,11 @@ fn against_a_post(is_crushed: bool) {
 }
 
 #[test]
-fn held_back_by_a_post() {
+fn a_climber_held_back_by_a_post_lets_go_out_of_reach() {
     against_a_post(false);
 }
 
 #[test]
-fn crushed_against_a_post() {
+fn a_climber_crushed_against_a_post_is_not_flung() {
     against_a_post(true);
 }

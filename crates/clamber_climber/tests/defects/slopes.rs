@@ -1,4 +1,4 @@
-//! Slopes do not bend the way that the input asks for.
+//! Slopes do not change the direction of a walk.
 
 use clamber_climber::ClimberConfig;
 use glam::DVec3;

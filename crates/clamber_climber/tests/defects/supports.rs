@@ -1,4 +1,5 @@
-//! Supports that are gone from one tick to the next: disabled, swapped, mute, or another creature under the same id.
+//! Supports that vanish between two ticks: disabled, with another shape, without motion, or replaced by another
+//! creature with the same id.
 
 use clamber_climber::{
     Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, StepReport,
@@ -15,7 +16,7 @@ use crate::common::{
 };
 use crate::scene::{DT, FUR, HOLD, STONE, climber, cuboid, moved};
 
-/// How a climber is on a block of 8 x 6 x 6 m about the origin.
+/// How a climber is supported by a block of 8 x 6 x 6 m around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum On {
     Fur,
@@ -62,7 +63,8 @@ fn block() -> ColliderBuilder {
     ColliderBuilder::cuboid(4.0, 3.0, 3.0)
 }
 
-/// A climber on a block of a rapier world, which is then changed; what happened in the ticks from then on.
+/// Changes the block of a rapier world below a climber. Returns the climber after some ticks, the attachment that it
+/// had before the change, and the reports since the change.
 fn changed(
     on: On,
     steps_after: bool,
@@ -96,7 +98,7 @@ fn changed(
     (climber, held.unwrap(), reports)
 }
 
-/// Falls from one tick to the next, once, and tells of what.
+/// Asserts that the climber lost its support in the first tick, once, named it, and fell since.
 fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports: &[StepReport]) {
     let events: Vec<_> = reports.iter().flat_map(|report| &report.events).collect();
     let lost = reports[0].events.iter().find_map(|event| match event {
@@ -114,7 +116,7 @@ fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports
     assert_eq!(count(&all, is_attached), 0, "{told}, {on:?}: {all:?}");
     let state = climber.state();
     assert_eq!(state.mode, ClimberMode::Falling, "{told}, {on:?}");
-    // Its tick of losing is one of falling.
+    // It falls from the tick of the loss on.
     let time = DT * reports.len() as f64;
     let fallen = 0.5 * 9.81 * time * time;
     let from = held.position().y;
@@ -126,7 +128,7 @@ fn assert_lost(on: On, told: &str, climber: &Climber, held: &Attachment, reports
 }
 
 #[test]
-fn a_disabled_collider_is_lost_once_and_is_no_ground_any_more() {
+fn a_disabled_collider_is_lost_once_and_not_stood_on_again() {
     for on in ALL {
         for steps_after in [false, true] {
             let disable = |world: &mut PhysicsWorld, handle| {
@@ -155,7 +157,7 @@ fn a_collider_with_a_smaller_shape_is_lost_in_a_tick() {
 }
 
 #[test]
-fn what_tells_no_motion_is_not_held_again_and_again() {
+fn an_obstacle_without_motion_is_not_held_again_and_again() {
     for on in ALL {
         for told_for in [0, 10] {
             for tumble in [true, false] {
@@ -187,7 +189,7 @@ fn what_tells_no_motion_is_not_held_again_and_again() {
                 assert!(events.len() <= 3, "{told}");
                 let state = climber.state();
                 assert!(!state.mode.is_supported(), "{:?}: {told}", state.mode);
-                // In front of the wall it falls.
+                // In front of the wall it falls; above the block, the block stops it.
                 let low = if on == On::Ground { 3.45 } else { 0.0 };
                 assert!(state.position.y < low, "{}: {told}", state.position);
             }
@@ -196,7 +198,7 @@ fn what_tells_no_motion_is_not_held_again_and_again() {
 }
 
 #[test]
-fn an_id_that_names_another_creature_is_lost_without_a_teleport() {
+fn a_support_whose_id_names_another_creature_is_lost_without_a_teleport() {
     for on in ALL {
         for (gap, speed) in [(5.0, 0.0), (5.0, 1.0), (5.0, 20.0), (0.5, 1.0), (0.1, 0.0)] {
             let tag = if on == On::Fur { FUR } else { STONE };
@@ -207,7 +209,7 @@ fn an_id_that_names_another_creature_is_lost_without_a_teleport() {
                 let by = DVec3::Y * (speed * DT * f64::from(k));
                 moved(surface, from + by, DQuat::IDENTITY);
             };
-            // It begins to ride at the creature's speed.
+            // The creature reaches its speed in one tick; this must not throw or shake off the climber.
             let mut config = ClimberConfig::colossus_climber();
             config.tumble = None;
             config.ground.throw_acceleration = f64::INFINITY;
@@ -238,7 +240,7 @@ fn an_id_that_names_another_creature_is_lost_without_a_teleport() {
     }
 }
 
-/// Of each event that a support was lost by, with the state before.
+/// Every event that reports a lost support has the attachment of the state before.
 #[test]
 fn events_carry_the_attachment_that_was_lost() {
     let blow = ClimberInput {
@@ -269,7 +271,7 @@ fn events_carry_the_attachment_that_was_lost() {
                 let Some(held) = held else { break };
                 let mut input = on.input();
                 match way {
-                    // Pulled away, ever faster; then nothing but time tires it.
+                    // The support accelerates down, which throws off a standing climber and tires a holding one.
                     1 => place -= DT * DT * 60.0 * f64::from(k),
                     2..=4 if k == 0 => {
                         input = ClimberInput {

@@ -1,4 +1,4 @@
-//! Nothing switches the sweep off for anything else: not an overlap, not a correction, not legs that touch something.
+//! An overlap, a correction of position or touching legs do not switch off the sweep against other obstacles.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberMode};
 use clamber_surface::surface::SkinnedSurface;
@@ -32,7 +32,7 @@ fn an_overlap_at_the_start_does_not_let_a_plate_through() {
     }
 }
 
-/// Walls at both sides of a climber on a floor, which leave `short` metres too little room from half a second on.
+/// Walls on both sides of a climber on a floor, which close until the room is `short` metres too small.
 struct Fold {
     floor: SkinnedSurface,
     walls: [SkinnedSurface; 2],
@@ -147,7 +147,7 @@ fn a_fold_does_not_let_a_limb_through() {
     assert_eq!(wrong, 0, "{all}");
 }
 
-/// A beam at 60 m/s crosses the climber's place in the tick of its step-up, or the ones after.
+/// A beam at 60 m/s crosses the climber's position in the tick of its step-up, or in one of the next three.
 #[test]
 fn a_step_up_does_not_let_a_beam_through() {
     let steps = |beam: Option<(u32, f64)>| {
@@ -190,7 +190,7 @@ fn a_step_up_does_not_let_a_beam_through() {
     }
 }
 
-/// Hangs at rest from a beam of fur.
+/// A climber that hangs at rest from a beam of fur.
 fn hung(hz: f64, beam: &SkinnedSurface) -> Climber {
     let mut config = ClimberConfig::colossus_climber();
     if let Some(grip) = &mut config.grip {
@@ -205,14 +205,14 @@ fn hung(hz: f64, beam: &SkinnedSurface) -> Climber {
     climber
 }
 
-/// Where its legs end.
+/// End of the climber's legs, in world space.
 fn tip(climber: &Climber) -> DVec3 {
     climber.state().position + climber.state().hanging.legs
 }
 
-/// A plate that only the legs can meet, at the lowest point of their way.
+/// A plate at the lowest point of the swing, which only the legs can hit.
 #[test]
-fn legs_that_swing_go_through_no_plate() {
+fn swinging_legs_do_not_pass_through_a_plate() {
     let mut all = String::new();
     let mut wrong = 0;
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
@@ -263,9 +263,9 @@ fn legs_that_swing_go_through_no_plate() {
     assert_eq!(wrong, 0, "{all}");
 }
 
-/// A plate below the ball of a body at the lowest point of its swing, some way ahead.
+/// A plate ahead of the swing's lowest point and below the body's ball.
 #[test]
-fn legs_that_are_thrown_ahead_go_through_no_plate() {
+fn legs_thrown_ahead_do_not_pass_through_a_plate() {
     let mut all = String::new();
     let mut wrong = 0;
     let beam = at(cuboid(Vec3::new(1.0, 0.3, 1.0), FUR), v(0.0, 3.3, 0.0));
@@ -309,7 +309,7 @@ fn legs_that_are_thrown_ahead_go_through_no_plate() {
     assert_eq!(wrong, 0, "{all}");
 }
 
-/// Two walls along X that close on a climber in free space, by a speed each, from when they touch it; in a frame that moves.
+/// Two walls along X that close on a weightless climber from first contact on, each at a speed, in a moving frame.
 struct Jaws {
     speed: f64,
     frame: DVec3,
@@ -317,8 +317,8 @@ struct Jaws {
 }
 
 impl Jaws {
-    /// Plays it with something else, which stands at `place` in the frame; `with` may change the climber before a step. Gives
-    /// the climber, and where the frame's origin is then.
+    /// Plays the run with another obstacle, which is at `place` in the frame. `with` may change the climber before a
+    /// step. Returns the climber, and the final origin of the frame.
     fn close(
         &self,
         mut other: SkinnedSurface,
@@ -359,9 +359,9 @@ const FRAMES: [DVec3; 3] = [
     DVec3::new(0.0, -30.0, 300.0),
 ];
 
-/// What crushes a climber in the very tick hides nothing.
+/// A climber that is crushed in the same tick is still hit by other obstacles.
 #[test]
-fn jaws_that_close_let_no_limb_through() {
+fn closing_jaws_do_not_let_a_limb_through() {
     for frame in FRAMES {
         for speed in [0.3, 0.6, 1.0, 2.0, 4.0] {
             for hit in 1..5 {
@@ -374,7 +374,7 @@ fn jaws_that_close_let_no_limb_through() {
                 };
                 let (climber, origin) = jaws.close(limb, limb_at, |_, _| {});
                 let place = climber.state().position - origin;
-                // In front of it, though as deep in it as in the walls.
+                // It ends in front of the limb, though it may be as deep in it as in the walls.
                 assert!(
                     place.x > 0.6,
                     "{speed} m/s, in tick {hit}, frame {frame}: ends at {place}"
@@ -384,9 +384,9 @@ fn jaws_that_close_let_no_limb_through() {
     }
 }
 
-/// A crushed climber does not go where a blow throws it, least of all through something.
+/// A blow does not move a crushed climber, and never through an obstacle.
 #[test]
-fn a_blow_throws_no_crushed_climber_through_a_plate() {
+fn a_blow_does_not_throw_a_crushed_climber_through_a_plate() {
     for frame in FRAMES {
         for speed in [0.3, 1.0, 4.0] {
             let plate = cuboid(Vec3::new(0.03, 3.0, 3.0), STONE);

@@ -1,4 +1,4 @@
-//! Ground that moves several times in a tick of the climber.
+//! Ground that moves several times per tick of the climber.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberEvent};
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder, Vector};
@@ -20,7 +20,7 @@ fn rider() -> Climber {
 }
 
 #[test]
-fn a_surface_advanced_several_times_carries_nobody_through_a_wall() {
+fn a_surface_advanced_several_times_does_not_carry_its_rider_through_a_wall() {
     let mut floor = cuboid(Vec3::new(30.0, 1.0, 4.0), STONE);
     for thick in [0.1, 0.5] {
         let mut wall = cuboid(Vec3::new(thick as f32 * 0.5, 3.0, 4.0), STONE);
@@ -69,7 +69,7 @@ fn a_surface_advanced_several_times_carries_nobody_through_a_wall() {
 }
 
 #[test]
-fn a_rapier_world_stepped_twice_carries_nobody_through_a_wall() {
+fn a_rapier_world_stepped_twice_does_not_carry_its_rider_through_a_wall() {
     for per_step in [1u32, 2] {
         for speed in [12.0, 28.0, 40.0] {
             let mut world = PhysicsWorld::default();
@@ -118,9 +118,9 @@ fn a_rapier_world_stepped_twice_carries_nobody_through_a_wall() {
     }
 }
 
-/// A swing that is advanced in two halves is felt as the swing that it is.
+/// A swinging surface that is advanced in two halves per tick shakes as much as one that is advanced once.
 #[test]
-fn a_surface_advanced_twice_shakes_no_more() {
+fn a_surface_advanced_twice_does_not_shake_harder() {
     let mut most = [0.0f64; 2];
     for (index, per_step) in [1u32, 2].into_iter().enumerate() {
         let mut floor = at(cuboid(Vec3::new(30.0, 1.0, 4.0), STONE), v(0.0, -1.0, 0.0));
@@ -133,7 +133,7 @@ fn a_surface_advanced_twice_shakes_no_more() {
             }
             tick(&mut climber, &[&floor], &IDLE);
             if k >= 30 {
-                // Without the jerk of the beginning, when nobody knows how fast it was before.
+                // Without the start, when the last velocity is unknown.
                 most[index] = most[index].max(climber.state().shake.length());
             }
         }

@@ -1,4 +1,4 @@
-//! A tube on a chain of joints, and a clip that bends, stretches and mirrors it; the ground under it.
+//! A tube on a chain of joints, a clip that bends, stretches and mirrors it, and the ground below it.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -14,16 +14,16 @@ pub(crate) const JOINTS: u32 = 16;
 
 const SIDES: u32 = 20;
 
-/// Of the tube.
+/// Radius of the tube, metres.
 const RADIUS: f64 = 1.25;
 
-/// Rings of vertices from one joint to the next.
+/// Rings of vertices per joint.
 const RINGS: u32 = 4;
 
-/// Seconds of the clip.
+/// Length of the clip, seconds.
 pub(crate) const SECONDS: f32 = 2.0;
 
-/// A closed tube along X, a joint at each metre, each vertex on up to four.
+/// A closed tube along X, with a joint at each metre and up to four influences per vertex.
 pub(crate) fn tube() -> Arc<ColliderMesh> {
     let rings = (JOINTS - 1) * RINGS + 1;
     let mut positions = Vec::new();
@@ -106,7 +106,7 @@ fn build(source: &MeshSource<'_>) -> Arc<ColliderMesh> {
     Arc::new(mesh)
 }
 
-/// The chain of the tube's joints.
+/// The tube's joints, as a chain.
 pub(crate) fn skeleton() -> Skeleton {
     let joint = |index: u32| Joint {
         name: format!("joint {index}"),
@@ -117,7 +117,7 @@ pub(crate) fn skeleton() -> Skeleton {
     Skeleton::new((0..JOINTS).map(joint).collect()).unwrap()
 }
 
-/// Waves along the tube, its interpolations by turns; one joint grows and shrinks, one is mirrored.
+/// Waves along the tube, with every kind of interpolation in turn. One joint grows and shrinks, one is mirrored.
 pub(crate) fn clip() -> Clip {
     let mut channels = Vec::new();
     let keys = 8;

@@ -1,8 +1,9 @@
-//! One fixed run on an animated skin, and the hash of every bit that came of it: clips, palettes, skinning, every kind
-//! of query, anchors, climbers. The same in every build, on any number of threads, at every SIMD level, on every
-//! platform that runs this test. `cargo xtask ci --only golden` runs it optimised, and for the very processor at hand.
+//! One fixed run on an animated skin, and the hash of every bit of its results: clips, palettes, skinning, every kind
+//! of query, anchors, climbers. The hash is the same in every build, on any number of threads, at every SIMD level and
+//! on every platform that runs this test. `cargo xtask ci --only golden` also runs it optimised, and for the native
+//! CPU.
 //!
-//! [`RUN`] changes whenever a result does, if only by one bit: then see that it should have, and put the new one in.
+//! [`RUN`] changes whenever a result changes by a single bit. If the change is intended, store the new hashes in it.
 
 #![expect(
     clippy::unwrap_used,
@@ -15,10 +16,10 @@ mod run;
 
 use clamber_surface::SimdLevel;
 
-/// Of what queries and anchors gave, and of the climbers.
+/// Expected hashes: of the results of queries and anchors, and of the climbers.
 const RUN: [u64; 2] = [0x1d72_8a0c_df1c_39c6, 0x54e8_3fc8_8d78_f9ad];
 
-/// Runs in a build with `threads` and at a level; fails with the hashes in the form of [`RUN`].
+/// Plays the run on `threads` threads at a SIMD level. On failure prints the hashes in the form of [`RUN`].
 fn assert_golden(level: SimdLevel, threads: usize) {
     let found = run::run(level, threads);
     assert!(

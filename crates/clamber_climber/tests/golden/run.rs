@@ -1,4 +1,4 @@
-//! The run: the tube crawls through the world, 100 km from its origin, with climbers on it and queries all over it.
+//! The run: a tube crawls 100 km from the world's origin, with climbers on it and queries all over it.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberState, StepRules};
 use clamber_surface::SimdLevel;
@@ -18,16 +18,16 @@ const TICK: f64 = 1.0 / 60.0;
 const CLIMBERS: u32 = 24;
 const QUERIES: u64 = 96;
 
-/// The tube, as an obstacle.
+/// Id of the tube as an obstacle.
 const TUBE: ObstacleId = ObstacleId(1);
 
 /// Where the run takes place.
 const PLACE: DVec3 = DVec3::new(1e5, 40.0, -3e4);
 
-/// Metres of a unit of the model.
+/// Metres per unit of the model.
 const SCALE: f64 = 4.0;
 
-/// Hashes of queries and anchors, and of climbers.
+/// Plays the run. Returns the hashes of queries and anchors, and of climbers.
 pub(crate) fn run(level: SimdLevel, threads: usize) -> [u64; 2] {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build()
@@ -77,16 +77,16 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
             |state: &&ClimberState| state.support.is_some_and(|s| s.attachment.obstacle == TUBE);
         carried += states.iter().filter(on_tube).count();
     }
-    // Or the hashes are of little.
+    // Otherwise the hashes would cover little.
     assert!(carried > 400, "{carried} ticks of climbers on the tube");
-    // What queries did not touch.
+    // Also the vertices that queries did not touch.
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
     answers.positions(&positions);
     [answers.finish(), riders.finish()]
 }
 
-/// The tube crawls, turns and rolls.
+/// Pose of the tube's root, which crawls, turns and rolls.
 fn place(time: f64) -> Similarity {
     let turn = rotation_from_axis_angle(DVec3::Y, 0.2 * time);
     let roll = rotation_from_axis_angle(DVec3::X, 0.1 * libm::sin(3.0 * time));
@@ -97,7 +97,7 @@ fn place(time: f64) -> Similarity {
     }
 }
 
-/// Above the tube.
+/// A climber above the tube.
 fn climber(index: u32) -> Climber {
     let along = (f64::from(index) + 0.5) / f64::from(CLIMBERS) * f64::from(JOINTS - 1);
     let above = DVec3::new(SCALE * along, 7.0, 0.1 * f64::from(index % 5));
@@ -109,12 +109,12 @@ fn climber(index: u32) -> Climber {
     Climber::new(config, PLACE + above).unwrap()
 }
 
-/// A third of them grip what they reach, and climb.
+/// Whether a climber grips and climbs, as every third does.
 fn grips(index: u32) -> bool {
     index.is_multiple_of(3)
 }
 
-/// Half of them stand or hold still; the others go about, and jump at times.
+/// Half of the climbers stand or hold still; the others move about and sometimes jump.
 fn input(index: usize, tick: u32) -> ClimberInput {
     let index = index as u32;
     let grip = grips(index);
@@ -133,7 +133,7 @@ fn input(index: usize, tick: u32) -> ClimberInput {
     }
 }
 
-/// One question of each kind, made up by its number.
+/// One query of each kind, generated from its number. Returns the hash of the results.
 fn ask(surface: &SkinnedSurface, number: u64) -> u64 {
     let mut rng = fastrand::Rng::with_seed(number);
     let mut point = |size: f32| {

@@ -12,10 +12,10 @@ const CORNER: i32 = 10;
 /// Length of an arrow's head, and half its width.
 const HEAD: (i32, i32) = (9, 5);
 
-/// How far from its start an arrow's number stands, where the leg is long enough.
+/// Distance of an arrow's number from the arrow's start, where the first leg is long enough.
 const LABEL: i32 = 24;
 
-/// Where a mode stands.
+/// The box of a mode in the diagram.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     left: i32,
@@ -54,7 +54,7 @@ pub(crate) fn place(mode: ClimberMode) -> Place {
         ClimberMode::Hanging => column(4),
         ClimberMode::Falling => bar(28),
         ClimberMode::Tumbling => bar(412),
-        // None of this crate's, and not in the diagram.
+        // Custom modes are not in the diagram.
         ClimberMode::Custom(_) => bar(476),
     }
 }
@@ -72,7 +72,7 @@ const fn says(mode: ClimberMode) -> &'static str {
     }
 }
 
-/// Fill and edge of a mode's box, by what the mode means.
+/// Fill and edge colours of a mode's box, by whether it holds on, is supported or neither.
 const fn colors(mode: ClimberMode) -> (&'static str, &'static str) {
     if mode.is_holding() {
         ("#fde8c8", "#a8620a")
@@ -83,7 +83,7 @@ const fn colors(mode: ClimberMode) -> (&'static str, &'static str) {
     }
 }
 
-/// An arrow's colour, by where it leads, so that the eye can follow it.
+/// An arrow's colour, by its target mode, so that it is easy to follow.
 const fn stroke(to: ClimberMode) -> &'static str {
     match to {
         ClimberMode::Falling => "#2f5f9e",
@@ -98,7 +98,7 @@ pub(crate) fn svg() -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          style=\"max-width:100%;height:auto\" role=\"img\" aria-labelledby=\"climber-modes\" \
          font-family=\"sans-serif\" text-anchor=\"middle\" fill=\"#1d232a\">\n\
-         <title id=\"climber-modes\">A climber's seven modes, and the arrows by which one becomes another</title>\n\
+         <title id=\"climber-modes\">A climber's seven modes and the transitions between them</title>\n\
          <rect x=\"1\" y=\"1\" width=\"{}\" height=\"{}\" rx=\"8\" fill=\"#fbfcfd\" stroke=\"#c3cad2\"/>\n",
         width - 2,
         height - 2,
@@ -118,9 +118,9 @@ pub(crate) fn svg() -> String {
     svg += "<circle cx=\"22\" cy=\"51\" r=\"6\"/>\n<path d=\"M28 51H52\" stroke=\"#1d232a\" stroke-width=\"2\"/>\n";
     svg += "<path d=\"M60 51l-9 -5v10z\"/>\n<text x=\"27\" y=\"76\" font-size=\"12\">new</text>\n";
     let legend = [
-        (90, ClimberMode::Standing, "carried by what it stands on"),
+        (90, ClimberMode::Standing, "carried by its ground"),
         (350, ClimberMode::Holding, "holds on: carried, and tires"),
-        (610, ClimberMode::Falling, "no support: gravity has it"),
+        (610, ClimberMode::Falling, "no support: moves under gravity"),
     ];
     for (x, mode, text) in legend {
         let (fill, edge) = colors(mode);
@@ -152,7 +152,7 @@ fn boxed(mode: ClimberMode) -> String {
     )
 }
 
-/// Unit steps from a point to another beside, above or below it.
+/// Unit direction from a point to another one beside, above or below it.
 fn toward(from: (i32, i32), to: (i32, i32)) -> (i32, i32) {
     ((to.0 - from.0).signum(), (to.1 - from.1).signum())
 }
@@ -182,7 +182,7 @@ fn arrow(route: &Route, number: u32) -> String {
     let color = stroke(route.to);
     let tip = way[last];
     let leg = (way[1].0 - way[0].0).abs() + (way[1].1 - way[0].1).abs();
-    // The head takes some of a short leg.
+    // The arrow's head takes up part of a short leg.
     let half = (leg - HEAD.0) / 2;
     let (x, y) = along(way[0], toward(way[0], way[1]), LABEL.min(half));
     format!(
@@ -202,7 +202,7 @@ fn arrow(route: &Route, number: u32) -> String {
     )
 }
 
-/// The picture as a link's target, for pages that have no folder to find it in.
+/// The picture as a link's target (a data URI), for pages that cannot refer to a file.
 pub(crate) fn link(svg: &str) -> String {
     let mut link = "[modes]: data:image/svg+xml,".to_owned();
     for byte in svg.bytes() {

@@ -1,8 +1,8 @@
-//! The guide's diagram and table of modes are those of the code.
+//! The guide's diagram and table of modes match the code.
 //!
-//! Both are made here from `TRANSITIONS`, and lie in `src/guide` to be read without running anything. After a change
-//! of the table, `CLAMBER_BLESS=1 cargo test -p clamber_climber --test guide` writes them anew; look at the diagram
-//! then: where its arrows go is placed by hand, in `routes.rs`.
+//! Both are generated here from `TRANSITIONS`, and stored in `src/guide`. After a change of the table, `CLAMBER_BLESS=1
+//! cargo test -p clamber_climber --test guide` writes them again. Look at the diagram then: the routes of its arrows
+//! are placed by hand, in `routes.rs`.
 
 #![expect(
     clippy::unwrap_used,
@@ -18,7 +18,7 @@ use std::path::Path;
 use clamber_climber::{ClimberMode, TRANSITIONS};
 use routes::ROUTES;
 
-/// Asserts that a file of the guide holds a text, or writes it there.
+/// Asserts that a file of the guide has a text. With `CLAMBER_BLESS` set, writes the text first.
 fn assert_stored(name: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("src/guide")
@@ -27,26 +27,26 @@ fn assert_stored(name: &str, text: &str) {
         std::fs::write(&path, text).unwrap();
         eprintln!("stored {}", path.display());
     }
-    // A checkout may have ended its lines in another way.
+    // A checkout may have other line ends.
     let stored = std::fs::read_to_string(&path)
         .unwrap()
         .replace("\r\n", "\n");
     assert!(
         stored == text,
-        "{} is not what the code says; CLAMBER_BLESS=1 writes it anew",
+        "{} is out of date; CLAMBER_BLESS=1 writes it again",
         path.display()
     );
 }
 
 #[test]
-fn the_table_is_that_of_the_code() {
+fn the_table_matches_the_code() {
     assert_stored("modes.md", &table::markdown());
 }
 
 #[test]
-fn the_diagram_is_that_of_the_code() {
+fn the_diagram_matches_the_code() {
     let svg = diagram::svg();
-    // It would end there as a part of a Markdown page.
+    // In a Markdown page, an empty line would end the picture.
     assert!(!svg.contains("\n\n"), "{svg}");
     assert_stored("modes.svg", &svg);
     assert_stored("modes_link.md", &diagram::link(&svg));

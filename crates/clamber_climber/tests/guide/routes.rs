@@ -1,18 +1,19 @@
-//! Where the diagram's arrows go: along the grid, from an edge of a box to an edge of another.
+//! Routes of the diagram's arrows: horizontal and vertical lines from the edge of one box to that of another.
 //!
-//! Falling and Tumbling, which nearly every mode becomes, are bars above and below the others, so that few arrows cross.
+//! Falling and Tumbling, to which nearly every mode changes, are bars above and below the others, so that few arrows
+//! cross.
 
 use clamber_climber::ClimberMode;
 use clamber_climber::ClimberMode::{
     Falling, Hanging, Holding, LedgeHanging, Sliding, Standing, Tumbling,
 };
 
-/// An arrow's way.
+/// The route of an arrow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Route {
     pub(crate) from: ClimberMode,
     pub(crate) to: ClimberMode,
-    /// Its corners, with both ends.
+    /// Its corners, including both ends.
     pub(crate) way: &'static [(i32, i32)],
 }
 
@@ -30,7 +31,7 @@ pub(crate) const ROUTES: [Route; 29] = [
     route(Holding, LedgeHanging, &[(558, 247), (510, 247)]),
     route(Holding, Hanging, &[(682, 223), (730, 223)]),
     route(Hanging, Holding, &[(730, 247), (682, 247)]),
-    // Past those between, above and below.
+    // Past the boxes between, above or below them.
     route(
         Standing,
         Holding,

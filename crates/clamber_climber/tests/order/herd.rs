@@ -15,13 +15,13 @@ const TICK: f64 = 1.0 / 60.0;
 pub(crate) const CREATURES: usize = 3;
 pub(crate) const CLIMBERS: usize = 6;
 
-/// Ids of the climbers' bodies are from here on.
+/// First id of the climbers' bodies.
 const BODIES: u64 = 100;
 
-/// In which order things are done.
+/// The order in which items of a list are processed.
 pub(crate) enum Order {
     Listed,
-    /// Another one for each list, every time.
+    /// A new random order for each list.
     Shuffled(fastrand::Rng),
 }
 
@@ -35,7 +35,7 @@ impl Order {
     }
 }
 
-/// Three tubes that lie across each other and turn, and climbers on them.
+/// Three tubes that cross each other and turn, with climbers on them.
 pub(crate) struct Herd {
     skeleton: Skeleton,
     clip: Clip,
@@ -87,7 +87,7 @@ impl Herd {
         }
     }
 
-    /// The fingerprint and the report of each climber, by its index.
+    /// One tick. Returns the fingerprint and the report of each climber, by its index.
     pub(crate) fn tick(&mut self, tick: u32, order: &mut Order) -> Vec<(u64, StepReport)> {
         self.pose(tick, &order.of(CREATURES));
         let bodies = self.bodies();
@@ -104,7 +104,7 @@ impl Herd {
         told.into_iter().map(Option::unwrap).collect()
     }
 
-    /// [`Self::tick`], each climber as its own task, in an order of chance.
+    /// [`Self::tick`] with each climber as a task of its own, in random order.
     pub(crate) fn tick_on_threads(
         &mut self,
         tick: u32,
@@ -151,7 +151,7 @@ type World<'a> = (
     &'a [ClimberObstacle],
 );
 
-/// `listed` is the order of the floor, the creatures and the bodies.
+/// Steps a climber. `listed` is the order of the floor, the creatures and the bodies in its list of obstacles.
 fn step(
     climber: &mut Climber,
     index: usize,
@@ -182,7 +182,7 @@ fn step(
     (climber.state().fingerprint(), report)
 }
 
-/// Their middles are above each other, and bob.
+/// Pose of a creature's root. The creatures' centres are above each other, and move up and down.
 fn place(tick: u32, index: usize) -> Similarity {
     let time = f64::from(tick) * TICK;
     let turn = turn(index, time);
@@ -195,7 +195,7 @@ fn place(tick: u32, index: usize) -> Similarity {
     }
 }
 
-/// Two above each tube, so near to each other that they touch.
+/// A climber above a tube. Each tube has two, so close that they touch.
 fn climber(index: usize) -> Climber {
     let config = if index.is_multiple_of(2) {
         ClimberConfig::colossus_climber()
@@ -207,12 +207,12 @@ fn climber(index: usize) -> Climber {
     Climber::new(config, along * out + DVec3::Y * 2.5).unwrap()
 }
 
-/// About up, so that they cross each other.
+/// Rotation of a creature about up, so that the creatures cross each other.
 fn turn(creature: usize, time: f64) -> DQuat {
     rotation_from_axis_angle(DVec3::Y, 1.1 * creature as f64 + 0.1 * time)
 }
 
-/// To the middle, where all meet, and about there.
+/// Walks to the middle, where all climbers meet, and around there.
 fn input(index: u32, tick: u32, position: DVec3) -> ClimberInput {
     let middle = -position * DVec3::new(1.0, 0.0, 1.0);
     let angle = f64::from(index * 2 + tick / 45);

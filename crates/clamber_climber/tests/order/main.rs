@@ -1,5 +1,5 @@
-//! Climbers among creatures and each other: in whatever order obstacles are listed, creatures posed and climbers
-//! stepped, and on whatever threads, not a bit differs.
+//! Climbers among creatures and each other have the same bits for any order in which obstacles are listed, creatures
+//! are posed and climbers are stepped, and on any threads.
 
 #![expect(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use herd::{CLIMBERS, CREATURES, Herd, Order};
 
 const TICKS: u32 = 600;
 
-/// What every climber was and told, tick by tick.
+/// The fingerprint and report of every climber, tick by tick.
 type Told = Vec<Vec<(u64, StepReport)>>;
 
 fn play(order: &mut Order) -> Told {
@@ -57,9 +57,9 @@ fn a_herd_has_the_same_bits_on_any_threads() {
     }
 }
 
-/// Or equal bits are of little.
+/// Otherwise equal bits would show little.
 #[test]
-fn the_herd_is_in_contact_with_all_of_itself() {
+fn the_herd_touches_all_creatures_and_each_other() {
     let mut herd = Herd::new();
     let mut stood_on = [0; CREATURES];
     let mut modes = Vec::new();
@@ -96,7 +96,7 @@ fn the_herd_is_in_contact_with_all_of_itself() {
     assert!(events > 40, "{events}");
     assert!(herd.touches > 50, "{}", herd.touches);
     assert_eq!(herd.climbers.len(), CLIMBERS);
-    // Without the bodies of the others it would go otherwise.
+    // Without the other climbers' bodies the run differs.
     let mut alone = Herd::new();
     alone.bodies_are_there = false;
     (0..TICKS).for_each(|tick| drop(alone.tick(tick, &mut Order::Listed)));

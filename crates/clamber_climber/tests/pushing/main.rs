@@ -1,4 +1,4 @@
-//! What a climber gives to rapier's bodies: its weight, its momentum, and pushes of limited force.
+//! Impulses of a climber on rapier's bodies: its weight, its momentum, and pushes of limited force.
 
 #![expect(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! What it runs into, and what cannot be pushed.
+//! Running into bodies, and bodies that cannot be pushed.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput};
 use clamber_world::rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, Vector};
@@ -10,10 +10,10 @@ use crate::scene::{DT, IDLE, Scene, cuboid, sum, walk};
 const FORCE: f64 = 600.0;
 const SPEED: f64 = 3.0;
 
-/// The point that is pushed keeps to [`SPEED`]; the box rocks a little, and its middle goes by a thousandth faster.
+/// The pushed point moves at [`SPEED`]; the box rocks a little, so that its centre is faster by up to a thousandth.
 const FASTEST: f64 = SPEED * 1.001;
 
-/// On the floor, half a metre from a box of a mass whose side is a metre.
+/// A climber on the floor, half a metre from a box with a mass and sides of a metre.
 fn before_a_box(mass: f64) -> (Scene, RigidBodyHandle) {
     let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.4, 0.0)).with_floor();
     let place = Vector::new(1.4, 0.5, 0.0);
@@ -35,14 +35,14 @@ fn a_box_gains_the_momentum_that_it_is_given_and_never_outruns_the_climber() {
         assert!(gained.distance(given) < 1e-4, "{told}");
         assert!(given.length() <= FORCE * DT * (1.0 + 1e-9), "{told}");
         scene.step(&walk(DVec3::X));
-        // Nothing else pushes it along the floor.
+        // Nothing else pushes the box along the floor.
         let over_the_tick = scene.momentum(handle) - before;
         assert!(
             (over_the_tick - given).x.abs() < 1e-3,
             "{told}: {over_the_tick}"
         );
         fastest = fastest.max(scene.velocity(handle).x);
-        // Who runs after it has not come through.
+        // The climber that runs after the box has not passed into it.
         let ahead = scene.place(handle).x - scene.climber.state().position.x;
         assert!(ahead > 0.88, "{told}: {ahead}");
     }
@@ -52,7 +52,7 @@ fn a_box_gains_the_momentum_that_it_is_given_and_never_outruns_the_climber() {
 }
 
 #[test]
-fn ten_tonnes_gain_no_more_than_the_force_gives() {
+fn a_heavy_body_gains_no_more_than_the_push_force_gives() {
     let (mut scene, handle) = before_a_box(10_000.0);
     let most = FORCE * DT / 10_000.0;
     let mut pushed = 0;
@@ -64,7 +64,7 @@ fn ten_tonnes_gain_no_more_than_the_force_gives() {
         pushed += u32::from(!scene.pushes.is_empty());
     }
     assert!(pushed > 200, "{pushed}");
-    // Without friction all the force accelerates it, from the first touch on.
+    // Without friction, all of the force accelerates the body from the first contact on.
     let expected = most * f64::from(pushed);
     let speed = scene.velocity(handle).x;
     assert!(
@@ -74,10 +74,10 @@ fn ten_tonnes_gain_no_more_than_the_force_gives() {
 }
 
 #[test]
-fn two_at_once_share_the_force_be_they_one_body_or_two() {
+fn two_contacts_share_the_push_force_on_one_body_or_two() {
     for is_one in [true, false] {
         let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.4, 0.0)).with_floor();
-        // Its ball fits into the gap between them by a half.
+        // The gap between both is half as wide as the climber's ball.
         let sides = [-0.7, 0.7];
         let handles: Vec<RigidBodyHandle> = if is_one {
             let body = RigidBodyBuilder::dynamic().translation(Vector::new(1.4, 0.5, 0.0));
@@ -113,7 +113,7 @@ fn course(tick: u32) -> ClimberInput {
 }
 
 #[test]
-fn what_cannot_be_pushed_is_not_and_costs_no_memory() {
+fn bodies_that_cannot_be_pushed_get_no_push_and_allocate_nothing() {
     let bodies = [
         RigidBodyBuilder::fixed(),
         RigidBodyBuilder::kinematic_velocity_based().linvel(Vector::new(-0.5, 0.0, 0.0)),
@@ -123,7 +123,7 @@ fn what_cannot_be_pushed_is_not_and_costs_no_memory() {
         let mut scene = Scene::new(9.81, DVec3::new(0.0, 0.6, 0.0)).with_floor();
         let wall = body.translation(Vector::new(3.0, 0.5, 0.0));
         scene.add(wall, [(cuboid(0.5, 0.5, 5.0), 50.0)]);
-        // And one that is pushed by nobody, far away.
+        // A body that could be pushed, but is far away.
         let far = RigidBodyBuilder::dynamic().translation(Vector::new(-30.0, 0.5, 0.0));
         scene.add(far, [(cuboid(0.5, 0.5, 0.5), 50.0)]);
         for tick in 0..300 {
@@ -134,8 +134,9 @@ fn what_cannot_be_pushed_is_not_and_costs_no_memory() {
 }
 
 #[test]
-fn the_order_of_pushes_is_that_of_no_list() {
-    // A box in each of two worlds, with a gap between that is too narrow; the raft of a third one is stood on.
+fn pushes_do_not_depend_on_the_order_of_obstacles() {
+    // Two worlds with a box each, and a gap between the boxes that is too narrow. The climber stands on a raft in a
+    // third world.
     let (mut boxes, mut befores) = (Vec::new(), Vec::new());
     for z in [-0.7, 0.7] {
         let mut scene = Scene::new(0.0, DVec3::ZERO);

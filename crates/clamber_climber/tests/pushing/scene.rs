@@ -1,4 +1,4 @@
-//! A climber in a rapier world that feels what it pushes.
+//! A climber in a rapier world, whose bodies get its pushes.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, Push, StepReport,
@@ -24,13 +24,13 @@ pub(crate) fn walk(direction: DVec3) -> ClimberInput {
 pub(crate) struct Scene {
     pub(crate) world: PhysicsWorld,
     pub(crate) climber: Climber,
-    /// Of the last step, not applied yet.
+    /// Pushes of the last step, not applied yet.
     pub(crate) pushes: Vec<Push>,
     before: BodyPoses,
 }
 
 impl Scene {
-    /// With the climber's centre at a place.
+    /// An empty world with the climber's centre at a position.
     pub(crate) fn new(gravity: f64, position: DVec3) -> Self {
         let mut world = PhysicsWorld {
             gravity: Vector::new(0.0, -gravity as f32, 0.0),
@@ -45,14 +45,14 @@ impl Scene {
         }
     }
 
-    /// A fixed floor, its top at height 0.
+    /// Adds a fixed floor with its top at height 0.
     pub(crate) fn with_floor(mut self) -> Self {
         let floor = cuboid(50.0, 0.5, 50.0).translation(Vector::new(0.0, -0.5, 0.0));
         self.world.insert_collider(floor, None);
         self
     }
 
-    /// A body of some boxes, with the mass of each.
+    /// Adds a body of some boxes, each with its mass.
     pub(crate) fn add(
         &mut self,
         body: RigidBodyBuilder,
@@ -63,7 +63,7 @@ impl Scene {
             let collider = collider.mass(mass as f32);
             self.world.insert_collider(collider, Some(handle));
         }
-        // So that queries find them, and masses are known.
+        // Makes the boxes visible to queries, and computes masses.
         self.world.detect_collisions(&(), &());
         handle
     }
@@ -117,12 +117,12 @@ impl Scene {
     }
 }
 
-/// By its half sides, without friction.
+/// A cuboid by its half extents, without friction.
 pub(crate) fn cuboid(x: f32, y: f32, z: f32) -> ColliderBuilder {
     ColliderBuilder::cuboid(x, y, z).friction(0.0)
 }
 
-/// Of all that was pushed.
+/// The sum of all impulses.
 pub(crate) fn sum(pushes: &[Push]) -> DVec3 {
     pushes.iter().map(|push| push.impulse).sum()
 }

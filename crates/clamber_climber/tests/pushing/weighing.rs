@@ -1,4 +1,4 @@
-//! What holds it up, and what it lands on.
+//! Weight on a support, and landings.
 
 use clamber_climber::ClimberInput;
 use clamber_world::rapier3d::prelude::{
@@ -11,7 +11,7 @@ use crate::scene::{DT, IDLE, Scene, cuboid, landing_speed, sum, walk};
 const MASS: f64 = 80.0;
 const WEIGHT: f64 = MASS * 9.81;
 
-/// What a climber does that keeps to 2 m around where it stands.
+/// Walks in a circle within 2 m.
 fn about(tick: u32) -> ClimberInput {
     let angle = f64::from(tick) * 0.05;
     walk(DVec3::new(libm::cos(angle), 0.0, libm::sin(angle)))
@@ -25,7 +25,7 @@ type Way = fn(u32) -> ClimberInput;
 
 const WAYS: [(&str, Way); 2] = [("standing", still), ("walking", about)];
 
-/// A raft of a mass, its top at height 0, that floats where there is no gravity and does not turn; a climber above it.
+/// A raft with a mass and its top at height 0, which floats without gravity and does not turn, and a climber above it.
 fn above_a_raft(height: f64, mass: f64) -> (Scene, RigidBodyHandle) {
     let mut scene = Scene::new(0.0, DVec3::new(0.3, 0.4 + height, -0.2));
     let body = RigidBodyBuilder::dynamic()
@@ -36,7 +36,7 @@ fn above_a_raft(height: f64, mass: f64) -> (Scene, RigidBodyHandle) {
 }
 
 #[test]
-fn a_raft_gains_its_weight_every_tick_be_it_standing_or_walking() {
+fn a_raft_gets_the_climbers_weight_every_tick_standing_or_walking() {
     for (name, input) in WAYS {
         let (mut scene, raft) = above_a_raft(0.01, 4_000.0);
         for tick in 0..30 {
@@ -54,14 +54,14 @@ fn a_raft_gains_its_weight_every_tick_be_it_standing_or_walking() {
                 "{told}"
             );
             assert_eq!(report.pushes.len(), 1, "{told}");
-            // Where its feet are.
+            // The push acts at its feet.
             let feet = scene.climber.state().position - DVec3::Y * 0.4;
             assert!(report.pushes[0].point.distance(feet) < 0.02, "{told}");
         }
     }
 }
 
-/// A platform of 200 kg on a spring, its top at height 0 when empty; how much it shows.
+/// Scales: a platform of 200 kg on a spring, with its top at height 0 when empty.
 struct Scales {
     scene: Scene,
     platform: RigidBodyHandle,
@@ -81,7 +81,7 @@ impl Scales {
         Self { scene, platform }
     }
 
-    /// Newtons.
+    /// The displayed weight, newtons.
     fn shown(&self) -> f64 {
         -(self.scene.place(self.platform).y + 0.5) * Self::STIFFNESS
     }
@@ -96,7 +96,7 @@ impl Scales {
 }
 
 #[test]
-fn scales_show_its_weight_be_it_standing_or_walking() {
+fn scales_show_the_climbers_weight_standing_or_walking() {
     for (name, input) in WAYS {
         let mut scales = Scales::new();
         for tick in 0..900 {
@@ -133,7 +133,7 @@ fn a_landing_brings_the_raft_and_the_climber_to_one_speed() {
         let together = -DVec3::Y * (speed * MASS / (MASS + mass));
         let told = format!("{mass} kg at {speed} m/s: {given}");
         assert!((scene.velocity(raft) - together).length() < 1e-4, "{told}");
-        // All of its momentum is in both, which from now on go together.
+        // Its momentum is shared by both, which now have the same velocity.
         assert!(
             (given.y + MASS * (speed + together.y)).abs() < 1e-3,
             "{told}"
@@ -142,7 +142,7 @@ fn a_landing_brings_the_raft_and_the_climber_to_one_speed() {
         scene.assert_standing(&told);
         let own = scene.climber.state().velocity;
         assert!((own - together).length() < 1e-3, "{told}: {own}");
-        // And then its weight.
+        // From now on the raft gets its weight.
         let given = sum(&scene.pushes);
         assert!(
             (given + DVec3::Y * (WEIGHT * DT)).length() < 1e-9,
@@ -152,7 +152,7 @@ fn a_landing_brings_the_raft_and_the_climber_to_one_speed() {
 }
 
 #[test]
-fn a_plank_on_a_pivot_tips_to_where_it_stands() {
+fn a_plank_on_a_pivot_tips_to_the_climbers_side() {
     for side in [-1.0, 1.0] {
         let mut scene = Scene::new(9.81, DVec3::new(1.5 * side, 0.41, 0.0));
         let post = scene.add(RigidBodyBuilder::fixed(), []);
@@ -165,7 +165,7 @@ fn a_plank_on_a_pivot_tips_to_where_it_stands() {
         }
         scene.assert_standing("on the plank");
         let spin = f64::from(scene.world.bodies[plank].angvel().z) * side;
-        // Weight times arm over the plank's moment of inertia: some 1.7 rad/s in a second.
+        // Weight times arm over the plank's moment of inertia: about 1.7 rad/s after a second.
         assert!((-0.5..-0.3).contains(&spin), "{side}: {spin}");
     }
 }

@@ -13,12 +13,12 @@ use clamber_climber::{Climber, ClimberEvent, ClimberMode, TRANSITIONS};
 
 use scene::Scene;
 
-/// What the ticks of all runs came to.
+/// Statistics of the ticks of all runs.
 #[derive(Debug, Default)]
 struct Seen {
     ticks: u32,
     in_mode: [u32; 7],
-    /// How often each mode became each other.
+    /// How often each mode changed to each other mode.
     transitions: [[u32; 7]; 7],
     crushed: u32,
     unclear: u32,
@@ -26,8 +26,9 @@ struct Seen {
     deep: u32,
 }
 
-/// Changes that need a wall with fur below and a ledge above: `climbing/ledges.rs` has them. The last two need a blow in the
-/// few ticks of a slide, and a state of another configuration: unit tests have them.
+/// Transitions that these runs do not reach. The first four need a wall with fur below and a ledge above;
+/// `climbing/ledges.rs` tests them. The last two need a blow in the few ticks of a slide, and a state of another
+/// configuration; unit tests cover them.
 const ELSEWHERE: [(ClimberMode, ClimberMode); 6] = [
     (ClimberMode::Standing, ClimberMode::LedgeHanging),
     (ClimberMode::Sliding, ClimberMode::LedgeHanging),
@@ -44,7 +45,7 @@ fn index(mode: ClimberMode) -> usize {
         .unwrap()
 }
 
-/// Random ticks; at a random one the climber is put back into its state elsewhere, and goes on beside itself.
+/// Plays random ticks. In a random one, a second climber is restored from the first one's state; both must stay equal.
 fn run(seed: u64, ticks: u32, seen: &mut Seen) {
     let mut scene = Scene::new(seed);
     let mut climber = scene.climber();
@@ -138,10 +139,10 @@ fn a_hundred_thousand_random_ticks() {
     runs(200, 500);
 }
 
-/// A run of the million in which a core was entered once: torn off what it had just gripped, a climber stayed where it
-/// was, whatever came there.
+/// A run of the million that once failed: an obstacle entered the core of a climber that was torn off a hold just after
+/// gripping it, since the climber stayed where it was.
 #[test]
-fn a_run_that_found_something() {
+fn a_grip_that_is_torn_off_at_once_lets_nothing_into_the_core() {
     let mut seen = Seen::default();
     run(228, 1_000, &mut seen);
     assert_eq!(seen.deep, 0, "{seen:?}");

@@ -10,14 +10,14 @@ use crate::creature::{JOINTS, clip, ground, skeleton, tube};
 
 const TICK: f64 = 1.0 / 60.0;
 
-/// A tube that crawls over the ground, and a second one that flies about and at it.
+/// A tube that crawls over the ground, and a second one that flies around and into it.
 pub(crate) struct Scene {
     pub(crate) rng: fastrand::Rng,
     skeleton: Skeleton,
     clip: Clip,
     tubes: [SkinnedSurface; 2],
     floor: SkinnedSurface,
-    /// A table of 4 m, to hang from.
+    /// A table of 4 m, for climbers to hang from.
     block: SkinnedSurface,
     time: f64,
     /// How fast the clip plays.
@@ -87,7 +87,7 @@ impl Scene {
             input: ClimberInput::default(),
         };
         if scene.rng.bool() {
-            // Beside the table, and about to catch it.
+            // Beside the table, about to catch its ledge.
             scene.start = steep.translation + DVec3::new(2.6, -0.3, 0.0);
             scene.input.walk = -DVec3::X;
             scene.input.grip = true;
@@ -166,7 +166,7 @@ impl Scene {
             velocity: walk * 6.0,
             damage: rng.f64() * 0.1,
         });
-        // Back to where things are, for those who have left.
+        // A climber that has gone too far walks back.
         let away = climber.state().position - self.tubes[0].world_from_model().translation;
         if away.length() > 60.0 {
             self.input.walk = -away.normalize();
@@ -187,7 +187,7 @@ impl Scene {
         climber.step(input, &self.obstacles(), TICK).unwrap()
     }
 
-    /// How deep anything is in the climber's core.
+    /// How deep an obstacle is in the climber's core, metres.
     pub(crate) fn depth(&self, climber: &Climber) -> f64 {
         let body = &climber.config().body;
         let core = climber.body().with_radius(body.radius - body.margin);

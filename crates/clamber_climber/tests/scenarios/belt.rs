@@ -1,4 +1,4 @@
-//! A conveyor: a shape that stands while its material moves, as an obstacle around another.
+//! A conveyor belt: an obstacle around another one, whose shape is at rest while its material moves.
 
 use clamber_climber::ClimberInput;
 use clamber_world::{
@@ -8,13 +8,13 @@ use glam::{DQuat, DVec3};
 
 use crate::stage::Run;
 
-/// How far its material has come.
+/// A belt: the velocity of its material, and how long it has run.
 pub(crate) struct Belt {
     velocity: DVec3,
     ticks: u32,
 }
 
-/// One tick of it: material points are known by where they were on the belt at its start.
+/// One tick of the belt. A material point's coordinates are its position when the belt started.
 struct Running<'a> {
     shape: &'a dyn Obstacle,
     shift: DVec3,

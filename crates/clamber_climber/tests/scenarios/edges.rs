@@ -1,4 +1,4 @@
-//! Edges within what is smooth, and between what is flush.
+//! Edges within smooth ground, and seams between flush obstacles.
 
 use clamber_climber::ClimberMode::{Sliding, Standing};
 use glam::DVec3;
@@ -13,7 +13,7 @@ pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
         let stage = Stage::new(played).with_still(&gutter);
         let start = DVec3::Y * -0.33;
         let mut config = walker_at(4.0);
-        // Or it would step up onto the rim.
+        // Otherwise it would step up onto the rim.
         config.ground.step_height = 0.0;
         let mut run = Run::new(stage, config, start).settle();
         let touched = run.stage.obstacles(|obstacles| {
@@ -40,8 +40,8 @@ pub(crate) fn a_gutter_of_768_faces_is_walked_along_to_its_caps() {
     });
 }
 
-/// A slope of 60 degrees down along +X, of 7 by 7 quadrilaterals of 4 m: too steep to stand on, so that one slides
-/// without friction.
+/// A slope of 60 degrees down along +X, of 7 by 7 quadrilaterals of 4 m. It is too steep to stand on, so that a climber
+/// slides without friction.
 fn quads(mirrored: bool) -> Shape {
     let flat = Shape::field(DVec3::new(-14.0, 0.0, -14.0), 4.0, [7, 7], |_, _| 0.0);
     let mut shape = flat.turned(DVec3::Z, -radians(60.0));
@@ -62,7 +62,7 @@ fn steep() -> (DVec3, DVec3) {
 
 pub(crate) fn edges_within_a_slope_are_not_felt() {
     let (normal, down) = steep();
-    // Across, askew, and along a row of edges.
+    // Across the edges, diagonally, and along a row of edges.
     for (start, speed) in [
         (DVec3::new(-9.0, 0.0, -9.0), DVec3::Z * 3.0),
         (DVec3::new(-8.0, 0.0, -6.0), DVec3::Z * 3.0),
@@ -123,8 +123,8 @@ pub(crate) fn edges_within_a_slope_are_not_felt_at_360_metres_a_second() {
     }
 }
 
-pub(crate) fn a_fin_on_an_edge_of_the_floor_is_met() {
-    // Two triangles of floor and one of a fin share one edge.
+pub(crate) fn a_fin_on_an_edge_of_the_floor_blocks() {
+    // Two triangles of the floor and one of the fin share an edge.
     let fin = Shape {
         positions: vec![
             DVec3::new(0.0, 0.0, -4.0),

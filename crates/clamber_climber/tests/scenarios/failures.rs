@@ -1,9 +1,9 @@
-//! Known failures of others, each a scene that is named after its thread.
+//! Known failures of other engines. Each scene is named after the issue or thread that reports it.
 //!
-//! Elsewhere, for they are about pictures or a price: bevy#25605, hits in mid-air beside an animated body, is in
-//! `bevy_clamber/tests/picking.rs`; what avian#813 (eight overlapping moving meshes) and Unity's thread 875257 (18 ms to bake
-//! 30,000 faces anew) paid for is what the benches `scene` and `tick` of the root measure of our skins. That a posed mesh
-//! has velocities is here.
+//! Some are tested elsewhere. bevy#25605, picking hits in mid-air beside an animated body, is in
+//! `bevy_clamber/tests/picking.rs`. avian#813 (eight overlapping moving meshes) and the cost in Unity's thread 875257
+//! (18 ms to bake 30,000 faces again) are measured for our skins by the benches `scene` and `tick` of the root package.
+//! The other part of that thread, velocities of a posed mesh, is here.
 
 use core::f64::consts::TAU;
 
@@ -24,7 +24,7 @@ pub(crate) fn rapier_488_falling_through_a_rising_lift() {
             let plate = Shape::boxed(low, DVec3::new(2.0, 0.0, 2.0));
             let stage =
                 Stage::new(played).with(&plate, move |time| shifted(DVec3::Y * (speed * time)));
-            // Falls onto it as it comes.
+            // The climber falls onto the rising lift.
             let mut run = Run::new(stage, jolt(), DVec3::Y * 1.0);
             for tick in 0..120 {
                 run.step(&IDLE);
@@ -41,7 +41,7 @@ pub(crate) fn rapier_488_falling_through_a_rising_lift() {
 }
 
 pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
-    // A wall that moves along itself, at the rider's elbow and pressed against.
+    // A wall that moves along its own plane, beside the climber, overlapping its margin, and walked against.
     for (gap, direction) in [(0.0, DVec3::ZERO), (-0.005, DVec3::ZERO), (0.0, -DVec3::Z)] {
         every(0.0, |played| {
             let wall = Shape::boxed(
@@ -59,7 +59,7 @@ pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
             run.sound()
         });
     }
-    // And walking along it, neither slower nor faster than beside it.
+    // Walking along the wall is neither slower nor faster than without it.
     every(0.0, |played| {
         let wall = Shape::boxed(DVec3::new(-40.0, -1.0, -2.0), DVec3::new(40.0, 3.0, -0.32));
         let stage = Stage::new(played)
@@ -74,7 +74,7 @@ pub(crate) fn shock2quest_666_dragged_along_a_brushed_wall() {
 }
 
 pub(crate) fn godot_46604_drift_on_a_rotating_platform() {
-    // A minute at a turn a second, 9 m out.
+    // A minute at one turn a second, 9 m from the axis.
     let motion = |time: f64| turned(DVec3::Y, TAU * time);
     every(chord(9.0, TAU), |played| {
         let mut run = on(played, 10.0, DVec3::X * 9.0, motion);
@@ -100,7 +100,7 @@ pub(crate) fn godot_101253_one_frame_behind_the_platform() {
         let mut run = on(played, 5.0, DVec3::X, motion);
         for tick in 0..120 {
             run.step(&IDLE);
-            // A frame behind would be up to 1.15 m.
+            // A lag of one frame would be up to 1.15 m.
             let local = motion(run.stage.time()).inverse_transform_point(run.feet());
             let off = local.distance(DVec3::X);
             within!(off, 1e-4, "{played:?}, tick {tick}: {off} behind");
@@ -132,7 +132,7 @@ pub(crate) fn jolt_1988_a_jump_eaten_by_stick_to_floor_on_a_descending_lift() {
 
 pub(crate) fn jolt_1514_jitter_on_a_diagonally_descending_platform() {
     let motion = |time: f64| {
-        // To and fro, so that it also reverses.
+        // Back and forth, so that it also reverses.
         let phase = time.rem_euclid(4.0);
         shifted(DVec3::new(0.0, -3.0, -3.0) * phase.min(4.0 - phase))
     };

@@ -1,4 +1,4 @@
-//! What may not matter: where the world is, how it moves as a whole, how its triangles are numbered.
+//! Invariance: results do not depend on where the world is, how it moves as a whole, or how its triangles are numbered.
 
 use core::f64::consts::{PI, TAU};
 
@@ -24,7 +24,7 @@ pub(crate) fn hills() -> Shape {
     ))
 }
 
-/// About the hills, into the wall and along it, with jumps.
+/// A walk around the hills, into the wall and along it, with jumps.
 pub(crate) fn tour(tick: u32) -> ClimberInput {
     let direction = match tick / 60 {
         0 => DVec3::new(1.0, 0.0, 0.3),
@@ -49,7 +49,7 @@ fn tour_of(stage: Stage) -> Run {
     run
 }
 
-pub(crate) fn ten_thousand_kilometres_out_is_as_good_as_here() {
+pub(crate) fn a_run_far_from_the_origin_matches_one_at_the_origin() {
     let origin = DVec3::new(1e7, -1e7, 1e7);
     for &played in kinds() {
         let tour = |origin: DVec3| {
@@ -67,8 +67,8 @@ pub(crate) fn ten_thousand_kilometres_out_is_as_good_as_here() {
 
 pub(crate) fn motion_of_the_whole_world_changes_nothing() {
     let still = tour_of(Stage::new(one_kind()).with_still(&hills())).sound();
-    // What is far from its origin is rounded more coarsely: a root in f64 never is, a joint and a body in f32 are after
-    // some seconds.
+    // Positions far from their origin are rounded more coarsely: a root has f64 and is not affected, a joint and a body
+    // have f32 and are affected after some seconds.
     let (fast, slow) = (DVec3::new(7.0, 3.0, -11.0), DVec3::new(1.0, 0.5, -1.5));
     for (played, velocity) in [
         (Played::Root, fast),
@@ -92,12 +92,12 @@ pub(crate) fn motion_of_the_whole_world_changes_nothing() {
     }
 }
 
-pub(crate) fn stairs_that_move_evenly_are_walked_as_ones_that_stand() {
+pub(crate) fn stairs_in_steady_motion_are_walked_like_stairs_at_rest() {
     let climb = |played: Played, velocity: DVec3| {
         let stairs = Shape::stairs(10, 0.3, 0.3, 2.0);
         let stage = Stage::new(played).with(&stairs, move |time| shifted(velocity * time));
         let mut run = Run::new(stage, walker_at(3.0), -DVec3::Z).settle();
-        // Up, a little down, and up askew.
+        // Up, down a little, and up diagonally.
         run.steps(90, &walk(DVec3::Z));
         run.steps(30, &walk(-DVec3::Z));
         run.steps(60, &walk(DVec3::new(0.4, 0.0, 1.0)));
@@ -155,7 +155,7 @@ pub(crate) fn a_world_turned_by_any_angle_changes_nothing() {
     }
 }
 
-pub(crate) fn numbers_of_triangles_and_vertices_do_not_matter() {
+pub(crate) fn the_numbering_of_triangles_and_vertices_does_not_matter() {
     let plain = tour_of(Stage::new(one_kind()).with_still(&hills())).sound();
     let others = [
         ("renumbered", hills().renumbered(50)),
@@ -167,14 +167,14 @@ pub(crate) fn numbers_of_triangles_and_vertices_do_not_matter() {
         for &played in kinds() {
             let other = tour_of(Stage::new(played).with_still(&shape)).sound();
             let (apart, tick) = other.apart(&plain);
-            // A cast of a body may stop 0.1 mm before the touch, and which triangle it stops at may change.
+            // A cast against a body may stop 0.1 mm before contact, and at another triangle.
             let allowed = if played == Played::Body { 1e-4 } else { 1e-6 };
             within!(apart, allowed, "{name}, {played:?}: {apart} at tick {tick}");
         }
     }
 }
 
-/// In all six degrees of freedom.
+/// A motion in all six degrees of freedom.
 fn storm(time: f64) -> Similarity {
     let pitch = rotation_from_axis_angle(DVec3::X, 0.2 * libm::sin(2.0 * time));
     let roll = rotation_from_axis_angle(DVec3::Z, 0.25 * libm::sin(1.7 * time));
@@ -191,7 +191,7 @@ fn storm(time: f64) -> Similarity {
 }
 
 pub(crate) fn root_joint_and_body_carry_alike_through_a_storm() {
-    // A rider is up to 8 m from where it turns, at up to 1.3 rad/s.
+    // A rider is up to 8 m from the centre of rotation, at up to 1.3 rad/s.
     every(chord(8.0, 1.3), |played| {
         let stage = Stage::new(played).with(&Shape::floor(12.0), storm);
         let start = storm(0.0).translation + DVec3::new(2.0, 0.2, 1.0);
@@ -199,16 +199,17 @@ pub(crate) fn root_joint_and_body_carry_alike_through_a_storm() {
         let start = run.position();
         run.steps(600, &IDLE);
         assert!(run.trace.always(Standing), "{played:?}");
-        // Alike is not right yet.
+        // Being alike is not enough: the carried position must also be right.
         let off = drift(&run.trace, start, storm);
         within!(off, 1e-3, "{played:?}");
         run.sound()
     });
 }
 
-/// The rounding of a joint's positions, 5e-7 m some metres out, is 3e-5 m/s of what it throws: each second in the air adds
-/// that to what both are apart. Hence the tour without its jumps, and one jump of more than a second.
-pub(crate) fn root_and_joint_are_alike_for_who_walks_in_a_storm() {
+/// A tour without jumps, and a run with a single jump. A joint's positions are rounded by 5e-7 m some metres from the
+/// origin, which is 3e-5 m/s in the velocity of a jump. Each second in the air adds that to the difference between both
+/// runs.
+pub(crate) fn root_and_joint_carry_a_walker_alike_through_a_storm() {
     for (ticks, jump) in [(TOUR, None), (120, Some(50))] {
         let play = |played: Played| {
             let stage = Stage::new(played).with(&hills(), storm);
@@ -236,8 +237,7 @@ pub(crate) fn root_and_joint_are_alike_for_who_walks_in_a_storm() {
     }
 }
 
-/// Jumps on what moves evenly land where they began.
-pub(crate) fn a_jump_on_an_even_motion_lands_where_it_began() {
+pub(crate) fn a_jump_on_steadily_moving_ground_lands_where_it_began() {
     for velocity in [DVec3::X * 30.0, DVec3::new(5.0, -8.0, 2.0)] {
         every(0.0, |played| {
             let motion = move |time: f64| shifted(velocity * time);
@@ -256,7 +256,6 @@ pub(crate) fn a_jump_on_an_even_motion_lands_where_it_began() {
     }
 }
 
-/// Around a full turn, and what was measured on the way.
 pub(crate) fn a_full_turn_of_the_ground_ends_where_it_began() {
     every(chord(3.0, PI), |played| {
         let stage = Stage::new(played).with(&Shape::floor(5.0), |time| turned(DVec3::Y, PI * time));

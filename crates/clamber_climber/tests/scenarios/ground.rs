@@ -37,7 +37,7 @@ pub(crate) fn falls_lands_and_jumps() {
     });
 }
 
-/// Up along +X at an angle.
+/// A slope that rises along +X at an angle.
 fn slope(angle: f64) -> Shape {
     Shape::floor(40.0).turned(DVec3::Z, angle)
 }
@@ -67,7 +67,7 @@ pub(crate) fn slopes_are_stood_on_to_the_limit_and_slid_down_beyond() {
                 let level = DVec3::new(along.x, 0.0, along.z).normalize();
                 run.steps(90, &walk(level));
                 let made = run.position() - before;
-                // Along the slope, in the direction of the input as seen from above.
+                // Along the slope, in the input's direction as seen from above.
                 let rise = -level.dot(normal) / normal.y;
                 let along = (level + DVec3::Y * rise).normalize();
                 let off = made.distance(along * 3.0);
@@ -83,7 +83,7 @@ pub(crate) fn slopes_are_stood_on_to_the_limit_and_slid_down_beyond() {
     }
 }
 
-/// As a mass point does by Euler's rule.
+/// Asserts that the climber slides down like a point mass under constant acceleration.
 fn slides(run: &mut Run, uphill: DVec3, angle: f64) {
     let start = run.position();
     for tick in 1..=60u32 {
@@ -99,7 +99,7 @@ fn slides(run: &mut Run, uphill: DVec3, angle: f64) {
     }
 }
 
-/// Level up to its origin, then down along +X by 45 degrees.
+/// Ground that is level up to its origin, then goes down along +X at 45 degrees.
 fn brink() -> Shape {
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let level = Shape::quad([
@@ -160,7 +160,7 @@ pub(crate) fn a_run_downhill_sticks_to_the_floor_or_flies_off() {
     });
 }
 
-/// Level up to 2 m along +X, then up by an angle.
+/// Ground that is level up to 2 m along +X, then rises at an angle.
 fn ramp(angle: f64) -> Shape {
     let (rise, run) = (30.0 * libm::sin(angle), 30.0 * libm::cos(angle));
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
@@ -179,7 +179,7 @@ fn ramp(angle: f64) -> Shape {
     level.and(up)
 }
 
-/// What one who stands may stand on beyond the limit, radians.
+/// How much steeper than the limit a slope may be for a climber that stands already, radians.
 const HYSTERESIS: f64 = 0.035;
 
 pub(crate) fn a_slope_is_climbed_just_below_the_limit_and_not_just_above() {
@@ -265,7 +265,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
         let mut run = Run::new(stage, config, DVec3::new(-7.0, 0.0, -7.0)).settle();
         let mut height = run.position().y;
         for tick in 0..90u32 {
-            // Back and forth, and askew.
+            // Diagonally across the box, with two turns.
             let angle = 0.7 + f64::from(tick / 30) * 2.2;
             run.step(&walk(DVec3::new(libm::cos(angle), 0.0, libm::sin(angle))));
             let jump = (run.position().y - height).abs();
@@ -277,7 +277,7 @@ pub(crate) fn a_walk_on_a_flat_box_keeps_its_height() {
     });
 }
 
-pub(crate) fn a_metre_a_second_is_one_at_any_rate() {
+pub(crate) fn a_walk_of_a_metre_a_second_is_exact_at_any_tick_rate() {
     for rate in [24, 30, 50, 60] {
         every(0.0, |played| {
             let dt = 1.0 / f64::from(rate);
@@ -291,7 +291,7 @@ pub(crate) fn a_metre_a_second_is_one_at_any_rate() {
     }
 }
 
-pub(crate) fn a_hitch_keeps_the_velocity_until_something_is_in_the_way() {
+pub(crate) fn a_long_tick_keeps_the_velocity_up_to_the_obstacle() {
     every(0.0, |played| {
         let mut config = jolt();
         config.gravity = DVec3::ZERO;
@@ -312,8 +312,8 @@ pub(crate) fn a_hitch_keeps_the_velocity_until_something_is_in_the_way() {
     });
 }
 
-/// A motion of a floor that no rider may notice.
-pub(crate) fn landing_is_told_once() {
+/// The floor counts as moving, though it stays in place.
+pub(crate) fn a_landing_is_reported_once() {
     let still = |_| shifted(DVec3::ZERO);
     let stage = Stage::new(one_kind()).with(&Shape::floor(10.0), still);
     let mut run = Run::new(stage, jolt(), DVec3::Y);
@@ -322,7 +322,7 @@ pub(crate) fn landing_is_told_once() {
     assert_eq!(run.trace.events.iter().filter(landed).count(), 1);
 }
 
-/// Between ticks it is a parabola: through the highest three places.
+/// Height of the apex of a parabola through the highest three positions.
 fn apex(heights: &[f64]) -> f64 {
     let highest = (1..heights.len() - 1).max_by(|a, b| heights[*a].total_cmp(&heights[*b]));
     let top = highest.unwrap_or(1);
@@ -332,7 +332,7 @@ fn apex(heights: &[f64]) -> f64 {
 }
 
 pub(crate) fn a_jump_is_as_high_at_any_rate() {
-    // Of each rate and kind, the share that it is too high.
+    // The relative error of the height, for each rate and kind.
     let found = RefCell::new(Vec::new());
     for rate in [30, 60, 120, 240] {
         every(0.0, |played| {

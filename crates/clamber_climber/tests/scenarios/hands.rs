@@ -1,4 +1,4 @@
-//! What hands do: ledges, fur, and being knocked off one's feet.
+//! Ledges, fur, and being knocked down.
 
 use clamber_climber::ClimberMode::{Hanging, Holding, LedgeHanging, Standing, Tumbling};
 use clamber_climber::{Blow, ClimberConfig, ClimberEvent, ClimberInput};
@@ -14,7 +14,7 @@ fn block() -> Shape {
     Shape::boxed(DVec3::new(-4.0, -3.0, -3.0), DVec3::new(4.0, 3.0, 3.0))
 }
 
-/// The block in fur, moved along Z.
+/// The block with fur, which moves along Z.
 fn furry(moved: impl Fn(f64) -> f64 + 'static) -> Skin {
     let pose = move |time: f64| {
         let root = shifted(DVec3::Z * moved(time));
@@ -23,7 +23,7 @@ fn furry(moved: impl Fn(f64) -> f64 + 'static) -> Skin {
     Skin::of(&block(), SurfaceKind::Fur, &|_| vec![1.0], Box::new(pose))
 }
 
-/// At a place, from the centre of its ball.
+/// A run whose climber starts with the centre of its ball at `center`.
 fn at(stage: Stage, center: DVec3) -> Run {
     let config = ClimberConfig::colossus_climber();
     Run::new(stage, config, center - DVec3::Y * config.body.radius)
@@ -118,7 +118,7 @@ pub(crate) fn a_hold_that_shakes_is_hung_from_until_it_is_calm() {
     });
 }
 
-pub(crate) fn a_fall_that_knocks_down_bounces_slides_and_ends() {
+pub(crate) fn a_knocked_down_climber_bounces_slides_and_gets_up() {
     every(0.0, |played| {
         let stage = Stage::new(played).with_still(&Shape::floor(60.0));
         let mut run = at(stage, DVec3::Y * 3.0);

@@ -1,8 +1,9 @@
-//! What others test characters with, and where others fail: scenarios in a table that is checked, and scenes after known
-//! failures, each played on skin, on bodies and on own obstacles, in moving frames and at other scales (`plays.rs`).
+//! Scenarios by which other engines test characters (a table, in `table.rs`), and scenes after known failures of
+//! others. Each is played on skin, on bodies and on an obstacle of its own, in moving frames and at other scales
+//! (`plays.rs`).
 //!
-//! `cargo test -p clamber_climber --test scenarios -- --nocapture the_table_in_markdown` prints the table;
-//! with CLAMBER_REACHED set, every test prints how near it came to what is demanded.
+//! `cargo test -p clamber_climber --test scenarios -- --nocapture the_table_in_markdown` prints the table. With
+//! CLAMBER_REACHED set, every test prints how close it came to its limits.
 
 #![expect(
     clippy::unwrap_used,

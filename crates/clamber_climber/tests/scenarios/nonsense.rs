@@ -1,4 +1,4 @@
-//! What is no number, from obstacles and from callers.
+//! Numbers that are not finite, from obstacles and from callers.
 
 use clamber_climber::ClimberMode::Standing;
 use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberState};
@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::frames::{hills, tour};
 use crate::stage::{IDLE, Run, Stage, TICK, jolt, one_kind, walk, walker_at};
 
-/// An obstacle that answers nonsense.
+/// An obstacle whose answers are partly replaced by bad numbers.
 struct Broken<'a> {
     inner: &'a dyn Obstacle,
     bad: DVec3,
@@ -56,7 +56,7 @@ impl Obstacle for Broken<'_> {
     }
 }
 
-pub(crate) fn nonsense_of_an_obstacle_does_not_spread() {
+pub(crate) fn not_finite_answers_of_an_obstacle_do_not_spread() {
     for bad in [
         DVec3::NAN,
         DVec3::INFINITY,
@@ -75,7 +75,7 @@ pub(crate) fn nonsense_of_an_obstacle_does_not_spread() {
             let p = run.position();
             assert!(p.length() < 100.0, "{bad}, tick {tick}: {p}, {report:?}");
         }
-        // And goes on where answers are sound again.
+        // The climber goes on once the answers are finite again.
         run.steps(60, &IDLE);
         assert!(is_finite(run.state()), "{bad}");
     }
@@ -85,7 +85,7 @@ fn is_finite(state: &ClimberState) -> bool {
     state.position.is_finite() && state.velocity.is_finite() && state.shake.is_finite()
 }
 
-pub(crate) fn nonsense_of_a_caller_is_refused() {
+pub(crate) fn not_finite_arguments_are_refused() {
     let stage = Stage::new(one_kind()).with_still(&hills());
     let mut run = Run::new(stage, jolt(), DVec3::Y).settle();
     let before = *run.climber.state();
@@ -110,8 +110,8 @@ pub(crate) fn nonsense_of_a_caller_is_refused() {
     assert_eq!(run.mode(), Standing);
 }
 
-/// So fast that the next position is no number any more.
-pub(crate) fn a_velocity_without_end_is_told() {
+/// At this speed the next position is not finite.
+pub(crate) fn an_overflowing_velocity_is_reported() {
     let stage = Stage::new(one_kind());
     let mut run = Run::new(stage, jolt(), DVec3::Y).thrown(DVec3::X * (f64::MAX * 1e-3));
     let told = (0..100).any(|_| {

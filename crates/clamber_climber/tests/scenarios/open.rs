@@ -1,10 +1,11 @@
-//! What does not hold yet, and by how much.
+//! Open scenarios: those that fail in some settings, and by how much.
 
-/// Lines of scenario, setting as [`Setting`](crate::stage::Setting) prints it (or `in every setting`), and what was found.
+/// One line per failure: the scenario, the setting as [`Setting`](crate::stage::Setting) prints it (or `in every
+/// setting`), and the result.
 ///
-/// A line that holds fails the suite, so that a mend takes its lines along.
-/// `CLAMBER_OPEN=1 cargo test -p clamber_climber --test scenarios -- --nocapture | grep '^OPEN ' | cut -c6- | sort` prints
-/// the lines that the file should have.
+/// A listed scenario that passes fails the suite, so that a fix also removes its lines. `CLAMBER_OPEN=1 cargo test -p
+/// clamber_climber --test scenarios -- --nocapture | grep '^OPEN ' | cut -c6- | sort` prints the lines that the file
+/// should have.
 const OPEN: &str = include_str!("open.txt");
 
 /// Scenario and setting of each line.

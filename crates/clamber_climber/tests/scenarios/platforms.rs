@@ -1,4 +1,4 @@
-//! Ground that moves.
+//! Moving ground.
 
 use core::f64::consts::{PI, TAU};
 
@@ -12,12 +12,12 @@ use crate::stage::{
     walker_at, within,
 };
 
-/// By how much a chord over a tick leaves a circle of a radius at an angular speed.
+/// Distance between the chord of one tick and the arc of a circle with a radius, at an angular speed.
 pub(crate) fn chord(radius: f64, speed: f64) -> f64 {
     radius * (1.0 - libm::cos(speed * TICK * 0.5))
 }
 
-/// A climber at rest on a floor that moves.
+/// A climber that stands on a moving floor.
 pub(crate) fn on(
     played: Played,
     half: f64,
@@ -28,7 +28,7 @@ pub(crate) fn on(
     Run::new(stage, jolt(), feet).settle()
 }
 
-/// The most that it is away from where the motion takes its first place.
+/// The largest distance between a climber and its start position as carried by the motion.
 pub(crate) fn drift(trace: &Trace, start: DVec3, motion: impl Fn(f64) -> Similarity) -> f64 {
     let local = motion(0.0).inverse_transform_point(start);
     let off = trace.positions.iter().enumerate().map(|(tick, p)| {
@@ -51,7 +51,7 @@ pub(crate) fn a_turning_platform_carries_without_lag() {
     });
 }
 
-/// Up for a second, still for half, down for a second.
+/// A lift that goes up for a second, stops for half a second, and goes down for a second.
 fn lift(speed: f64) -> impl Fn(f64) -> Similarity + Copy {
     move |time| {
         let up = time.min(1.0);
@@ -75,7 +75,7 @@ pub(crate) fn a_lift_carries_up_and_down_at_any_speed() {
     }
 }
 
-pub(crate) fn a_lift_that_reverses_in_one_tick_keeps_who_sticks_to_it() {
+pub(crate) fn a_lift_that_reverses_in_one_tick_keeps_a_rider_with_sticky_feet() {
     for speed in [0.5, 5.0, 20.0] {
         every(0.0, |played| {
             let motion = move |time: f64| shifted(DVec3::Y * (speed * wave(time)));
@@ -90,13 +90,13 @@ pub(crate) fn a_lift_that_reverses_in_one_tick_keeps_who_sticks_to_it() {
     }
 }
 
-/// Up for a second and down for a second, at 1 m/s.
+/// Height of a lift that goes up for a second and down for a second, at 1 m/s.
 fn wave(time: f64) -> f64 {
     let phase = time.rem_euclid(2.0);
     phase.min(2.0 - phase)
 }
 
-pub(crate) fn a_platform_that_could_move_is_as_good_as_ground() {
+pub(crate) fn a_movable_platform_at_rest_is_like_ground() {
     let path = |played: Played, fixed: bool| {
         let floor = Shape::field(DVec3::new(-10.0, 0.0, -10.0), 1.0, [20, 20], |x, z| {
             0.1 * libm::sin(x) * libm::cos(z)
@@ -111,7 +111,7 @@ pub(crate) fn a_platform_that_could_move_is_as_good_as_ground() {
         for tick in 0..240u32 {
             let angle = f64::from(tick / 40) * 1.3;
             let direction = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
-            // Held, the surface is put where it is: no motion at all.
+            // A held stage does not move the surface at all.
             if fixed {
                 run.step_held(&walk(direction));
             } else {
@@ -141,7 +141,7 @@ pub(crate) fn an_idle_rider_of_a_lift_stays_on_it() {
 
 type Platform = (&'static str, f64, fn(f64) -> Similarity);
 
-/// Jolt's platforms, and what their turning adds at the rider.
+/// Jolt's sample platforms. Each has a name, the difference between chord and arc at the rider, and a motion.
 fn samples() -> Vec<Platform> {
     let radius = libm::sqrt(5.0);
     vec![
@@ -179,7 +179,7 @@ pub(crate) fn a_minute_on_each_of_jolts_platforms() {
     }
 }
 
-pub(crate) fn a_wall_that_comes_and_goes_shoves_and_leaves() {
+pub(crate) fn a_wall_that_comes_and_goes_pushes_but_does_not_pull() {
     every(0.0, |played| {
         let wall = Shape::boxed(DVec3::new(-2.0, 0.0, -3.0), DVec3::new(-1.0, 3.0, 3.0));
         let front = |time: f64| -1.0 + 3.0 * libm::sin(time);
@@ -226,7 +226,7 @@ pub(crate) fn a_belt_carries_at_its_speed() {
         within!(off, 1e-4, "{played:?}: off by {off}");
         let off = run.state().velocity.distance(DVec3::Z * 2.0);
         within!(off, 1e-4, "{played:?}: velocity off by {off}");
-        // And walking on it.
+        // Walking on the belt.
         let before = run.feet();
         belt.rides(&mut run, &walk(DVec3::X), 60);
         let off = (run.feet() - before).distance(DVec3::new(1.0, 0.0, 2.0));
@@ -234,7 +234,7 @@ pub(crate) fn a_belt_carries_at_its_speed() {
     }
 }
 
-pub(crate) fn going_down_askew_does_not_jitter() {
+pub(crate) fn a_diagonally_descending_platform_does_not_jitter() {
     every(0.0, |played| {
         let motion = |time: f64| shifted(DVec3::new(0.0, -3.0, -3.0) * time);
         let mut run = on(played, 5.0, DVec3::ZERO, motion);
@@ -266,7 +266,7 @@ pub(crate) fn a_jump_off_a_lift_that_goes_down_leaves_it() {
             ticks += 1;
             assert!(ticks < 60);
         }
-        // 3 m/s beyond the lift's: up and down again in 35.7 ticks by Euler's rule.
+        // At 3 m/s relative to the lift, the flight takes 2 v / g: 36.7 ticks.
         assert!(
             (36..=37).contains(&ticks),
             "{played:?}: {ticks} ticks in the air"
@@ -276,12 +276,12 @@ pub(crate) fn a_jump_off_a_lift_that_goes_down_leaves_it() {
     });
 }
 
-/// Up at a speed for a second, then down.
+/// A lift that goes up at a speed for a second, then down.
 fn reverses(speed: f64) -> impl Fn(f64) -> Similarity + Copy {
     move |time| shifted(DVec3::Y * (speed * (time.min(1.0) - (time - 1.0).max(0.0))))
 }
 
-pub(crate) fn a_reversal_throws_who_is_free_and_keeps_who_sticks() {
+pub(crate) fn a_reversal_throws_a_free_rider_and_keeps_one_with_sticky_feet() {
     let speed = 2.4;
     every(0.0, |played| {
         let motion = reverses(speed);
@@ -301,7 +301,7 @@ pub(crate) fn a_reversal_throws_who_is_free_and_keeps_who_sticks() {
         run.steps(60, &IDLE);
         assert_eq!(run.mode(), Standing);
         let height = run.position().y;
-        // Ballistic from the tick of the reversal on.
+        // The flight is ballistic from the tick of the reversal on.
         for tick in 1..=57u32 {
             run.step(&IDLE);
             assert_eq!(run.mode(), Falling, "{played:?}, tick {tick}");
@@ -310,7 +310,7 @@ pub(crate) fn a_reversal_throws_who_is_free_and_keeps_who_sticks() {
             let off = run.position().y - (height + way);
             within!(off.abs(), 1e-4, "{played:?}, tick {tick}: {off}");
         }
-        // 4.8 m/s beyond the platform's: 58.7 ticks.
+        // At 4.8 m/s relative to the platform, the flight takes 58.7 ticks.
         run.steps(2, &IDLE);
         assert_eq!(run.mode(), Standing, "{played:?}");
         run.sound()
@@ -321,7 +321,7 @@ pub(crate) fn the_edge_of_a_fast_lift_does_not_push_sideways() {
     for (beyond, speed) in [(-0.05, 10.0), (0.0, 10.0), (0.1, 10.0), (0.1, 30.0)] {
         every(0.0, |played| {
             let motion = move |time: f64| shifted(DVec3::Y * (speed * time));
-            // Resting on the edge itself, the ball is lower by a little.
+            // A ball that rests on the edge itself is a little lower.
             let stage = Stage::new(played).with(&Shape::floor(5.0), motion);
             let mut run = Run::new(stage, jolt(), DVec3::new(5.0 + beyond, 0.0, 0.3)).settle();
             let start = run.position();

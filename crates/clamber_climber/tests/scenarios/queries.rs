@@ -1,4 +1,4 @@
-//! Queries of surfaces and bodies, through the trait that a climber asks them by.
+//! Queries of surfaces and bodies through the trait `Obstacle`, as a climber makes them.
 
 use clamber_world::rapier3d::prelude::ColliderBuilder;
 use clamber_world::{Contact, Obstacle, TargetMotion, WorldCapsule};
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::stage::{Played, Shape, Stage, kinds, shifted, within};
 
-/// Asks the only obstacle of a stage.
+/// Queries the only obstacle of a stage.
 fn ask<T>(stage: &Stage, question: impl FnOnce(&dyn Obstacle) -> T) -> T {
     stage.obstacles(|obstacles| question(obstacles[0].1))
 }
@@ -19,7 +19,7 @@ fn overlaps(stage: &Stage, capsule: &WorldCapsule) -> Vec<Contact> {
     contacts
 }
 
-/// A random point of a cube around the origin.
+/// A random point in a cube around the origin.
 fn point(rng: &mut fastrand::Rng, size: f64) -> DVec3 {
     let mut side = || (rng.f64() * 2.0 - 1.0) * size;
     DVec3::new(side(), side(), side())
@@ -32,7 +32,7 @@ fn triangle(corners: [DVec3; 3]) -> Shape {
     }
 }
 
-/// The least of a convex function of [0, 1].
+/// Minimum of a convex function on [0, 1].
 fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..200 {
@@ -51,7 +51,7 @@ fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     p.distance(a + (b - a) * share.clamp(0.0, 1.0))
 }
 
-/// Distance from a point to a triangle: within its prism to its plane, else to its edges.
+/// Distance from a point to a triangle: to its plane within its prism, else to its edges.
 fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let edges = to_segment(p, a, b)
         .min(to_segment(p, b, c))
@@ -66,24 +66,24 @@ fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     }
 }
 
-/// Between a segment and a triangle, in f64.
+/// Distance between a segment and a triangle, in f64.
 fn apart(ends: [DVec3; 2], corners: [DVec3; 3]) -> f64 {
     least(|share| to_triangle(ends[0].lerp(ends[1], share), corners))
 }
 
-/// As the mesh and the query have them.
+/// A point rounded to f32, as in the mesh and the query.
 fn rounded(p: DVec3) -> DVec3 {
     p.as_vec3().as_dvec3()
 }
 
-pub(crate) fn a_sliver_is_met_where_it_is_and_nowhere_else() {
+pub(crate) fn a_sliver_is_hit_exactly_where_it_is() {
     let mut rng = fastrand::Rng::with_seed(15);
     let (mut hits, mut misses) = (0, 0);
     for _ in 0..300 {
         let (a, along) = (point(&mut rng, 3.0), point(&mut rng, 1.0).normalize() * 5.0);
         let aside = along.any_orthonormal_vector() * 0.0004;
         let corners = [a, a + along, a + along * rng.f64() + aside].map(rounded);
-        // Past a point near it.
+        // Past a point near the sliver.
         let aim = a + along * rng.f64() + point(&mut rng, 0.5);
         let from = rounded(aim + point(&mut rng, 3.0));
         let way = rounded((aim - from) * 2.0);
@@ -123,17 +123,17 @@ pub(crate) fn a_sliver_is_met_where_it_is_and_nowhere_else() {
     assert!(hits > 100 && misses > 100, "{hits} hits, {misses} misses");
 }
 
-/// Least distance between a point on its way and a triangle.
+/// Least distance between a moving point and a triangle.
 fn least_on_way(from: DVec3, way: DVec3, corners: [DVec3; 3]) -> f64 {
     least(|share| to_triangle(from + way * share, corners))
 }
 
-pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
+pub(crate) fn a_capsule_parallel_to_a_triangle_has_the_exact_distance() {
     let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&triangle(corners));
         for (a, b) in [
-            // Above the inside, above an edge, along an edge, beside, and through.
+            // Above the interior, across an edge, along an edge, beside the triangle, and in its plane.
             ((0.0, 0.25, 0.0), (1.0, 0.25, 0.5)),
             ((-3.0, 0.25, 0.0), (0.0, 0.25, 0.0)),
             ((-2.0, 0.25, -1.0), (-2.0, 0.25, 1.0)),
@@ -153,11 +153,11 @@ pub(crate) fn a_capsule_parallel_to_a_triangle_is_as_far_as_it_is() {
     }
 }
 
-pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
+pub(crate) fn a_cast_that_starts_inside_hits_at_time_0() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
-        // From outside of the face, from within it, and away from it.
+        // From outside the face, from inside, away from it, and from on it.
         for (height, way) in [(1.2, -5.0), (0.8, -5.0), (1.2, 5.0), (1.0, 1.0)] {
             let ball = WorldCapsule::ball(DVec3::Y * height, 0.5);
             let hit = ask(&stage, |obstacle| {
@@ -176,7 +176,7 @@ pub(crate) fn a_cast_that_starts_inside_is_there_at_once() {
     }
 }
 
-pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
+pub(crate) fn a_core_on_a_feature_has_a_unit_separation_normal() {
     let corners = [(-2.0, -2.0), (-2.0, 3.0), (4.0, 0.5)].map(|(x, z)| DVec3::new(x, 0.0, z));
     let [a, b, _] = corners;
     for &played in kinds() {
@@ -184,7 +184,7 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
         for center in [DVec3::ZERO, (a + b) * 0.5, a] {
             for capsule in [
                 WorldCapsule::ball(center, 0.5),
-                // Through, along, and with an end on it.
+                // Through the feature, along it, and with an end on it.
                 WorldCapsule {
                     ends: [center - DVec3::Y, center + DVec3::Y],
                     radius: 0.5,
@@ -218,7 +218,7 @@ pub(crate) fn a_core_on_a_feature_has_a_unit_way_out() {
     }
 }
 
-pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
+pub(crate) fn capsules_near_seams_and_edges_have_the_oracles_distance() {
     let mut rng = fastrand::Rng::with_seed(37);
     let mut near = 0;
     for _ in 0..400 {
@@ -227,7 +227,7 @@ pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
             positions: vec![a, b, c, d],
             triangles: vec![[0, 1, 2], [0, 3, 1]],
         };
-        // Half of them about the common edge.
+        // Half of the capsules are around the common edge.
         let middle = if rng.bool() {
             a.lerp(b, rng.f64())
         } else {
@@ -259,7 +259,7 @@ pub(crate) fn capsules_near_seams_and_edges_are_as_far_as_an_oracle_says() {
     assert!(near > 100, "{near}");
 }
 
-pub(crate) fn motions_too_small_to_be_any_end() {
+pub(crate) fn tiny_motions_hit_nothing_and_end() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
     for &played in kinds() {
         let stage = Stage::new(played).with_still(&shape);
@@ -278,10 +278,10 @@ pub(crate) fn motions_too_small_to_be_any_end() {
     }
 }
 
-pub(crate) fn what_stands_or_goes_away_meets_nothing() {
+pub(crate) fn obstacles_that_do_not_approach_are_not_hit() {
     let shape = Shape::boxed(DVec3::splat(-1.0), DVec3::splat(1.0));
     for &played in kinds() {
-        // The box goes the same way as the ball: no relative motion.
+        // The box moves with the ball, or more slowly: it does not approach.
         let mut stage = Stage::new(played).with(&shape, |time| shifted(DVec3::Y * (60.0 * time)));
         stage.advance();
         let ball = WorldCapsule::ball(DVec3::Y * 1.6, 0.5);
@@ -297,7 +297,7 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
         assert!(hit.is_some(), "{played:?}: nothing where the box comes");
         let hit = hit.unwrap();
         assert!((hit.time - 0.1).abs() <= 1e-3, "{played:?}: {}", hit.time);
-        // Standing both.
+        // Both at rest.
         stage.hold();
         let ball = WorldCapsule::ball(DVec3::Y * 3.0, 0.5);
         for way in [DVec3::ZERO, DVec3::Y, DVec3::X] {
@@ -312,7 +312,7 @@ pub(crate) fn what_stands_or_goes_away_meets_nothing() {
     }
 }
 
-pub(crate) fn a_solid_that_holds_the_core_shows_the_way_out() {
+pub(crate) fn a_solid_around_the_core_reports_the_way_out() {
     let stage = Stage::new(Played::Body)
         .with_bodies(|bodies| bodies.add_fixed(ColliderBuilder::cuboid(1.0, 1.0, 1.0)));
     for (center, out, distance) in [

@@ -1,4 +1,4 @@
-//! Ground that does not keep its shape: what only a skin does.
+//! Ground that deforms, as only skin does.
 
 use core::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::stage::{IDLE, Run, Shape, Skin, Stage, jolt, one_kind, radians, walker_at, within};
 
-/// A skin of two joints, the second of which moves: by how much a rest position follows it is `share`.
+/// A skin with two joints, the second of which moves. `share` is the weight of that joint at a rest position.
 fn skin(
     shape: &Shape,
     share: impl Fn(DVec3) -> f64,
@@ -28,12 +28,12 @@ fn on(skin: Skin, config: ClimberConfig, feet: DVec3) -> Run {
     Run::new(Stage::new(one_kind()).with_skin(skin), config, feet).settle()
 }
 
-/// Level quadrilaterals of half a metre.
+/// A level plane of quadrilaterals of half a metre.
 fn plain() -> Shape {
     Shape::field(DVec3::new(-5.0, 0.0, -5.0), 0.5, [20, 20], |_, _| 0.0)
 }
 
-/// Where the material under the feet at rest is now.
+/// Current position of the climber's material point.
 fn material(run: &Run) -> DVec3 {
     let support = run.state().support.unwrap();
     let motion = run.stage.obstacles(|obstacles| {
@@ -45,7 +45,7 @@ fn material(run: &Run) -> DVec3 {
 }
 
 pub(crate) fn breathing_ground_carries_for_a_minute() {
-    // All of it alike, and a hump that swells.
+    // All of the ground rises alike, or a hump swells.
     let even = |_: DVec3| 1.0;
     let hump = |p: DVec3| (1.0 - p.length() / 4.0).max(0.0);
     for (name, share) in [("even", &even as &dyn Fn(DVec3) -> f64), ("hump", &hump)] {
@@ -74,8 +74,8 @@ pub(crate) fn breathing_ground_carries_for_a_minute() {
     }
 }
 
-pub(crate) fn a_foot_keeps_its_share_of_a_triangle_that_stretches() {
-    // To twice its length along X and back, twice a second.
+pub(crate) fn feet_keep_their_barycentric_point_on_a_stretching_triangle() {
+    // The skin stretches to twice its length along X and back, twice a second.
     let stretches = |time: f64| {
         let factor = 1.5 - 0.5 * libm::cos(2.0 * TAU * time);
         DAffine3::from_scale(DVec3::new(factor, 1.0, 1.0))
@@ -98,7 +98,7 @@ pub(crate) fn a_foot_keeps_its_share_of_a_triangle_that_stretches() {
     run.sound();
 }
 
-/// Ground whose far end goes up and down: the slope is `angle`.
+/// Ground that is sheared to a slope of `angle`.
 fn tilts(angle: impl Fn(f64) -> f64 + 'static) -> Skin {
     let shear = move |time: f64| {
         let rise = libm::tan(angle(time));
@@ -119,12 +119,12 @@ fn changes(run: &Run) -> usize {
 
 pub(crate) fn ground_that_trembles_about_the_limit_is_lost_once_at_most() {
     let tremble = |time: f64| radians(0.1) * libm::sin(TAU * 7.0 * time);
-    // About the slope on which one comes to stand.
+    // Around the slope up to which a climber lands.
     let skin = tilts(move |time| radians(50.0) * (time / 2.0).min(1.0) + tremble(time));
     let mut run = on(skin, jolt(), DVec3::ZERO);
     run.steps(600, &IDLE);
-    assert_eq!(changes(&run), 0, "who stands stays: {:?}", run.trace.events);
-    // About the one on which one who stands loses it, and back to where one may stand again, twice.
+    assert_eq!(changes(&run), 0, "loses its ground: {:?}", run.trace.events);
+    // Beyond the slope at which a standing climber slips, and back to one on which it lands, twice.
     let skin = tilts(move |time| {
         let wave = (time / 2.0).rem_euclid(2.0);
         let slow = if wave < 1.0 { wave } else { 2.0 - wave };
@@ -141,13 +141,14 @@ pub(crate) fn ground_that_trembles_about_the_limit_is_lost_once_at_most() {
     assert!(run.trace.modes.contains(&Sliding));
 }
 
-pub(crate) fn two_sheets_that_close_crush_and_let_nothing_through() {
-    // A ball to less than its radius; a capsule to more than its axis, which cannot be between less.
+pub(crate) fn closing_sheets_crush_the_climber_but_do_not_let_it_through() {
+    // The sheets close on a ball to less than its radius, and on a capsule to more than the length of its axis: with
+    // less room the axis would not fit between them.
     for (height, least) in [(0.0, 0.2), (1.35, 1.5)] {
         let mut config = jolt();
         config.body.height = height;
         let size = height + 0.64;
-        // Over a second from 1 m of room above its head to the least, and open again.
+        // The room above its head shrinks from 1 m to the least in a second, and opens again.
         let open = size + 1.0;
         let room = move |time: f64| {
             let phase = (time - 1.0).abs().min(1.0);
@@ -164,7 +165,7 @@ pub(crate) fn two_sheets_that_close_crush_and_let_nothing_through() {
             let lid = room(run.stage.time());
             let p = run.position();
             assert!(p.y > 0.0, "{height}, tick {tick}: through the floor at {p}");
-            // Who is crushed crouches, and has no upper ball then.
+            // A crushed climber crouches, and has no upper ball then.
             let head = run.body().ends[1].y;
             assert!(
                 head < lid,
@@ -180,18 +181,18 @@ pub(crate) fn two_sheets_that_close_crush_and_let_nothing_through() {
                 crushed = Some(lid);
             }
         }
-        // The skin is .02 at either end, and as much again is no news.
+        // The margin is .02 at either end, and an overlap up to the margin is not reported as crushing.
         let told = crushed.unwrap();
         assert!(
             told <= size && told >= size - 0.12,
-            "{height}: told at {told} of room"
+            "{height}: crushed at {told} of room"
         );
         assert_eq!(run.mode(), Standing, "{height}: {:?}", run.state());
         within!(run.feet().length(), 1e-3, "{height}: stands again");
     }
 }
 
-pub(crate) fn a_triangle_without_area_for_a_tick_holds() {
+pub(crate) fn a_triangle_without_area_for_a_tick_keeps_the_climber() {
     for flat in [
         DVec3::new(0.0, 1.0, 1.0),
         DVec3::new(0.0, 1.0, 0.0),
@@ -210,7 +211,7 @@ pub(crate) fn a_triangle_without_area_for_a_tick_holds() {
             config.ground = jolt().ground;
             config.tumble = None;
             config.stamina = None;
-            // Nothing but the hold itself is to be seen.
+            // The jerk must not make it hang: only the hold is tested.
             if let Some(grip) = &mut config.grip {
                 grip.hang_acceleration = f64::INFINITY;
             }
@@ -241,7 +242,7 @@ pub(crate) fn a_triangle_without_area_for_a_tick_holds() {
     }
 }
 
-/// The way of the ball among planes: of seventeen at most, against a thousand directions in all.
+/// The movement of a ball that up to seventeen planes touch, in a thousand directions in all.
 pub(crate) fn no_velocity_enters_any_of_seventeen_planes() {
     let mut rng = fastrand::Rng::with_seed(36);
     let mut direction = || {
@@ -257,7 +258,7 @@ pub(crate) fn no_velocity_enters_any_of_seventeen_planes() {
     config.gravity = DVec3::ZERO;
     config.body.height = 0.0;
     for count in 1..=17 {
-        // Squares of 40 m that touch the ball at rest: with a few of them, there is no way out.
+        // Squares of 40 m that touch the ball at rest. With enough of them, it cannot move in any direction.
         let normals: Vec<DVec3> = (0..count).map(|_| direction()).collect();
         let walls = normals.iter().fold(Shape::default(), |shape, normal| {
             let turn = glam::DQuat::from_rotation_arc(DVec3::Y, *normal);
@@ -281,7 +282,7 @@ pub(crate) fn no_velocity_enters_any_of_seventeen_planes() {
                 .map(|normal| -normal.dot(p))
                 .fold(0.0, f64::max);
             within!(entered, 0.005, "{count} planes, {velocity}: by {entered}");
-            // Never worse than to stay, and never beyond what was wanted.
+            // Never backwards, and never farther than wanted.
             let made = p.dot(velocity.normalize());
             assert!(
                 (-1e-3..=0.1 + 1e-3).contains(&made),

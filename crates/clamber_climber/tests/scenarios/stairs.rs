@@ -1,4 +1,4 @@
-//! Steps, bumps, pillars, funnels.
+//! Steps, bumps, pillars and funnels.
 
 use clamber_climber::ClimberMode::{Falling, Standing};
 use glam::DVec3;
@@ -24,7 +24,7 @@ pub(crate) fn stairs_are_walked_up_at_any_rate() {
                 assert!(p.x.abs() <= 1e-6, "{rate} Hz, {played:?}: drifts to {p}");
                 assert_eq!(run.mode(), Standing, "{rate} Hz, {played:?}");
                 z = p.z;
-                // From 1 m before the first riser to the tenth.
+                // The way leads from 1 m before the first riser to the tenth.
                 let ideal = (1.0 + 9.0 * 0.3) / 4.0;
                 assert!(
                     f64::from(ticks) * dt <= 1.5 * ideal,
@@ -36,7 +36,7 @@ pub(crate) fn stairs_are_walked_up_at_any_rate() {
     }
 }
 
-pub(crate) fn stairs_block_who_cannot_step() {
+pub(crate) fn stairs_block_a_climber_that_cannot_step() {
     for rate in RATES {
         every(0.0, |played| {
             let dt = 1.0 / f64::from(rate);
@@ -85,7 +85,7 @@ pub(crate) fn a_wall_alongside_gives_no_speed() {
     }
 }
 
-/// Boxes on a floor, from 1 m on along X.
+/// Boxes on a floor, along X from 1 m on.
 fn bumps(width: f64, height: f64, every: f64, count: u32) -> Shape {
     (0..count).fold(Shape::floor(30.0), |shape, k| {
         let x = 1.0 + every * f64::from(k);
@@ -116,7 +116,7 @@ pub(crate) fn bumps_are_walked_over() {
     }
 }
 
-pub(crate) fn what_only_looks_like_stairs_is_a_wall() {
+pub(crate) fn stairs_with_too_narrow_treads_are_a_wall() {
     every(0.0, |played| {
         let stairs = Shape::stairs(10, 0.3, 0.05, 2.0);
         let stage = Stage::new(played).with_still(&stairs);
@@ -133,7 +133,7 @@ pub(crate) fn what_only_looks_like_stairs_is_a_wall() {
     });
 }
 
-/// Thirty square pillars of 0.2 m side by side.
+/// Thirty square pillars of 0.2 m, side by side.
 fn pillars() -> Shape {
     (0..30u32).fold(Shape::default(), |shape, k| {
         let x = -1.0 + 0.2 * f64::from(k);
@@ -144,7 +144,7 @@ fn pillars() -> Shape {
     })
 }
 
-/// A wall in 25 segments of quadrilaterals.
+/// A wall of 25 columns of quadrilaterals.
 fn segments() -> Shape {
     let flat = Shape::field(DVec3::new(-1.0, 0.0, -1.0), 0.25, [25, 12], |_, _| 0.0);
     let upright = flat.turned(DVec3::X, core::f64::consts::FRAC_PI_2);
@@ -167,7 +167,7 @@ pub(crate) fn walls_of_pillars_and_of_segments_do_not_snag() {
     }
 }
 
-/// Beside it a drop of 20 m: edges within the wall are no ledges.
+/// The drop beside the wall is 20 m deep. Edges within the wall must not count as ledges to stand on.
 pub(crate) fn a_wall_along_a_drop_is_no_ground() {
     every(0.0, |played| {
         let tiles = Shape::field(DVec3::new(-3.0, 0.0, -1.0), 0.35, [25, 12], |_, _| 0.0);
@@ -179,7 +179,7 @@ pub(crate) fn a_wall_along_a_drop_is_no_ground() {
         let mut run = Run::new(stage, walker_at(2.0), -DVec3::X).settle();
         run.steps(90, &walk(DVec3::X));
         for (mode, position) in run.trace.modes.iter().zip(&run.trace.positions) {
-            // Until there it rolls over the edge.
+            // Up to there it rolls over the edge.
             if position.x > 0.32 {
                 assert_eq!(*mode, Falling, "{played:?}: at {position}");
             }
@@ -197,7 +197,7 @@ fn funnel() -> Shape {
     })
 }
 
-pub(crate) fn a_funnel_holds_who_falls_into_it() {
+pub(crate) fn a_funnel_holds_a_climber_that_falls_into_it() {
     every(0.0, |played| {
         let stage = Stage::new(played).with_still(&funnel());
         let mut run = Run::new(stage, jolt(), DVec3::new(0.4, 3.0, -0.2));
@@ -238,7 +238,7 @@ pub(crate) fn an_acute_corner_below_a_ceiling_stops_gently() {
                 run.position()
             );
         }
-        // The upper ball touches the slope that falls by a half.
+        // The upper ball touches the ceiling, which falls by 0.5 m per metre.
         let top = DVec3::new(rest.x, rest.y + 1.35, 0.0);
         let room = (3.0 - top.y - top.x * 0.5) * 2.0 / libm::sqrt(5.0);
         assert!(
@@ -263,7 +263,7 @@ pub(crate) fn a_hollow_box_is_solid_from_within() {
         }
         run.sound()
     });
-    // Thrown at its lid from within.
+    // Thrown from inside at the lid.
     for &played in kinds() {
         let hollow = Shape::boxed(DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 3.0, 2.0));
         let stage = Stage::new(played).with_still(&hollow);

@@ -1,4 +1,4 @@
-//! What is in the way, what comes nearer, and what the climber is in from the start.
+//! Walls in the way, walls that approach, and walls that overlap the climber from the start.
 
 use clamber_climber::ClimberMode::Standing;
 use clamber_world::rapier3d::prelude::ColliderBuilder;
@@ -27,7 +27,7 @@ pub(crate) fn an_overlap_is_left_in_one_tick() {
     }
 }
 
-/// Two walls of 75 degrees that cross at a line along Z, above a floor.
+/// Two walls at 75 degrees that meet in a line along Z, above a floor.
 fn valley() -> Shape {
     let lean = radians(75.0);
     let (rise, run) = (4.0 * libm::sin(lean), 4.0 * libm::cos(lean));
@@ -61,7 +61,7 @@ pub(crate) fn two_walls_through_the_body_lift_it_out_and_let_it_go() {
             height = p.y;
         }
         assert!(run.feet().y > 0.5, "{played:?}: {}", run.feet());
-        // Out of it along the crease, and down to the floor.
+        // Out of the valley along the crease, and down to the floor.
         run.steps(120, &walk(DVec3::Z));
         assert!(run.feet().z > 1.0, "{played:?}: {}", run.feet());
         assert!(run.feet().y.abs() <= 0.05, "{played:?}: {}", run.feet());
@@ -103,7 +103,7 @@ pub(crate) fn six_hundred_metres_a_second_stop_at_a_capsule() {
     run.sound();
 }
 
-pub(crate) fn a_wall_pushes_who_does_nothing() {
+pub(crate) fn a_wall_pushes_an_idle_climber() {
     for (speed, ticks) in [(2.0, 240), (30.0, 120)] {
         every(0.0, |played| {
             let wall = Shape::boxed(DVec3::new(-3.0, -0.5, -5.0), DVec3::new(-1.0, 4.0, 5.0));
@@ -156,7 +156,7 @@ pub(crate) fn a_ball_within_a_solid_box_comes_out_of_its_nearest_face() {
 
 pub(crate) fn a_slow_wall_pushes_off_an_edge() {
     for speed in [0.1, 0.5, 1.5] {
-        // Each by itself: whether what rolls off an edge slides or falls past it is a matter of the last digit.
+        // Kinds are not compared: rounding decides whether a climber that rolls off an edge slides or falls past it.
         for &played in kinds() {
             let wall = Shape::boxed(DVec3::new(-3.0, -0.5, -5.0), DVec3::new(-0.4, 4.0, 5.0));
             let stage = Stage::new(played)
@@ -168,7 +168,7 @@ pub(crate) fn a_slow_wall_pushes_off_an_edge() {
                 run.step(&IDLE);
                 ticks += 1;
                 let p = run.position();
-                // Beyond the edge it rolls over it, as far as it can stand there.
+                // At the edge it rolls over, as far as it can stand there.
                 assert!(
                     p.x <= 1.0 + 0.32,
                     "{played:?} at {speed} m/s: stands on nothing at {p}"
@@ -203,7 +203,7 @@ pub(crate) fn a_corner_takes_all_velocity() {
     });
 }
 
-pub(crate) fn ground_that_goes_on_leaves_who_is_held_by_a_wall() {
+pub(crate) fn ground_moves_on_below_a_climber_held_back_by_a_wall() {
     for speed in [0.2, 1.0, 5.0] {
         every(0.0, |played| {
             let wall = Shape::boxed(DVec3::new(0.5, -0.5, -5.0), DVec3::new(1.0, 4.0, 5.0));
@@ -218,7 +218,8 @@ pub(crate) fn ground_that_goes_on_leaves_who_is_held_by_a_wall() {
             let off = run.feet().distance(DVec3::new(0.18, -1.0, 0.0));
             within!(off, 1e-4, "{played:?} at {speed} m/s: {}", run.feet());
             assert_eq!(run.mode(), Standing);
-            // The ground ends behind it. A second of falling: what rounding leaves of speed is no matter of how far.
+            // The ground's end passes below it. It then falls for a second, so that a rest of speed from rounding does
+            // not matter.
             let left = ((10.7 / speed + 1.0) / run.stage.dt) as u32 - ticks;
             run.steps(left, &IDLE);
             assert!(

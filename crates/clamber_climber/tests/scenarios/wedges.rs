@@ -1,4 +1,4 @@
-//! Walls that close on the climber, all but opposite: a wedge from which it cannot slip.
+//! Two nearly opposite walls that close on the climber: a wedge that it cannot slip out of.
 
 use clamber_climber::{ClimberConfig, ClimberEvent};
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use crate::stage::{IDLE, Run, Shape, Stage, kinds, radians, within};
 
-/// Half the way between the walls, at a time: in the end .15 m less than the ball needs.
+/// Half of the distance between the walls at a time: in the end .15 m less than the ball needs.
 fn half_gap(closing: f64, time: f64) -> f64 {
     (0.45 - closing * time).max(0.25)
 }
 
-/// Two walls of 1 m above a floor, each turned by an angle so that they open along +X; they close by a speed each.
+/// Two walls, 1 m thick, above a floor. Each is turned by an angle so that they open along +X, and closes at a speed.
 fn wedge(stage: Stage, angle: f64, closing: f64) -> Stage {
     let wall = Shape::boxed(DVec3::new(-3.0, 0.05, -0.5), DVec3::new(3.0, 6.05, 0.5));
     let stage = stage.with_still(&Shape::floor(6.0));
@@ -29,8 +29,8 @@ fn wedge(stage: Stage, angle: f64, closing: f64) -> Stage {
     })
 }
 
-/// What a climber between the walls went through, at each angle and speed, on each kind of obstacle by itself: what rounds a
-/// wall moves the place where both touch the ball by a hundred times more.
+/// Checks the result for a climber between the walls at each angle and speed, on each kind of obstacle. Kinds are not
+/// compared: rounding of a wall moves the place where both walls touch the ball by a hundred times as much.
 fn in_wedges(check: impl Fn(&Pressed)) {
     for closing in [0.4, 2.0] {
         for degrees in [0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 13.0] {
@@ -60,28 +60,28 @@ fn in_wedges(check: impl Fn(&Pressed)) {
     }
 }
 
-/// What happened between two walls.
+/// The result of a run between two walls.
 struct Pressed {
     case: String,
     degrees: f64,
     /// How much room each wall takes from the ball in the end, metres.
     lacking: f64,
     crushed: bool,
-    /// Its longest way in a tick, metres.
+    /// Longest displacement of the climber in a tick, metres.
     longest: f64,
 }
 
-pub(crate) fn a_wedge_that_closes_crushes_alike_in_every_frame() {
+pub(crate) fn a_closing_wedge_crushes_alike_in_every_frame() {
     in_wedges(|pressed| {
         let Pressed { case, crushed, .. } = pressed;
-        assert!(*crushed || pressed.degrees > 2.0, "{case}: not told");
+        assert!(*crushed || pressed.degrees > 2.0, "{case}: not reported");
     });
 }
 
-pub(crate) fn a_wedge_that_closes_throws_nobody_out() {
+pub(crate) fn a_closing_wedge_does_not_fling_the_climber_out() {
     in_wedges(|pressed| {
         let Pressed { case, longest, .. } = pressed;
-        // Farther than four times what it lacks in room is thrown, not pushed.
+        // More than four times the missing room would be a fling, not a push.
         within!(
             *longest,
             4.0 * pressed.lacking,

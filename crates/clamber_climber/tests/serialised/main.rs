@@ -1,6 +1,6 @@
-//! A climber that is written down as JSON and read again goes on with the same bits, whatever it is doing.
+//! A climber that is saved as JSON and loaded again continues with the same bits, in every mode.
 //!
-//! JSON that is read as the nearest float needs `float_roundtrip` of serde_json.
+//! This needs `float_roundtrip` of serde_json, which reads numbers as the nearest float.
 
 #![expect(
     clippy::unwrap_used,
@@ -23,16 +23,16 @@ use scene::Scene;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// What is left of a value after it was written and read.
+/// A value after it was written as JSON and read again.
 fn copy<T: Serialize + DeserializeOwned>(value: &T) -> T {
     let json = serde_json::to_string(value).unwrap();
     serde_json::from_str(&json).unwrap()
 }
 
-/// Where a run is left and taken up.
+/// Number of ticks after which the run is saved and loaded.
 const EVERY: u32 = 23;
 
-/// Ticks of one run; each tick of which a mode was restored counts.
+/// Plays the ticks of one run, and counts how often each mode was restored.
 fn run(seed: u64, ticks: u32, restored: &mut [u32; 7]) {
     let mut scene = Scene::new(seed);
     let mut climber = scene.climber();
@@ -40,7 +40,7 @@ fn run(seed: u64, ticks: u32, restored: &mut [u32; 7]) {
     for tick in 0..ticks {
         if tick % EVERY == 0 {
             let state = climber.state();
-            // Nothing is left of the one before but what was written.
+            // The new climber gets nothing except the JSON.
             other = Climber::new(copy(climber.config()), DVec3::ZERO).unwrap();
             other.restore(copy(state)).unwrap();
             let (a, b) = (state.fingerprint(), other.state().fingerprint());
@@ -119,7 +119,7 @@ fn inputs_keep_every_bit() {
     }
 }
 
-/// A mode of a game's own that rises for a second, which it remembers.
+/// A custom mode that rises for a second, and keeps the time in its memory.
 struct Rise;
 
 impl CustomMode for Rise {
@@ -143,7 +143,7 @@ impl CustomMode for Rise {
 }
 
 #[test]
-fn a_mode_of_a_game_goes_on_with_the_same_bits() {
+fn a_custom_mode_continues_with_the_same_bits() {
     let mut climber = Climber::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
     let rules = StepRules::with_modes(&[&Rise]);
     let input = ClimberInput {

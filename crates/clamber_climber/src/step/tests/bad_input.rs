@@ -1,4 +1,4 @@
-//! What makes no sense, from callers and from obstacles.
+//! Invalid input from callers and from obstacles.
 
 use clamber_world::{
     Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact, TargetMotion,
@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::*;
 use crate::{Blow, ClimberError, ClimberState, Support};
 
-/// An obstacle that answers nonsense.
+/// An obstacle that returns numbers that are not finite.
 struct Broken;
 
 impl Obstacle for Broken {
@@ -104,7 +104,7 @@ fn bad_input_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn states_that_no_climber_can_be_in_are_refused() {
+fn inconsistent_or_not_finite_states_are_refused() {
     let ground = level();
     let mut climber = landed(0.0, 0.5, 0.0, &ground);
     let before = *climber.state();
@@ -206,7 +206,7 @@ fn configurations_outside_their_ranges_are_refused_by_name() {
 }
 
 #[test]
-fn an_obstacle_that_answers_nonsense_does_not_spread_it() {
+fn an_obstacle_that_returns_nan_does_not_spread_it() {
     let ground = level();
     let mut climber = climber_at(0.0, 1.0, 0.0);
     let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
@@ -223,7 +223,7 @@ fn an_obstacle_that_answers_nonsense_does_not_spread_it() {
 }
 
 #[test]
-fn states_with_lengths_times_or_headings_that_are_none_are_refused() {
+fn states_with_numbers_out_of_range_are_refused() {
     let mut climber = climber_at(0.0, 2.0, 0.0);
     let good = *climber.state();
     let changes: [fn(&mut ClimberState); 6] = [
@@ -245,7 +245,7 @@ fn states_with_lengths_times_or_headings_that_are_none_are_refused() {
 }
 
 #[test]
-fn every_mode_is_left_in_peace_by_a_configuration_that_does_not_know_it() {
+fn modes_that_the_configuration_lacks_end_in_standing() {
     let ground = level();
     for mode in ClimberMode::ALL {
         for grip in [false, true] {

@@ -1,4 +1,4 @@
-//! In the air, and down what is too steep.
+//! Falling, landing, jumping and sliding.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::surface::SkinnedSurface;
@@ -38,7 +38,7 @@ fn falls_along_the_parabola_and_lands_where_it_touches() {
 
 #[test]
 fn lands_on_level_ground_at_any_height_and_on_any_scale() {
-    // Skin is posed in f32: what touches is off by its rounding, which grows with its coordinates.
+    // Skin is posed in f32, so contacts have its rounding error, which grows with the coordinates.
     for height in [0.3, 7.7, 40.3, 99.9, 300.1, 1000.7] {
         for shift in 0..20 {
             let mut ground = level();
@@ -80,7 +80,7 @@ fn lands_on_ground_that_turns_and_touches_it() {
         let mut ground = level();
         let mut climber = climber_at(x, 4.0, 0.3);
         for tick in 0..120 {
-            // Level about when it lands.
+            // The ground is about level when the climber lands.
             let angle = turning * (f64::from(tick) * DT - 0.8);
             let turn = rotation_from_axis_angle(DVec3::Z, angle);
             pose(&mut ground, &DAffine3::from_quat(turn));
@@ -157,7 +157,7 @@ fn too_steep_slopes_are_slid_down() {
 }
 
 #[test]
-fn a_blow_knocks_down_who_slides() {
+fn a_blow_knocks_down_a_sliding_climber() {
     let steep = trough(60.0);
     let config = ClimberConfig::colossus_climber();
     let mut climber = Climber::new(config, DVec3::new(8.0, 14.8, 0.0)).unwrap();
@@ -218,8 +218,8 @@ fn a_fast_fall_does_not_pass_through() {
 }
 
 #[test]
-fn walls_that_are_all_but_opposite_crush_and_throw_nobody_far() {
-    // They overlap the ball by a quarter of a metre, and leave it free only 27 m farther up.
+fn nearly_opposite_walls_crush_but_do_not_fling_the_climber() {
+    // They overlap the ball by a quarter of a metre. The nearest place with enough room is 27 m farther up.
     let wall = |x: f32, lean: f32| {
         let corners = [
             (x, -40., -40.),

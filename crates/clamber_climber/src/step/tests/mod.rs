@@ -1,4 +1,4 @@
-//! A walker on skin: what a step does to it.
+//! Tests of a step: a walker on skin.
 
 mod bad_input;
 mod falling;
@@ -29,7 +29,7 @@ const fn changed(from: ClimberMode, to: ClimberMode) -> ClimberEvent {
     ClimberEvent::Changed { from, to }
 }
 
-/// A surface from corners in the XZ plane and heights, on one joint, facing up.
+/// A surface of triangles over the XZ plane, on one joint.
 fn patch(corners: &[(f32, f32, f32)], triangles: &[[u32; 3]]) -> SkinnedSurface {
     let positions: Vec<Vec3> = corners
         .iter()
@@ -63,7 +63,7 @@ fn level() -> SkinnedSurface {
     )
 }
 
-/// A valley along Z: two planes rising to both sides by so many degrees.
+/// A valley along Z: two planes that rise to both sides at an angle in degrees.
 fn trough(degrees: f64) -> SkinnedSurface {
     let rise = (20.0 * libm::tan(degrees.to_radians())) as f32;
     patch(

@@ -1,4 +1,4 @@
-//! The same bits, whatever the order of obstacles, who else is there, and where a run was left and taken up.
+//! The same bits with obstacles in any order, with other obstacles far away, and after a restore at any tick.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_world::{
@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 
 use super::*;
 
-/// An obstacle that must not be asked, since its bounds say that it is elsewhere.
+/// An obstacle that must not be queried, since its bounds are far away.
 struct Elsewhere(DVec3);
 
 impl Obstacle for Elsewhere {
@@ -45,7 +45,7 @@ impl Obstacle for Elsewhere {
 
 #[test]
 fn order_of_obstacles_and_a_restored_state_change_no_bit() {
-    // Two troughs across each other: in the pit where they meet the climber touches both.
+    // Two troughs that cross each other; in the pit between them the climber touches both.
     let (mut one, mut other) = (trough(20.0), trough(25.0));
     let across = rotation_from_axis_angle(DVec3::Y, core::f64::consts::FRAC_PI_2);
     let mut forward = climber_at(0.5, 3.0, 0.2);
@@ -83,7 +83,7 @@ fn order_of_obstacles_and_a_restored_state_change_no_bit() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_not_asked_and_changes_no_bit() {
+fn obstacles_out_of_reach_are_not_queried_and_change_no_bit() {
     let ground = level();
     let far: Vec<Elsewhere> = (0..40)
         .map(|k| Elsewhere(DVec3::new(60.0 + 50.0 * f64::from(k), 0.0, 0.0)))
@@ -93,7 +93,7 @@ fn what_is_out_of_reach_is_not_asked_and_changes_no_bit() {
         let id = if k < 20 { 39 - k } else { k + 1 };
         crowd.push((ObstacleId(id as u64), one as &dyn Obstacle));
     }
-    // Of two with one id the first counts, wherever they are: here the ground, there what is far away.
+    // If two obstacles have the same id, the first counts: once it is the ground, once the one far away.
     crowd.push((ObstacleId(20), &far[0]));
     crowd.push((ObstacleId(30), &ground));
     let (mut alone, mut among) = (climber_at(0.0, 1.0, 0.0), climber_at(0.0, 1.0, 0.0));

@@ -1,4 +1,4 @@
-//! On one material point, however the skin moves.
+//! Standing on one material point while the skin moves.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::mesh::TriangleId;
@@ -22,12 +22,12 @@ fn standing_is_carried_to_the_material_point_without_lag() {
         step_on(&mut climber, &ground, &IDLE);
         let expected = map.transform_point3(DVec3::new(3.0, 0.4, 1.0));
         let off = climber.state().position.distance(expected);
-        // Positions of some 10 m in f32, scaled by the arm of 3 m.
+        // f32 rounding of positions of about 10 m, scaled by the arm of 3 m.
         assert!(off < 1e-5, "tick {tick}: {off}");
         let now = climber.state().support.unwrap();
         assert_eq!(
             now.attachment.material, support.attachment.material,
-            "anchored anew at tick {tick}"
+            "new material point at tick {tick}"
         );
     }
     let turned = climber.state().heading;
@@ -37,7 +37,7 @@ fn standing_is_carried_to_the_material_point_without_lag() {
 }
 
 #[test]
-fn pushes_move_the_sphere_but_leave_its_contact() {
+fn pushes_move_the_ball_but_keep_its_material_point() {
     // A trough that folds up from 5 to 12 degrees around a climber that stands beside its middle.
     let flat = trough(5.0);
     let mut climber = landed(0.06, 1.0, 0.0, &flat);
@@ -52,7 +52,7 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
             state.support.unwrap().attachment.material,
             support.attachment.material
         );
-        // It slides along its side, never off it and never into the other.
+        // It slides along one side, and neither leaves it nor enters the other.
         contacts.clear();
         folded.overlap_sphere(state.position, 0.5, &mut contacts);
         let distances = contacts.iter().map(|contact| contact.distance);
@@ -69,7 +69,7 @@ fn pushes_move_the_sphere_but_leave_its_contact() {
 }
 
 #[test]
-fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
+fn an_idle_climber_pushed_by_a_wall_stays_on_its_ground_and_falls_off_the_edge() {
     let ground = level();
     let corners = [(0., -5., -5.), (0., 5., -5.), (0., 5., 5.), (0., -5., 5.)];
     let mut wall = patch(&corners, &[[0, 1, 2], [0, 2, 3]]);
@@ -93,7 +93,7 @@ fn who_is_pushed_along_stands_on_what_is_underfoot_and_falls_off_its_end() {
         );
         if let Some(support) = state.support {
             let off = (state.position - support.attachment.point) * DVec3::new(1.0, 0.0, 1.0);
-            // Round the edge it leans by up to the steepest slope, and what it is pushed before it looks anew.
+            // Around the edge it leans by up to the steepest slope, plus the push before it looks for new ground.
             let most = if state.position.x < 20.0 { 0.06 } else { 0.36 };
             assert!(off.length() < most, "tick {tick}: {state:?}");
         }
@@ -130,7 +130,7 @@ fn a_slope_that_tips_beyond_the_limit_is_slipped_off_once() {
 }
 
 #[test]
-fn skin_that_collapses_keeps_its_last_direction() {
+fn a_collapsed_triangle_keeps_its_last_frame() {
     let mut ground = level();
     let mut climber = landed(1.0, 0.5, 2.0, &ground);
     let turn = rotation_from_axis_angle(DVec3::new(0.0, 0.8, 0.6), 0.9);
@@ -155,7 +155,7 @@ fn skin_that_collapses_keeps_its_last_direction() {
 }
 
 #[test]
-fn ground_that_queries_no_longer_see_is_left() {
+fn ground_with_disabled_triangles_is_left() {
     let mut ground = level();
     let mut climber = landed(1.0, 0.5, 2.0, &ground);
     for triangle in 0..2 {

@@ -1,4 +1,4 @@
-//! Over slopes, and off their ends.
+//! Walking on slopes, over steps, and off edges.
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::mesh::TriangleId;
@@ -31,8 +31,8 @@ fn walks_at_its_speed_along_the_surface() {
 }
 
 #[test]
-fn walking_keeps_the_footing_that_standing_keeps() {
-    // One degree beyond the limit, within the hysteresis: stood on, walked on, not landed on.
+fn walking_has_the_slope_hysteresis_of_standing() {
+    // One degree beyond the limit, within the hysteresis: it can stand and walk there, but not land there.
     let mut ground = trough(45.0);
     let mut climber = landed(8.0, 8.6, 0.0, &ground);
     let tilt = |degrees: f64| {
@@ -71,7 +71,7 @@ fn ground_that_ends_or_is_removed_is_left() {
         matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
         "{events:?}"
     );
-    // It went round the edge, down to the steepest slope that it stands on, before it left.
+    // It rolled around the edge, down to the steepest slope that it stands on, before it left the ground.
     let speed = climber.state().velocity.x;
     let least = 3.0 * libm::cos(ClimberConfig::walker().ground.max_slope + SLOPE_HYSTERESIS);
     assert!((least..=3.0).contains(&speed), "keeps its speed: {speed}");
@@ -85,11 +85,11 @@ fn ground_that_ends_or_is_removed_is_left() {
         matches!(events[..], [ClimberEvent::LostFooting { .. }, last] if last == left),
         "{events:?}"
     );
-    // And without any obstacle at all.
+    // Without any obstacle, too.
     assert!(climber.step(&IDLE, &[], DT).unwrap().events.is_empty());
 }
 
-/// A step at x = 1, below a ceiling that is so high there, and falls by so much for each metre ahead.
+/// A step at x = 1 below a ceiling, whose height is `height` there and falls by `fall` per metre along X.
 fn step_below_ceiling(step: f32, height: f32, fall: f32) -> SkinnedSurface {
     let ceiling = |x: f32| height - fall * (x - 1.0);
     let mut corners = Vec::new();
@@ -109,7 +109,7 @@ fn step_below_ceiling(step: f32, height: f32, fall: f32) -> SkinnedSurface {
 
 #[test]
 fn a_step_is_climbed_where_there_is_room_above_it() {
-    // 3 cm above its head once it is up, of the 30 by which it may step.
+    // 3 cm of room above its head once it is up; it may step up by 30 cm.
     let cave = step_below_ceiling(0.2, 1.03, 0.0);
     let mut climber = landed(0.0, 0.45, 0.0, &cave);
     for _ in 0..60 {

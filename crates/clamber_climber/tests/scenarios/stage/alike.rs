@@ -1,35 +1,35 @@
-//! Whether a scenario gave the same in two settings.
+//! Compares the runs of a scenario in two settings.
 
 use glam::DVec3;
 
 use super::setting::setting;
 use super::{Played, Trace};
 
-/// How far runs may lead apart.
+/// How much two runs may differ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Allowed {
-    /// Metres.
+    /// Largest distance of positions, metres.
     pub(crate) position: f64,
-    /// Of each coordinate, metres a second.
+    /// Largest difference of each velocity component, metres a second.
     pub(crate) velocity: f64,
 }
 
-/// The step from one f32 to the next, at a length.
+/// The spacing of f32 at a length.
 fn ulp(length: f64) -> f64 {
     let length = length as f32;
     f64::from(length.next_up() - length)
 }
 
 impl Allowed {
-    /// Between a frame that moves and one at rest.
+    /// The allowed difference between a moving frame and one at rest.
     ///
-    /// - Own obstacles have no f32: only f64 rounds, and what sweeps leave of a gap. Far from the world's origin, ten steps
-    ///   of f64 over a tick are the velocity: thousands of kilometres out they are a micrometre a second.
-    /// - Skin has a root in f64. Its corners of a tick ago are seen from where the root is now, so f32 holds how far it
-    ///   reaches and how far its root went: two steps of that, in each tick, are the velocity.
-    /// - Bodies have places in f32: each tick rounds each place once, and a climber that is carried, or finds new
-    ///   ground, is rounded with it. A velocity is the difference of a body's two places over a tick, and of the points
-    ///   on it that were touched: six steps of f32.
+    /// - Own obstacles have no f32. Only f64 rounding and the gaps that sweeps leave matter. Velocities may differ by
+    ///   ten f64 steps of the position per tick: a micrometre a second some thousands of kilometres from the origin.
+    /// - Skin has a root in f64. Its corners of a tick ago are relative to the current root, so that f32 has to hold
+    ///   the skin's extent plus the root's displacement. Velocities may differ by two f32 steps of that per tick.
+    /// - Bodies have positions in f32. Each tick rounds each position once, and with it a climber that is carried or
+    ///   finds new ground. A velocity is the difference of a body's two positions over a tick, and of the touched
+    ///   points on it: six f32 steps.
     pub(crate) fn in_frame(trace: &Trace) -> Self {
         let reach = trace.reach;
         match trace.played {
@@ -52,9 +52,9 @@ impl Allowed {
     }
 }
 
-/// What a scenario's demand is wider by in the setting of this thread, metres: on bodies in a moving frame, whose places
-/// f32 rounds by a tenth of a millimetre after half a minute at 30 m/s; on skin in one, whose corners of a tick ago f32
-/// rounds by some tenths of a micrometre at half a metre a tick. Everywhere else a demand is as it is written.
+/// By how much this thread's setting widens a scenario's limits, metres. On bodies in a moving frame, f32 rounds
+/// positions by 0.1 mm after half a minute at 30 m/s. On skin in a moving frame, f32 rounds the corners of a tick ago
+/// by some tenths of a micrometre at half a metre a tick. Zero in every other setting.
 pub(super) fn slack() -> f64 {
     let setting = setting();
     let is_on = |kind| setting.kinds.contains(&kind);
@@ -69,8 +69,8 @@ pub(super) fn slack() -> f64 {
     }
 }
 
-/// Runs of a scenario at rest and in another setting: one after the other the same, in place, velocity, mode and events.
-/// Modes and events may be a tick early or late; velocities then are not compared.
+/// Compares the runs of a scenario at rest and in another setting, in order: positions, velocities, modes and events.
+/// Modes and events may be a tick early or late; in a tick whose modes differ, velocities are not compared.
 pub(crate) fn assert_alike(
     rest: &[Trace],
     other: &[Trace],
@@ -137,10 +137,10 @@ fn compare(rest: &Trace, other: &Trace, allowed: &Allowed) -> Result<(), String>
     same_events(rest, other)
 }
 
-/// The same kinds in the same order, each at most a tick early or late.
+/// Compares events: the same kinds in the same order, each at most a tick early or late.
 fn same_events(rest: &Trace, other: &Trace) -> Result<(), String> {
     let (many, few) = (rest.events.len(), other.events.len());
-    // What happens in the last tick of the one may be about to happen in the other.
+    // An event in the last tick of one run may come only after the end of the other.
     if many.abs_diff(few) > 1 {
         return Err(format!("{few} events, at rest {many}"));
     }

@@ -1,4 +1,4 @@
-//! Meshes as kinematic bodies of a rapier world.
+//! Meshes as kinematic bodies in a rapier world.
 
 use clamber_surface::geometry::Similarity;
 use clamber_world::rapier3d::prelude::{
@@ -11,14 +11,14 @@ use super::{Motion, Setting, Shape};
 
 /// A rapier world of bodies that play motions.
 ///
-/// In a setting's frame its places grow and with them what f32 rounds off: rapier's world has one origin in f64, which
-/// stays. Its scale is the setting's: nothing of it is simulated, so rapier's default lengths do not count.
+/// In a moving frame, positions and with them f32 rounding grow, since the origin of the rapier world, in f64, is
+/// fixed. The scale is that of the setting: nothing is simulated, so rapier's default lengths do not matter.
 pub(crate) struct Bodies {
     pub(crate) world: PhysicsWorld,
     before: BodyPoses,
     moving: Vec<(RigidBodyHandle, Motion)>,
     origin: DVec3,
-    /// Of the frame in a tick.
+    /// Displacement of the frame in a tick, metres.
     step: DVec3,
     scale: f64,
 }
@@ -46,7 +46,7 @@ impl Bodies {
         self.insert(mesh, motion);
     }
 
-    /// A collider in the scenario's units.
+    /// Adds a fixed collider in the scenario's units.
     pub(crate) fn add_fixed(&mut self, mut collider: ColliderBuilder) {
         if self.scale != 1.0 {
             let scale = Vector::splat(self.scale as f32);
@@ -62,7 +62,7 @@ impl Bodies {
         self.insert_still(mesh);
     }
 
-    /// In a frame that moves what stands still moves, too.
+    /// Adds a collider at rest in the frame. If the frame moves, the collider moves with it.
     fn insert_still(&mut self, collider: ColliderBuilder) {
         if self.step == DVec3::ZERO {
             self.world.insert_collider(collider, None);
@@ -80,7 +80,7 @@ impl Bodies {
         self.found();
     }
 
-    /// So that the first tick has poses to come from.
+    /// Sets the poses from which the first tick starts.
     fn found(&mut self) {
         if self.step == DVec3::ZERO {
             self.world.detect_collisions(&(), &());
@@ -111,7 +111,7 @@ impl Bodies {
         RapierTerrain::of_world(&self.world, &self.before).with_origin(self.origin)
     }
 
-    /// Farthest from the origin that anything is.
+    /// Largest coordinate of any collider, metres from the origin.
     pub(crate) fn reach(&self) -> f64 {
         let colliders = self.world.colliders.iter();
         let farthest = colliders.map(|(_, collider)| {

@@ -1,8 +1,9 @@
-//! Climbers of the sources.
+//! Configurations of the sources' characters.
 
 use clamber_climber::{ClimberConfig, GroundConfig};
 
-/// Jolt's capsule: radius .3 and padding .02 are a radius of .32, at which ours rests, with a skin width of .02.
+/// Jolt's capsule: its radius of .3 and padding of .02 become a radius of .32, at which ours rests, with a margin of
+/// .02.
 pub(crate) fn jolt() -> ClimberConfig {
     let mut config = ClimberConfig::walker();
     config.body.radius = 0.32;
@@ -18,7 +19,7 @@ pub(crate) fn jolt() -> ClimberConfig {
     config
 }
 
-/// [`jolt`] that walks at a speed.
+/// [`jolt`] with a walking speed.
 pub(crate) fn walker_at(speed: f64) -> ClimberConfig {
     let mut config = jolt();
     config.ground.walk_speed = speed;

@@ -1,4 +1,4 @@
-//! Where scenarios are played: meshes that move as functions of time, on supports of three kinds.
+//! The stage of a scenario: meshes whose motions are functions of time, as obstacles of four kinds.
 
 mod alike;
 mod bodies;
@@ -33,52 +33,52 @@ use setting::setting;
 /// A rigid pose as a function of time.
 pub(crate) type Motion = Rc<dyn Fn(f64) -> Similarity>;
 
-/// How a mesh is made to move.
+/// The kind of obstacle that a mesh becomes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Played {
-    /// A surface whose root moves, and has the setting's scale.
+    /// A surface whose root moves and has the setting's scale.
     #[default]
     Root,
     /// A surface whose joint moves, in a mesh of the setting's scale, with its root at rest in the setting's frame.
     Joint,
     /// A kinematic body of a rapier world.
     Body,
-    /// Triangles in f64, without any f32.
+    /// An obstacle of triangles in f64, without any f32.
     Own,
 }
 
-/// Everything that a climber can touch, at a time.
+/// All obstacles of a scenario at a time.
 pub(crate) struct Stage {
     played: Played,
     setting: Setting,
     pub(crate) dt: f64,
-    /// Of the stage in the world.
+    /// Origin of the stage in the world.
     origin: DVec3,
-    /// Of the scenario, whose time may stand still.
+    /// Ticks of the scenario's time, which may be held.
     ticks: u32,
-    /// Of the frame, which never stands still.
+    /// Ticks of the frame's time, which is never held.
     clock: u32,
     skins: Vec<Skin>,
     owns: Vec<Own>,
     bodies: Bodies,
-    /// Lengths that f32 had to hold so far.
+    /// Largest lengths so far.
     reach: Reach,
 }
 
-/// Lengths in f32, metres of the world.
+/// Largest lengths that numbers had to hold, metres in the world; in f32 unless stated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reach {
-    /// Of a skin from its root.
+    /// Distance of a skin's vertices from its root.
     pub(crate) extent: f64,
-    /// Of a root over a tick.
+    /// Displacement of a root in a tick.
     pub(crate) step: f64,
-    /// Of a body from rapier's origin.
+    /// Distance of a body from rapier's origin.
     pub(crate) place: f64,
-    /// Of anything from the world's origin, in f64.
+    /// Distance of the frame's origin from the world's, in f64.
     pub(crate) far: f64,
 }
 
-/// Ticks at 60 Hz.
+/// Length of a tick at 60 Hz, seconds.
 pub(crate) const TICK: f64 = 1.0 / 60.0;
 
 impl Stage {
@@ -150,12 +150,12 @@ impl Stage {
         }
     }
 
-    /// A skin that deforms; of own triangles where those are played.
+    /// Adds a skin that deforms, as own triangles where the kind is [`Played::Own`].
     #[must_use]
     pub(crate) fn with_skin(mut self, skin: Skin) -> Self {
         let scale = self.setting.scale;
         if self.played == Played::Body {
-            // No body deforms.
+            // Bodies cannot deform.
             self.played = Played::Root;
         }
         if self.played == Played::Own {
@@ -165,7 +165,7 @@ impl Stage {
         }
     }
 
-    /// Ground that stands, of a rapier world unless own triangles are played.
+    /// Adds ground at rest: in the rapier world, or as own triangles where the kind is [`Played::Own`].
     #[must_use]
     pub(crate) fn with_ground(self, shape: &Shape) -> Self {
         if self.played == Played::Own {
@@ -181,7 +181,7 @@ impl Stage {
         self
     }
 
-    /// `scale` is what its root scales by. A frame has moved it already, as it goes on moving.
+    /// Adds a skin whose root scales by `scale`. In a moving frame it starts with the frame's motion.
     fn put(mut self, mut skin: Skin, scale: f64) -> Self {
         let place = self.place();
         skin.place(0.0, scale, place.before);
@@ -205,7 +205,7 @@ impl Stage {
         f64::from(self.ticks) * self.dt
     }
 
-    /// Where the scenario is in the world, over the tick that ends now.
+    /// The scenario's position in the world, over the tick that ends now.
     pub(crate) fn place(&self) -> Place {
         let at = |tick: f64| self.origin + self.setting.frame * (tick * self.dt);
         let clock = f64::from(self.clock);
@@ -223,7 +223,7 @@ impl Stage {
         self.hold();
     }
 
-    /// A tick that takes no time of the scenario.
+    /// Poses everything for a tick without advancing the scenario's time.
     pub(crate) fn hold(&mut self) {
         self.clock += 1;
         let (time, place) = (self.time(), self.place());
@@ -250,7 +250,7 @@ impl Stage {
         self.reach
     }
 
-    /// What there is to touch, asked in the scenario's units and frame.
+    /// All obstacles, which are queried in the scenario's units and frame.
     pub(crate) fn obstacles<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let there = self.place();
         self.in_world(|obstacles| {
@@ -270,7 +270,7 @@ impl Stage {
         })
     }
 
-    /// What there is to touch, in the world: surfaces from 1 on, the rapier world as 0.
+    /// All obstacles in the world: the rapier world has id 0, surfaces have ids from 1 on.
     pub(crate) fn in_world<T>(&self, ask: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
         let terrain = self.bodies.terrain();
         let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
@@ -286,19 +286,19 @@ impl Stage {
     }
 }
 
-/// A list of obstacles as a climber takes it.
+/// A list of obstacles in the form that a climber takes.
 pub(crate) fn listed<T: Obstacle>(owned: &[(ObstacleId, T)]) -> Vec<(ObstacleId, &dyn Obstacle)> {
     let each = owned.iter();
     each.map(|(id, obstacle)| (*id, obstacle as &dyn Obstacle))
         .collect()
 }
 
-/// Moves without turning.
+/// A pure translation.
 pub(crate) fn shifted(by: DVec3) -> Similarity {
     Similarity::from_translation(by)
 }
 
-/// Turns about an axis through the origin.
+/// A rotation about an axis through the origin.
 pub(crate) fn turned(axis: DVec3, angle: f64) -> Similarity {
     Similarity {
         rotation: rotation_from_axis_angle(axis, angle),

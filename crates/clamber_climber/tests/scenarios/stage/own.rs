@@ -1,7 +1,7 @@
-//! An obstacle of one's own: triangles in f64, asked one by one.
+//! An obstacle of the game's own: triangles in f64, tested one by one.
 //!
-//! No number of it is an f32, so what it does not show is the climber's own rounding: scenarios on it are the same in
-//! every moving frame to a micrometre. Corners go on straight lines over a tick, as those of a skin do.
+//! It has no f32, so differences between moving frames are the climber's own rounding: at most a micrometre. Corners
+//! move on straight lines over a tick, as those of a skin do.
 
 use clamber_surface::geometry::{MovingCapsule, TriangleTouch};
 use clamber_world::{
@@ -10,20 +10,21 @@ use clamber_world::{
 };
 use glam::{DMat3, DQuat, DVec3};
 
-/// Where its corners are at a time, relative to the scene.
+/// The corners' positions at a time, relative to the scene.
 pub(crate) type Corners = Box<dyn Fn(f64) -> Vec<DVec3>>;
 
-/// Triangles that move.
+/// Moving triangles.
 pub(crate) struct Own {
     corners: Corners,
     triangles: Vec<[u32; 3]>,
     kind: SurfaceKind,
-    /// How far from touching a sweep may stop, metres: a hundredth of what frames may differ by.
+    /// How far before contact a sweep may stop, metres: a hundredth of the allowed difference between frames.
     tolerance: f64,
     before: Vec<DVec3>,
     now: Vec<DVec3>,
-    /// How far its first corner went, and the box of each triangle's way beyond that.
+    /// Displacement of the first corner over the tick.
     went: DVec3,
+    /// Bounding box of each triangle over the tick, relative to `went`.
     boxes: Vec<[DVec3; 2]>,
 }
 
@@ -46,7 +47,7 @@ impl Own {
         }
     }
 
-    /// Puts it where it is at a time, from where it stood; `world` says where the scene stands.
+    /// Moves the corners to their positions at a time. `world` maps points of the scene to the world.
     pub(crate) fn advance(&mut self, time: f64, world: impl Fn(DVec3) -> DVec3) {
         let corners = (self.corners)(time).into_iter().map(world);
         self.before = core::mem::replace(&mut self.now, corners.collect());
@@ -76,7 +77,7 @@ impl Own {
         SurfaceTag::new(self.kind)
     }
 
-    /// Triangles that may be within a length of points, seen from where it is now.
+    /// Triangles that may be within `reach` of the points' bounding box, relative to their final positions.
     fn near(&self, points: &[DVec3], reach: f64) -> impl Iterator<Item = usize> {
         let low = points.iter().copied().reduce(DVec3::min);
         let high = points.iter().copied().reduce(DVec3::max);
@@ -101,12 +102,13 @@ impl Own {
         }
     }
 
-    /// The first touch of triangles that move from places to others, of one time the nearest, then the first.
+    /// The first contact with triangles that move from `before` to their current positions. Of contacts at the same
+    /// time, the nearest, then the one with the smallest index.
     fn first(&self, path: &MovingCapsule, before: &[DVec3], went: DVec3) -> Option<SweepContact> {
         let [a, b] = path.start.map(|end| end + went);
         let ends = [a, b, path.end[0], path.end[1]];
         let mut first: Option<SweepContact> = None;
-        // Rounding of the box that is moved along, beside the tolerance.
+        // The tolerance, plus the rounding of the boxes.
         let reach = path.radius + self.tolerance * 4.0;
         for triangle in self.near(&ends, reach) {
             let limit = first.map_or(1.0, |first| first.time);
@@ -129,7 +131,7 @@ impl Own {
         first
     }
 
-    /// Two edges and the frame that they make; no frame where the triangle has collapsed.
+    /// Two edges and the frame that they define; no frame if the triangle has collapsed.
     fn frame([a, b, c]: [DVec3; 3]) -> ([DVec3; 2], Option<DQuat>) {
         let edges = [b - a, c - a];
         let normal = edges[0].cross(edges[1]).try_normalize();
@@ -141,7 +143,8 @@ impl Own {
     }
 }
 
-/// Squares of the principal stretches from one pair of edges to another: eigenvalues of the one's metric in the other's.
+/// Squares of the principal stretches between two pairs of edges: eigenvalues of one pair's metric relative to the
+/// other's.
 fn stretches([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [f64; 2] {
     let (p, q, r) = (a.length_squared(), a.dot(b), b.length_squared());
     let (x, y, z) = (c.length_squared(), c.dot(d), d.length_squared());
@@ -177,7 +180,7 @@ impl Obstacle for Own {
         let along = direction.try_normalize()?;
         let mut first: Option<Contact> = None;
         for triangle in 0..self.triangles.len() {
-            // Moeller and Trumbore 1997, from both sides.
+            // Möller and Trumbore 1997, from both sides.
             let [a, b, c] = self.of(triangle, &self.now);
             let (u, v) = (b - a, c - a);
             let across = along.cross(v);

@@ -1,4 +1,4 @@
-//! Between a scenario's units and frame and the world.
+//! Maps between a scenario's units and frame and the world.
 
 use clamber_climber::{
     ClimberConfig, ClimberEvent, ClimberState, HangingMemory, StepReport, Support,
@@ -9,20 +9,20 @@ use clamber_world::{
 };
 use glam::DVec3;
 
-/// An even motion and a scale, from one space to another, over a tick.
+/// A map from one space to another over a tick: a scale and a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) scale: f64,
-    /// Where the origin is at the end of the tick.
+    /// Position of the origin at the end of the tick.
     pub(crate) now: DVec3,
-    /// Where it was at the start.
+    /// Position of the origin at the start of the tick.
     pub(crate) before: DVec3,
-    /// Of the origin, metres a second.
+    /// Velocity of the origin, metres a second.
     pub(crate) velocity: DVec3,
 }
 
 impl Place {
-    /// Back.
+    /// The inverse map.
     pub(crate) fn inverse(&self) -> Self {
         let scale = 1.0 / self.scale;
         Self {
@@ -41,7 +41,7 @@ impl Place {
         self.before + point * self.scale
     }
 
-    /// Velocity of a thing.
+    /// Maps a velocity.
     pub(crate) fn velocity(&self, velocity: DVec3) -> DVec3 {
         self.velocity + velocity * self.scale
     }
@@ -131,14 +131,14 @@ impl Place {
         }
     }
 
-    /// Of a climber: lengths, speeds and accelerations of a scaled body; times, angles and shares as they are.
+    /// Scales a configuration's lengths, speeds and accelerations. Times, angles and shares stay.
     pub(crate) fn config(&self, config: &ClimberConfig) -> ClimberConfig {
         let (s, mut c) = (self.scale, *config);
         c.gravity *= s;
         c.body.radius *= s;
         c.body.height *= s;
         c.body.margin *= s;
-        // Of the same mass at accelerations that are scaled.
+        // The mass stays, and accelerations are scaled.
         c.body.push_force *= s;
         c.ground.walk_speed *= s;
         c.ground.jump_speed *= s;
@@ -179,10 +179,10 @@ impl Place {
     }
 }
 
-/// An obstacle as it is asked from another space: questions go there, answers come back.
+/// An obstacle that is queried from another space: maps the queries, and maps the answers back.
 pub(crate) struct Elsewhere<'a> {
     pub(crate) inner: &'a dyn Obstacle,
-    /// From where it is asked to where it is.
+    /// The map from the space of the queries to that of the obstacle.
     pub(crate) there: Place,
 }
 
@@ -255,7 +255,7 @@ impl Obstacle for Elsewhere<'_> {
         };
         let ways = displacements.map(|way| way * there.scale + (there.now - there.before));
         let hit = self.inner.cast_capsule(&start, ways, target)?;
-        // Back from where the other space is when they touch.
+        // Mapped back from the position of the other space at the time of contact.
         let then = Place {
             now: there.before + (there.now - there.before) * hit.time,
             ..*there

@@ -1,4 +1,4 @@
-//! What tests demand, and by how much it was met.
+//! Limits of tests, and how close runs came to them.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::panic::Location;
 
 use super::alike::slack;
 
-/// The most that each place of a test has seen, by its line and the bits of what it allows.
+/// The largest number at each limit of a test, by source line and the bits of the limit.
 struct Reached(BTreeMap<(&'static str, u32, u64), f64>);
 
 thread_local! {
@@ -15,7 +15,7 @@ thread_local! {
 }
 
 impl Drop for Reached {
-    /// At the end of a test's thread: with CLAMBER_REACHED set, its numbers.
+    /// Prints the numbers at the end of a test's thread, if CLAMBER_REACHED is set.
     fn drop(&mut self) {
         if std::env::var_os("CLAMBER_REACHED").is_none() {
             return;
@@ -29,7 +29,7 @@ impl Drop for Reached {
     }
 }
 
-/// Fails if a number is more than allowed, or none; remembers the largest.
+/// Fails if a number is above its limit or NaN. Records the largest.
 #[track_caller]
 pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
     let allowed = allowed + slack();
@@ -42,7 +42,7 @@ pub(crate) fn demand(found: f64, allowed: f64, case: Arguments<'_>) {
     });
 }
 
-/// [`demand`], with what to say when it fails.
+/// [`demand`] with a message for failures.
 macro_rules! within {
     ($found:expr, $allowed:expr, $($case:tt)+) => {
         $crate::stage::demand($found, $allowed, format_args!($($case)+))

@@ -1,4 +1,4 @@
-//! A climber on a stage, and what is written down of it.
+//! A climber on a stage, and the trace of its run.
 
 use clamber_climber::{
     Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberMode, ClimberState, StepReport,
@@ -10,21 +10,21 @@ use super::place::Elsewhere;
 use super::setting::{kinds, remember};
 use super::{Played, Reach, Stage, listed, within};
 
-/// What a climber did, tick by tick, in the scenario's units and frame.
+/// A recorded run, tick by tick, in the scenario's units and frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) velocities: Vec<DVec3>,
     pub(crate) modes: Vec<ClimberMode>,
     pub(crate) events: Vec<ClimberEvent>,
-    /// In which tick each event was.
+    /// The tick of each event.
     pub(crate) event_ticks: Vec<usize>,
-    /// Deepest below the skin width that anything was.
+    /// Deepest penetration of the core.
     pub(crate) penetration: f64,
-    /// Ticks in which something was left on the way.
+    /// Ticks whose movement was not clear.
     pub(crate) unclear: u32,
     pub(crate) most_rounds: u32,
-    /// On what it was, and what f32 had to hold there.
+    /// Kind of the obstacles.
     pub(crate) played: Played,
     pub(crate) dt: f64,
     pub(crate) reach: Reach,
@@ -33,7 +33,7 @@ pub(crate) struct Trace {
 /// A climber on a stage.
 pub(crate) struct Run {
     pub(crate) stage: Stage,
-    /// In the world, not in the scenario's units and frame.
+    /// The climber, in the world's units and frame.
     pub(crate) climber: Climber,
     pub(crate) trace: Trace,
     config: ClimberConfig,
@@ -54,7 +54,7 @@ pub(crate) fn walk(direction: DVec3) -> ClimberInput {
 pub(crate) const JUMP: ClimberInput = ClimberInput { jump: true, ..IDLE };
 
 impl Run {
-    /// A climber whose feet are at a place of the stage.
+    /// A climber with its feet at a position on the stage.
     pub(crate) fn new(stage: Stage, config: ClimberConfig, feet: DVec3) -> Self {
         let place = stage.place();
         let position = feet + config.up() * config.body.radius;
@@ -79,13 +79,14 @@ impl Run {
         self.step_only(input)
     }
 
-    /// A tick in which nothing of the stage moves.
+    /// Steps the climber by one tick in which nothing on the stage moves.
     pub(crate) fn step_held(&mut self, input: &ClimberInput) -> StepReport {
         self.stage.hold();
         self.step_only(input)
     }
 
-    /// A tick among obstacles around those of the stage. Both are asked in the scenario's units and frame.
+    /// Steps the climber by one tick among obstacles that wrap those of the stage. Both are queried in the scenario's
+    /// units and frame.
     pub(crate) fn step_around(
         &mut self,
         input: &ClimberInput,
@@ -121,7 +122,7 @@ impl Run {
         self.note(report)
     }
 
-    /// Writes down what a step did.
+    /// Records the result of a step.
     fn note(&mut self, report: StepReport) -> StepReport {
         let back = self.stage.place().inverse();
         let report = back.report(report);
@@ -139,7 +140,7 @@ impl Run {
         report
     }
 
-    /// Puts the climber into a state.
+    /// Sets the climber's state.
     pub(crate) fn put(&mut self, state: ClimberState) {
         let place = self.stage.place();
         self.climber.restore(place.state(&state)).unwrap();
@@ -152,7 +153,7 @@ impl Run {
         }
     }
 
-    /// Lets it land before anything moves, and forgets how.
+    /// Lets the climber land before anything moves, and clears the trace.
     pub(crate) fn settle(mut self) -> Self {
         for _ in 0..60 {
             self.step_held(&IDLE);
@@ -171,7 +172,7 @@ impl Run {
         self
     }
 
-    /// In the air at a velocity.
+    /// Throws the climber into the air at a velocity.
     pub(crate) fn thrown(mut self, velocity: DVec3) -> Self {
         self.put(ClimberState {
             velocity,
@@ -188,7 +189,7 @@ impl Run {
         &self.config
     }
 
-    /// What the climber is to the world.
+    /// The climber's capsule.
     pub(crate) fn body(&self) -> WorldCapsule {
         self.stage.place().inverse().capsule(&self.climber.body())
     }
@@ -197,17 +198,17 @@ impl Run {
         self.state().mode
     }
 
-    /// Of its centre, relative to the stage's origin.
+    /// Position of its centre, relative to the stage's origin.
     pub(crate) fn position(&self) -> DVec3 {
         self.state.position
     }
 
-    /// Of its feet.
+    /// Position of its feet.
     pub(crate) fn feet(&self) -> DVec3 {
         self.position() - self.config.up() * self.config.body.radius
     }
 
-    /// What was written down, after seeing that no tick went wrong.
+    /// The trace, after asserting that no tick went wrong.
     pub(crate) fn sound(self) -> Trace {
         self.trace.assert_sound();
         self.trace.clone()
@@ -215,7 +216,7 @@ impl Run {
 }
 
 impl Drop for Run {
-    /// For what compares settings.
+    /// Keeps the trace for the comparison of settings.
     fn drop(&mut self) {
         let mut trace = std::mem::take(&mut self.trace);
         trace.played = self.stage.played();
@@ -225,7 +226,7 @@ impl Drop for Run {
     }
 }
 
-/// An input of a scenario as a scaled climber takes it.
+/// Scales an input of a scenario for a scaled climber.
 fn in_world(input: &ClimberInput, scale: f64) -> ClimberInput {
     let blow = input.blow.map(|blow| clamber_climber::Blow {
         velocity: blow.velocity * scale,
@@ -256,7 +257,7 @@ impl Trace {
         self.modes.iter().all(|m| *m == mode)
     }
 
-    /// The largest distance from another at one tick, and the tick.
+    /// The largest distance from another trace, and its tick.
     pub(crate) fn apart(&self, other: &Self) -> (f64, usize) {
         assert_eq!(self.positions.len(), other.positions.len());
         let pairs = self.positions.iter().zip(&other.positions);
@@ -269,7 +270,7 @@ impl Trace {
         )
     }
 
-    /// Every mode is one that the other has at that tick or beside it.
+    /// Asserts that the other trace has each mode in the same tick, or in the one before or after.
     fn assert_same_modes(&self, other: &Self, name: &str) {
         for (tick, mode) in self.modes.iter().enumerate() {
             let near = tick.saturating_sub(1)..(tick + 2).min(other.modes.len());
@@ -282,12 +283,12 @@ impl Trace {
     }
 }
 
-/// How far two ways to play the same motion may lead apart, metres.
+/// Allowed distance between two kinds of obstacles with the same motion, metres.
 pub(crate) const SAME: f64 = 1e-4;
 
-/// Plays a scenario on each kind of obstacle of the setting: as the motion of a root, of a joint and of a body, or on one
-/// kind alone. Each must pass, and all must give the same. `chord` is by how much a body's turning way leaves the skin's
-/// straight one.
+/// Plays a scenario on each kind of obstacle of the setting: with the motion of a root, a joint and a body, or on a
+/// single kind. Each must pass, and all must give the same result. `chord` is the distance between a body's circular
+/// path and a skin's straight one, which is added to the allowed difference.
 pub(crate) fn every(chord: f64, play: impl Fn(Played) -> Trace) {
     let first = kinds()[0];
     let trace = play(first);

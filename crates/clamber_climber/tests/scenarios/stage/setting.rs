@@ -1,8 +1,8 @@
-//! How scenarios are played: on which obstacles, in which moving frame, at which scale.
+//! Settings of scenarios: on which obstacles, in which moving frame and at which scale they are played.
 //!
-//! A scenario's text has neither frame nor scale: it says where things are in its own units, at rest. The stage puts it
-//! into the world of the setting of the test's thread, and [`Run`](super::Run) gives back what happened in the
-//! scenario's units and frame.
+//! A scenario's code knows neither frame nor scale: it is written in its own units, at rest. The stage maps it to the
+//! world by the setting of the test's thread, and [`Run`](super::Run) maps the results back to the scenario's units and
+//! frame.
 
 use core::fmt;
 use std::cell::{Cell, RefCell};
@@ -14,20 +14,19 @@ use super::{Played, Trace};
 /// One way to play a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Setting {
-    /// Obstacles that a scenario which does not care is played on, one after the other.
+    /// Kinds of obstacles on which a scenario is played in turn, unless it chooses the kind itself.
     pub(crate) kinds: &'static [Played],
     /// Velocity of the whole scene, metres a second.
     pub(crate) frame: DVec3,
-    /// By which all lengths, speeds and accelerations of the scene and of the climber are multiplied; times are as they
-    /// are.
+    /// Factor on all lengths, speeds and accelerations of the scene and of the climber. Times stay.
     pub(crate) scale: f64,
 }
 
 impl Setting {
-    /// At rest, in metres, on all that most games have: the setting that scenarios are written in.
+    /// At rest, in metres, on the kinds of obstacles that most games have: the setting for which scenarios are written.
     pub(crate) const PLAIN: Self = Self::on(&[Played::Root, Played::Joint, Played::Body]);
 
-    /// At rest, in metres.
+    /// At rest, in metres, on some kinds of obstacles.
     pub(crate) const fn on(kinds: &'static [Played]) -> Self {
         Self {
             kinds,
@@ -62,22 +61,22 @@ pub(crate) fn setting() -> Setting {
     SETTING.get()
 }
 
-/// Obstacles that the scenario is to be played on.
+/// Kinds of obstacles on which to play the scenario.
 pub(crate) fn kinds() -> &'static [Played] {
     setting().kinds
 }
 
-/// The obstacle of a scene that is played on one.
+/// The kind of obstacle for a scene that is played on only one.
 pub(crate) fn one_kind() -> Played {
     kinds()[0]
 }
 
-/// Remembers a run that has ended, for what compares settings.
+/// Stores the trace of a finished run for the comparison of settings.
 pub(super) fn remember(trace: Trace) {
     RUNS.with_borrow_mut(|runs| runs.push(trace));
 }
 
-/// Plays a scenario in a setting: its runs in their order, or how it failed.
+/// Plays a scenario in a setting. Returns its runs in order, or the message of its failure.
 pub(crate) fn play(setting: Setting, scenario: fn()) -> Result<Vec<Trace>, String> {
     SETTING.set(setting);
     RUNS.take();
@@ -90,7 +89,7 @@ pub(crate) fn play(setting: Setting, scenario: fn()) -> Result<Vec<Trace>, Strin
     }
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn text_of(cause: &(dyn core::any::Any + Send)) -> String {
     let text = cause.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| cause.downcast_ref::<&str>().copied());

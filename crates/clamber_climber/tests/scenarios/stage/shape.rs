@@ -11,7 +11,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// A quadrilateral that faces whoever sees its corners counter-clockwise.
+    /// A quadrilateral that faces the side from which its corners are counter-clockwise.
     pub(crate) fn quad(corners: [DVec3; 4]) -> Self {
         Self {
             positions: corners.to_vec(),
@@ -44,12 +44,12 @@ impl Shape {
         }
     }
 
-    /// A box of 1 m thickness whose top is the square of a half side around the origin.
+    /// A box 1 m thick, whose top is a square around the origin with a half side.
     pub(crate) fn floor(half: f64) -> Self {
         Self::boxed(DVec3::new(-half, -1.0, -half), DVec3::new(half, 0.0, half))
     }
 
-    /// A height field of `count` by `count` quadrilaterals, from `low` in x and z.
+    /// A height field of `count[0]` by `count[1]` quadrilaterals, from `low` in x and z.
     pub(crate) fn field(
         low: DVec3,
         step: f64,
@@ -76,7 +76,7 @@ impl Shape {
         shape
     }
 
-    /// Treads and risers that go up along +Z from its origin, with a landing of 5 m at the top and a floor of 5 m before.
+    /// Stairs that rise along +Z from the origin, with a landing of 5 m at the top and a floor of 5 m in front.
     pub(crate) fn stairs(count: u32, rise: f64, run: f64, half_width: f64) -> Self {
         let flat = |y: f64, from: f64, to: f64| {
             let (left, right) = (-half_width, half_width);
@@ -176,7 +176,7 @@ impl Shape {
         self
     }
 
-    /// The same surface with other numbers: vertices and triangles in another order, corners turned around.
+    /// The same surface renumbered: vertices and triangles in another order, and corners of triangles rotated.
     #[must_use]
     pub(crate) fn renumbered(&self, seed: u64) -> Self {
         let mut rng = fastrand::Rng::with_seed(seed);
@@ -198,7 +198,7 @@ impl Shape {
         }
     }
 
-    /// Each triangle as four.
+    /// The same surface with each triangle split into four.
     #[must_use]
     pub(crate) fn split(&self) -> Self {
         let mut shape = Self::default();

@@ -1,4 +1,4 @@
-//! A surface that plays what a function of time says.
+//! A surface whose pose is a function of time.
 
 use std::sync::Arc;
 
@@ -13,26 +13,26 @@ use glam::{DAffine3, DVec3};
 use super::Shape;
 use super::own::Own;
 
-/// Where its joints and its root are at a time.
+/// Poses of the joints and of the root at a time.
 pub(crate) type Pose = Box<dyn Fn(f64) -> (Vec<DAffine3>, Similarity)>;
 
-/// A posed surface and what poses it.
+/// A posed surface and the function that poses it.
 pub(crate) struct Skin {
     pub(crate) surface: SkinnedSurface,
-    /// By which its root scales it on a stage.
+    /// Scale of its root on a stage.
     pub(super) scale: f64,
     pose: Pose,
     shape: Shape,
-    /// Of each joint, of each corner.
+    /// Weights of the joints for each corner.
     weights: Vec<Vec<f64>>,
     kind: SurfaceKind,
 }
 
-/// Weights of each joint at a rest position.
+/// Weights of the joints at a rest position.
 pub(crate) type Weights<'a> = &'a dyn Fn(DVec3) -> Vec<f64>;
 
 impl Skin {
-    /// Of bare skin.
+    /// A surface of bare skin.
     pub(crate) fn new(shape: &Shape, weights: Weights<'_>, pose: Pose) -> Self {
         Self::of(shape, SurfaceKind::Skin, weights, pose)
     }
@@ -62,7 +62,7 @@ impl Skin {
         self.surface.place(&palette, root).unwrap();
     }
 
-    /// How far it reaches from its root now, and how far its root went.
+    /// Poses the surface for the next tick. Returns its extent from its root, and the displacement of its root.
     pub(super) fn advance(&mut self, time: f64, scale: f64, origin: DVec3) -> (f64, f64) {
         let (palette, root) = self.at(time, scale, origin);
         let before = self.surface.world_from_model().translation;
@@ -74,7 +74,7 @@ impl Skin {
         (extent, root.translation.distance(before))
     }
 
-    /// The same triangles in the same poses, in f64.
+    /// The same triangles and poses as an obstacle in f64.
     pub(super) fn into_own(self, scale: f64) -> Own {
         let Self {
             pose,
