@@ -4,7 +4,7 @@
 )]
 #![cfg_attr(
     not(all(feature = "gltf", feature = "rapier")),
-    doc = "clamber without some of its features; its front page is that of all features."
+    doc = "clamber without the feature `gltf` or `rapier`. The front page is built with both features on."
 )]
 
 #[doc(inline)]
@@ -28,9 +28,11 @@ pub use clamber_surface::{geometry, mesh, rig, skin, surface};
 pub use clamber_world as world;
 pub use glam;
 
-/// What most programs need: `use clamber::prelude::*;`. No name in it is one of rapier's prelude: both can be imported
-/// whole. [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose) and
-/// [`Contact`](crate::world::Contact) are left out for that.
+/// The items that most programs need: `use clamber::prelude::*;`.
+///
+/// No name in it is also in rapier's prelude, so both can be glob-imported. For that reason it lacks
+/// [`Ray`](crate::geometry::Ray), [`Capsule`](crate::geometry::Capsule), [`Pose`](crate::rig::Pose) and
+/// [`Contact`](crate::world::Contact).
 pub mod prelude {
     pub use clamber_climber::{
         Climber, ClimberConfig, ClimberContact, ClimberEvent, ClimberInput, ClimberMode,

@@ -1,4 +1,4 @@
-//! Typed data out of buffers (glTF 2.0, section 3.6), every offset checked.
+//! Reads typed data from buffers (glTF 2.0, section 3.6), and checks every offset.
 
 use std::cell::Cell;
 
@@ -10,13 +10,15 @@ use gltf::buffer::View;
 use crate::GltfErrorKind;
 use crate::buffers::Buffers;
 
-/// How many bytes may be taken for each byte that a file holds: exporters let primitives share
-/// accessors, and real models take up to 3 times their size, but a file that is read again and again
-/// wants to fill the memory. Charges are estimates: a file that is made to take all it may takes up to
-/// 100 times its size, beside [`FREE_GROWTH`] (`tests/files/broken.rs`).
+/// Bytes of memory that a file may take for each byte of it and its buffers.
+///
+/// Exporters let primitives share accessors, so real models take up to 3 times their size. A file that
+/// makes the loader read the same data many times is refused before memory runs out. Charges are
+/// estimates: a file that is made to take as much as it may takes up to 100 times its size, plus
+/// [`FREE_GROWTH`] (`tests/files/broken.rs`).
 const MAX_GROWTH: usize = 24;
 
-/// What any file may take, bytes: small files may well grow more.
+/// Bytes of memory that any file may take: small files may rightly grow by a larger factor.
 const FREE_GROWTH: usize = 1 << 20;
 
 /// Reads accessors of one file.
@@ -27,7 +29,7 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// For the buffers of a file that is itself so many bytes long.
+    /// A reader of the buffers of a file that is itself `file` bytes long.
     pub(crate) fn new(buffers: &'a Buffers, file: usize) -> Self {
         let held = buffers.held().saturating_add(file);
         Self {
@@ -36,18 +38,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Takes note of bytes that are about to be allocated for what a file claims.
+    /// Takes bytes that are about to be allocated for `object` from the budget; an error if it is spent.
     pub(crate) fn charge(&self, object: &str, bytes: usize) -> Result<(), GltfErrorKind> {
         let left = self.budget.get().checked_sub(bytes).ok_or_else(|| {
-            let reason = "would take far more memory than the file holds";
+            let reason = "would take far more memory than the size of the file allows";
             GltfErrorKind::invalid(object, reason)
         })?;
         self.budget.set(left);
         Ok(())
     }
 
-    /// Elements of `N` numbers as floats. Integers are divided by their range if the accessor is
-    /// normalised, and converted as they are if it is not.
+    /// Reads elements of `N` numbers as floats. Integers are divided by their range if the accessor is
+    /// normalised, and converted unchanged if it is not.
     pub(crate) fn floats<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -57,7 +59,7 @@ impl<'a> Reader<'a> {
         self.elements(accessor, |bytes| decode_float(bytes, data_type, normalized))
     }
 
-    /// Elements of `N` unsigned integers.
+    /// Reads elements of `N` unsigned integers.
     pub(crate) fn integers<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -66,7 +68,7 @@ impl<'a> Reader<'a> {
         if !matches!(data_type, DataType::U8 | DataType::U16 | DataType::U32) {
             return Err(invalid(
                 accessor,
-                format!("must be of unsigned integers, not {data_type:?}"),
+                format!("must hold unsigned integers, not {data_type:?}"),
             ));
         }
         self.elements(accessor, |bytes| decode_integer(bytes, data_type))
@@ -79,15 +81,15 @@ impl<'a> Reader<'a> {
     ) -> Result<Vec<[T; N]>, GltfErrorKind> {
         let dimensions = accessor.dimensions();
         if dimensions.multiplicity() != N {
-            let reason = format!("is of {dimensions:?}, but {N} numbers an element are needed");
+            let reason = format!("has {dimensions:?} elements, but {N} numbers each are needed");
             return Err(invalid(accessor, reason));
         }
         let component = accessor.data_type().size();
         if dimensions == Dimensions::Mat4 && component != 4 {
-            return Err(invalid(accessor, "matrices must be of floats".into()));
+            return Err(invalid(accessor, "matrices must hold floats".into()));
         }
         let size = component * N;
-        // What is replaced is decoded twice.
+        // An element that is replaced is decoded twice.
         let sparse = accessor.sparse().map_or(0, |sparse| sparse.count());
         let elements = accessor.count().saturating_add(sparse);
         let decoded = elements.saturating_mul(N * size_of::<T>());
@@ -162,7 +164,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Slices of `size` bytes each, `count` of them, one stride apart.
+    /// `count` slices of `size` bytes each, one stride apart.
     fn strided(
         &self,
         view: &View<'_>,
@@ -179,15 +181,15 @@ impl<'a> Reader<'a> {
         let stride = view.stride().unwrap_or(size);
         if stride < size {
             return Err(format!(
-                "elements of {size} bytes, but a stride of {stride}"
+                "has elements of {size} bytes, but a stride of {stride}"
             ));
         }
-        // The last element needs no padding behind it.
+        // The last element needs no padding after it.
         let needed = count
             .saturating_sub(1)
             .checked_mul(stride)
             .and_then(|bytes| bytes.checked_add(if count > 0 { size } else { 0 }))
-            .ok_or("claims more bytes than there can be")?;
+            .ok_or("claims more bytes than can be addressed")?;
         let bytes = held
             .get(offset..)
             .and_then(|bytes| bytes.get(..needed))
@@ -206,7 +208,7 @@ fn invalid(accessor: &Accessor<'_>, reason: String) -> GltfErrorKind {
     GltfErrorKind::invalid(format!("accessor {}", accessor.index()), reason)
 }
 
-/// One little-endian number; 0 if the slice is too short, which its callers rule out.
+/// Decodes a little-endian number; 0 if the slice is too short, which the callers rule out.
 fn decode_integer(bytes: &[u8], data_type: DataType) -> u32 {
     match (data_type, bytes) {
         (DataType::U16, &[a, b, ..]) => u32::from(u16::from_le_bytes([a, b])),

@@ -1,4 +1,4 @@
-//! The bytes behind a file's buffers: the GLB's own chunk, data URIs, files beside it or from a resolver.
+//! Loads the bytes of a file's buffers: from the GLB's chunk, data URIs, files beside the document, or a resolver.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -13,12 +13,12 @@ use crate::{GltfErrorKind, uri};
 /// The bytes of every buffer; a file that several buffers name is held once.
 pub(crate) struct Buffers {
     held: Vec<Vec<u8>>,
-    /// Where in `held` each buffer is.
+    /// The index of each buffer in `held`.
     of_buffer: Vec<usize>,
 }
 
 impl Buffers {
-    /// The bytes of a buffer, at least as many as it claims.
+    /// The bytes of a buffer, at least as many as it claims; `None` for an index out of range.
     pub(crate) fn get(&self, buffer: usize) -> Option<&[u8]> {
         let bytes = self.held.get(*self.of_buffer.get(buffer)?)?;
         Some(bytes.as_slice())
@@ -51,7 +51,7 @@ impl Buffers {
                 None => {
                     let bytes = match (buffer.source(), path) {
                         (Source::Bin, _) => {
-                            let missing = || invalid("has no URI, and the file no chunk".into());
+                            let missing = || invalid("has no URI, and there is no chunk".into());
                             blob.take().ok_or_else(missing)?
                         }
                         (Source::Uri(_), Some(path)) => {
@@ -80,15 +80,15 @@ impl Buffers {
     }
 }
 
-/// What a URI with the data themselves begins with.
+/// The prefix of a URI that contains the data.
 const DATA: &str = "data:";
 
-/// Which files buffers are in.
+/// The files that the buffers of a document name.
 #[derive(Default)]
 struct Claims {
     /// `None` for a buffer inside the document.
     path_of_buffer: Vec<Option<String>>,
-    /// The most bytes that a buffer claims of each file.
+    /// The largest length that a buffer claims of each file.
     length_of_file: BTreeMap<String, usize>,
 }
 
@@ -111,21 +111,21 @@ fn claims(document: &Document) -> Result<Claims, GltfErrorKind> {
     Ok(claims)
 }
 
-/// What a caller gives the files beside a document with.
+/// A caller's function that gives the contents of a file beside the document.
 pub(crate) type Resolve<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
-/// Where the files beside a document are.
+/// The source of the files beside a document.
 pub(crate) enum Files<'a> {
-    /// There are none.
+    /// None: a buffer in another file is an error.
     None,
-    /// In this folder and below.
+    /// This folder and those below.
     Folder(&'a Path),
-    /// The caller has them.
+    /// A function of the caller.
     Resolver(&'a mut Resolve<'a>),
 }
 
 impl Files<'_> {
-    /// The first `length` bytes of a file, or fewer if it has fewer.
+    /// Reads the first `length` bytes of a file, or all if it is shorter.
     fn read(&mut self, path: &str, length: usize, object: &str) -> Result<Vec<u8>, GltfErrorKind> {
         match self {
             Self::None => Err(GltfErrorKind::invalid(
@@ -145,7 +145,7 @@ impl Files<'_> {
                     path: PathBuf::from(path),
                     error,
                 })?;
-                // What no buffer claims must not count for the memory that the file may take.
+                // Bytes that no buffer claims must not raise the limit of memory.
                 bytes.truncate(length);
                 Ok(bytes)
             }
@@ -153,8 +153,7 @@ impl Files<'_> {
     }
 }
 
-/// Which file a path in a folder really is, with all symbolic links resolved: one that leads out of the folder is
-/// refused, as a path out of it is.
+/// Resolves all symbolic links of a path in a folder. A link that leads out of the folder is refused.
 fn target_in(folder: &Path, path: &Path, object: &str) -> Result<PathBuf, GltfErrorKind> {
     let resolve = |path: &Path| {
         path.canonicalize().map_err(|error| GltfErrorKind::Read {
@@ -162,7 +161,7 @@ fn target_in(folder: &Path, path: &Path, object: &str) -> Result<PathBuf, GltfEr
             error,
         })
     };
-    // The folder of a path without folders is empty, which no system resolves.
+    // A path without folders has an empty folder, which no system resolves.
     let is_empty = folder.as_os_str().is_empty();
     let folder = resolve(if is_empty { Path::new(".") } else { folder })?;
     let target = resolve(path)?;
@@ -176,13 +175,13 @@ fn target_in(folder: &Path, path: &Path, object: &str) -> Result<PathBuf, GltfEr
     })
 }
 
-/// No more of a file than is claimed; it has to be a plain one.
+/// Reads the first `length` bytes of a file, which must be a regular file.
 fn read_plain(path: &Path, length: u64) -> io::Result<Vec<u8>> {
-    // Before opening: to open a pipe would wait for its other end.
+    // Checked before opening, since opening a pipe waits for its other end.
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            "not a plain file",
+            "not a regular file",
         ));
     }
     let mut bytes = Vec::new();
@@ -196,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_document_in_the_current_folder_has_its_files_there() {
-        // As `load("creature.gltf")` asks; tests run in the package's folder.
+        // The folder of `load("creature.gltf")` is empty. Tests run in the package's folder.
         let found = target_in(Path::new(""), Path::new("Cargo.toml"), "buffer 0");
         let wanted = std::env::current_dir().and_then(|folder| folder.canonicalize());
         assert_eq!(

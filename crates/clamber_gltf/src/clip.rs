@@ -1,4 +1,4 @@
-//! Animations as clips.
+//! Loads animations as clips.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::accessor::Reader;
 use crate::contents::Contents;
 use crate::{GltfErrorKind, ImportWarning};
 
-/// All animations that move the skeleton, each with the channels that do.
+/// Loads all animations that move the skeleton, each with only the channels that move it.
 pub(crate) fn load(
     contents: &Contents<'_>,
     of_node: &BTreeMap<usize, Vec<JointId>>,
@@ -28,7 +28,7 @@ pub(crate) fn load(
         for (index, channel) in animation.channels().enumerate() {
             let target = channel.target();
             let object = || format!("animation {name:?}, channel {index}");
-            // Only what moves the skeleton is read at all.
+            // Channels of nodes outside the skeleton are not read at all.
             let joints = of_node.get(&target.node().index());
             let values = joints.map(|_| keyframes(&channel, reader)).transpose()?;
             match (joints, values.flatten()) {
@@ -53,7 +53,7 @@ pub(crate) fn load(
     Ok(clips)
 }
 
-/// A channel for every joint that the node stands for.
+/// Adds a channel for every joint of the node.
 fn push_channels(
     channels: &mut Vec<Channel>,
     channel: &animation::Channel<'_>,
@@ -71,7 +71,7 @@ fn push_channels(
         animation::Interpolation::CubicSpline => Interpolation::CubicSpline,
     };
     for joint in joints {
-        // A value takes at most as much as a rotation and its time, thrice in a spline.
+        // Each key takes at most a time and three rotations: a spline's value and its two tangents.
         reader.charge(&object, times.len() * 13 * size_of::<f32>())?;
         let channel = Channel::new(*joint, interpolation, times.clone(), values.clone());
         channels.push(channel.map_err(|rig| GltfErrorKind::invalid(&object, rig))?);

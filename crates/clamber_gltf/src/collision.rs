@@ -8,20 +8,20 @@ use glam::Vec3;
 use crate::GltfErrorKind;
 use crate::vertices::Vertices;
 
-/// What all primitives that a climber touches add up to.
+/// All collision primitives of a creature, merged.
 #[derive(Default)]
 pub(crate) struct Collision {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) influences: Vec<Influence>,
     pub(crate) influence_ends: Vec<u32>,
-    /// The rest space of each vertex: a rigid mesh has one of its own.
+    /// The rest space of each vertex: each skin and each rigid mesh has one of its own.
     pub(crate) spaces: Vec<u32>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) tags: Vec<SurfaceTag>,
 }
 
 impl Collision {
-    /// Takes vertices in; gives the number of the first.
+    /// Appends vertices; gives the index of the first.
     pub(crate) fn append(
         &mut self,
         vertices: &Vertices,

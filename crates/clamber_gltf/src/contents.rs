@@ -1,4 +1,4 @@
-//! What a file holds, read and checked as far as all its creatures share it.
+//! The contents of a file that all its creatures share, read and checked.
 
 use clamber_surface::mesh::SurfaceTag;
 use clamber_surface::rig::Transform;
@@ -14,12 +14,12 @@ use crate::{GltfErrorKind, ImportWarning, LoadOptions, transforms};
 pub(crate) struct Contents<'a> {
     pub(crate) document: &'a Document,
     pub(crate) tree: Tree<'a>,
-    /// Of every node.
+    /// The extras of every node.
     pub(crate) extras: Vec<NodeExtras>,
-    /// Of every node, from its own space to its parent's, at rest.
+    /// `parent_from_node` of every node, at rest.
     pub(crate) transforms: Vec<Transform>,
     pub(crate) materials: Vec<Material>,
-    /// Of surfaces without a material.
+    /// The tag of surfaces without a material.
     pub(crate) bare_tag: SurfaceTag,
     pub(crate) reader: Reader<'a>,
     pub(crate) options: &'a LoadOptions,
@@ -45,7 +45,7 @@ impl<'a> Contents<'a> {
         })
     }
 
-    /// The tag of a primitive of a material.
+    /// The tag of a primitive with this material; `None` is no material.
     pub(crate) fn tag(&self, material: Option<usize>) -> SurfaceTag {
         let material = material.and_then(|index| self.materials.get(index));
         material.map_or(self.bare_tag, |material| material.tag)

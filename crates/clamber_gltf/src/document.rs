@@ -1,7 +1,8 @@
-//! From bytes to a validated document.
+//! Parses bytes into a validated document.
 //!
-//! The parser's own validation trusts some indices, and refuses whole files for things that do not
-//! concern a collider; both are seen to before it runs.
+//! The parser's own validation trusts some indices, so they are checked here before it runs. It also
+//! refuses whole files for faults that do not matter to a collider. Those are removed before it runs, or
+//! dropped from its list of errors.
 
 use gltf::Document;
 use gltf::json::validation::{Checked, Error, Validate};
@@ -9,18 +10,19 @@ use gltf::json::{Root, Value};
 
 use crate::{GltfErrorKind, ImportWarning};
 
-/// What a GLB begins with.
+/// The first bytes of a GLB.
 const MAGIC: &[u8] = b"glTF";
 
 /// Bytes of a GLB's header.
 const GLB_HEADER: usize = 12;
 
-/// Bytes of a GLB's header and of its first chunk's.
+/// Bytes of a GLB's header and its first chunk's header.
 const GLB_HEADERS: usize = 20;
 
-/// Extensions that a file may require although nothing here reads them: they change how it looks,
-/// allow integers where this importer takes them anyway, or animate what has no node; what such a
-/// channel moves is passed over and reported.
+/// Extensions that a file may require although this importer does not implement them.
+///
+/// They change how the file looks, allow integers where this importer accepts them anyway, or animate
+/// properties that belong to no node. Channels of such properties are skipped and reported.
 const HARMLESS: [&str; 6] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -30,7 +32,7 @@ const HARMLESS: [&str; 6] = [
     "EXT_texture_webp",
 ];
 
-/// The document, and the bytes of a GLB's binary chunk.
+/// Parses a file into its document and the bytes of a GLB's binary chunk.
 pub(crate) fn parse(
     bytes: &[u8],
     warnings: &mut Vec<ImportWarning>,
@@ -52,13 +54,13 @@ pub(crate) fn parse(
     Ok((Document::from_json_without_validation(root), blob))
 }
 
-/// The two formats.
+/// The two file formats.
 enum Kind {
     Glb,
     Json,
 }
 
-/// Which format a file begins like.
+/// The format of a file, by its first bytes.
 fn kind(bytes: &[u8]) -> Result<Kind, GltfErrorKind> {
     if bytes.is_empty() {
         return Err(GltfErrorKind::Empty);
@@ -73,7 +75,8 @@ fn kind(bytes: &[u8]) -> Result<Kind, GltfErrorKind> {
     }
 }
 
-/// A GLB is as long as its header claims, and claims at least its headers: the parser subtracts their length from it.
+/// Checks that a GLB is at least as long as its header claims, and that the claimed length includes the headers: the
+/// parser subtracts their length from it.
 fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
     let found = bytes.len();
     let claimed = bytes.get(8..GLB_HEADER).map_or(GLB_HEADER, |b| {
@@ -84,7 +87,7 @@ fn check_glb_length(bytes: &[u8]) -> Result<(), GltfErrorKind> {
         return Err(GltfErrorKind::CutShort { found, claimed });
     }
     if claimed < GLB_HEADERS {
-        let reason = format!("claims to be {claimed} bytes long, less than its own headers");
+        let reason = format!("claims a length of {claimed} bytes, less than its own headers have");
         return Err(GltfErrorKind::invalid("GLB header", reason));
     }
     Ok(())
@@ -95,7 +98,7 @@ fn parse_json(json: &[u8], warnings: &mut Vec<ImportWarning>) -> Result<Root, Gl
         Ok(root) => return Ok(root),
         Err(error) => GltfErrorKind::format(error),
     };
-    // Channels without a node are legal and to be passed over, but the parser requires one.
+    // Channels without a node are legal and must be skipped, but the parser requires a node.
     let Ok(mut value) = gltf::json::deserialize::from_slice::<Value>(json) else {
         return Err(refused);
     };
@@ -116,7 +119,7 @@ fn parse_json(json: &[u8], warnings: &mut Vec<ImportWarning>) -> Result<Root, Gl
     Root::from_slice(&patched).map_err(GltfErrorKind::format)
 }
 
-/// Every attribute names an accessor.
+/// Checks that every attribute names an existing accessor.
 fn check_attributes(root: &Root) -> Result<(), GltfErrorKind> {
     let count = root.accessors.len();
     for (mesh, object) in root.meshes.iter().enumerate() {
@@ -130,8 +133,8 @@ fn check_attributes(root: &Root) -> Result<(), GltfErrorKind> {
     Ok(())
 }
 
-/// The parser's checks, but for what does no harm: positions without their range, primitives without
-/// positions, and accessors without data, which are all zeros.
+/// Runs the parser's checks, and ignores harmless errors: positions without their range, primitives
+/// without positions, and accessors without data, which are all zeros.
 fn validate(root: &Root) -> Result<(), GltfErrorKind> {
     let mut errors = Vec::new();
     root.validate(root, gltf::json::Path::new, &mut |path, error| {
@@ -155,7 +158,7 @@ fn validate(root: &Root) -> Result<(), GltfErrorKind> {
     }
 }
 
-/// Every channel names a node; those that move something unknown are dropped.
+/// Checks that every channel names an existing node, and drops channels that move an unknown property.
 fn check_channels(root: &mut Root, warnings: &mut Vec<ImportWarning>) -> Result<(), GltfErrorKind> {
     let nodes = root.nodes.len();
     for (animation, object) in root.animations.iter_mut().enumerate() {

@@ -5,23 +5,23 @@ use clamber_surface::mesh::MeshError;
 use clamber_surface::rig::RigError;
 use thiserror::Error;
 
-/// Which file could not be loaded, and why.
+/// An error from loading a file: which file, and why.
 ///
-/// Its text says all, causes included; [`source`](std::error::Error::source) is always `None`, so that a chain of
-/// errors prints nothing twice. The causes themselves are fields of [`GltfErrorKind`].
+/// The message includes the causes. So [`source`](std::error::Error::source) is always `None`, and a printed chain of
+/// errors repeats nothing. The causes themselves are fields of [`GltfErrorKind`].
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct GltfError {
-    /// The document; `None` if it came as bytes.
+    /// Path of the document; `None` if it was loaded from bytes.
     pub path: Option<PathBuf>,
-    /// Which of its objects is wrong, and in what way.
+    /// What is wrong, and with which object of the file.
     pub kind: GltfErrorKind,
 }
 
 impl fmt::Display for GltfError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.path, &self.kind) {
-            // Names the file itself.
+            // The message of `Read` names the file already.
             (_, GltfErrorKind::Read { .. }) | (None, _) => write!(f, "{}", self.kind),
             (Some(path), kind) => write!(f, "{}: {kind}", path.display()),
         }
@@ -34,94 +34,95 @@ impl std::error::Error for GltfError {}
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GltfErrorKind {
-    /// The file, or one it names, cannot be read.
+    /// The document, or a file that it names, cannot be read.
     #[error("cannot read {path}: {error}")]
     Read {
-        /// Which file: a path, or what a resolver was asked for.
+        /// Path of the file, or the path that the resolver was called with.
         path: PathBuf,
-        /// Why.
+        /// The error of the system or of the resolver.
         error: io::Error,
     },
     /// A symbolic link leads out of the document's folder.
-    #[error("{object}: its file {file} is a link out of the document's folder, to {target}")]
+    #[error("{object}: its file {file} is a link to {target}, outside the document's folder")]
     OutsideFolder {
         /// Which object names the file, by kind and index.
         object: String,
-        /// The file in the document's folder.
+        /// Path of the file in the document's folder.
         file: PathBuf,
-        /// Where it really is.
+        /// Path of the file that the link leads to.
         target: PathBuf,
     },
     /// The file has no bytes.
     #[error("the file is empty")]
     Empty,
-    /// The file begins like neither of the two formats.
+    /// The file is neither GLB nor JSON, by its first bytes.
     #[error("neither GLB nor glTF")]
     NotGltf,
-    /// A GLB ends early.
+    /// A GLB is shorter than its header claims.
     #[error("ends after {found} of {claimed} bytes")]
     CutShort {
-        /// Bytes that there are.
+        /// Size of the file, bytes.
         found: usize,
-        /// Bytes that the header claims; the header's own 12 where it is cut itself.
+        /// Size that the header claims, bytes; 12, the size of the header, if the header itself is cut.
         claimed: usize,
     },
-    /// Not glTF 2.0: broken JSON, a broken container, or an index that points nowhere.
+    /// Not a glTF 2.0 file that can be read: broken JSON, a broken container, an index out of range, or a required
+    /// extension that is not supported.
     #[error("not a valid glTF 2.0 file: {reason}")]
     Format {
-        /// Why.
+        /// What is wrong.
         reason: String,
     },
-    /// An object of the file breaks the specification.
+    /// An object of the file violates the specification, or a limit of this importer.
     #[error("{object}: {reason}")]
     Invalid {
         /// Which object, by kind and index or name.
         object: String,
-        /// Why.
+        /// What is wrong with it.
         reason: String,
     },
     /// The file has no such skin.
     #[error("skin {wanted} was asked for, but the file has {found} skins")]
     NoSuchSkin {
-        /// Index asked for.
+        /// The index in [`LoadOptions::skin`](crate::LoadOptions::skin).
         wanted: usize,
-        /// How many there are.
+        /// Number of skins in the file.
         found: usize,
     },
-    /// There is nothing to touch.
+    /// The creature or the file has no triangles for collision.
     #[error("no mesh with triangles for collision in {object}")]
     NoTriangles {
-        /// Which skins, or the file.
+        /// The creature, by its skins, or the file.
         object: String,
     },
-    /// The joints do not make a skeleton.
+    /// The joints do not form a valid skeleton.
     #[error("the joints of {object} make no skeleton: {error}")]
     Skeleton {
-        /// Which skins, or the file.
+        /// The creature, by its skins, or the file.
         object: String,
-        /// Why.
+        /// What is wrong with the joints.
         error: RigError,
     },
-    /// The primitives do not make a collider mesh.
+    /// The collision meshes do not form a valid collider mesh.
     #[error("the meshes of {object} make no collider: {error}")]
     Collider {
-        /// Which skins, or the file.
+        /// The creature, by its skins, or the file.
         object: String,
-        /// Why.
+        /// What is wrong with the meshes.
         error: MeshError,
     },
-    /// The height asked for is not finite, or not greater than 0.
-    #[error("a height of {wanted} m was asked for, which no creature can have")]
+    /// The height in the options is not finite, or not greater than 0.
+    #[error("cannot scale to a height of {wanted} m: it must be finite and greater than 0")]
     BadHeight {
-        /// Metres asked for.
+        /// The height in the options, metres.
         wanted: f32,
     },
-    /// A creature cannot be scaled to a height: its collider has none in the rest pose.
-    #[error("the collider of {object} is {found} m tall, and cannot be scaled to a height")]
+    /// The creature cannot be scaled to a height, since its collider has no height in the rest pose.
+    #[error("cannot scale {object} to a height: in the rest pose its collider is {found} m tall")]
     NoHeight {
-        /// Which skins, or the file.
+        /// The creature, by its skins, or the file.
         object: String,
-        /// Its height in the rest pose: 0, or not finite.
+        /// Height of the collider in the rest pose: 0, or not finite.
         found: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What a file says to this library, under the key `clamber` of an object's extras:
+//! Reads what a file tells this library, under the key `clamber` of an object's extras:
 //!
 //! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
 //! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 
 use crate::{GltfError, GltfErrorKind, ImportWarning};
 
-/// Extras of any tool's; only the key that is ours is read.
+/// The extras of an object; only this library's key is read.
 #[derive(Deserialize)]
 struct Extras<T> {
     clamber: Option<T>,
@@ -55,7 +55,7 @@ enum Surface {
     Stone,
 }
 
-/// What a node says of itself.
+/// The extras of a node or a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -82,7 +82,7 @@ pub(crate) enum Role {
 )]
 pub(crate) struct WeakPointExtras {
     pub(crate) hit_points: f64,
-    /// In model units; without it the node's scale says.
+    /// In model units; `None` for the node's scale.
     pub(crate) radius: Option<f32>,
     #[serde(default)]
     pub(crate) major: Flag,
@@ -93,19 +93,19 @@ impl WeakPointExtras {
         let hit_points = self.hit_points;
         if !(hit_points > 0.0 && hit_points.is_finite()) {
             return Err(format!(
-                "a weak point has {hit_points} hit points, where more than 0 are needed"
+                "a weak point has {hit_points} hit points, which must be finite and more than 0"
             ));
         }
         match self.radius {
             Some(radius) if !(radius >= 0.0 && radius.is_finite()) => Err(format!(
-                "a weak point has a radius of {radius}, where at least 0 is needed"
+                "a weak point has a radius of {radius}, which must be finite and at least 0"
             )),
             _ => Ok(()),
         }
     }
 }
 
-/// True or false. Also as 1 or 0, which is how some tools write what they have no checkbox for.
+/// A boolean, which may also be written as 1 or 0: some tools have no checkbox for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "serde_json::Value")]
 pub(crate) struct Flag(pub(crate) bool);
@@ -124,7 +124,7 @@ impl TryFrom<serde_json::Value> for Flag {
     }
 }
 
-/// The tag that a material's extras give, the default if they give none.
+/// The tag in a material's extras; the default if there is none.
 pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKind> {
     let object = || {
         let name = material.name().unwrap_or("without a name");
@@ -134,8 +134,10 @@ pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKin
     Ok(extras.tag())
 }
 
-/// The tag that a material's extras give, for those who read files by other means: `extras` is their JSON. `None`
-/// without the key `clamber`.
+/// Reads the tag in a material's extras, for files that another importer loads.
+///
+/// `extras` is the JSON of the extras. The result is `None` if they lack the key `clamber`, or if the text does not
+/// begin with `{`.
 ///
 /// ```
 /// let tag = clamber_gltf::tag_in_extras(r#"{"clamber": {"surface": "stone", "ledge": true}}"#)?;
@@ -145,8 +147,8 @@ pub(crate) fn tag_of(material: &Material<'_>) -> Result<SurfaceTag, GltfErrorKin
 /// ```
 ///
 /// # Errors
-/// [`GltfErrorKind::Invalid`] for text that begins with `{` and is no valid JSON, and for an unknown key or value under
-/// `clamber`. Text that does not begin with `{` gives `None`.
+/// [`GltfErrorKind::Invalid`] for text that begins with `{` but is not valid JSON, and for an unknown key or value
+/// under `clamber`.
 pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
     let ours: Result<Option<MaterialExtras>, _> = find(extras);
     match ours {
@@ -158,8 +160,8 @@ pub fn tag_in_extras(extras: &str) -> Result<Option<SurfaceTag>, GltfError> {
     }
 }
 
-/// What each node says of itself; nothing if it says nothing. A mesh's own extras say its role where
-/// its node does not.
+/// The extras of each node; the default for a node without any. A node without a role has the role of its
+/// mesh.
 pub(crate) fn of_nodes(
     nodes: &[Node<'_>],
     warnings: &mut Vec<ImportWarning>,
@@ -211,9 +213,9 @@ fn parse<T: DeserializeOwned + Default>(extras: &str) -> Result<T, serde_json::E
     Ok(find(extras)?.unwrap_or_default())
 }
 
-/// What stands under our key, if that is there.
+/// The value of this library's key; `None` without the key.
 fn find<T: DeserializeOwned>(extras: &str) -> Result<Option<T>, serde_json::Error> {
-    // Extras may be any JSON; only an object can hold our key.
+    // Extras may be any JSON, but only an object can hold the key.
     if !extras.trim_start().starts_with('{') {
         return Ok(None);
     }
@@ -226,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn own_extras_are_read_and_foreign_ones_passed_over() {
+    fn own_extras_are_read_and_those_of_other_tools_ignored() {
         let text = r#"{"other": [1], "clamber": {"surface": "stone", "ledge": true}}"#;
         let stone_ledge: MaterialExtras = parse(text).unwrap();
         assert!(matches!(stone_ledge.surface, Surface::Stone) && stone_ledge.ledge.0);
@@ -255,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_word_is_an_error_that_lists_the_choices() {
+    fn an_unknown_word_is_an_error_that_lists_the_valid_ones() {
         let error = |text| parse::<MaterialExtras>(text).err().map(|e| e.to_string());
         let furr = error(r#"{"clamber": {"surface": "furr"}}"#).unwrap();
         assert!(furr.contains("`skin`, `fur`, `stone`"), "{furr}");
@@ -276,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tag_is_told_from_none() {
+    fn empty_extras_are_the_default_tag_and_missing_ones_no_tag() {
         let fur = tag_in_extras(r#"{"clamber": {"surface": "fur"}}"#).unwrap();
         let expected = SurfaceTag::new(SurfaceKind::Fur);
         assert_eq!(fur, Some(expected));

@@ -27,7 +27,7 @@ mod weak_point;
 pub use clamber_surface::rig::WeakPoint;
 pub use error::{GltfError, GltfErrorKind};
 pub use extras::tag_in_extras;
-/// The crate whose vectors and quaternions are used here.
+/// The version of glam whose vectors and quaternions this crate uses.
 pub use glam;
 pub use load::{load, load_all, load_slice, load_slice_with, load_with};
 pub use options::{LoadOptions, Tagger};

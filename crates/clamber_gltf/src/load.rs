@@ -16,29 +16,34 @@ use crate::{
     skeleton, weak_point,
 };
 
-/// Loads the creature with the most triangles of a `.glb` or `.gltf` file: all skins that move the
-/// same joints or hang under each other's, and the meshes without a skin under these joints. A file
-/// without skins is one creature of rigid pieces.
+/// Loads the creature with the most triangles from a `.glb` or `.gltf` file.
+///
+/// Skins that share joints are one creature, and so are skins where a joint of one is a descendant of a joint of the
+/// other. Meshes without a skin under these joints belong to the creature too. A file without skins is one creature of
+/// rigid pieces.
 ///
 /// # Errors
-/// [`GltfError`], naming the file, the object in it and what is wrong with that.
+/// [`GltfError`] with the file, the object in it and the reason.
 pub fn load(path: impl AsRef<Path>) -> Result<Rig, GltfError> {
     load_with(path, &LoadOptions::default())
 }
 
-/// [`load`] with choices.
+/// Loads a creature from a file like [`load`], with options.
 ///
 /// # Errors
-/// As [`load`]. Also [`GltfErrorKind::NoSuchSkin`] for a skin that the file does not have, and for a height
-/// [`GltfErrorKind::BadHeight`] or [`GltfErrorKind::NoHeight`].
+/// As [`load`]. Also [`GltfErrorKind::NoSuchSkin`] for a skin that the file does not have,
+/// [`GltfErrorKind::BadHeight`] for a height that is not finite or not greater than 0, and
+/// [`GltfErrorKind::NoHeight`] if a height is set but the collider has none in the rest pose.
 pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Rig, GltfError> {
     from_path(path.as_ref(), |bytes, files| one(bytes, files, options))
 }
 
-/// Loads every creature of a file, in the order of their first skins. A height is given to each of them.
+/// Loads all creatures of a file, in the order of their first skins.
+///
+/// [`LoadOptions::height`] scales each of them to that height. [`LoadOptions::skin`] is ignored.
 ///
 /// # Errors
-/// As [`load_with`], for the first that cannot be loaded.
+/// As [`load_with`], for the first creature that cannot be loaded.
 pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig>, GltfError> {
     let all = |creatures: Vec<Members>, _: &Contents<'_>, _: &mut Vec<ImportWarning>| Ok(creatures);
     from_path(path.as_ref(), |bytes, files| {
@@ -46,21 +51,21 @@ pub fn load_all(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Vec<Rig
     })
 }
 
-/// Loads from the bytes of a `.glb` or `.gltf` file that has its buffers inside.
+/// Loads a creature from the bytes of a `.glb` or `.gltf` file that contains its buffers.
 ///
 /// # Errors
-/// As [`load_with`]; for a file whose buffers are elsewhere, [`GltfErrorKind::Invalid`].
+/// As [`load_with`]. Also [`GltfErrorKind::Invalid`] if a buffer is in another file.
 pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError> {
     let rig = one(bytes, Files::None, options);
     rig.map_err(|kind| GltfError { path: None, kind })
 }
 
-/// Loads from the bytes of a `.glb` or `.gltf` file, and asks `resolve` for the files that its buffers are in: from
-/// an archive, from the web, or embedded in the program.
+/// Loads a creature from the bytes of a `.glb` or `.gltf` file, with a function that provides its buffer files.
 ///
-/// `resolve` gets the path relative to the document, percent-decoded, with `/` between its parts, and gives the
-/// whole file. It is asked once for each file, in the order of the buffers. Paths that are absolute or
-/// lead out of the document's folder are refused before. It is not asked for images.
+/// Use it for files in an archive, from the web, or embedded in the program. `resolve` is called with a path relative
+/// to the document, percent-decoded, with `/` between its parts. It returns the contents of the whole file. It is
+/// called once for each file, in the order of the buffers, and never for images. Paths that are absolute or lead out of
+/// the document's folder are refused before the first call.
 ///
 /// ```
 /// use std::io;
@@ -78,7 +83,7 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError>
 /// ```
 ///
 /// # Errors
-/// As [`load_with`]. What `resolve` gives as an error is [`GltfErrorKind::Read`].
+/// As [`load_with`]. An error of `resolve` becomes [`GltfErrorKind::Read`].
 pub fn load_slice_with(
     bytes: &[u8],
     options: &LoadOptions,
@@ -88,7 +93,7 @@ pub fn load_slice_with(
     rig.map_err(|kind| GltfError { path: None, kind })
 }
 
-/// Hands the bytes of a file and its folder on, and names it in errors.
+/// Reads a file, passes its bytes and its folder to `load`, and adds its path to errors.
 fn from_path<T>(
     path: &Path,
     load: impl FnOnce(&[u8], Files<'_>) -> Result<T, GltfErrorKind>,
@@ -105,7 +110,7 @@ fn from_path<T>(
         })
 }
 
-/// The creature that the options ask for.
+/// Loads the creature that the options select.
 fn one(bytes: &[u8], files: Files<'_>, options: &LoadOptions) -> Result<Rig, GltfErrorKind> {
     let choose =
         |creatures: Vec<Members>, contents: &Contents<'_>, warnings: &mut Vec<ImportWarning>| {
@@ -117,7 +122,7 @@ fn one(bytes: &[u8], files: Files<'_>, options: &LoadOptions) -> Result<Rig, Glt
     rigs.pop().ok_or(GltfErrorKind::NoTriangles { object })
 }
 
-/// Those of a file's creatures that `choose` picks; at least one.
+/// Loads the creatures of a file that `choose` selects, at least one.
 fn from_bytes(
     bytes: &[u8],
     files: Files<'_>,
@@ -152,7 +157,7 @@ fn rig(
     mut warnings: Vec<ImportWarning>,
 ) -> Result<Rig, GltfErrorKind> {
     let object = members.object();
-    // Every creature has these to itself.
+    // Every rig has its own copy of the materials and warnings.
     let lines: usize = warnings.iter().map(ImportWarning::bytes).sum();
     let bytes = size_of_val(contents.materials.as_slice()) + lines;
     contents.reader.charge(&object, bytes)?;
@@ -180,16 +185,16 @@ fn rig(
     Ok(rig)
 }
 
-/// A collider mesh of the height asked for.
+/// A collider mesh, scaled if a height was set.
 struct Collider {
     mesh: ColliderMesh,
     report: BuildReport,
-    /// The factor that led to the height.
+    /// The factor that it was scaled by; `None` if no height was set.
     scale: Option<f64>,
 }
 
-/// Builds the collider. To be scaled, it is built twice: only the first mesh says which vertices count for the height,
-/// and only the second has bounds and welds of its own size.
+/// Builds the collider, and scales it if a height is set. A scaled collider is built twice: the first mesh tells which
+/// vertices count for the height, and the second is welded and bounded at the final size.
 fn collider(
     mut collision: Collision,
     skeleton: &Skeleton,
@@ -213,7 +218,7 @@ fn collider(
         });
     };
     let factor = scale::factor(height, skeleton, &mesh, object)?;
-    // Before the second one takes as much memory.
+    // Freed before the second mesh, which takes as much memory.
     drop((mesh, report));
     scale::points(&mut collision.positions, factor);
     let (mesh, report) = build(&collision)?;

@@ -1,4 +1,4 @@
-//! What a primitive's vertices look like, out of its accessors.
+//! Reads normals, texture coordinates and colours of a primitive's vertices from its accessors.
 
 use glam::{Vec2, Vec3};
 use gltf::mesh::Semantic;
@@ -8,7 +8,7 @@ use crate::GltfErrorKind;
 use crate::accessor::Reader;
 use crate::vertices::morphed;
 
-/// Normals, texture coordinates, colours; each empty where the file gives none.
+/// Normals, texture coordinates and colours; each is empty if the file has none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Looks {
     pub(crate) normals: Vec<Vec3>,
@@ -16,8 +16,8 @@ pub(crate) struct Looks {
     pub(crate) colors: Vec<[f32; 4]>,
 }
 
-/// Reads normals, morphed as the positions are, texture coordinates and colours, of as many
-/// vertices as there are positions.
+/// Reads normals, texture coordinates and colours. Their counts must equal `vertices`, the number of
+/// positions. Normals are morphed like the positions.
 pub(crate) fn looks(
     primitive: &Primitive<'_>,
     vertices: usize,
@@ -58,7 +58,7 @@ pub(crate) fn looks(
     Ok(looks)
 }
 
-/// Colours with opacity, which is 1 where the file gives none.
+/// Reads colours with opacity, which is 1 if the file has none.
 fn colors(accessor: &Accessor<'_>, reader: &Reader<'_>) -> Result<Vec<[f32; 4]>, GltfErrorKind> {
     if accessor.dimensions().multiplicity() == 3 {
         let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
@@ -71,7 +71,7 @@ fn colors(accessor: &Accessor<'_>, reader: &Reader<'_>) -> Result<Vec<[f32; 4]>,
     reader.floats::<4>(accessor)
 }
 
-/// The attributes of a primitive that nothing here reads.
+/// The names of a primitive's attributes that the importer does not read.
 pub(crate) fn ignored(primitive: &Primitive<'_>) -> impl Iterator<Item = String> {
     primitive
         .attributes()

@@ -1,9 +1,9 @@
-//! Which skins and meshes of a file make up one creature.
+//! Groups the skins and meshes of a file into creatures.
 //!
-//! Skins that move the same joints, or of which one's joints hang under the other's, are one
-//! creature: exporters write a skin per mesh, per material, or per armature. Meshes without a skin
-//! belong to the creature under whose joints they hang. A file without any skin is one creature of
-//! rigid pieces.
+//! Skins that share joints are one creature, and so are skins where a joint of one is a descendant of
+//! a joint of the other: exporters write a skin per mesh, per material, or per armature. A mesh
+//! without a skin belongs to the creature whose joint it is under. A file without skins is one
+//! creature of rigid pieces.
 
 use gltf::Mesh;
 use gltf::mesh::Semantic;
@@ -13,7 +13,7 @@ use crate::tree::Tree;
 use crate::vertices::has_surface;
 use crate::{GltfErrorKind, ImportWarning, warning};
 
-/// The pieces of one creature.
+/// The objects of a file that make up one creature.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Members {
     /// Indices of its skins, ascending.
@@ -22,18 +22,18 @@ pub(crate) struct Members {
     pub(crate) meshes: Vec<usize>,
     /// Nodes that are weak points, ascending.
     pub(crate) weak_points: Vec<usize>,
-    /// Corners of all its triangles, more or less.
+    /// Approximate number of corners of all its triangles.
     corners: u64,
 }
 
 impl Members {
-    /// For messages.
+    /// The creature's name in messages.
     pub(crate) fn object(&self) -> String {
         warning::creature(&self.skins)
     }
 }
 
-/// All creatures of a file that have a mesh, by their first skin.
+/// All creatures of a file that have a mesh, in the order of their first skins.
 pub(crate) fn all(
     tree: &Tree<'_>,
     extras: &[NodeExtras],
@@ -86,7 +86,8 @@ pub(crate) fn all(
     creatures
 }
 
-/// The creature with the wanted skin, or the one with the most triangles; of equal ones the first.
+/// The creature with the wanted skin; without one the creature with the most triangles, the first of
+/// equal ones.
 pub(crate) fn choose(
     tree: &Tree<'_>,
     creatures: &[Members],
@@ -110,7 +111,8 @@ pub(crate) fn choose(
     Ok(chosen.clone())
 }
 
-/// Number of the creature that each skin belongs to, ascending from 0 by first skin.
+/// For each skin, the number of its creature. Creatures are numbered from 0, in the order of their
+/// first skins.
 fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
     let count = tree.skins.len();
     let mut above: Vec<usize> = (0..count).collect();
@@ -132,8 +134,8 @@ fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
         }
         skin_above[node] = skin_of_joint[node].or(inherited);
     }
-    // The smallest skin stands for its creature, so numbers ascend by first skin, and what is above
-    // a skin has its number already.
+    // The smallest skin represents its creature, so numbers ascend by first skin, and the skin above
+    // another one has its number already.
     let mut numbers = vec![0; count];
     let mut next = 0;
     for skin in 0..count {
@@ -147,8 +149,8 @@ fn creature_of_skin(tree: &Tree<'_>) -> Vec<usize> {
     numbers
 }
 
-/// Number of the creature whose joint each node is or hangs under; in a file without skins, where
-/// every node may be a joint, all are the first's.
+/// For each node, the number of the creature that the nearest joint at or above it belongs to. In a
+/// file without skins every node may be a joint, so all nodes belong to creature 0.
 fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
     let nobody = of_skin.is_empty().then_some(0);
     let mut of_node = vec![nobody; tree.nodes.len()];
@@ -164,8 +166,8 @@ fn creature_of_node(tree: &Tree<'_>, of_skin: &[usize]) -> Vec<Option<usize>> {
     of_node
 }
 
-/// The smallest skin of the set that `skin` is in. Halves the way to it, so that no order of skins
-/// makes it long.
+/// The smallest skin of the set that `skin` is in. Halves the path to it on the way, so that paths stay
+/// short in any order of skins.
 fn representative(above: &mut [usize], mut skin: usize) -> usize {
     while above[skin] != skin {
         above[skin] = above[above[skin]];
@@ -174,13 +176,13 @@ fn representative(above: &mut [usize], mut skin: usize) -> usize {
     skin
 }
 
-/// Makes one set of two, under the smaller representative.
+/// Merges two sets under the smaller representative.
 fn unite(above: &mut [usize], a: usize, b: usize) {
     let (a, b) = (representative(above, a), representative(above, b));
     above[a.max(b)] = a.min(b);
 }
 
-/// How many triangle corners a mesh has, more or less.
+/// The approximate number of triangle corners of a mesh.
 fn corner_count(mesh: &Mesh<'_>) -> u64 {
     let count = |primitive: gltf::Primitive<'_>| {
         let positions = || primitive.get(&Semantic::Positions);

@@ -1,5 +1,5 @@
-//! The meshes of a creature: what a climber touches of them as one collider mesh, what is drawn as
-//! they are.
+//! Loads the meshes of a creature: collision meshes are merged into one collider mesh, visual meshes
+//! are kept as they are.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ use crate::vertices::{self, Binding, PassedOver};
 use crate::visual::VisualMesh;
 use crate::{GltfErrorKind, ImportWarning};
 
-/// What all meshes of a creature add up to.
+/// The meshes of a creature.
 pub(crate) struct Meshes {
     pub(crate) collision: Collision,
     pub(crate) visual: Vec<VisualMesh>,
@@ -28,12 +28,11 @@ pub(crate) struct Meshes {
 struct Gathered {
     collision: Collision,
     visual: Vec<VisualMesh>,
-    /// First vertex in the collider, and index of the visual mesh, of each set of vertices:
-    /// primitives often share them.
+    /// Where each set of vertices was put. Primitives often share vertices.
     places: BTreeMap<Vec<usize>, Place>,
     unweighted: usize,
     morphed: usize,
-    /// Primitives without a surface, by what they are.
+    /// Number of skipped primitives, by reason.
     passed_over: BTreeMap<PassedOver, usize>,
     /// Attributes that were not read.
     ignored: BTreeSet<String>,
@@ -53,7 +52,7 @@ struct Instance<'a> {
     node: &'a Node<'a>,
     mesh: Mesh<'a>,
     binding: Binding<'a>,
-    /// Different for what is bound differently.
+    /// The rest space: meshes that are bound differently have different ones.
     space: u32,
     role: Role,
     morph_weights: &'a [f32],
@@ -66,8 +65,8 @@ pub(crate) fn load(
     warnings: &mut Vec<ImportWarning>,
 ) -> Result<Meshes, GltfErrorKind> {
     let mut gathered = Gathered::default();
-    // A mesh that several nodes show with one skin is one mesh: the skin says where it stands. Each
-    // of these nodes may show it to another purpose.
+    // A mesh that several nodes show with one skin is loaded once, since the skin places it. But each
+    // of these nodes may give it another role.
     let mut shown = BTreeSet::new();
     for instance in instances(contents, members, joints) {
         let weights: Vec<u32> = instance.morph_weights.iter().map(|w| w.to_bits()).collect();
@@ -101,11 +100,11 @@ pub(crate) fn load(
     })
 }
 
-/// What a primitive takes apart from its vertices and triangles, bytes, rounded up.
+/// Memory that a primitive takes beside its vertices and triangles, bytes, rounded up.
 const PRIMITIVE_BYTES: usize = 256;
 
-/// The nodes of a creature that show a mesh. Once one of them is for collision, those that do not
-/// say what they are for are to be seen only.
+/// The nodes of a creature that show a mesh. If one of them has the role `collision`, nodes without a
+/// role are visual only.
 fn instances<'a>(
     contents: &'a Contents<'a>,
     members: &'a Members,
@@ -143,7 +142,7 @@ fn instances<'a>(
 }
 
 impl Gathered {
-    /// Says what was passed over or mended.
+    /// Adds warnings about what was skipped or repaired.
     fn report(&self, warnings: &mut Vec<ImportWarning>) {
         for (reason, &primitives) in &self.passed_over {
             warnings.push(match reason {
@@ -191,7 +190,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// Where a primitive's vertices are, read unless another primitive has the same ones.
+    /// The place of a primitive's vertices, which are read unless another primitive has the same ones.
     fn place(
         &mut self,
         instance: &Instance<'_>,
@@ -238,7 +237,7 @@ impl Gathered {
     }
 }
 
-/// What makes the vertices of two primitives the same ones.
+/// A key that is equal for primitives with the same vertices.
 fn key(instance: &Instance<'_>, primitive: &Primitive<'_>) -> Vec<usize> {
     let mut key = vec![instance.space as usize, instance.role as usize];
     let mut push = |kind: usize, set: u32, accessor: usize| {
@@ -255,7 +254,7 @@ fn key(instance: &Instance<'_>, primitive: &Primitive<'_>) -> Vec<usize> {
             _ => {}
         }
     }
-    // Morphed vertices are their primitive's alone, and their node's.
+    // Morphed vertices belong to one primitive of one node.
     if primitive.morph_targets().next().is_some() {
         push(6, instance.node.index() as u32, primitive.index());
     }

@@ -3,7 +3,9 @@ use std::sync::Arc;
 
 use clamber_surface::mesh::{BuildOptions, SurfaceTag};
 
-/// Choices of an import. The default takes everything as the file has it.
+/// Options for loading a creature.
+///
+/// The default loads the creature with the most triangles, with the size and the tags that the file gives it.
 ///
 /// ```
 /// use clamber_gltf::LoadOptions;
@@ -19,16 +21,16 @@ pub struct LoadOptions {
     /// Index of a skin of the creature to load; `None` for the creature with the most triangles.
     /// [`load_all`](crate::load_all) ignores it.
     pub skin: Option<usize>,
-    /// Passed on to [`ColliderMesh::build`](clamber_surface::mesh::ColliderMesh::build).
+    /// Options for [`ColliderMesh::build`](clamber_surface::mesh::ColliderMesh::build).
     pub build: BuildOptions,
-    /// Metres that the creature is to be tall; `None` for the file's own size.
+    /// Height to scale the creature to, metres, as in [`LoadOptions::with_height`]; `None` keeps the file's size.
     pub height: Option<f32>,
-    /// What changes the tags of surfaces; `None` for the file's own tags.
+    /// Function that chooses the tags of surfaces; `None` keeps the file's tags.
     pub tagger: Option<Tagger>,
 }
 
 impl LoadOptions {
-    /// Loads the creature that this skin belongs to.
+    /// Loads the creature that the skin with this index belongs to.
     #[must_use]
     pub fn with_skin(self, skin: usize) -> Self {
         Self {
@@ -43,8 +45,10 @@ impl LoadOptions {
         Self { build, ..self }
     }
 
-    /// Scales the creature uniformly, about the origin of model space, so that its collider is this tall along Y in
-    /// the rest pose. Clips, visual meshes and weak points are scaled with it;
+    /// Scales the creature to this height, in metres.
+    ///
+    /// The scaling is uniform, about the origin of model space. It gives the collider this height along Y in the rest
+    /// pose. Clips, visual meshes and weak points are scaled too;
     /// [`ImportReport::scale`](crate::ImportReport::scale) is the factor.
     ///
     /// Loading fails for a height that is not finite or not greater than 0, and for a creature without height.
@@ -56,7 +60,7 @@ impl LoadOptions {
         }
     }
 
-    /// Passes every surface through a function, as [`Tagger::new`] describes.
+    /// Chooses the tags of surfaces with a function, which [`Tagger::new`] describes.
     #[must_use]
     pub fn with_tags(
         self,
@@ -68,13 +72,13 @@ impl LoadOptions {
         }
     }
 
-    /// Tags every surface alike, whatever the file says.
+    /// Gives all surfaces the same tag, whatever the file says.
     #[must_use]
     pub fn with_tag(self, tag: SurfaceTag) -> Self {
         self.with_tags(move |_, _| tag)
     }
 
-    /// The tag of a material that the file tags like this.
+    /// The tag of a material whose tag in the file is `of_file`.
     pub(crate) fn tag(&self, material: Option<&str>, of_file: SurfaceTag) -> SurfaceTag {
         match &self.tagger {
             Some(tagger) => tagger.tag(material, of_file),
@@ -83,26 +87,28 @@ impl LoadOptions {
     }
 }
 
-/// A function from a material's name, and the tag that the file gives it, to the tag that it gets.
+/// A function that chooses the tag of a material, by the material's name and its tag in the file.
 #[derive(Clone)]
 pub struct Tagger(Arc<TagFn>);
 
 type TagFn = dyn Fn(Option<&str>, SurfaceTag) -> SurfaceTag + Send + Sync;
 
 impl Tagger {
-    /// The function gets the material's name and the tag from its extras ([`SurfaceTag::default`] where they give
-    /// none). The name is `None` for a material without a name, and for surfaces without a material. All of the tag
-    /// that it gives is used, its [`SurfaceTag::user`] included.
+    /// Wraps a function from a material's name and its tag in the file to the tag to use.
     ///
-    /// It is called once for each material of the file, in the file's order, then once for no material, whether or
-    /// not a surface uses them.
+    /// The name is `None` for a material without a name, and for surfaces without a material. The tag in the file comes
+    /// from the material's extras; without them it is [`SurfaceTag::default`]. The returned tag replaces all of it,
+    /// [`SurfaceTag::user`] included.
+    ///
+    /// The function is called once for each material of the file, in the file's order, then once for surfaces without
+    /// a material. It is called whether or not a surface uses the material.
     pub fn new(
         tag: impl Fn(Option<&str>, SurfaceTag) -> SurfaceTag + Send + Sync + 'static,
     ) -> Self {
         Self(Arc::new(tag))
     }
 
-    /// The tag for a material of this name that the file tags like this.
+    /// Calls the function with a material's name and `of_file`, the tag in the file.
     pub fn tag(&self, material: Option<&str>, of_file: SurfaceTag) -> SurfaceTag {
         (self.0)(material, of_file)
     }

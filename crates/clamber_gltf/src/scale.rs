@@ -1,7 +1,7 @@
 //! Scales a creature to a height.
 //!
-//! One factor multiplies every length: translations of joints, of inverse bind matrices and of clips with their
-//! tangents, positions, and places and radii of weak points. Rotations and scales stay, so every pose is the
+//! One factor multiplies every length: positions of vertices; translations of joints, of inverse bind matrices and of
+//! clips, tangents included; positions and radii of weak points. Rotations and scales are kept, so every pose is the
 //! unscaled one times the factor. Each number is multiplied in f64 and rounded once.
 
 use clamber_surface::mesh::ColliderMesh;
@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use crate::{GltfErrorKind, Rig};
 
-/// Refuses heights that no creature can have.
+/// Refuses a height that is not finite or not greater than 0.
 pub(crate) fn check(height: Option<f32>) -> Result<(), GltfErrorKind> {
     match height {
         Some(wanted) if !(wanted > 0.0 && wanted.is_finite()) => {
@@ -21,7 +21,7 @@ pub(crate) fn check(height: Option<f32>) -> Result<(), GltfErrorKind> {
     }
 }
 
-/// The factor that gives a collider, of a skeleton at rest, a height.
+/// The factor that gives a collider this height in the rest pose.
 pub(crate) fn factor(
     height: f32,
     skeleton: &Skeleton,
@@ -38,7 +38,7 @@ pub(crate) fn factor(
     })
 }
 
-/// From the lowest to the highest corner of a triangle; `None` if the rest pose cannot be skinned.
+/// The height of all triangles along Y in the rest pose; `None` if the rest pose cannot be skinned.
 fn height_at_rest(skeleton: &Skeleton, collider: &ColliderMesh) -> Option<f64> {
     let palette = skeleton.palette(&skeleton.rest_pose()).ok()?;
     let positions = skin(collider, palette.matrices()).ok()?;
@@ -57,7 +57,7 @@ pub(crate) fn points(points: &mut [Vec3], factor: f64) {
     }
 }
 
-/// Scales all of a rig but its collider.
+/// Scales everything in a rig except its collider.
 pub(crate) fn all_but_collider(
     rig: &mut Rig,
     factor: f64,

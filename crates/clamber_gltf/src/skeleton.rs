@@ -1,4 +1,4 @@
-//! The joints of a creature and all nodes above them, as one skeleton.
+//! Builds a skeleton from the joints of a creature and all nodes above them.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::contents::Contents;
 use crate::members::Members;
 use crate::{GltfErrorKind, ImportWarning};
 
-/// A skeleton, and which of its joints stands for what.
+/// A skeleton, and the joints of nodes, skins and rigid meshes.
 pub(crate) struct Joints {
     pub(crate) skeleton: Skeleton,
-    /// A node can be several joints: one for each inverse bind matrix that skins give it.
+    /// By node: its joints. There are several if skins give the node different inverse bind matrices.
     pub(crate) of_node: BTreeMap<usize, Vec<JointId>>,
     /// By index of the skin: the joint for each index that its meshes name.
     pub(crate) of_skin: BTreeMap<usize, Vec<JointId>>,
@@ -33,7 +33,7 @@ struct Gathering {
 }
 
 impl Gathering {
-    /// The joint of a node with this inverse bind matrix, the same one when asked again.
+    /// The joint of a node with this inverse bind matrix; added if it is new.
     fn joint(&mut self, node: usize, inverse_bind: Affine) -> JointId {
         let bits = inverse_bind.rows.map(|row| row.map(f32::to_bits));
         let mut key = [0; 12];
@@ -47,8 +47,8 @@ impl Gathering {
     }
 }
 
-/// The joints of the skins come first, in the skins' order, then the nodes of rigid meshes, then
-/// the other nodes that all these hang under.
+/// Builds the skeleton: the joints of the skins, in the skins' order, then the nodes of rigid meshes,
+/// then all other nodes above these.
 pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,
@@ -72,7 +72,7 @@ pub(crate) fn load(
     let of_rigid = rigid
         .map(|node| (*node, gathering.joint(*node, Affine::IDENTITY)))
         .collect();
-    // Grows while it is walked: each joint adds the parent that is not there yet.
+    // The list grows while it is walked: each joint adds its parent if that is missing.
     let mut next = 0;
     while let Some(&(node, _)) = gathering.joints.get(next) {
         if let Some(parent) = tree.parent_of[node]
@@ -128,7 +128,7 @@ fn inverse_binds(
             ),
         ));
     }
-    // More are legal, and belong to nothing.
+    // More matrices than joints are legal; the rest has no meaning.
     matrices.truncate(joints);
     let last_row = |m: &[f32; 16]| [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0];
     let projective = matrices.iter().filter(|m| !last_row(m)).count();

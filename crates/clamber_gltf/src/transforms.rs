@@ -1,4 +1,4 @@
-//! The transforms of nodes, matrices among them, as translation, rotation and scale.
+//! Reads the transforms of nodes as translation, rotation and scale, also those given as matrices.
 
 use clamber_surface::rig::Transform;
 use glam::{DAffine3, DMat3, DVec3, Quat, Vec3};
@@ -6,11 +6,11 @@ use gltf::Node;
 
 use crate::ImportWarning;
 
-/// The largest share of a column's length by which a decomposed matrix may be off before it is worth
-/// telling: a millimetre in a metre.
+/// The largest error of a decomposed matrix that gives no warning, as a share of a column's length: a
+/// millimetre in a metre.
 const SHEAR_WORTH_TELLING: f64 = 1e-3;
 
-/// The transforms of nodes as translation, rotation, scale.
+/// Reads the transforms of nodes as translation, rotation and scale.
 pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) -> Vec<Transform> {
     let mut sheared = 0;
     let mut worst = 0.0f64;
@@ -41,8 +41,8 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
     transforms
 }
 
-/// Translation, rotation and scale of a matrix, and how far its columns are from theirs, as a
-/// share of their length. A column of length zero takes the direction that the others leave it.
+/// Decomposes a matrix into translation, rotation and scale. Also gives the largest error of a column,
+/// as a share of its length. A column of length zero gets a direction perpendicular to the others.
 fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let column = |c: usize| DVec3::from_array([0, 1, 2].map(|row| f64::from(matrix[c][row])));
     let linear = DMat3::from_cols(column(0), column(1), column(2));
@@ -67,7 +67,7 @@ fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let recomposed =
         DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO).matrix3;
     let off = linear - recomposed;
-    // A column of length zero is met exactly: 0 over the smallest number, not over 0.
+    // A column of length zero has no error: 0 is divided by the smallest number, not by 0.
     let share = |off: DVec3, of: DVec3| off.length() / of.length().max(f64::MIN_POSITIVE);
     let error = share(off.x_axis, linear.x_axis)
         .max(share(off.y_axis, linear.y_axis))

@@ -1,17 +1,17 @@
-//! The hierarchy of a file's nodes, checked once so that everything else may climb it.
+//! The hierarchy of a file's nodes, checked once so that other code can walk it without checks.
 
 use gltf::{Document, Node, Skin};
 
 use crate::GltfErrorKind;
 
-/// All nodes and skins, and how the nodes hang together: every node has at most one parent, and none
-/// is above itself.
+/// All nodes and skins of a file, and the hierarchy of the nodes. Every node has at most one parent, and
+/// there are no cycles.
 pub(crate) struct Tree<'a> {
     pub(crate) nodes: Vec<Node<'a>>,
     pub(crate) skins: Vec<Skin<'a>>,
     /// The parent of every node.
     pub(crate) parent_of: Vec<Option<usize>>,
-    /// Every parent before its children.
+    /// All nodes, every parent before its children.
     pub(crate) order: Vec<usize>,
 }
 
@@ -40,14 +40,15 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// A node's name, or its number where it has none.
+    /// A node's name; `"node 3"` for node 3 without a name.
     pub(crate) fn name(&self, node: usize) -> String {
         let name = self.nodes[node].name();
         name.map_or_else(|| format!("node {node}"), str::to_owned)
     }
 }
 
-/// Nodes by generation, from the roots down. What no root leads to is above itself.
+/// All nodes, by generation from the roots down. A node that cannot be reached from a root is an error: it
+/// is in a cycle, or below one.
 fn parents_first(
     nodes: &[Node<'_>],
     parent_of: &[Option<usize>],

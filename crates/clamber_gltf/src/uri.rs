@@ -1,4 +1,4 @@
-//! What the URIs of buffers say: data themselves, or a file in the document's folder or below.
+//! Decodes the URIs of buffers: embedded data, or files in the document's folder or below.
 
 use std::path::{Component, Path};
 
@@ -12,7 +12,7 @@ pub(crate) fn decode_data(data: &str) -> Result<Vec<u8>, String> {
     if kind.ends_with(";base64") {
         base64::engine::general_purpose::STANDARD
             .decode(payload)
-            .map_err(|e| format!("its data URI is no base64: {e}"))
+            .map_err(|e| format!("its data URI is not base64: {e}"))
     } else {
         Ok(percent_encoding::percent_decode_str(payload).collect())
     }
@@ -23,7 +23,7 @@ pub(crate) fn decode_data(data: &str) -> Result<Vec<u8>, String> {
 pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
     let name = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
-        .map_err(|e| format!("its URI {uri:?} is no UTF-8: {e}"))?;
+        .map_err(|e| format!("its URI {uri:?} is not UTF-8: {e}"))?;
     let refused =
         || format!("its URI {uri:?} does not lead to a file in the document's folder or below");
     let mut parts = Vec::new();
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn paths_are_decoded_and_have_one_form() {
+    fn paths_are_decoded_and_normalised() {
         for (uri, path) in [
             ("data.bin", "data.bin"),
             ("./a%20b//./data.bin", "a b/data.bin"),

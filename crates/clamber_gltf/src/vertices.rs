@@ -1,4 +1,4 @@
-//! The vertices and triangles of a primitive, out of its accessors.
+//! Reads the vertices and triangles of a primitive from its accessors.
 
 use clamber_surface::mesh::Influence;
 use clamber_surface::rig::JointId;
@@ -9,26 +9,26 @@ use gltf::{Accessor, Primitive};
 use crate::GltfErrorKind;
 use crate::accessor::Reader;
 
-/// What moves the vertices of a mesh.
+/// The joints that move the vertices of a mesh.
 pub(crate) enum Binding<'a> {
     /// The joints of a skin, by the index that vertices name.
     Skin(&'a [JointId]),
-    /// One joint moves all of it.
+    /// The joint that moves the whole mesh.
     Rigid(JointId),
 }
 
-/// Where vertices are and what moves them.
+/// The positions of vertices, and the influences that move them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vertices {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) influences: Vec<Influence>,
     /// Where each vertex's influences end.
     pub(crate) influence_ends: Vec<u32>,
-    /// How many have no weights, and follow the first joint that they name.
+    /// Number of vertices whose weights are all zero, and which follow the first joint that they name.
     pub(crate) unweighted: usize,
 }
 
-/// True if a primitive is of triangles, not of points or lines.
+/// True if a primitive consists of triangles, not of points or lines.
 pub(crate) fn has_surface(primitive: &Primitive<'_>) -> bool {
     let mode = primitive.mode();
     matches!(
@@ -37,16 +37,16 @@ pub(crate) fn has_surface(primitive: &Primitive<'_>) -> bool {
     )
 }
 
-/// Why a primitive is no part of a surface.
+/// Why a primitive is skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum PassedOver {
-    /// Of a skinned mesh, without joints and weights.
+    /// It belongs to a skinned mesh, but lacks joints and weights.
     NoWeights,
     PointsOrLines,
     NoPositions,
 }
 
-/// Why a primitive is no part of a surface; `None` if it is.
+/// Why a primitive is skipped; `None` if it is loaded.
 pub(crate) fn passed_over(primitive: &Primitive<'_>, binding: &Binding<'_>) -> Option<PassedOver> {
     if !has_surface(primitive) {
         return Some(PassedOver::PointsOrLines);
@@ -104,12 +104,13 @@ pub(crate) fn vertices(
     Ok(vertices)
 }
 
-/// What is needed to make a vertex part of a collider and a visual mesh, bytes: a bound on it, so
-/// that files which claim more vertices than they hold are refused before the memory is full.
+/// Bound on the memory that a vertex takes in a collider and a visual mesh, bytes. It is charged before
+/// it is allocated, so that files that claim more vertices than they hold are refused before memory
+/// runs out.
 const BUILD_BYTES: usize = 256;
 
-/// Positions or normals moved by morph targets, `None` for a target that does not move them.
-/// Added up in f64 in the order of the targets, rounded once.
+/// Positions or normals with morph targets applied. A target that does not move them is `None`. The
+/// sums are taken in f64 in the order of the targets, and rounded once.
 pub(crate) fn morphed<'a>(
     rest: Vec<[f32; 3]>,
     targets: impl Iterator<Item = Option<Accessor<'a>>>,
@@ -145,7 +146,7 @@ pub(crate) fn morphed<'a>(
 }
 
 impl Vertices {
-    /// Appends the influences of a vertex. What weighs nothing is padding and may name any joint.
+    /// Appends the influences of a vertex. Influences of weight 0 are padding and may name any joint.
     fn push_influences(
         &mut self,
         sets: &[WeightSet],
@@ -160,7 +161,7 @@ impl Vertices {
         };
         let joint = |index: u32| {
             joints.get(index as usize).copied().ok_or_else(|| {
-                let reason = format!("follows joint {index} of a skin of {}", joints.len());
+                let reason = format!("names joint {index} of a skin of {} joints", joints.len());
                 GltfErrorKind::invalid(object, reason)
             })
         };
@@ -189,7 +190,7 @@ impl Vertices {
 /// Joints and weights of every vertex, four of each.
 type WeightSet = (Vec<[u32; 4]>, Vec<[f32; 4]>);
 
-/// All sets of a primitive, at least one.
+/// Reads all weight sets of a primitive.
 fn weight_sets(
     primitive: &Primitive<'_>,
     vertices: usize,
@@ -224,7 +225,7 @@ fn weight_sets(
     Ok(sets)
 }
 
-/// The triangles of a primitive that has so many vertices.
+/// Reads the triangles of a primitive with `vertices` vertices.
 pub(crate) fn triangles(
     primitive: &Primitive<'_>,
     vertices: usize,
@@ -243,15 +244,15 @@ pub(crate) fn triangles(
         return Err(GltfErrorKind::invalid(object, reason));
     }
     if primitive.mode() == Mode::Triangles && !indices.len().is_multiple_of(3) {
-        let reason = format!("{} corners make no whole triangles", indices.len());
+        let reason = format!("has {} corners, not a multiple of 3", indices.len());
         return Err(GltfErrorKind::invalid(object, reason));
     }
-    // A strip makes three corners of every index, for a collider and to be drawn.
+    // A strip makes up to three corners of every index, once for the collider and once for drawing.
     reader.charge(object, indices.len().saturating_mul(6 * size_of::<u32>()))?;
     Ok(corners(&indices, primitive.mode()).collect())
 }
 
-/// The triangles of a list, strip or fan, all with the same side outside.
+/// The triangles of a list, strip or fan, all with the same winding.
 fn corners(indices: &[u32], mode: Mode) -> impl Iterator<Item = [u32; 3]> {
     let count = match mode {
         Mode::Triangles => indices.len() / 3,

@@ -1,4 +1,4 @@
-//! What is drawn of a creature, on the joints that move its collider.
+//! The meshes to draw of a creature, moved by the same joints as its collider, and their materials.
 
 use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Influence, MeshError, MeshSource, SurfaceTag, normalize_influences,
@@ -12,80 +12,83 @@ use crate::looks::Looks;
 use crate::vertices::Vertices;
 use crate::{GltfErrorKind, ImportWarning, LoadOptions};
 
-/// A mesh to be drawn: vertices as the file has them, split where normals or texture coordinates
-/// are, and their triangles by material.
+/// A mesh to draw.
+///
+/// The vertices are as in the file: they are not welded, but split where normals or texture coordinates
+/// differ. The triangles are grouped by material.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct VisualMesh {
-    /// Of the node that shows it, or of its mesh.
+    /// Name of the node that shows it, else of its mesh; empty if both have none.
     pub name: String,
     /// Rest positions in mesh space, with morph targets at their rest weights.
     pub positions: Vec<Vec3>,
-    /// Unit vectors in mesh space, one a vertex, zero where the file has none of finite length; empty
-    /// if it gives none at all.
+    /// Unit vectors in mesh space, one for each vertex. Zero where the file's normal cannot be
+    /// normalised; empty if the file has no normals.
     pub normals: Vec<Vec3>,
-    /// For each `TEXCOORD_n`, from 0 on, coordinates of every vertex.
+    /// For each `TEXCOORD_n`, from 0 on, the texture coordinates of every vertex.
     pub tex_coords: Vec<Vec<Vec2>>,
-    /// `COLOR_0`: linear red, green, blue and opacity, one a vertex; empty if the file gives none.
+    /// `COLOR_0`: linear red, green, blue and opacity, one for each vertex; empty if the file has none.
     pub colors: Vec<[f32; 4]>,
-    /// Influences of the first vertex, then of the second, and so on: by ascending joint, weights
-    /// normalised as those of a collider.
+    /// Influences of the first vertex, then of the second, and so on. Each vertex's are sorted by
+    /// joint, and their weights are normalised like those of a collider.
     pub influences: Vec<Influence>,
-    /// Where in `influences` those of each vertex end.
+    /// For each vertex, where its influences end in `influences`.
     pub influence_ends: Vec<u32>,
-    /// The triangles, by material.
+    /// The triangles, grouped by material.
     pub primitives: Vec<VisualPrimitive>,
 }
 
-/// The triangles of one material.
+/// Triangles of a visual mesh that share a material.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct VisualPrimitive {
     /// Index into [`Rig::materials`](crate::Rig::materials); `None` for glTF's default material.
     pub material: Option<usize>,
-    /// What a climber finds there: the material's tag, or without a material the tagger's.
+    /// The tag of the material. Without a material, the tagger's tag, or the default without a tagger.
     pub tag: SurfaceTag,
     /// Corners, counter-clockwise seen from outside, as indices into the mesh's vertices.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// How a surface looks: the factors of glTF's metallic-roughness model.
+/// A material: the factors of glTF's metallic-roughness model, and a surface tag.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Material {
-    /// As the file names it.
+    /// The name in the file; `None` without one.
     pub name: Option<String>,
-    /// Linear red, green, blue and opacity.
+    /// Base colour: linear red, green, blue and opacity.
     pub base_color: [f32; 4],
-    /// 0 to 1.
+    /// Metallic factor, 0 to 1.
     pub metallic: f32,
-    /// 0 to 1.
+    /// Roughness factor, 0 to 1.
     pub roughness: f32,
-    /// Linear red, green, blue of the light that it gives off.
+    /// Emitted light: linear red, green and blue.
     pub emissive: [f32; 3],
-    /// What its opacity means.
+    /// How the opacity in `base_color` is used.
     pub alpha: Alpha,
-    /// True if its back is to be seen.
+    /// True if back faces are drawn too.
     pub double_sided: bool,
-    /// What a climber finds there: from the file's extras and the tagger.
+    /// The surface tag, from the file's extras and the tagger.
     pub tag: SurfaceTag,
 }
 
-/// What a material's opacity means.
+/// How a material's opacity is used: glTF's alpha mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Alpha {
-    /// Nothing.
+    /// The opacity is ignored: the surface is opaque.
     #[default]
     Opaque,
-    /// A point is solid from this opacity on, and else not there.
+    /// Points with at least this opacity are opaque; the others are not drawn.
     Mask(f32),
-    /// A point lets through what is behind it.
+    /// The surface is blended with the background by its opacity.
     Blend,
 }
 
 impl VisualMesh {
-    /// From what a file holds, refusing positions and weights that cannot be skinned.
+    /// A mesh without triangles. Refuses positions that are not finite, and weights that cannot be
+    /// normalised.
     pub(crate) fn new(
         name: String,
         vertices: &Vertices,
@@ -136,7 +139,7 @@ impl VisualMesh {
     }
 }
 
-/// All that is to be seen as one collider mesh, tagged by its materials.
+/// Merges visual meshes into one collider mesh, with the tags of their primitives.
 pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<ColliderMesh, MeshError> {
     let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
     let (mut triangles, mut tags) = (vec![], vec![]);
@@ -163,7 +166,7 @@ pub(crate) fn merged(visual: &[VisualMesh], joint_count: usize) -> Result<Collid
     Ok(ColliderMesh::build(&source, &BuildOptions::default())?.0)
 }
 
-/// All materials of a file, in its order.
+/// Reads all materials of a file, in its order.
 pub(crate) fn materials(
     document: &Document,
     options: &LoadOptions,

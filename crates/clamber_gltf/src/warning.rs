@@ -1,90 +1,90 @@
 use std::fmt;
 
-/// Something in a file that was passed over or mended. `Display` gives it as a sentence.
+/// Something in a file that was skipped or repaired. `Display` gives a message of one line.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ImportWarning {
-    /// Animation channels that name no node.
+    /// Animation channels that name no node, skipped.
     ChannelsWithoutNode {
-        /// How many, over all animations.
+        /// Number of channels, over all animations.
         channels: usize,
     },
-    /// Animation channels that move a property unknown to this importer.
+    /// Animation channels that move a property unknown to this importer, skipped.
     UnknownChannels {
         /// Index of the animation.
         animation: usize,
-        /// How many of its channels.
+        /// Number of its channels.
         channels: usize,
     },
-    /// Nodes with a role in their extras, but without a mesh.
+    /// Nodes with a role in their extras, but without a mesh: the role has no effect.
     RolesWithoutMesh {
-        /// How many.
+        /// Number of nodes.
         nodes: usize,
     },
-    /// Node matrices with shear, which a translation, rotation and scale cannot express.
+    /// Node matrices with shear, replaced by a translation, rotation and scale, which cannot express it.
     ShearedNodes {
-        /// How many.
+        /// Number of nodes.
         nodes: usize,
-        /// The largest error of a column, as a share of its length.
+        /// Largest error of a column of a matrix, as a share of the column's length.
         worst_error: f64,
     },
     /// Materials with textures: only their factors were read.
     Textures {
-        /// How many.
+        /// Number of materials.
         materials: usize,
     },
-    /// A weak point that hangs under no joint, passed over.
+    /// A weak point that is under no joint, skipped.
     WeakPointWithoutJoint {
         /// Name of the node; `"node 3"` for node 3 without a name.
         node: String,
     },
-    /// Meshes without a skin that hang under no joint, passed over.
+    /// Meshes without a skin that are under no joint, skipped.
     MeshesWithoutJoint {
-        /// How many.
+        /// Number of meshes.
         meshes: usize,
     },
-    /// Skins that deform no mesh.
+    /// Skins of creatures without a mesh, skipped.
     UnusedSkins {
-        /// How many.
+        /// Number of skins.
         skins: usize,
     },
     /// The file has other creatures than the one that was loaded.
     OtherCreatures {
         /// Indices of the skins of the creature that was loaded.
         skins: Vec<usize>,
-        /// How many other creatures there are.
+        /// Number of other creatures.
         others: usize,
     },
-    /// Inverse bind matrices whose last row is not (0, 0, 0, 1), and was taken as if it were.
+    /// Inverse bind matrices whose last row is not (0, 0, 0, 1); they were read as if it were.
     ProjectiveInverseBinds {
         /// Index of the skin.
         skin: usize,
-        /// How many of its matrices.
+        /// Number of its matrices.
         matrices: usize,
     },
-    /// Primitives of a skinned mesh without joints and weights, passed over.
+    /// Primitives of a skinned mesh that lack joints and weights, skipped.
     PrimitivesWithoutWeights {
-        /// How many.
+        /// Number of primitives.
         primitives: usize,
     },
-    /// Primitives of points or lines, passed over.
+    /// Primitives of points or lines, skipped.
     PointsOrLines {
-        /// How many.
+        /// Number of primitives.
         primitives: usize,
     },
-    /// Primitives without positions, passed over.
+    /// Primitives without positions, skipped.
     PrimitivesWithoutPositions {
-        /// How many.
+        /// Number of primitives.
         primitives: usize,
     },
-    /// Vertices without weights, which follow the first joint that they name.
+    /// Vertices whose weights are all zero; they follow the first joint that they name.
     UnweightedVertices {
-        /// How many.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// Primitives with morph targets, which stay at their rest weights.
+    /// Primitives with morph targets, which are fixed at their rest weights.
     MorphTargets {
-        /// How many.
+        /// Number of primitives.
         primitives: usize,
     },
     /// Vertex attributes that were not read.
@@ -92,22 +92,22 @@ pub enum ImportWarning {
         /// Their names in the file, sorted.
         names: Vec<String>,
     },
-    /// An animation that moves nothing of the skeleton, passed over.
+    /// An animation that moves no joint of the skeleton, skipped.
     UnusedAnimation {
         /// Its name; `"clip 3"` for animation 3 without a name.
         animation: String,
     },
-    /// Animation channels that move nothing of the skeleton, or morph targets, passed over.
+    /// Animation channels that move morph targets, or a node that is not in the skeleton, skipped.
     UnusedChannels {
         /// Name of the animation; `"clip 3"` for animation 3 without a name.
         animation: String,
-        /// How many of its channels.
+        /// Number of its channels.
         channels: usize,
     },
 }
 
 impl ImportWarning {
-    /// Its size in memory, about, in bytes.
+    /// Its approximate size in memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         let held = match self {
             Self::WeakPointWithoutJoint { node: text }
@@ -130,87 +130,83 @@ impl fmt::Display for ImportWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ChannelsWithoutNode { channels } => {
-                write!(
-                    f,
-                    "passed over animation channels without a node: {channels}"
-                )
+                write!(f, "skipped animation channels without a node: {channels}")
             }
             Self::UnknownChannels {
                 animation,
                 channels,
             } => write!(
                 f,
-                "animation {animation}: passed over channels that move something unknown: {channels}"
+                "animation {animation}: skipped channels that move an unknown property: {channels}"
             ),
             Self::RolesWithoutMesh { nodes } => {
-                write!(f, "nodes with a role, but without a mesh: {nodes}")
+                write!(f, "nodes with a role but without a mesh: {nodes}")
             }
             Self::ShearedNodes { nodes, worst_error } => write!(
                 f,
-                "nodes whose matrix shears, which a translation, rotation and scale cannot: {nodes}; \
-                 columns are off by up to {worst_error:.1e} of their length"
+                "nodes whose matrix has shear, which was dropped: {nodes}; columns are off by up to \
+                 {worst_error:.1e} of their length"
             ),
             Self::Textures { materials } => write!(
                 f,
-                "materials with textures, of which only the factors were taken: {materials}"
+                "materials with textures, of which only the factors were read: {materials}"
             ),
-            Self::WeakPointWithoutJoint { node } => write!(
-                f,
-                "node {node:?} is a weak point, but hangs under no joint; passed over"
-            ),
+            Self::WeakPointWithoutJoint { node } => {
+                write!(f, "skipped weak point {node:?}, which is under no joint")
+            }
             Self::MeshesWithoutJoint { meshes } => write!(
                 f,
-                "passed over meshes without a skin that hang under no joint: {meshes}"
+                "skipped meshes without a skin that are under no joint: {meshes}"
             ),
-            Self::UnusedSkins { skins } => write!(f, "skins that deform no mesh: {skins}"),
+            Self::UnusedSkins { skins } => write!(f, "skipped skins without a mesh: {skins}"),
             Self::OtherCreatures { skins, others } => write!(
                 f,
-                "took the creature of {}; other creatures passed over: {others}",
+                "loaded the creature of {}; skipped other creatures: {others}",
                 creature(skins)
             ),
             Self::ProjectiveInverseBinds { skin, matrices } => write!(
                 f,
-                "skin {skin}: inverse bind matrices whose last row is not (0, 0, 0, 1), and was \
-                 taken as if it were: {matrices}"
+                "skin {skin}: inverse bind matrices whose last row is not (0, 0, 0, 1), but was \
+                 read as if it were: {matrices}"
             ),
             Self::PrimitivesWithoutWeights { primitives } => write!(
                 f,
-                "passed over primitives of a skinned mesh, without joints and weights: {primitives}"
+                "skipped primitives of a skinned mesh that lack joints and weights: {primitives}"
             ),
             Self::PointsOrLines { primitives } => {
-                write!(f, "passed over primitives of points or lines: {primitives}")
+                write!(f, "skipped primitives of points or lines: {primitives}")
             }
             Self::PrimitivesWithoutPositions { primitives } => {
-                write!(f, "passed over primitives without positions: {primitives}")
+                write!(f, "skipped primitives without positions: {primitives}")
             }
             Self::UnweightedVertices { vertices } => write!(
                 f,
-                "vertices without weights, which follow the first joint that they name: {vertices}"
+                "vertices without weights, bound to the first joint that they name: {vertices}"
             ),
             Self::MorphTargets { primitives } => write!(
                 f,
-                "primitives with morph targets, which stay at their rest weights: {primitives}"
+                "primitives with morph targets, fixed at their rest weights: {primitives}"
             ),
             Self::UnreadAttributes { names } => {
                 write!(f, "attributes that were not read: {}", names.join(", "))
             }
             Self::UnusedAnimation { animation } => write!(
                 f,
-                "animation {animation:?} moves nothing of the skeleton; passed over"
+                "skipped animation {animation:?}, which moves no joint of the skeleton"
             ),
             Self::UnusedChannels {
                 animation,
                 channels,
             } => write!(
                 f,
-                "animation {animation:?}: passed over channels that move nothing of the skeleton, \
-                 or morph targets: {channels}"
+                "animation {animation:?}: skipped channels that move morph targets or no joint of \
+                 the skeleton: {channels}"
             ),
         }
     }
 }
 
-/// A creature by its skins, for messages.
+/// Names a creature by its skins, for messages.
 pub(crate) fn creature(skins: &[usize]) -> String {
     match skins {
         [] => "a file without skins".into(),

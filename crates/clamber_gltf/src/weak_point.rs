@@ -1,4 +1,4 @@
-//! Where a creature can be wounded.
+//! Loads the weak points of a creature.
 
 use clamber_surface::rig::{JointId, WeakPoint};
 use glam::DAffine3;
@@ -8,7 +8,7 @@ use crate::members::Members;
 use crate::skeleton::Joints;
 use crate::{GltfErrorKind, ImportWarning};
 
-/// The weak points of a creature, each on the nearest joint at or above its node.
+/// Loads the weak points of a creature, each on the nearest joint at or above its node.
 pub(crate) fn load(
     contents: &Contents<'_>,
     members: &Members,
@@ -48,14 +48,15 @@ pub(crate) fn load(
     Ok(weak_points)
 }
 
-/// A node's scale at rest: the geometric mean along its axes, so that a unit ball keeps its volume.
+/// A node's scale at rest: the cube root of its change of volume, so that the ball of this radius has the
+/// volume of the transformed unit ball.
 fn radius_of(model_from_node: &DAffine3) -> f32 {
     libm::cbrt(model_from_node.matrix3.determinant().abs()) as f32
 }
 
-/// Where a node is at rest.
+/// The place of a node at rest.
 struct Place {
-    /// The nearest joint at or above it, and the way to its space; `None` under no joint.
+    /// The nearest joint at or above the node, and `joint_from_node`; `None` without such a joint.
     joint: Option<(JointId, DAffine3)>,
     model_from_node: DAffine3,
 }

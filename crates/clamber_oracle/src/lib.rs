@@ -7,6 +7,6 @@ mod pair;
 #[cfg(feature = "exact")]
 pub mod queries;
 
-/// The crate whose vectors are used here.
+/// The version of glam whose vectors this crate uses.
 pub use glam;
 pub use pair::{Core, MovingPair};

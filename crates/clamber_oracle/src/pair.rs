@@ -2,39 +2,39 @@
 
 use glam::Vec3;
 
-/// What moves against the triangle.
+/// The core of a moving sphere or capsule: its centre or its segment, without the radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Core {
-    /// A sphere.
+    /// The centre of a sphere.
     Sphere {
-        /// At time 0.
+        /// Centre at time 0.
         center: Vec3,
-        /// From time 0 to time 1.
+        /// Displacement of the centre from time 0 to time 1.
         motion: Vec3,
     },
-    /// A capsule.
+    /// The segment of a capsule.
     Capsule {
-        /// Of its segment, at time 0.
+        /// Ends of the segment at time 0.
         ends: [Vec3; 2],
-        /// Of each end, from time 0 to time 1.
+        /// Displacement of each end from time 0 to time 1.
         motions: [Vec3; 2],
     },
 }
 
-/// A triangle and a sphere or capsule; every corner and end moves on a straight line from time 0 to
+/// A triangle and a sphere or capsule. Every corner and end moves on a straight line from time 0 to
 /// time 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingPair {
-    /// Of the triangle, at both times.
+    /// Corners of the triangle, at time 0 and at time 1.
     pub corners: [[Vec3; 3]; 2],
-    /// The centre or the segment.
+    /// The core of the sphere or capsule.
     pub core: Core,
-    /// Of sphere or capsule.
+    /// Radius of the sphere or capsule.
     pub radius: f32,
 }
 
 impl MovingPair {
-    /// Ends of the core at time 0, and their motions: a sphere has two equal ones.
+    /// Ends of the core at time 0, and their displacements. Those of a sphere are equal.
     pub fn ends(&self) -> [[Vec3; 2]; 2] {
         match self.core {
             Core::Sphere { center, motion } => [[center; 2], [motion; 2]],

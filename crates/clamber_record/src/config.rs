@@ -1,7 +1,7 @@
-//! A climber's configuration as metadata: an entry for each number, named by its path. A group that the climber
-//! lacks has no entries.
+//! A climber's configuration as metadata: an entry for each number, named by its path. A group that is `None` has no
+//! entries.
 //!
-//! As the shortest text that reads back to the same bits, which JSON has not for limits that are infinite.
+//! A number is stored as the shortest text that reads back to the same bits. JSON has no such text for infinite limits.
 
 use std::collections::BTreeMap;
 
@@ -16,9 +16,9 @@ use crate::info::parse;
 
 type Metadata = BTreeMap<String, String>;
 
-/// A group of numbers, whose names are those of its fields.
+/// A group of numbers, each named after its field.
 trait Group: Sized {
-    /// Before the names, with a dot at its end.
+    /// The prefix of the names, with a dot at its end.
     const PREFIX: &str;
 
     fn write(&self, metadata: &mut Metadata);
@@ -26,7 +26,7 @@ trait Group: Sized {
     fn read(metadata: &Metadata) -> Result<Self, RecordError>;
 }
 
-/// Every field stands here once: one that is missing or unknown does not compile.
+/// Implements [`Group`] for a struct. Every field must be listed: a missing or unknown one does not compile.
 macro_rules! group {
     ($group:ident, $prefix:literal, $($field:ident),+) => {
         impl Group for $group {
@@ -163,7 +163,7 @@ fn write_optional<G: Group>(group: Option<&G>, metadata: &mut Metadata) {
     }
 }
 
-/// Any one entry says that the group is there; then all have to be.
+/// Reads a group. One entry means that the group exists; then all its entries are required.
 fn read_optional<G: Group>(metadata: &Metadata) -> Result<Option<G>, RecordError> {
     let is_there = metadata.keys().any(|key| key.starts_with(G::PREFIX));
     is_there.then(|| G::read(metadata)).transpose()
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_comes_back_with_the_groups_that_it_has() {
+    fn a_configuration_reads_back_with_the_groups_that_it_has() {
         let walker = ClimberConfig::walker();
         let climber = ClimberConfig::colossus_climber();
         assert_eq!(read_back(&walker), walker);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_without_a_short_text_and_infinite_limits_come_back() {
+    fn numbers_with_long_texts_and_infinite_limits_read_back() {
         let mut config = ClimberConfig::colossus_climber();
         config.gravity = DVec3::new(0.1 + 0.2, -1.0 / 3.0, -0.0);
         config.shake_time = f64::MIN_POSITIVE;
@@ -208,12 +208,12 @@ mod tests {
     fn no_two_numbers_share_an_entry() {
         let mut metadata = Metadata::new();
         write(&ClimberConfig::colossus_climber(), &mut metadata);
-        // 3 of gravity, the shake's time, and 5, 12, 6, 3, 5, 4, 6, 2 of the groups.
+        // 3 of gravity, 1 for `shake_time`, and 5, 12, 6, 3, 5, 4, 6, 2 of the groups.
         assert_eq!(metadata.len(), 47, "{metadata:?}");
     }
 
     #[test]
-    fn a_group_that_lacks_a_number_is_refused_by_its_name() {
+    fn a_group_that_lacks_a_number_is_refused_with_the_name_of_the_number() {
         let mut metadata = Metadata::new();
         write(&ClimberConfig::colossus_climber(), &mut metadata);
         metadata.remove("climber.tumble.friction");

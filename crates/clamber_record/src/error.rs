@@ -2,40 +2,40 @@ use std::io;
 
 use thiserror::Error;
 
-/// Why a recording could not be written or read.
+/// An error from writing or reading a recording.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The file cannot be opened, read or written.
+    /// The file cannot be opened, read or written, or the writing thread cannot be started.
     #[error("{what}: {source}")]
     Io {
-        /// What was tried, with the file's name.
+        /// The operation that failed, with the file's name if there is one.
         what: String,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// The MCAP writer refused.
+    /// The MCAP writer failed.
     #[error("the recording cannot be written: {}", reason(.0))]
     Write(#[from] mcap::McapError),
     /// A message cannot be encoded.
     #[error("a message on {topic} cannot be encoded: {reason}")]
     Encode {
-        /// Its topic.
+        /// Topic of the message.
         topic: &'static str,
         /// Why.
         reason: String,
     },
-    /// A tick does not follow the one before it.
+    /// A tick's number is not one more than the number of the tick before.
     #[error("tick {found} cannot follow tick {last}: record every tick once, in order")]
     Order {
-        /// The last one recorded.
+        /// The last tick that was recorded.
         last: u64,
-        /// The one handed over.
+        /// The tick that does not follow it.
         found: u64,
     },
-    /// The palette is not one of the surface's creature.
+    /// The palette and the surface's mesh differ in the number of joints.
     #[error(
-        "the surface has {mesh} joints, but the palette {palette}: hand over the palette that posed it"
+        "the surface has {mesh} joints, but the palette has {palette}: pass the palette that posed it"
     )]
     JointCount {
         /// Joints of the surface's mesh.
@@ -43,52 +43,52 @@ pub enum RecordError {
         /// Matrices of the palette.
         palette: usize,
     },
-    /// Writing has ended earlier, by an error that was told then.
+    /// The recording ended at an earlier error, which was returned then.
     #[error("the recording has ended: an earlier part of it could not be written")]
     Ended,
-    /// The seconds of a tick are not positive or not finite.
-    #[error("a tick must last a positive number of seconds, found {0}")]
+    /// The duration of a tick is not positive or not finite.
+    #[error("a tick must last a positive, finite number of seconds, found {0}")]
     TickSeconds(f64),
-    /// The file does not begin as MCAP files do.
+    /// The file does not begin with MCAP's magic bytes.
     #[error(
-        "no MCAP file: it does not begin with MCAP's magic bytes; name a file made by a recorder"
+        "not an MCAP file: it does not begin with MCAP's magic bytes; open a file made by a recorder"
     )]
     NotMcap,
-    /// The file is larger than a reader takes into memory.
-    #[error("{bytes} bytes are more than the {limit} that are read at once; record shorter runs")]
+    /// The file is larger than the reader loads into memory, 1 GiB.
+    #[error("the file has more than the {limit} bytes that can be read; record shorter runs")]
     TooLarge {
-        /// Its size.
+        /// Bytes that were read before the reader gave up: `limit` + 1.
         bytes: u64,
-        /// The largest that is read.
+        /// The largest size that is read, bytes.
         limit: u64,
     },
-    /// An MCAP file without what a recorder writes first: another program's, or cut or damaged before that.
-    #[error("no recording of clamber's: {0}")]
+    /// An MCAP file without the metadata that a recorder writes first: another program's file, or cut or damaged there.
+    #[error("not a recording of clamber: {0}")]
     NotARecording(String),
-    /// A message does not hold what it should, although its chunk is whole.
-    #[error("the message at byte {at} on {topic} cannot be read: {reason}; record the run anew")]
+    /// The contents of a message are wrong, although the checksum of its chunk is right.
+    #[error("the message at byte {at} on {topic} cannot be read: {reason}; record the run again")]
     Message {
-        /// Where it stands in the file.
+        /// Offset of the message in the file, bytes.
         at: usize,
-        /// Its topic.
+        /// Topic of the message.
         topic: &'static str,
         /// Why.
         reason: String,
     },
-    /// There is no such tick.
+    /// The recording does not have this tick.
     #[error("no tick {asked}: the recording holds {}", held(*.ticks))]
     NoTick {
         /// The tick asked for.
         asked: u64,
-        /// The first and the last that there are.
+        /// The first and the last tick of the recording; `None` without ticks.
         ticks: Option<(u64, u64)>,
     },
-    /// No snapshot stands at or before a tick.
+    /// There is no snapshot at or before this tick.
     #[error("no snapshot at or before tick {0}: replay from the beginning")]
     NoSnapshot(u64),
 }
 
-/// mcap's own text for errors of the system leaves out what the system says.
+/// The text of an error. mcap's own text for I/O errors leaves out the system's message.
 fn reason(error: &mcap::McapError) -> String {
     match error {
         mcap::McapError::Io(source) => source.to_string(),

@@ -1,8 +1,8 @@
-//! The records of an MCAP file, walked from the front: what a crash or a damage leaves can be read up to
-//! there, and neither footer nor summary is needed.
+//! Walks the records of an MCAP file from the front. So a file can be read up to where a crash or damage ends
+//! it, and neither footer nor summary is needed.
 //!
-//! Lengths are checked against what is there before anything is taken; a chunk counts only if its checksum
-//! does. Nothing is read in more than one pass.
+//! Lengths are checked against the bytes that are left before anything is read. A chunk counts only if its
+//! checksum is right. The records are walked in one pass.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,18 +12,18 @@ use mcap::{MAGIC, parse_record};
 
 use crate::{Ending, RecordError, topics};
 
-/// Bytes of a record before its body: what it is, and how long.
+/// Bytes of a record before its body: its kind and its length.
 const PREFIX: usize = 9;
 
 /// Bytes of the header of a chunk that is not compressed.
 const CHUNK_HEADER: usize = 40;
 
-/// What an MCAP file holds of what recorders write.
+/// The contents of an MCAP file that recorders write.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
-    /// By name; of two with the same name the first.
+    /// Metadata records by name; the first of those with the same name.
     pub(crate) metadata: BTreeMap<String, BTreeMap<String, String>>,
-    /// Where messages stand, in order.
+    /// The kind and the bytes of each message, in order.
     pub(crate) messages: Vec<(Kind, Range<usize>)>,
     /// How the file ends.
     pub(crate) ending: Ending,
@@ -77,7 +77,7 @@ fn walk(bytes: &[u8], contents: &mut Contents) -> Result<(), Stop> {
                 let whole = bytes[body.end..].ends_with(MAGIC);
                 return if whole { Ok(()) } else { Err(Stop::Early) };
             }
-            // Message indices and what other programs add.
+            // Message indices, and records that other programs add.
             op::HEADER | op::MESSAGE_INDEX | op::ATTACHMENT | 0x80.. => {}
             other => {
                 return Err(damaged(format!(
@@ -89,7 +89,7 @@ fn walk(bytes: &[u8], contents: &mut Contents) -> Result<(), Stop> {
     }
 }
 
-/// The kind and the body of the record at a place, if all of it is there before `end`.
+/// The kind and the body of the record at `at`; `None` if it reaches beyond `end`.
 fn record(bytes: &[u8], at: usize, end: usize) -> Option<(u8, Range<usize>)> {
     let start = at.checked_add(PREFIX).filter(|start| *start <= end)?;
     let length = bytes.get(at + 1..start)?.try_into().ok()?;
@@ -113,9 +113,9 @@ fn walk_chunk(
         return Err(damaged("a compressed chunk; recorders write none"));
     }
     let sizes = (header.uncompressed_size, chunk.len());
-    // Where the data begins follows from where the chunk ends: nothing may stand behind it.
+    // The data must end where the chunk ends, since its place is computed from the chunk's end.
     if sizes != (data.len() as u64, CHUNK_HEADER + data.len()) {
-        return Err(damaged("a chunk of another size than it says"));
+        return Err(damaged("a chunk whose size is not as its header says"));
     }
     let data = chunk.start + CHUNK_HEADER..chunk.end;
     if crc32fast::hash(&bytes[data.clone()]) != header.uncompressed_crc {
@@ -124,7 +124,7 @@ fn walk_chunk(
     let mut at = data.start;
     while at < data.end {
         let Some((opcode, body)) = record(bytes, at, data.end) else {
-            return Err(damaged("a chunk whose records do not fit it"));
+            return Err(damaged("a record that reaches beyond its chunk"));
         };
         match (opcode, parse_inner(opcode, &bytes[body.clone()])) {
             (_, Some(Record::Channel(channel))) => {
@@ -153,7 +153,7 @@ fn walk_chunk(
     Ok(())
 }
 
-/// Only what is needed: the parser of other kinds is not made for any bytes whatever.
+/// Parses only the kinds that are needed: the parser of the others is not made for arbitrary bytes.
 fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     if matches!(opcode, op::CHANNEL | op::MESSAGE) {
         parse_record(opcode, body).ok()
@@ -162,15 +162,15 @@ fn parse_inner(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     }
 }
 
-/// Holds the checksum of everything before the end of the data against what that record says.
+/// Compares the checksum of everything before the record that ends the data with the checksum in that record.
 fn check_data(bytes: &[u8], at: usize, body: Range<usize>) -> Result<(), Stop> {
     let Ok(Record::DataEnd(end)) = parse_record(op::DATA_END, &bytes[body]) else {
-        return Err(Stop::Damaged(at, "an end that cannot be read".to_owned()));
+        return Err(Stop::Damaged(at, "a broken data end record".to_owned()));
     };
     if end.data_section_crc == crc32fast::hash(&bytes[..at]) {
         Ok(())
     } else {
-        let reason = "the checksum of the whole is wrong: metadata or an index has changed";
+        let reason = "the checksum of all data is wrong: metadata or an index has changed";
         Err(Stop::Damaged(at, reason.to_owned()))
     }
 }

@@ -1,12 +1,12 @@
-//! Numbers that differ, in all likelihood, if any bit of what they are of does. For comparing runs, not
-//! for hash tables.
+//! 64-bit hashes for comparing runs, not for hash tables. If any bit of the hashed data differs, the hash
+//! differs too, in all likelihood.
 
 use clamber_surface::geometry::Affine;
 use clamber_surface::mesh::{ColliderMesh, SurfaceKind, VertexId};
 use clamber_surface::rig::{Clip, Interpolation, Keyframes, Palette, Skeleton, Transform};
 use glam::{Quat, Vec3};
 
-/// Folds words of 64 bits one after another: a multiplication a word, since this runs every tick.
+/// Hashes 64-bit words one after another. It takes one multiplication per word, since it runs every tick.
 #[derive(Clone, Copy, Debug)]
 struct Fold(u64);
 
@@ -14,7 +14,7 @@ impl Fold {
     const START: Self = Self(0xcbf2_9ce4_8422_2325);
 
     fn word(&mut self, word: u64) {
-        // Odd, bits well spread: 2^64 over the golden ratio.
+        // 2^64 divided by the golden ratio: an odd number with well spread bits.
         self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     }
 
@@ -62,13 +62,13 @@ impl Fold {
     }
 }
 
-/// Of a palette: of every bit of every matrix.
+/// A 64-bit hash of every bit of a palette's matrices, for comparing runs.
 pub fn palette_fingerprint(palette: &Palette) -> u64 {
     matrices_fingerprint(palette.matrices())
 }
 
 pub(crate) fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
-    // Two folds side by side: a multiplication waits for the one before it in its own.
+    // Two folds side by side, since each multiplication waits for the one before it in the same fold.
     let (mut even, mut odd) = (Fold::START, Fold::START);
     for matrix in matrices {
         let [x, y, z] = &matrix.rows;
@@ -84,8 +84,10 @@ pub(crate) fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
     even.0
 }
 
-/// Of everything that a creature's motion follows from: joints, clips with every key frame, and the mesh
-/// with its influences and tags.
+/// A 64-bit hash of everything that determines a creature's motion, for comparing creatures.
+///
+/// It covers the joints, the clips with every key frame, and the mesh with its influences and tags. It leaves out
+/// [`SurfaceTag::user`](clamber_surface::mesh::SurfaceTag::user).
 pub fn creature_fingerprint(skeleton: &Skeleton, clips: &[Clip], mesh: &ColliderMesh) -> u64 {
     let mut fold = Fold::START;
     fold.word(skeleton.joints().len() as u64);

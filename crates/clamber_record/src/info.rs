@@ -5,33 +5,36 @@ use clamber_climber::ClimberConfig;
 
 use crate::{RecordError, config};
 
-/// What a recording is of: all that is needed to make the scene again, before any tick.
+/// The metadata of a recording: all that is needed to make its scene again, as it was before the first tick.
 ///
-/// Stored as two metadata records, numbers as the shortest text that reads back to the same bits.
+/// It is stored as two metadata records. Floating-point numbers are stored as the shortest text that reads back
+/// to the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordingInfo {
     /// The creature's name, for people.
     pub creature: String,
-    /// Its [`creature_fingerprint`](crate::creature_fingerprint): a file that has changed is noticed.
+    /// The creature's [`creature_fingerprint`](crate::creature_fingerprint). It tells whether the creature has
+    /// changed since.
     pub creature_fingerprint: u64,
-    /// Seconds of a tick.
+    /// Duration of a tick, seconds; positive and finite.
     pub tick_seconds: f64,
-    /// What the climber is made of. As `climber.` and the field's path, a number each; of a group that it lacks nothing.
+    /// The climber's configuration. Each number is an entry, `climber.` and the path of its field. A group that is
+    /// `None` has no entries.
     pub climber: ClimberConfig,
-    /// What the scene was made from, in the caller's words: seed, options, files.
+    /// What the scene was made from, in the caller's own entries: seed, options, files.
     pub settings: BTreeMap<String, String>,
     /// The version of this crate that wrote the recording. A recorder always writes its own.
     pub version: String,
 }
 
 impl RecordingInfo {
-    /// The version that recorders write.
+    /// The version of this crate, as recorders write it.
     pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-    /// The name of the metadata record of everything but the settings.
+    /// The name of the metadata record that holds everything but the settings.
     pub const METADATA: &str = "clamber";
 
-    /// The name of the metadata record of the settings.
+    /// The name of the metadata record that holds the settings.
     pub const SETTINGS: &str = "settings";
 
     pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
@@ -73,7 +76,7 @@ impl RecordingInfo {
 fn text<'a>(metadata: &'a BTreeMap<String, String>, key: &str) -> Result<&'a String, RecordError> {
     metadata
         .get(key)
-        .ok_or_else(|| RecordError::NotARecording(format!("its metadata says nothing about {key}")))
+        .ok_or_else(|| RecordError::NotARecording(format!("its metadata has no entry {key}")))
 }
 
 pub(crate) fn parse<T: FromStr>(

@@ -1,14 +1,15 @@
 //! Records a climber and the creature under it, tick by tick, and replays them bit for bit.
 //!
-//! A recording is an [MCAP](https://mcap.dev) file of protobuf messages, in chunks and indexed: Foxglove and
-//! Rerun open it as it is. In order of priority it is
+//! A recording is an [MCAP](https://mcap.dev) file of protobuf messages, in chunks and with an index. Foxglove
+//! and Rerun open it directly. Its properties, in order of priority:
 //!
-//! 1. exact: each tick's input, every bit of the climber's state, and fingerprints of the palette and of
-//!    whatever else the scene has, so that a [`replay()`] finds the first tick that differs;
-//! 2. the same bytes for the same run: times are ticks, there is no clock in it;
-//! 3. readable after a crash up to the last whole chunk, and never believed where it is damaged;
-//! 4. cheap: what only people look at (joints, skin, what queries touched) is recorded less often; see
-//!    [`RecordOptions`].
+//! 1. It is exact: it holds each tick's input, every bit of the climber's state, and fingerprints of the
+//!    palette and of the rest of the scene. So a [`replay()`] finds the first tick that differs.
+//! 2. The same run gives the same bytes: times follow from tick numbers, not from a clock.
+//! 3. After a crash it is readable up to the last whole chunk. Damage is detected, and nothing is read from
+//!    there on.
+//! 4. It is cheap: data that only people look at (joints, skin, triangles that queries touched) is recorded
+//!    less often; see [`RecordOptions`].
 //!
 //! ```
 //! use clamber_climber::ClimberInput;
@@ -22,7 +23,7 @@
 //! # use clamber_world::{Obstacle, ObstacleId};
 //! # use glam::{DVec3, Vec3};
 //!
-//! // A slab on one joint, that rises, and a climber that comes down on it, walks and jumps.
+//! // The scene is a rising slab on one joint, and a climber that lands on it, walks and jumps.
 //! # let joint = Joint {
 //! #     name: "slab".into(),
 //! #     parent: None,
@@ -97,8 +98,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Not for streaming: there is no server. Not for archives: another version of this crate may read a
-//! recording differently, and says so, and another build of the scene may well differ in bits.
+//! It is not for streaming: there is no server. It is not for archives either: another version of this crate
+//! may refuse a recording ([`RecordingInfo::version`] is the version that wrote it), and another build of the
+//! scene may replay with different bits.
 
 mod config;
 mod error;

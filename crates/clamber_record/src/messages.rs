@@ -1,5 +1,5 @@
-//! clamber's own messages. Their schemas come from foxglove's `Encode`, and they are read by prost: field
-//! numbers follow the order of the fields in both.
+//! clamber's own messages. Their schemas come from foxglove's `Encode`, and prost reads them. In both, field
+//! numbers follow the order of the fields.
 
 use clamber_climber::{
     Blow, ClimberInput, ClimberMode, ClimberState, FlyingMemory, HangingMemory, LedgeHangingMemory,
@@ -10,7 +10,7 @@ use clamber_world::{Attachment, MaterialPoint, ObstacleId, SurfaceKind, SurfaceT
 use foxglove::Encode;
 use glam::{DQuat, DVec3};
 
-/// In world space unless it is said otherwise.
+/// A vector, in world space unless its field says otherwise.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Vector {
     #[prost(double, tag = "1")]
@@ -33,7 +33,7 @@ pub(crate) struct Rotation {
     pub(crate) w: f64,
 }
 
-/// What the climber was asked for.
+/// The climber's input.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Input {
     #[prost(message, required, tag = "1")]
@@ -54,7 +54,7 @@ pub(crate) struct Input {
     pub(crate) aim: Vector,
 }
 
-/// What struck it.
+/// A blow that struck the climber.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Struck {
     #[prost(message, required, tag = "1")]
@@ -65,7 +65,7 @@ pub(crate) struct Struck {
     pub(crate) by: Option<u64>,
 }
 
-/// What it stands on, grips, or hangs from.
+/// The support that the climber stands on, grips, or hangs from.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Held {
     #[prost(uint64, tag = "1")]
@@ -76,12 +76,12 @@ pub(crate) struct Held {
     pub(crate) coordinates: Vector,
     #[prost(message, required, tag = "4")]
     pub(crate) contact: Vector,
-    /// In the frame of the material, as the normal.
+    /// In the frame of the material, like `normal`.
     #[prost(message, required, tag = "5")]
     pub(crate) offset: Vector,
     #[prost(message, required, tag = "6")]
     pub(crate) normal: Vector,
-    /// Of the face, in the frame of the material.
+    /// Normal of the face, in the frame of the material.
     #[prost(message, required, tag = "7")]
     pub(crate) face: Vector,
     #[prost(message, required, tag = "8")]
@@ -96,7 +96,7 @@ pub(crate) struct Held {
     pub(crate) user: u32,
 }
 
-/// Numbers that modes of the game's own remember.
+/// Memory of the game's own modes.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Memory {
     #[prost(double, tag = "1")]
@@ -117,7 +117,7 @@ pub(crate) struct Memory {
     pub(crate) h: f64,
 }
 
-/// Everything that a climber remembers.
+/// The climber's state.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct State {
     #[prost(message, required, tag = "1")]
@@ -126,7 +126,7 @@ pub(crate) struct State {
     pub(crate) velocity: Vector,
     #[prost(message, required, tag = "3")]
     pub(crate) heading: Vector,
-    /// As `ClimberMode::number` says.
+    /// `ClimberMode::number` of its mode.
     #[prost(uint32, tag = "4")]
     pub(crate) mode: u32,
     #[prost(message, optional, tag = "5")]
@@ -161,17 +161,17 @@ pub(crate) struct State {
     pub(crate) memory: Memory,
     #[prost(bool, tag = "20")]
     pub(crate) shoved: bool,
-    /// For how long it has lain still, seconds.
+    /// How long it has lain still, seconds.
     #[prost(double, tag = "21")]
     pub(crate) still: f64,
-    /// Where its legs ended as it hung, from its position.
+    /// End of its legs while it hangs, relative to its position.
     #[prost(message, required, tag = "22")]
     pub(crate) legs: Vector,
     #[prost(bool, tag = "23")]
     pub(crate) crushed: bool,
 }
 
-/// How the tick went.
+/// A summary of the step's report.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Report {
     #[prost(message, required, tag = "1")]
@@ -182,10 +182,10 @@ pub(crate) struct Report {
     pub(crate) rounds: u32,
     #[prost(bool, tag = "4")]
     pub(crate) is_clear: bool,
-    /// Of everything that was pushed together, newton seconds.
+    /// Sum of the impulses of all pushes, newton seconds.
     #[prost(message, required, tag = "5")]
     pub(crate) impulse: Vector,
-    /// How many were pushed.
+    /// Number of pushes.
     #[prost(uint32, tag = "6")]
     pub(crate) pushes: u32,
 }
@@ -209,7 +209,7 @@ pub(crate) struct Tick {
     pub(crate) scene_fingerprint: u64,
 }
 
-/// What the scene needs to go on from a tick, in its own words.
+/// A snapshot: what the scene needs to resume from a tick, as the caller's text.
 #[derive(Clone, PartialEq, Encode, prost::Message)]
 pub(crate) struct Snapshot {
     #[prost(uint64, tag = "1")]
@@ -218,7 +218,7 @@ pub(crate) struct Snapshot {
     pub(crate) scene: String,
 }
 
-/// What the queries of a tick touched.
+/// Counts of what the queries of a tick touched.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Touched {
     #[prost(uint64, tag = "1")]
@@ -241,7 +241,8 @@ pub(crate) struct Touched {
 
 impl Tick {
     /// Appends the message. prost writes it three times as fast as foxglove, but leaves out numbers that
-    /// equal zero, and the sign of a negative zero with them: where there is one, foxglove writes.
+    /// equal zero, and so loses the sign of a negative zero. A message with a negative zero is written by
+    /// foxglove.
     pub(crate) fn write(&self, buffer: &mut Vec<u8>) -> Result<(), String> {
         if self.has_negative_zero() {
             Encode::encode(self, buffer).map_err(|error| error.to_string())
@@ -509,7 +510,7 @@ impl From<Held> for Support {
 }
 
 impl State {
-    /// `Err` with the mode if it is none that this version knows.
+    /// The climber's state; `Err` with the number of its mode if this version does not know the mode.
     pub(crate) fn to_climber(self) -> Result<ClimberState, u32> {
         let mode = ClimberMode::from_number(self.mode);
         Ok(ClimberState {

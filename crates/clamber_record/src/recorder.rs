@@ -12,21 +12,25 @@ use crate::taken::Taken;
 use crate::writing::Writing;
 use crate::{RecordError, RecordingInfo};
 
-/// How often what is recorded. Inputs, states and fingerprints are recorded every tick, whatever stands here.
+/// How often views for people are recorded, and how large chunks are.
+///
+/// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks from one message of transforms to the next; 0 for none. Default 4: 15 a second at 60 Hz. A
-    /// creature of 45 joints takes 6 kB a message. Lower it for smooth limbs.
+    /// Ticks between two messages of transforms; 0 for none. Default 4: 15 messages a second at 60 Hz. A
+    /// message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
     pub transforms_every: u32,
-    /// Ticks from one look at the skin to the next, points and touched triangles; 0 for none. Default 30: 2 a
-    /// second at 60 Hz: the dearest part. Skins the whole creature and takes some 50 kB a look. Raise it for large creatures.
-    /// Until a look is written it shares the surface's mesh, which the first edit meanwhile has to copy.
+    /// Ticks between two views of the skin, with its points and the touched triangles; 0 for none. Default 30: 2
+    /// views a second at 60 Hz. This is the most expensive part: each view skins the whole creature and takes some
+    /// 50 kB. Raise it for large creatures.
+    ///
+    /// Until a view is written, it shares the surface's mesh. The first edit in that time has to copy the mesh.
     pub skin_every: u32,
-    /// Points of the skin at most. Default 2000.
+    /// Largest number of points in a view of the skin. Default 2000; 0 means 1.
     pub skin_points: usize,
-    /// Ticks in a chunk. Default 60; 0 is taken for 1. A crash loses the chunk being gathered and those not yet
-    /// written: up to three in all, one or two where the disk keeps up. Raise it for fewer, larger writes; each
-    /// tick waits in memory with its palette.
+    /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
+    /// up to three in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
+    /// waits in memory with its palette.
     pub chunk_ticks: u32,
 }
 
@@ -41,59 +45,60 @@ impl Default for RecordOptions {
     }
 }
 
-/// One tick, as it stands at its end.
+/// The data of one tick, as it is at the end of the tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickView<'a> {
-    /// Its number: one more than that of the tick before.
+    /// Number of the tick: any for the first tick, then one more than the number of the tick before.
     pub tick: u64,
-    /// What the climber was asked for.
+    /// The climber's input in this tick.
     pub input: &'a ClimberInput,
-    /// What it became.
+    /// The climber's state after its step.
     pub state: &'a ClimberState,
-    /// What happened on the way.
+    /// The report of the climber's step.
     pub report: &'a StepReport,
-    /// The creature.
+    /// The creature's surface.
     pub surface: &'a SkinnedSurface,
-    /// What it was posed by.
+    /// The palette that posed the surface.
     pub palette: &'a Palette,
-    /// Of whatever else of the scene a replay is to compare; 0 for nothing.
+    /// A hash of the rest of the scene, for a replay to compare; 0 for nothing.
     pub scene_fingerprint: u64,
 }
 
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
-/// A tick is copied, no more. Once a chunk's ticks are together, a thread skins, encodes and writes them, in
-/// the order of the ticks, while the game goes on. If that takes longer than the next chunk's ticks do, the
-/// game waits: nothing is left out.
+/// [`Recorder::tick`] only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
+/// ticks, in their order, while the game goes on. If the thread falls behind, the game waits: no tick is left
+/// out.
 ///
-/// A chunk is held in memory and written as a whole, so that what stands in the file can be read whenever
-/// writing stops. Dropped without [`Recorder::finish`], it finishes the file and keeps quiet about errors.
+/// A chunk is held in memory and written as a whole, so the file is readable up to the last written chunk
+/// whenever writing stops. A recorder that is dropped without [`Recorder::finish`] finishes the file too, but
+/// ignores errors.
 pub struct Recorder<W: Write> {
     options: RecordOptions,
     last: Option<u64>,
-    /// The ticks of the chunk that is being gathered are the first `gathered` of these; the others are kept for
+    /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
     /// their memory.
     chunk: Vec<Taken>,
     gathered: usize,
-    /// `None` once it has ended.
+    /// `None` once writing has ended.
     thread: Option<WriterThread<W>>,
 }
 
 struct WriterThread<W> {
     chunks: SyncSender<Chunk>,
-    /// Chunks that were written, for their memory.
+    /// Chunks that were written come back, so that their memory is reused.
     written: Receiver<Vec<Taken>>,
     handle: JoinHandle<Result<W, RecordError>>,
 }
 
-/// So many ticks from the front.
+/// Ticks, and how many of them from the front belong to the chunk.
 type Chunk = (Vec<Taken>, usize);
 
 impl Recorder<BufWriter<File>> {
-    /// Into a new file; one of that name is overwritten.
+    /// A recorder that writes to a new file. An existing file at that path is overwritten.
     ///
     /// # Errors
-    /// [`RecordError::Io`] if it cannot be made, and as [`Recorder::new`].
+    /// [`RecordError::Io`] if the file cannot be created, and as [`Recorder::new`].
     pub fn create(
         path: impl AsRef<Path>,
         info: &RecordingInfo,
@@ -110,10 +115,13 @@ impl Recorder<BufWriter<File>> {
 }
 
 impl<W: Write + Send + 'static> Recorder<W> {
-    /// Into anything that takes bytes. `info.version` is not written: the file says which version made it.
+    /// A recorder that writes to `out`, which it owns.
+    ///
+    /// `info.version` is ignored: the file gets [`RecordingInfo::VERSION`].
     ///
     /// # Errors
-    /// [`RecordError::TickSeconds`], [`RecordError::Write`]; [`RecordError::Io`] if the system gives no thread.
+    /// [`RecordError::TickSeconds`] if `info.tick_seconds` is not positive or not finite, [`RecordError::Write`] if
+    /// `out` fails, [`RecordError::Io`] if the thread cannot be started.
     pub fn new(
         out: W,
         info: &RecordingInfo,
@@ -127,7 +135,7 @@ impl<W: Write + Send + 'static> Recorder<W> {
         let work = move || {
             for (mut chunk, count) in chunks {
                 writing.chunk(&mut chunk[..count])?;
-                // There is nobody to take it back once the recorder waits for the end.
+                // Fails once the recorder waits for the end: then it takes no chunk back.
                 let _ = back.send(chunk);
             }
             writing.finish()
@@ -152,15 +160,18 @@ impl<W: Write + Send + 'static> Recorder<W> {
 }
 
 impl<W: Write> Recorder<W> {
-    /// Records a tick. The surface is only read; skin that the views ask for is not counted as touched.
+    /// Records a tick.
+    ///
+    /// The surface is only read: recording does not change [`SkinnedSurface::diagnostics`].
     ///
     /// # Errors
-    /// [`RecordError::Order`] unless ticks come one after another, [`RecordError::JointCount`] for a palette
-    /// that does not fit the surface: such a tick is not recorded, the next may be. [`RecordError::Write`] or
-    /// another one if an earlier chunk could not be written, [`RecordError::Ended`] ever after.
+    /// [`RecordError::Order`] unless the tick's number is one more than the last one's, and
+    /// [`RecordError::JointCount`] for a palette that does not fit the surface. Such a tick is not recorded, but
+    /// recording can go on. [`RecordError::Write`] or another error if an earlier chunk could not be written, and
+    /// [`RecordError::Ended`] at every call after that.
     ///
     /// # Panics
-    /// As the writer did, if it did.
+    /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
     pub fn tick(&mut self, view: &TickView<'_>) -> Result<(), RecordError> {
         if self.thread.is_none() {
             return Err(RecordError::Ended);
@@ -190,8 +201,10 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Records what the scene needs to go on from the tick recorded last, beside the climber's state, in
-    /// words of its own. To be read back by [`Recording::snapshot`](crate::Recording::snapshot).
+    /// Records a snapshot of the scene after the tick recorded last.
+    ///
+    /// `scene` is what the scene needs to resume from that tick, beside the climber's state, in a format of its own.
+    /// [`Recording::snapshot`](crate::Recording::snapshot) reads it back.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
@@ -199,7 +212,7 @@ impl<W: Write> Recorder<W> {
         if self.thread.is_none() {
             return Err(RecordError::Ended);
         }
-        // What was handed over was so for the sake of a tick that came after.
+        // A chunk is handed over only when another tick follows, so the last tick is still here.
         let last = self.chunk[..self.gathered].last_mut();
         let tick = last.ok_or(RecordError::NoTick {
             asked: 0,
@@ -209,19 +222,20 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Writes what is left, and the index; gives back where it was written to.
+    /// Writes the remaining ticks and the index, and gives back `out`.
     ///
     /// # Errors
-    /// [`RecordError::Write`], [`RecordError::Io`]; [`RecordError::Ended`] if a tick told of the failure.
+    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
+    /// [`RecordError::Ended`] if [`Recorder::tick`] has returned that error already.
     ///
     /// # Panics
-    /// As the writer did, if it did.
+    /// If `out` panicked: that panic is resumed here.
     pub fn finish(mut self) -> Result<W, RecordError> {
         self.hand_over()?;
         self.end()
     }
 
-    /// Gives the ticks that were gathered to the thread.
+    /// Passes the gathered ticks to the thread.
     fn hand_over(&mut self) -> Result<(), RecordError> {
         let thread = self.thread.as_ref().ok_or(RecordError::Ended)?;
         let next = thread.written.try_recv().unwrap_or_default();
@@ -230,11 +244,11 @@ impl<W: Write> Recorder<W> {
         if thread.chunks.send((chunk, count)).is_ok() {
             return Ok(());
         }
-        // The thread takes no more: it has ended on an error.
+        // The thread takes no more chunks: it has ended with an error.
         self.end().and(Err(RecordError::Ended))
     }
 
-    /// Waits for the thread, and panics as it did.
+    /// Waits for the thread to end. If it panicked, resumes the panic.
     fn end(&mut self) -> Result<W, RecordError> {
         let WriterThread { chunks, handle, .. } = self.thread.take().ok_or(RecordError::Ended)?;
         drop(chunks);
@@ -248,7 +262,7 @@ impl<W: Write> Recorder<W> {
 impl<W: Write> Drop for Recorder<W> {
     fn drop(&mut self) {
         if let Some(WriterThread { chunks, handle, .. }) = self.thread.take() {
-            // A thread that takes no more has its reason, which nobody asks for now.
+            // Errors are ignored: a drop cannot return them.
             let chunk = core::mem::take(&mut self.chunk);
             let _ = chunks.send((chunk, self.gathered));
             drop(chunks);

@@ -11,21 +11,21 @@ use crate::file::{self, Kind};
 use crate::messages::{Snapshot, Tick};
 use crate::{RecordError, RecordingInfo, topics};
 
-/// Larger files are refused: a recording is read into memory. Twenty minutes of a battle have 240 MB.
+/// The largest file that is read, bytes: a recording is read into memory. Twenty minutes of a battle have 240 MB.
 const LARGEST: u64 = 1 << 30;
 
-/// How a recording ends.
+/// How the file of a recording ends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
-    /// As its recorder finished it.
+    /// The file is whole: its recorder finished it.
     Whole,
-    /// Before that: its recorder was stopped, or the file was cut.
+    /// The file ends early: its recorder was stopped, or the file was cut.
     #[default]
     Early,
-    /// It is damaged from a byte on; what stands before that is whole.
+    /// The file is damaged from a byte on; everything before it is whole.
     Damaged {
-        /// The byte.
+        /// Offset of that byte in the file.
         at: usize,
         /// What is wrong there.
         reason: String,
@@ -46,48 +46,48 @@ impl fmt::Display for Ending {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedTick {
-    /// Its number.
+    /// Number of the tick.
     pub tick: u64,
-    /// What the climber was asked for.
+    /// The climber's input in this tick.
     pub input: ClimberInput,
-    /// Its state at the end of the tick, bit for bit.
+    /// The climber's state at the end of the tick, bit for bit.
     pub state: ClimberState,
-    /// Of that state.
+    /// [`ClimberState::fingerprint`] of that state.
     pub state_fingerprint: u64,
-    /// Of the creature's palette.
+    /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
     pub palette_fingerprint: u64,
-    /// Of whatever else the scene had recorded; 0 for nothing.
+    /// The caller's hash of the rest of the scene; 0 for nothing.
     pub scene_fingerprint: u64,
 }
 
-/// What a scene needs to go on from a tick.
+/// A snapshot: what a scene needs to resume from a tick.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedSnapshot {
     /// The tick, with the climber's state at its end.
     pub tick: RecordedTick,
-    /// The rest, in the scene's own words.
+    /// The text given to [`Recorder::snapshot`](crate::Recorder::snapshot).
     pub scene: String,
 }
 
-/// A recording that was read: its metadata, and every tick up to where the file ends or is damaged.
+/// A recording that was read: its metadata, and all ticks up to where the file ends or is damaged.
 #[derive(Clone, Debug)]
 pub struct Recording {
     info: RecordingInfo,
     bytes: Vec<u8>,
     first: u64,
-    /// Where each tick's message stands.
+    /// The bytes of each tick's message.
     ticks: Vec<Range<usize>>,
-    /// Ticks with a snapshot, ascending, and where it stands.
+    /// Ticks with a snapshot, ascending, and the bytes of its message.
     snapshots: Vec<(u64, Range<usize>)>,
     ending: Ending,
 }
 
 impl Recording {
-    /// Reads a file.
+    /// Reads a recording from a file of at most 1 GiB.
     ///
     /// # Errors
-    /// [`RecordError::Io`], [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
+    /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
         let path = path.as_ref();
         let failed = |source| RecordError::Io {
@@ -96,7 +96,7 @@ impl Recording {
         };
         let file = File::open(path).map_err(failed)?;
         let mut bytes = Vec::new();
-        // One more than allowed, so that a longer file shows, whatever the file system says of its length.
+        // One byte more than allowed shows that a file is too long, whatever length the file system reports.
         let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
         let read = read.map_err(failed)? as u64;
         if read > LARGEST {
@@ -108,11 +108,14 @@ impl Recording {
         Self::from_bytes(bytes)
     }
 
-    /// Reads what a recorder wrote. A file that was cut or damaged gives the ticks before that; see
-    /// [`Recording::ending`].
+    /// Reads a recording from the bytes of its file.
+    ///
+    /// A file that was cut or damaged gives the ticks before that place; see [`Recording::ending`].
     ///
     /// # Errors
-    /// [`RecordError::NotMcap`], [`RecordError::NotARecording`], [`RecordError::TickSeconds`].
+    /// [`RecordError::NotMcap`] if the bytes do not begin as an MCAP file, [`RecordError::NotARecording`] if the
+    /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
+    /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
         let mut contents = file::read(&bytes)?;
         let mut take = |name: &str| {
@@ -142,7 +145,7 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Checks a message and remembers where it stands.
+    /// Checks a message and stores its place.
     fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
         match kind {
             Kind::Tick => {
@@ -169,7 +172,7 @@ impl Recording {
         Ok(())
     }
 
-    /// What it is a recording of.
+    /// The metadata of the recording.
     pub fn info(&self) -> &RecordingInfo {
         &self.info
     }
@@ -179,12 +182,12 @@ impl Recording {
         &self.ending
     }
 
-    /// How many ticks it holds.
+    /// Number of ticks.
     pub fn len(&self) -> usize {
         self.ticks.len()
     }
 
-    /// True without ticks.
+    /// True if there are no ticks.
     pub fn is_empty(&self) -> bool {
         self.ticks.is_empty()
     }
@@ -199,10 +202,10 @@ impl Recording {
         Some(self.first()? + (self.ticks.len() as u64 - 1))
     }
 
-    /// A tick by its number.
+    /// The tick with this number.
     ///
     /// # Errors
-    /// [`RecordError::NoTick`].
+    /// [`RecordError::NoTick`] if the recording has no such tick.
     pub fn tick(&self, tick: u64) -> Result<RecordedTick, RecordError> {
         let index = tick.checked_sub(self.first).map(usize::try_from);
         let place = index.and_then(|index| self.ticks.get(index.ok()?));
@@ -216,7 +219,9 @@ impl Recording {
         self.ticks.iter().map(|place| self.decode_tick(place))
     }
 
-    /// The ticks from one on, in order.
+    /// The ticks from this number on, in order.
+    ///
+    /// These are all ticks for a number before the first one, and none for a number after the last one.
     pub fn ticks_from(
         &self,
         tick: u64,
@@ -229,7 +234,8 @@ impl Recording {
     /// The last snapshot at or before a tick.
     ///
     /// # Errors
-    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if there is none.
+    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
+    /// snapshot.
     pub fn snapshot(&self, tick: u64) -> Result<RecordedSnapshot, RecordError> {
         self.tick(tick)?;
         let after = self.snapshots.partition_point(|(at, _)| *at <= tick);
@@ -249,10 +255,9 @@ impl Recording {
         };
         let tick = Tick::decode(&self.bytes[place.clone()]).map_err(|e| failed(e.to_string()))?;
         let state = tick.state.to_climber();
-        let state =
-            state.map_err(|mode| failed(format!("no mode {mode} of a climber is known")))?;
+        let state = state.map_err(|mode| failed(format!("unknown climber mode {mode}")))?;
         if state.fingerprint() != tick.state_fingerprint {
-            return Err(failed("a state that is not the one recorded".to_owned()));
+            return Err(failed("its state and fingerprint do not match".to_owned()));
         }
         Ok(RecordedTick {
             tick: tick.tick,

@@ -5,29 +5,29 @@ use thiserror::Error;
 
 use crate::{RecordError, RecordedTick};
 
-/// What a tick of a replay came to.
+/// The result of one tick of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Replayed {
-    /// The climber's state.
+    /// The climber's state at the end of the tick.
     pub state: ClimberState,
-    /// Of the creature's palette: [`palette_fingerprint`](crate::palette_fingerprint).
+    /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
     pub palette_fingerprint: u64,
-    /// Of whatever else was recorded; `None` to leave that out of the comparison.
+    /// Hash of the rest of the scene, computed as for the recording; `None` leaves it out of the comparison.
     pub scene_fingerprint: Option<u64>,
 }
 
-/// The first tick at which a replay is not what was recorded.
+/// A tick at which a replay differs from the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Difference {
-    /// As recorded.
+    /// The tick as recorded.
     pub recorded: RecordedTick,
-    /// As replayed.
+    /// The tick as replayed.
     pub replayed: Replayed,
 }
 
 impl Difference {
-    /// The difference between the two, if there is one.
+    /// Compares the fingerprints of a recorded and a replayed tick; `None` if all are equal.
     pub fn between(recorded: &RecordedTick, replayed: &Replayed) -> Option<Self> {
         let scene = replayed.scene_fingerprint;
         let equal = replayed.state.fingerprint() == recorded.state_fingerprint
@@ -39,7 +39,7 @@ impl Difference {
         })
     }
 
-    /// What differs: creature, climber, rest of the scene.
+    /// Names of what differs: creature, climber, rest of the scene.
     fn what(&self) -> String {
         let (recorded, replayed) = (&self.recorded, &self.replayed);
         let scene = replayed.scene_fingerprint;
@@ -92,31 +92,34 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Why a replay did not come to its end.
+/// Why a replay stopped before its end.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReplayError<E> {
-    /// It is not what was recorded.
+    /// A tick differs from the recording.
     #[error("{0}")]
     Differs(Box<Difference>),
     /// The recording cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The scene failed.
+    /// The scene could not be stepped.
     #[error("the scene failed at tick {tick}: {error}")]
     Scene {
         /// The tick.
         tick: u64,
-        /// What it says; not called a source, so that it may be any boxed error.
+        /// The error of `step`. It is not called `source`, so that it may be any boxed error.
         error: E,
     },
 }
 
-/// Hands tick after tick to `step`, which brings its scene to that tick by the recorded input, and compares
-/// what came of it; ends at the first difference. Gives the number of ticks that agreed.
+/// Replays ticks and compares each with the recording, up to the first difference.
+///
+/// `step` is called for one recorded tick after another. It brings its scene to that tick with the recorded input, and
+/// returns the result. If all ticks agree, their number is returned.
 ///
 /// # Errors
-/// [`ReplayError`].
+/// [`ReplayError::Differs`] at the first tick that differs, [`ReplayError::Record`] for a tick that cannot be read, and
+/// [`ReplayError::Scene`] if `step` fails.
 pub fn replay<E>(
     ticks: impl IntoIterator<Item = Result<RecordedTick, RecordError>>,
     mut step: impl FnMut(&RecordedTick) -> Result<Replayed, E>,

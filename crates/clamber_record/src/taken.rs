@@ -1,4 +1,4 @@
-//! What is copied of a tick while the game waits: enough to write everything else later.
+//! The copy of a tick that is made while the game waits. The recording is made from it later.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use glam::DAffine3;
 use crate::messages::Report;
 use crate::{RecordOptions, TickView};
 
-/// A copy of a tick. Its vectors keep their memory from one tick to another.
+/// A copy of a tick. The memory of its vectors is reused from tick to tick.
 #[derive(Debug)]
 pub(crate) struct Taken {
     pub(crate) tick: u64,
@@ -23,16 +23,16 @@ pub(crate) struct Taken {
     pub(crate) scene_fingerprint: u64,
     pub(crate) events: Vec<ClimberEvent>,
     pub(crate) matrices: Vec<Affine>,
-    /// Where joints stand in model space, if their transforms are due.
+    /// `model_from_joint` of every joint if transforms are due, else empty.
     pub(crate) joints: Vec<DAffine3>,
     pub(crate) transforms_due: bool,
-    /// If a look at the skin is due.
+    /// Data for the views of the skin; `None` if they are not due.
     pub(crate) skin: Option<TakenSkin>,
-    /// Of the scene after this tick, in its own words.
+    /// Snapshots of the scene after this tick, as the caller's text.
     pub(crate) snapshots: Vec<String>,
 }
 
-/// What a look at the skin takes beside the palette.
+/// Data for the views of the skin, beside the palette.
 #[derive(Debug)]
 pub(crate) struct TakenSkin {
     pub(crate) mesh: Arc<ColliderMesh>,

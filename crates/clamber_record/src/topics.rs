@@ -1,16 +1,17 @@
-//! What a recording's topics are called.
+//! Names of a recording's topics, each with the type of its messages.
 
-/// Every tick: input, state, how the movement went, and fingerprints (`tick.Tick`).
+/// Every tick: input, state, a summary of the step's report, and fingerprints (`tick.Tick`).
 pub const TICK: &str = "/tick";
-/// Now and then: what the scene needs to go on from a tick (`snapshot.Snapshot`).
+/// Snapshots of the scene, which the caller records, to resume from a tick (`snapshot.Snapshot`).
 pub const SNAPSHOT: &str = "/snapshot";
-/// Where creature, joints and climber are (`foxglove.FrameTransforms`).
+/// Transforms of creature, joints and climber (`foxglove.FrameTransforms`).
 pub const TRANSFORMS: &str = "/transforms";
-/// Skin that queries touched, the triangle that supports the climber, the climber (`foxglove.SceneUpdate`).
+/// Triangles that queries reached, the triangle that supports the climber, and the climber's body
+/// (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";
 /// Vertices of the posed skin (`foxglove.PointCloud`).
 pub const SKIN: &str = "/skin";
-/// What queries touched, in numbers (`touched.Touched`).
+/// Counts of clusters, vertices and triangles that queries touched (`touched.Touched`).
 pub const TOUCHED: &str = "/touched";
-/// What happened to the climber (`foxglove.Log`).
+/// Events of the climber (`foxglove.Log`).
 pub const LOG: &str = "/log";

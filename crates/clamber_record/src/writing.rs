@@ -15,7 +15,7 @@ use crate::taken::{Taken, TakenSkin};
 use crate::views::{Frames, Scene, Skin, line};
 use crate::{RecordError, RecordingInfo, topics};
 
-/// Where messages go.
+/// The channel of each topic.
 struct Channels {
     tick: u16,
     snapshot: u16,
@@ -51,7 +51,7 @@ impl<W: Write> Writing<W> {
         if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
             return Err(RecordError::TickSeconds(tick_seconds));
         }
-        // Chunks end where `flush` says, in memory until then: nothing is patched in the file.
+        // A chunk stays in memory until `flush` ends it, so that nothing is patched in the file.
         let write = WriteOptions::new()
             .compression(None)
             .chunk_size(None)
@@ -96,7 +96,7 @@ impl<W: Write> Writing<W> {
         Ok(self.writer.flush()?)
     }
 
-    /// Writes the index; gives back where it was written to.
+    /// Writes the index and gives back the output.
     pub(crate) fn finish(mut self) -> Result<W, RecordError> {
         self.writer.finish()?;
         let mut out = self.writer.into_inner().into_inner();
@@ -134,7 +134,7 @@ impl<W: Write> Writing<W> {
             encode(&mut self.buffer, topics::TRANSFORMS, frames)?;
             self.write(self.channels.transforms, now)?;
         }
-        // Given back at once: who edits the mesh meanwhile has to copy it.
+        // The mesh is released as soon as possible: until then an edit has to copy it.
         if let Some(skin) = taken.skin.take() {
             self.look(taken, &skin, now)?;
         }
@@ -146,7 +146,7 @@ impl<W: Write> Writing<W> {
         Ok(())
     }
 
-    /// What people look at of the skin.
+    /// Writes the views of the skin.
     fn look(&mut self, taken: &Taken, skin: &TakenSkin, now: u64) -> Result<(), RecordError> {
         let touched = Touched::from(skin.touched);
         self.send(self.channels.touched, topics::TOUCHED, now, &touched)?;
@@ -176,7 +176,7 @@ impl<W: Write> Writing<W> {
         self.write(channel, now)
     }
 
-    /// Writes what stands in the buffer.
+    /// Writes the buffer as a message.
     fn write(&mut self, channel_id: u16, now: u64) -> Result<(), RecordError> {
         let header = MessageHeader {
             channel_id,
@@ -187,7 +187,7 @@ impl<W: Write> Writing<W> {
         Ok(self.writer.write_to_known_channel(&header, &self.buffer)?)
     }
 
-    /// Since tick 0.
+    /// The time of a tick since tick 0.
     fn nanoseconds(&self, tick: u64) -> u64 {
         (tick as f64 * self.tick_seconds * 1e9).round() as u64
     }

@@ -1,4 +1,4 @@
-//! Battles recorded and fought again.
+//! Records battles and replays them.
 
 #![expect(
     clippy::unwrap_used,
@@ -45,7 +45,7 @@ fn record_ticks(options: &BattleOptions, ticks: u64) -> Vec<u8> {
 }
 
 #[test]
-fn a_battle_is_fought_again_bit_for_bit() {
+fn a_battle_replays_bit_for_bit() {
     let recording = Recording::from_bytes(record(&options(8, 1))).unwrap();
     assert_eq!(*recording.ending(), Ending::Whole);
     assert_eq!(recording.len() as u64, TICKS + 1);
@@ -53,14 +53,14 @@ fn a_battle_is_fought_again_bit_for_bit() {
     assert_eq!(replay.difference, None);
     assert_eq!(replay.agreed, TICKS + 1);
     assert!(replay.with_rocks);
-    // It was worth it: something happened.
+    // The battle was not empty: the climber jumped.
     let inputs = recording.ticks().map(|tick| tick.unwrap().input);
     assert!(inputs.filter(|input| input.jump).count() == 1);
 }
 
-/// Blows, grips and all: from the outcrop to the leg.
+/// A climb with blows and grips, from the outcrop to the leg.
 #[test]
-fn a_climb_is_fought_again_bit_for_bit() {
+fn a_climb_replays_bit_for_bit() {
     let options = BattleOptions {
         story: Some(Story::Climb),
         seconds: Some(15.0),
@@ -78,7 +78,7 @@ fn a_climb_is_fought_again_bit_for_bit() {
 }
 
 #[test]
-fn a_battle_is_fought_again_from_any_snapshot() {
+fn a_battle_replays_from_any_snapshot() {
     let recording = Recording::from_bytes(record(&options(8, 1))).unwrap();
     for (from, snapshot) in [
         (0, 0),
@@ -99,7 +99,7 @@ fn a_battle_is_fought_again_from_any_snapshot() {
 }
 
 #[test]
-fn two_recordings_of_a_battle_are_the_same_bytes_and_another_seed_gives_others() {
+fn two_recordings_of_a_battle_have_the_same_bytes_but_not_with_another_seed() {
     let first = record(&options(4, 1));
     assert!(first == record(&options(4, 1)), "the bytes differ");
     assert!(
@@ -108,7 +108,7 @@ fn two_recordings_of_a_battle_are_the_same_bytes_and_another_seed_gives_others()
     );
 }
 
-/// Replays a battle of the same options with recorded ticks that `change` was let loose on.
+/// Replays a battle with recorded ticks that `change` has modified. Gives the first tick that differs.
 fn first_difference(
     recording: &Recording,
     options: &BattleOptions,
@@ -142,11 +142,11 @@ fn first_difference(
 }
 
 #[test]
-fn what_is_changed_shows_at_its_tick() {
+fn a_changed_tick_is_the_first_difference() {
     let options = options(2, 1);
     let recording = Recording::from_bytes(record(&options)).unwrap();
     assert_eq!(first_difference(&recording, &options, |_| {}), None);
-    // The lowest bit of one input: while it walks, and so late that no later tick shows it.
+    // Bit 20 of one input, in the first tick in which the climber walks.
     let walking = |tick: &RecordedTick| tick.input.walk.x != 0.0;
     let ticks: Vec<RecordedTick> = recording.ticks().map(Result::unwrap).collect();
     let at = ticks.iter().find(|tick| walking(tick)).unwrap().tick;
@@ -159,7 +159,7 @@ fn what_is_changed_shows_at_its_tick() {
     let no_jump = |tick: &mut RecordedTick| tick.input.jump = false;
     let jump = ticks.iter().find(|tick| tick.input.jump).unwrap().tick;
     assert_eq!(first_difference(&recording, &options, no_jump), Some(jump));
-    // Another creature's pose, the rocks, the start.
+    // The creature's pose, the rocks, and the start.
     let palette = |tick: &mut RecordedTick| {
         tick.palette_fingerprint ^= u64::from(tick.tick == 77);
     };
@@ -173,7 +173,7 @@ fn what_is_changed_shows_at_its_tick() {
     assert_eq!(first_difference(&recording, &other_seed, |_| {}), Some(0));
 }
 
-/// A constant of the scene: the height that it was made with, from the recording's own settings.
+/// The constant is the creature's height, from the recording's own settings.
 #[test]
 fn a_changed_constant_shows_as_a_difference() {
     let options = options(0, 1);
@@ -186,7 +186,7 @@ fn a_changed_constant_shows_as_a_difference() {
 }
 
 #[test]
-fn other_peoples_reader_finds_every_tick_in_order_and_the_metadata() {
+fn a_third_party_reader_finds_every_tick_in_order_and_the_metadata() {
     let file = record(&options(2, 1));
     let summary = mcap::Summary::read(&file).unwrap().unwrap();
     let stats = summary.stats.as_ref().unwrap();
@@ -228,12 +228,12 @@ fn other_peoples_reader_finds_every_tick_in_order_and_the_metadata() {
 }
 
 #[test]
-fn recording_changes_nothing() {
+fn recording_does_not_change_the_battle() {
     let creature = giant().unwrap();
     let options = options(8, 3);
     let battle = || Battle::new(&creature, &options).unwrap();
     let (mut plain, mut recorded) = (battle(), battle());
-    // All views each tick: they skin the whole creature and read what was touched.
+    // All views are due each tick: they skin the whole creature and read what was touched.
     let how = RecordOptions {
         transforms_every: 1,
         skin_every: 1,

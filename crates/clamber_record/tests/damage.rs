@@ -1,4 +1,4 @@
-//! Files that were cut, changed, emptied, or never were recordings.
+//! Reads files that were cut, changed or emptied, and files that are no recordings.
 
 #![expect(
     clippy::unwrap_used,
@@ -35,7 +35,8 @@ fn file() -> &'static [u8] {
     })
 }
 
-/// Whatever a reader makes of some bytes, what it says it holds can be read, and is what was recorded.
+/// Reads bytes, and asserts that each tick that is found can be read and is as it was recorded. Gives the number of
+/// ticks and the ending; `None` if the bytes are refused.
 fn check(bytes: Vec<u8>, what: &str) -> Option<(usize, Ending)> {
     static WHOLE: OnceLock<Recording> = OnceLock::new();
     let whole = WHOLE.get_or_init(|| Recording::from_bytes(file().to_vec()).unwrap());
@@ -85,7 +86,7 @@ fn a_file_cut_anywhere_holds_its_whole_chunks() {
         before = ticks;
     }
     assert_eq!(before as u64, TICKS + 1, "a cut behind the last chunk");
-    assert!(steps >= 3, "{steps} chunks, where a second each was wanted");
+    assert!(steps >= 3, "{steps} chunks, but one a second was expected");
 }
 
 #[test]
@@ -95,7 +96,7 @@ fn a_flipped_bit_is_noticed_or_harmless() {
     let (mut refused, mut damaged, mut unseen) = (0, 0, 0);
     for round in 0..1500 {
         let mut bytes = whole.to_vec();
-        // A third of them at the front, where the lengths and the metadata are, a third at the end.
+        // A third of the flips is at the front, where the lengths and the metadata are, and a third at the end.
         let at = match round % 3 {
             0 => rng.usize(..2500),
             1 => whole.len() - 1 - rng.usize(..4000),
@@ -106,7 +107,7 @@ fn a_flipped_bit_is_noticed_or_harmless() {
             None => refused += 1,
             Some((_, Ending::Whole)) => {
                 unseen += 1;
-                // Only what comes after the data may change unseen: it is not read.
+                // Only bytes after the data may change unseen: they are not read.
                 assert!(at > whole.len() - 20_000, "byte {at} changed unseen");
             }
             Some(_) => damaged += 1,
@@ -130,7 +131,7 @@ fn several_bytes_of_noise_are_noticed_or_harmless() {
 }
 
 #[test]
-fn what_is_no_recording_is_refused() {
+fn files_that_are_no_recordings_are_refused() {
     let no_mcap = |bytes: &[u8]| {
         let error = Recording::from_bytes(bytes.to_vec()).unwrap_err();
         assert!(matches!(error, RecordError::NotMcap), "{error}");
@@ -150,7 +151,7 @@ fn what_is_no_recording_is_refused() {
         .unwrap();
     foreign.finish().unwrap();
     no_recording(foreign.into_inner().into_inner());
-    // One that promises a record longer than any memory.
+    // A file that claims a record longer than any memory.
     let mut endless = mcap::MAGIC.to_vec();
     endless.push(6);
     endless.extend(u64::MAX.to_le_bytes());
@@ -191,7 +192,7 @@ fn a_writer_that_fails_gives_its_error() {
     }
     let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
-    // Long after the disk is full, and before a tick could tell of it.
+    // The first run goes on long after the disk is full; the second ends before a tick can return the error.
     for ticks in [600, 50] {
         let mut battle = Battle::new(&creature, &options).unwrap();
         let (how, out) = (RecordOptions::default(), Full(50_000));
@@ -203,7 +204,7 @@ fn a_writer_that_fails_gives_its_error() {
         }
         told.extend(recorder.finish().err());
         let told: Vec<String> = told.iter().map(ToString::to_string).collect();
-        // The cause once, then that it is over.
+        // The cause is told once, then only that the recording has ended.
         let ended = |text: &String| text.contains("has ended");
         assert!(told[0].contains("the disk is full"), "{}", told[0]);
         assert_eq!(told.len() > 1, ticks > 50, "{}", told.len());
@@ -212,7 +213,7 @@ fn a_writer_that_fails_gives_its_error() {
 }
 
 #[test]
-fn a_run_that_is_killed_leaves_its_whole_seconds() {
+fn a_run_that_is_killed_leaves_its_whole_chunks() {
     let creature = giant().unwrap();
     let options = BattleOptions::ride(0, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
@@ -226,7 +227,7 @@ fn a_run_that_is_killed_leaves_its_whole_seconds() {
         recorder.tick(&battle).unwrap();
     }
     std::mem::forget(recorder);
-    // The thread that writes may still be at it.
+    // The thread may still be writing.
     let start = std::time::Instant::now();
     let mut recording = Recording::open(&path);
     while recording.as_ref().map_or(0, Recording::len) < 120 && start.elapsed().as_secs() < 30 {
@@ -238,7 +239,7 @@ fn a_run_that_is_killed_leaves_its_whole_seconds() {
     assert_eq!(recording.len(), 120);
 }
 
-/// Bytes that several can see, each write of which takes a while.
+/// A shared buffer, each write to which takes `pause`.
 #[derive(Clone, Default)]
 struct Shared {
     bytes: Arc<Mutex<Vec<u8>>>,
@@ -257,7 +258,7 @@ impl std::io::Write for Shared {
     }
 }
 
-/// Records a battle of 70 ticks in chunks of so many, and hands the recorder over.
+/// Records a battle of 70 ticks in chunks of `chunk_ticks`, and passes the recorder to `end`.
 fn record_into<W: std::io::Write + Send + 'static>(
     out: W,
     chunk_ticks: u32,
@@ -315,7 +316,7 @@ fn a_slow_disk_a_drop_and_a_panic_lose_nothing() {
 }
 
 #[test]
-fn a_writer_that_panics_is_no_error_without_a_cause() {
+fn a_panic_of_the_writer_is_resumed_by_finish_but_not_by_drop() {
     struct Bug(usize);
     impl std::io::Write for Bug {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
@@ -333,6 +334,6 @@ fn a_writer_that_panics_is_no_error_without_a_cause() {
     });
     let panic = panicked.unwrap_err();
     assert_eq!(panic.downcast_ref::<&str>(), Some(&"a bug of the caller's"));
-    // Nobody asks.
+    // A drop ignores the panic.
     record_into(Bug(0), 60, drop);
 }

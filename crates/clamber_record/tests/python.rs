@@ -1,4 +1,4 @@
-//! The check by other people's reader in Python, where that is installed.
+//! Checks a recording with a third-party reader in Python, if that is installed.
 
 use std::io::Write;
 use std::path::Path;
@@ -15,10 +15,10 @@ fn python_decodes_a_recording() {
         .args(["-c", "import mcap.reader, mcap_protobuf.decoder"])
         .output();
     if !probe.is_ok_and(|output| output.status.success()) {
-        // Not by `eprintln`, whose output passing tests swallow.
+        // Written directly, since the output of `eprintln` is not shown for tests that pass.
         let line = format!(
             "SKIPPED python_decodes_a_recording: {python} has no packages mcap and \
-             mcap-protobuf-support; install them, or name another python by PYTHON\n"
+             mcap-protobuf-support; install them, or set PYTHON to another interpreter\n"
         );
         let _ = std::io::stderr().write_all(line.as_bytes());
         return;

@@ -2,20 +2,20 @@ use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
 use glam::dcamera::rh::view::look_to_mat4;
 use glam::{DMat4, DVec3};
 
-/// From where a picture is taken: in the world, metres.
+/// The viewpoint of a picture, in world space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands.
+    /// Position of the camera.
     pub eye: DVec3,
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture; not equal to `eye`.
     pub target: DVec3,
-    /// What is up in the picture; not along the view.
+    /// The direction that is up in the picture; not parallel to the view.
     pub up: DVec3,
-    /// Angle between the top and the bottom of the picture, radians: below pi.
+    /// Vertical field of view, radians: greater than 0 and less than pi.
     pub field_of_view: f64,
 }
 
-/// Nothing nearer than this is drawn, metres.
+/// Distance of the near plane, metres: nothing nearer is drawn.
 const NEAR: f64 = 0.1;
 
 impl Camera {
@@ -29,8 +29,8 @@ impl Camera {
         }
     }
 
-    /// Circles around a point: `distance` metres away, `heading` radians around Y from +Z, `pitch` radians
-    /// over the horizon.
+    /// Looks at a point from `distance` metres away, `heading` radians around Y from +Z, and `pitch` radians
+    /// above the horizon.
     pub fn orbit(target: DVec3, distance: f64, heading: f64, pitch: f64) -> Self {
         let level = libm::cos(pitch);
         let from = DVec3::new(
@@ -48,7 +48,7 @@ impl Camera {
         finite && angle && view.cross(self.up).length_squared() > 0.0
     }
 
-    /// From the world relative to the eye to the picture; depth is 1 at the near plane and 0 at infinity.
+    /// From world space relative to the eye to clip space; depth is 1 at the near plane and 0 at infinity.
     pub(crate) fn clip_from_view(&self, aspect: f64) -> DMat4 {
         let ahead = (self.target - self.eye).normalize();
         let view = look_to_mat4(DVec3::ZERO, ahead, self.up.normalize());

@@ -2,25 +2,25 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why nothing is drawn.
+/// An error from opening a device, drawing, or writing a picture.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// No GPU, and no software in its place.
+    /// There is neither a GPU nor a software driver.
     #[error(
-        "no graphics adapter: install a driver with Vulkan, or Mesa's software Vulkan \
+        "no graphics adapter: install a Vulkan driver, or Mesa's software Vulkan \
          (Debian, Ubuntu: apt-get install mesa-vulkan-drivers); {reason}"
     )]
     NoAdapter {
-        /// What the graphics library says.
+        /// Message of the graphics library.
         reason: String,
     },
-    /// The adapter cannot do what is needed.
+    /// The adapter gives no device with the required limits.
     #[error("{adapter} cannot be used: {reason}")]
     Adapter {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// What the graphics library says.
+        /// Message of the graphics library.
         reason: String,
     },
     /// The device is gone: unplugged, reset, or its driver died. Make a new [`Gpu`](crate::Gpu).
@@ -29,19 +29,19 @@ pub enum RenderError {
     /// The device has no memory left.
     #[error("the graphics device is out of memory: draw smaller pictures, or fewer meshes")]
     OutOfMemory,
-    /// The graphics library refused a command: a mistake in this crate, or limits of the device.
-    #[error("the graphics device refused: {0}")]
+    /// The graphics library refused a command: a bug in this crate, or a limit of the device.
+    #[error("the graphics library refused a command: {0}")]
     Refused(String),
-    /// A mesh that cannot be drawn.
+    /// The mesh cannot be drawn: its data is invalid, or too large for the device.
     #[error("mesh: {0}")]
     Mesh(String),
-    /// A frame that cannot be drawn.
+    /// The frame or its size is invalid, or too large for the device.
     #[error("frame: {0}")]
     Frame(String),
-    /// A picture that cannot be written.
+    /// The picture cannot be written.
     #[error("cannot write {path}: {reason}")]
     Write {
-        /// Where.
+        /// Path of the file.
         path: PathBuf,
         /// Why.
         reason: String,

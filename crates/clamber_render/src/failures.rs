@@ -1,4 +1,4 @@
-//! Tests of devices that are lost, out of memory, or too small: an error each, never a panic.
+//! Tests that lost devices, devices out of memory, and devices that are too small give errors and never panic.
 
 use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::Influence;
@@ -15,7 +15,7 @@ use crate::{
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-/// A mesh of so many vertices on one joint.
+/// Adds a mesh of `vertices` vertices on one joint.
 fn add(renderer: &mut Renderer, vertices: usize) -> Result<RenderMeshId, RenderError> {
     let influence = Influence {
         joint: JointId(0),
@@ -64,11 +64,11 @@ fn a_device_that_is_lost_is_an_error_from_then_on() {
     let mut frame = frame(mesh, &palette);
     renderer.draw(&frame).unwrap();
     renderer.gpu().device.destroy();
-    // Buffers of their own for the second instance and the overlay.
+    // The second instance and the overlay need new buffers.
     frame.drawn.push(frame.drawn[0]);
     let red = [1.0, 0.0, 0.0, 1.0];
     frame.overlay.line(DVec3::ZERO, DVec3::X, 2.0, red);
-    // Also after the first of them has found out.
+    // In the second round the loss is known already.
     for _ in 0..2 {
         let results = [
             renderer.draw(&frame).map(drop),
@@ -98,7 +98,7 @@ fn a_device_lost_before_there_is_a_renderer_is_an_error() {
 }
 
 #[test]
-fn a_device_without_memory_is_an_error_and_draws_on() {
+fn a_device_out_of_memory_is_an_error_and_can_draw_again() {
     let Some(gpu) = common::gpu("out of memory") else {
         return;
     };
@@ -108,14 +108,14 @@ fn a_device_without_memory_is_an_error_and_draws_on() {
     let frame = frame(mesh, &palette);
     let before = renderer.draw(&frame).unwrap();
     let side = renderer.gpu().device.limits().max_texture_dimension_2d;
-    // Eight times the bytes of a picture are far too many at the largest size, but on the largest devices.
+    // Eight targets of the largest size exceed the memory of all but the largest devices.
     let mut held = Vec::new();
     let error = loop {
         let gpu = renderer.gpu();
         match gpu.checked(|| Target::new(gpu, side, side)) {
             Ok(target) if held.len() < 8 => held.push(target),
             Ok(_) => {
-                eprintln!("SKIPPED, out of memory: {} has no end of it", gpu.name());
+                eprintln!("SKIPPED, out of memory: {} has too much of it", gpu.name());
                 return;
             }
             Err(error) => break error,
@@ -129,7 +129,7 @@ fn a_device_without_memory_is_an_error_and_draws_on() {
 }
 
 #[test]
-fn what_is_too_large_for_the_device_is_an_error_that_says_what_to_do() {
+fn data_too_large_for_the_device_is_an_error_that_says_what_to_do() {
     if common::gpu("limits").is_none() {
         return;
     }
@@ -188,7 +188,7 @@ fn what_is_too_large_for_the_device_is_an_error_that_says_what_to_do() {
 }
 
 #[test]
-fn an_error_that_nothing_listens_for_is_told_by_the_next_command() {
+fn an_error_outside_of_checked_is_returned_by_the_next_check() {
     let Some(gpu) = common::gpu("unasked") else {
         return;
     };

@@ -4,45 +4,45 @@ use glam::{DVec3, Vec3};
 
 use crate::{Camera, Overlay, RenderMeshId};
 
-/// A picture to be.
+/// Everything that a picture shows.
 #[derive(Clone, Debug)]
 pub struct Frame<'a> {
-    /// From where.
+    /// The viewpoint.
     pub camera: Camera,
-    /// What lights it.
+    /// The sun, its shadows, and fog.
     pub light: Light,
-    /// What stands in it.
+    /// The meshes to draw. A mesh may be drawn several times.
     pub drawn: Vec<Drawn<'a>>,
-    /// What is drawn over it.
+    /// The lines and triangles to draw over the meshes.
     pub overlay: Overlay,
 }
 
-/// A mesh in a picture.
+/// An instance of a mesh in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
-    /// Which one.
+    /// The mesh, from [`Renderer::add_mesh`](crate::Renderer::add_mesh).
     pub mesh: RenderMeshId,
-    /// Where it stands.
+    /// Its place in the world.
     pub world_from_model: Similarity,
-    /// How it is posed; `None` draws it at rest.
+    /// The palette that poses it; `None` draws it at rest. A mesh without a skin must have `None`.
     pub palette: Option<&'a Palette>,
 }
 
-/// The sun and the air.
+/// The sun, its shadows, and fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Towards the sun.
+    /// Direction towards the sun, in world space; of any length but 0.
     pub to_sun: Vec3,
-    /// Share of the light that a metre of air takes, about 0.002 on a hazy day.
+    /// Share of the light that a metre of air absorbs, at least 0; about 0.002 on a hazy day.
     pub fog: f32,
-    /// The middle of what casts shadows, in the world.
+    /// Centre of the region with shadows, in world space.
     pub shadow_center: DVec3,
-    /// How far shadows reach from there, metres.
+    /// Radius of the region with shadows, metres; greater than 0.
     pub shadow_radius: f64,
 }
 
 impl Light {
-    /// A low sun over what stands within `radius` of `center`.
+    /// A low sun and thin fog, with shadows within `radius` metres of `center`.
     pub fn over(center: DVec3, radius: f64) -> Self {
         Self {
             to_sun: Vec3::new(0.62, 0.52, 0.35),

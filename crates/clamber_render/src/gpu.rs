@@ -9,24 +9,24 @@ use wgpu::{
 
 use crate::RenderError;
 
-/// A graphics device: a GPU, or Mesa's software in its place.
+/// A graphics device: a GPU, or Mesa's software Vulkan.
 #[derive(Debug)]
 pub struct Gpu {
     pub(crate) device: Device,
     pub(crate) queue: Queue,
     adapter: wgpu::AdapterInfo,
-    /// Why the device is gone, once it is.
+    /// Why the device was lost, once it is.
     lost: Arc<Mutex<Option<String>>>,
-    /// What it had to say when nobody asked; without a listener the graphics library panics.
+    /// The first error outside of `checked`; without a listener the graphics library panics.
     unasked: Arc<Mutex<Option<RenderError>>>,
 }
 
 impl Gpu {
-    /// The fastest device there is. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose another one, as
+    /// Opens the fastest device. The environment variable `WGPU_BACKEND` restricts the choice to some backends, as
     /// everywhere in wgpu.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`], [`RenderError::Adapter`].
+    /// [`RenderError::NoAdapter`] if there is no device, [`RenderError::Adapter`] if it cannot be opened.
     pub fn new() -> Result<Self, RenderError> {
         Self::with(
             InstanceDescriptor::new_without_display_handle_from_env(),
@@ -34,7 +34,7 @@ impl Gpu {
         )
     }
 
-    /// The same of an instance, with other limits than the largest there are.
+    /// Opens a device of an instance, with limits that `limits` makes of the largest ones.
     pub(crate) fn with(
         descriptor: InstanceDescriptor,
         limits: impl FnOnce(Limits) -> Limits,
@@ -48,7 +48,7 @@ impl Gpu {
             reason: error.to_string(),
         })?;
         let info = adapter.get_info();
-        // As large as it can, since creatures may be.
+        // The largest sizes that the adapter allows, since creatures may be large.
         let largest = Limits {
             max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
             max_buffer_size: adapter.limits().max_buffer_size,
@@ -85,18 +85,18 @@ impl Gpu {
         })
     }
 
-    /// The name of the adapter, and the interface that it is used through.
+    /// The names of the adapter and of its backend.
     pub fn name(&self) -> String {
         format!("{} ({})", self.adapter.name, self.adapter.backend)
     }
 
-    /// Runs commands, and gives what the device has to say against them.
+    /// Runs commands, and returns the errors of the device.
     pub(crate) fn checked<T>(&self, commands: impl FnOnce() -> T) -> Result<T, RenderError> {
         let memory = self.device.push_error_scope(ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(ErrorFilter::Validation);
         let internal = self.device.push_error_scope(ErrorFilter::Internal);
         let done = commands();
-        // What fails for want of memory also makes what follows invalid.
+        // Commands after one that lacks memory are invalid, so the lack of memory is reported first.
         let scopes = [internal, validation, memory];
         let [internal, validation, memory] = scopes.map(|scope| pollster::block_on(scope.pop()));
         self.poll(PollType::Poll)?;
@@ -122,10 +122,10 @@ impl Gpu {
         })
     }
 
-    /// Waits until the device has done all that it was asked for.
+    /// Waits until the device has finished all submitted work.
     ///
     /// # Errors
-    /// [`RenderError::Lost`].
+    /// [`RenderError::Lost`] if the device is lost.
     pub fn wait(&self) -> Result<(), RenderError> {
         self.poll(PollType::wait_indefinitely())
     }
@@ -134,7 +134,7 @@ impl Gpu {
         if let Some(reason) = self.lost() {
             return Err(RenderError::Lost(reason));
         }
-        // The graphics library panics where the device is lost while it waits.
+        // The graphics library panics if the device is lost while it waits.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
         match (self.lost(), polled) {
             (Some(reason), _) => Err(RenderError::Lost(reason)),
@@ -152,11 +152,11 @@ impl Gpu {
     }
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-    text.unwrap_or("it cannot be waited for").to_owned()
+    text.unwrap_or("waiting for it failed").to_owned()
 }
 
 fn typed(error: wgpu::Error) -> RenderError {

@@ -4,22 +4,22 @@ use std::path::{Path, PathBuf};
 
 use crate::RenderError;
 
-/// A picture: rows from the top, four bytes a pixel, red, green, blue, opacity, in sRGB.
+/// A picture in sRGB: rows from the top, four bytes for each pixel (red, green, blue, opacity).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
-    /// Pixels along a row.
+    /// Width, pixels.
     pub width: u32,
-    /// Rows.
+    /// Height, pixels.
     pub height: u32,
     /// `width * height * 4` bytes.
     pub pixels: Vec<u8>,
 }
 
 impl Image {
-    /// Writes it as a PNG file.
+    /// Writes the picture to a PNG file.
     ///
     /// # Errors
-    /// [`RenderError::Write`].
+    /// [`RenderError::Write`] if the file cannot be written.
     pub fn write_png(&self, path: &Path) -> Result<(), RenderError> {
         let failed = |reason: String| RenderError::Write {
             path: path.to_path_buf(),
@@ -36,7 +36,7 @@ impl Image {
         written.map_err(|error| failed(error.to_string()))
     }
 
-    /// Half as wide and high, each pixel the mean of four.
+    /// The picture at half its width and height, at least 1. Each pixel is the mean of four, in sRGB.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
@@ -65,23 +65,23 @@ impl Image {
     }
 }
 
-/// A moving picture that is written picture by picture and runs for ever.
+/// Writes an animated GIF, picture by picture. The animation repeats for ever.
 pub struct Gif {
     path: PathBuf,
     encoder: gif::Encoder<BufWriter<File>>,
     size: (u16, u16),
-    /// Of each picture, in hundredths of a second.
+    /// Time that each picture is shown, in hundredths of a second.
     delay: u16,
 }
 
-/// From 1, slow and good, to 30.
+/// Speed of the GIF encoder: from 1, slow with the best colours, to 30.
 const SPEED: i32 = 10;
 
 impl Gif {
-    /// A new file for pictures of a size, each shown for so many hundredths of a second.
+    /// Creates a GIF file for pictures of a size in pixels, each shown for `delay` hundredths of a second.
     ///
     /// # Errors
-    /// [`RenderError::Write`].
+    /// [`RenderError::Write`] if the file cannot be created, or a side has more than 65535 pixels.
     pub fn create(path: &Path, width: u32, height: u32, delay: u16) -> Result<Self, RenderError> {
         let failed = |reason: String| RenderError::Write {
             path: path.to_path_buf(),
@@ -109,7 +109,7 @@ impl Gif {
     /// Adds a picture.
     ///
     /// # Errors
-    /// [`RenderError::Write`], also for a picture of another size.
+    /// [`RenderError::Write`] if the file cannot be written, or the picture has another size.
     pub fn push(&mut self, image: &Image) -> Result<(), RenderError> {
         let failed = |reason: String| RenderError::Write {
             path: self.path.clone(),
@@ -119,7 +119,7 @@ impl Gif {
         if (image.width, image.height) != (u32::from(width), u32::from(height)) {
             let (found, wanted) = ((image.width, image.height), self.size);
             return Err(failed(format!(
-                "a picture of {found:?} among those of {wanted:?}"
+                "a picture of size {found:?} in a file of size {wanted:?}"
             )));
         }
         let mut pixels = image.pixels.clone();

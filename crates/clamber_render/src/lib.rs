@@ -1,10 +1,10 @@
 #![doc = include_str!("../README.md")]
 #![allow(
     clippy::disallowed_types,
-    reason = "pictures are no part of what must have the same bits everywhere"
+    reason = "pictures need not have the same bits everywhere"
 )]
 
-// So that what all tests share names this crate alike inside of it.
+// `failures` includes `tests/common`, which names this crate `clamber_render`.
 #[cfg(test)]
 extern crate self as clamber_render;
 
@@ -29,7 +29,7 @@ mod visual;
 pub use camera::Camera;
 pub use error::RenderError;
 pub use frame::{Drawn, Frame, Light};
-/// The crate whose vectors and quaternions are used here.
+/// The version of glam whose vectors and quaternions this crate uses.
 pub use glam;
 pub use gpu::Gpu;
 pub use image::{Gif, Image};

@@ -5,39 +5,39 @@ use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 use crate::{Gpu, RenderError};
 
-/// A mesh that a [`Renderer`](crate::Renderer) has.
+/// The id of a mesh in a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RenderMeshId(pub(crate) u32);
 
-/// A mesh to be drawn.
+/// The data of a mesh to draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RenderMesh<'a> {
-    /// Rest positions.
+    /// Rest positions, one for each vertex.
     pub positions: &'a [Vec3],
-    /// One a vertex; none takes those of the triangles around each vertex.
+    /// One for each vertex; if empty, computed from the triangles around each vertex.
     pub normals: &'a [Vec3],
-    /// Linear red, green and blue, one a vertex; none is all white.
+    /// Linear red, green and blue, one for each vertex; if empty, all white.
     pub colors: &'a [[f32; 3]],
-    /// What the surface is made of, one a vertex; none is all plain.
+    /// Look of the surface, one for each vertex; if empty, all [`Look::Plain`].
     pub looks: &'a [Look],
-    /// Corners, counter-clockwise seen from outside.
+    /// Corners as indices of vertices, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// How joints move it; `None` for what is rigid.
+    /// How joints move it; `None` for a rigid mesh.
     pub skin: Option<SkinSource<'a>>,
 }
 
 /// How joints move a mesh.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SkinSource<'a> {
-    /// Influences of the first vertex, then of the second, and so on, by ascending joint.
+    /// Influences of the first vertex, then of the second, and so on, each vertex's by ascending joint.
     pub influences: &'a [Influence],
-    /// Where in `influences` those of each vertex end.
+    /// For each vertex, where its influences end in `influences`.
     pub ends: &'a [u32],
-    /// Joints of the palettes to come.
+    /// Number of joints of the palettes that will pose the mesh.
     pub joint_count: usize,
 }
 
-/// What a surface is made of, which its colour alone does not tell.
+/// How a surface is shaded, beside its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
     /// Smooth.
@@ -51,7 +51,7 @@ pub enum Look {
     Ground,
 }
 
-/// Skin is plain.
+/// [`SurfaceKind::Skin`] becomes [`Look::Plain`].
 impl From<SurfaceKind> for Look {
     fn from(kind: SurfaceKind) -> Self {
         match kind {
@@ -62,10 +62,10 @@ impl From<SurfaceKind> for Look {
     }
 }
 
-/// Bytes of a vertex that never change: position at rest, colour with look.
+/// Bytes of a vertex that stay the same in all poses: position at rest, colour with look.
 pub(crate) const STILL_BYTES: u64 = 32;
 
-/// Bytes of a vertex as posed: position, normal, each with a spare number.
+/// Bytes of a posed vertex: position and normal, each with a spare number.
 pub(crate) const POSED_BYTES: u64 = 32;
 
 /// Bytes of a joint's matrix.
@@ -150,7 +150,7 @@ impl Mesh {
 }
 
 pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
-    // Nothing can be bound that is shorter than one element of what a shader reads.
+    // A bound buffer must not be shorter than one element of the shader's array.
     let contents = if contents.is_empty() {
         &[0; 64]
     } else {
@@ -162,7 +162,7 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsage
         usage,
         mapped_at_creation: true,
     });
-    // It is not mapped if the device has no memory for it or is lost, which `Gpu::checked` tells.
+    // It is not mapped if the device is out of memory or lost, which `Gpu::checked` reports.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.copy_from_slice(contents);
     }
@@ -170,7 +170,7 @@ pub(crate) fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsage
     buffer
 }
 
-/// Nothing that is larger than what the device allows.
+/// Refuses a mesh that is too large for the device.
 fn check_size(gpu: &Gpu, source: &RenderMesh<'_>) -> Result<(), RenderError> {
     let limits = gpu.device.limits();
     let skin = source.skin.unwrap_or_default();
@@ -190,7 +190,7 @@ fn check_size(gpu: &Gpu, source: &RenderMesh<'_>) -> Result<(), RenderError> {
     ] {
         if count as u64 > most / bytes {
             return Err(RenderError::Mesh(format!(
-                "{count} {what}, where this device takes {} at most: split it into smaller meshes",
+                "{count} {what}, but this device takes at most {}: split it into smaller meshes",
                 most / bytes
             )));
         }
@@ -215,33 +215,36 @@ fn check(source: &RenderMesh<'_>) -> Result<(), RenderError> {
     }
     let corners = source.triangles.iter().flatten();
     if let Some(corner) = corners.copied().find(|corner| *corner as usize >= count) {
-        return wrong(format!("a corner is vertex {corner} of {count}"));
+        return wrong(format!("a triangle names vertex {corner} of {count}"));
     }
     let Some(skin) = &source.skin else {
         return Ok(());
     };
     if skin.ends.len() != count {
         return wrong(format!(
-            "influences of {} vertices for {count}",
+            "{} ends of influences for {count} positions",
             skin.ends.len()
         ));
     }
     let ascending = skin.ends.windows(2).all(|pair| pair[0] <= pair[1]);
     let last = skin.ends.last().map_or(0, |end| *end as usize);
     if !ascending || last != skin.influences.len() {
-        return wrong("the ends of influences do not ascend to their count".into());
+        return wrong("the ends of influences must ascend to their count".into());
     }
     let joints = skin
         .influences
         .iter()
         .map(|influence| influence.joint.0 as usize);
     if let Some(joint) = joints.max().filter(|joint| *joint >= skin.joint_count) {
-        return wrong(format!("joint {joint} of {}", skin.joint_count));
+        return wrong(format!(
+            "an influence names joint {joint} of {}",
+            skin.joint_count
+        ));
     }
     Ok(())
 }
 
-/// Of each vertex the sum of the scaled normals of its triangles.
+/// The normal of each vertex: the mean of its triangles' normals, weighted by area.
 fn normals(source: &RenderMesh<'_>) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; source.positions.len()];
     for corners in source.triangles {

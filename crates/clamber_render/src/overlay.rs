@@ -2,10 +2,10 @@ use glam::{DVec3, Vec3};
 
 use clamber_surface::geometry::rotation_from_axis_angle;
 
-/// Red, green, blue and opacity of an overlay, linear, 0 to 1.
+/// Colour of an overlay: linear red, green, blue and opacity, 0 to 1.
 pub type Color = [f32; 4];
 
-/// Lines and triangles over a picture, in world space: what the collider knows.
+/// Lines and triangles to draw over the meshes of a picture, in world space. Parts behind a mesh are drawn faintly.
 #[derive(Clone, Debug, Default)]
 pub struct Overlay {
     lines: Vec<Line>,
@@ -20,7 +20,7 @@ struct Line {
     color: Color,
 }
 
-/// Sides of a circle.
+/// Number of lines of a circle.
 const SIDES: u32 = 32;
 
 /// Length of an arrow's head as a share of the arrow.
@@ -29,10 +29,10 @@ const HEAD: f64 = 0.25;
 /// Radius of an arrow's head as a share of the head's length.
 const SLENDER: f64 = 0.24;
 
-/// Sides of an arrow's head.
+/// Number of sides of an arrow's head.
 const HEAD_SIDES: u32 = 12;
 
-/// Points around an axis, the first one again at the end.
+/// Points on a circle around an axis; the first one is repeated at the end.
 fn ring(
     center: DVec3,
     axis: DVec3,
@@ -47,20 +47,20 @@ fn ring(
 }
 
 impl Overlay {
-    /// A line, so many pixels wide.
+    /// Adds a line, `width` pixels wide.
     pub fn line(&mut self, from: DVec3, to: DVec3, width: f32, color: Color) {
         let ends = [from, to];
         self.lines.push(Line { ends, width, color });
     }
 
-    /// A path through points.
+    /// Adds a path of lines through points, `width` pixels wide.
     pub fn path(&mut self, points: &[DVec3], width: f32, color: Color) {
         for pair in points.windows(2) {
             self.line(pair[0], pair[1], width, color);
         }
     }
 
-    /// An arrow along a vector, which ends at its tip: a line so many pixels wide, and a cone.
+    /// Adds an arrow from `from` to `from + along`: a line, `width` pixels wide, and a cone.
     pub fn arrow(&mut self, from: DVec3, along: DVec3, width: f32, color: Color) {
         let tip = from + along;
         let neck = tip - along * HEAD;
@@ -75,12 +75,12 @@ impl Overlay {
         }
     }
 
-    /// A triangle.
+    /// Adds a triangle, visible from both sides.
     pub fn triangle(&mut self, corners: [DVec3; 3], color: Color) {
         self.triangles.push((corners, color));
     }
 
-    /// A circle around an axis.
+    /// Adds a circle around an axis of any length, of lines `width` pixels wide. An axis of length 0 is taken for Y.
     pub fn circle(&mut self, center: DVec3, axis: DVec3, radius: f64, width: f32, color: Color) {
         let points = ring(center, axis.normalize_or(DVec3::Y), radius, SIDES);
         for (a, b) in points.clone().zip(points.skip(1)) {
@@ -88,7 +88,7 @@ impl Overlay {
         }
     }
 
-    /// From `across` over `top` to the other side, both from the middle.
+    /// Adds a half circle from `center + across` over `center + top` to `center - across`.
     fn half_circle(&mut self, center: DVec3, across: DVec3, top: DVec3, width: f32, color: Color) {
         let point = |side: u32| {
             let angle = f64::from(side) / f64::from(SIDES) * core::f64::consts::TAU;
@@ -99,14 +99,14 @@ impl Overlay {
         }
     }
 
-    /// A sphere, by three circles.
+    /// Adds a sphere, as three circles.
     pub fn sphere(&mut self, center: DVec3, radius: f64, width: f32, color: Color) {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             self.circle(center, axis, radius, width, color);
         }
     }
 
-    /// A capsule: circles and half circles at its ends, and four lines between.
+    /// Adds a capsule, as circles and half circles at its ends and four lines between them.
     pub fn capsule(&mut self, a: DVec3, b: DVec3, radius: f64, width: f32, color: Color) {
         let axis = (b - a).normalize_or(DVec3::Y);
         let side = axis.any_orthonormal_vector() * radius;
@@ -124,7 +124,7 @@ impl Overlay {
         }
     }
 
-    /// Nothing in it.
+    /// True if nothing was added.
     pub fn is_empty(&self) -> bool {
         self.lines.is_empty() && self.triangles.is_empty()
     }
@@ -145,7 +145,7 @@ impl Overlay {
         }
         for line in &self.lines {
             let [a, b] = line.ends.map(|end| (end - eye).as_vec3());
-            // Seen from either end the other side is the same one.
+            // Side -1 of the line as seen from one end is side 1 as seen from the other.
             for (p, other, side) in [
                 (a, b, -1.0),
                 (a, b, 1.0),

@@ -1,8 +1,8 @@
 use crate::Look;
 
-/// Colours and looks of a mesh's vertices out of groups of triangles, each of one material, as files have them.
+/// Makes the colours and looks of a mesh's vertices from groups of triangles, each of one material, as files have them.
 ///
-/// A vertex has one colour and one look: those of the last group that uses it.
+/// A vertex has one colour and one look: that of the last group that uses it.
 ///
 /// ```
 /// use clamber_render::{Look, RenderMesh, Paint};
@@ -23,16 +23,16 @@ use crate::Look;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Paint {
-    /// Linear red, green and blue, one a vertex; white where no group is.
+    /// Linear red, green and blue, one for each vertex; white for vertices without a group.
     pub colors: Vec<[f32; 3]>,
-    /// One a vertex; plain where no group is.
+    /// One for each vertex; [`Look::Plain`] for vertices without a group.
     pub looks: Vec<Look>,
-    /// Corners of all groups, one group after the other.
+    /// Triangles of all groups, one group after the other.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Paint {
-    /// For a mesh of so many vertices, without any group.
+    /// Paint for a mesh of `vertices` vertices, without any group.
     pub fn new(vertices: usize) -> Self {
         Self {
             colors: vec![[1.0; 3]; vertices],
@@ -41,10 +41,11 @@ impl Paint {
         }
     }
 
-    /// Adds a group of triangles of one colour and look. `own` are linear colours of the mesh's vertices, which are
-    /// multiplied by it; the fourth number of each, opacity, is not used. A vertex that they leave out is white.
+    /// Adds a group of triangles with one linear colour and one look.
     ///
-    /// Corners out of range are kept, and refused where the mesh is added.
+    /// `own` has the linear colours of the mesh's vertices, which are multiplied by `color`. Their fourth number,
+    /// opacity, is not used. Vertices beyond the end of `own` are white. Corners out of range are kept;
+    /// [`Renderer::add_mesh`](crate::Renderer::add_mesh) refuses them.
     pub fn add(&mut self, triangles: &[[u32; 3]], color: [f32; 3], own: &[[f32; 4]], look: Look) {
         for corner in triangles.iter().flatten() {
             let vertex = *corner as usize;
@@ -65,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_of_vertices_and_materials_are_multiplied_where_triangles_are() {
+    fn colours_of_vertices_and_materials_are_multiplied_for_vertices_of_triangles() {
         let mut paint = Paint::new(4);
         let own = [[0.5, 1.0, 0.25, 0.0]; 3];
         paint.add(&[[0, 1, 9]], [1.0, 0.5, 1.0], &own, Look::Fur);

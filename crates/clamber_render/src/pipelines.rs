@@ -1,4 +1,4 @@
-//! How meshes, shadows, the sky and overlays are drawn.
+//! The render pipelines of meshes, shadows, the sky and overlays.
 
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
@@ -24,11 +24,11 @@ pub(crate) struct Pipelines {
     pub(crate) sky: RenderPipeline,
     pub(crate) mesh: RenderPipeline,
     pub(crate) shadow: RenderPipeline,
-    /// What is in sight, and what is behind something.
+    /// For the visible parts of an overlay, and for the parts behind a mesh.
     pub(crate) overlay: [RenderPipeline; 2],
 }
 
-/// What tells one pipeline from another.
+/// The settings in which the pipelines differ.
 struct Plan<'a> {
     label: &'a str,
     module: &'a ShaderModule,

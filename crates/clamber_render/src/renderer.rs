@@ -16,10 +16,10 @@ use crate::skinning::{Posed, Skinning};
 use crate::target::{SHADOW, Target, read, readback_bytes};
 use crate::{Drawn, Frame, Gpu, Image, RenderError, RenderMesh, RenderMeshId};
 
-/// Opacity of what of an overlay is behind something.
+/// Opacity factor of the parts of an overlay that are behind a mesh.
 const BEHIND: f32 = 0.22;
 
-/// Draws frames of one size.
+/// Draws frames into pictures of one size.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -28,16 +28,17 @@ pub struct Renderer {
     target: Target,
     shadow_group: BindGroup,
     meshes: Vec<Mesh>,
-    /// Of each mesh, as many as a frame has shown of it.
+    /// For each mesh, its posed instances: as many as a frame has shown.
     posed: Vec<Vec<Posed>>,
     uploaded: u64,
 }
 
 impl Renderer {
-    /// For pictures of a size in pixels.
+    /// A renderer for pictures of a size in pixels.
     ///
     /// # Errors
-    /// [`RenderError::Frame`] for a size that the device does not have; else as [`Renderer::draw`].
+    /// [`RenderError::Frame`] for a size of 0, or too large for the device. [`RenderError::Lost`],
+    /// [`RenderError::OutOfMemory`] and [`RenderError::Refused`] as for [`Renderer::draw`].
     pub fn new(gpu: Gpu, width: u32, height: u32) -> Result<Self, RenderError> {
         let limits = gpu.device.limits();
         let most = limits.max_texture_dimension_2d;
@@ -45,7 +46,7 @@ impl Renderer {
         if !fits || readback_bytes(width, height) > limits.max_buffer_size {
             return Err(RenderError::Frame(format!(
                 "a picture of {width} x {height}: on this device each side must be from 1 to {most} pixels, \
-                 and all of it {} bytes at most",
+                 and all of it at most {} bytes",
                 limits.max_buffer_size
             )));
         }
@@ -66,10 +67,11 @@ impl Renderer {
         })
     }
 
-    /// Takes a mesh to the device, where it stays.
+    /// Uploads a mesh to the device. It stays there as long as the renderer lives.
     ///
     /// # Errors
-    /// [`RenderError::Mesh`] for one that is not whole; else as [`Renderer::draw`].
+    /// [`RenderError::Mesh`] for data that is not consistent, not finite, or too large for the device.
+    /// [`RenderError::Lost`], [`RenderError::OutOfMemory`] and [`RenderError::Refused`] as for [`Renderer::draw`].
     pub fn add_mesh(&mut self, source: &RenderMesh<'_>) -> Result<RenderMeshId, RenderError> {
         let mesh = self.gpu.checked(|| Mesh::new(&self.gpu, source))??;
         let id = RenderMeshId(self.meshes.len() as u32);
@@ -81,17 +83,18 @@ impl Renderer {
     /// Draws a picture and reads it back.
     ///
     /// # Errors
-    /// [`RenderError::Frame`] for what cannot be drawn: a camera that looks nowhere, a mesh of another
-    /// renderer, a palette of another skeleton. [`RenderError::Lost`], [`RenderError::OutOfMemory`],
-    /// [`RenderError::Refused`].
+    /// [`RenderError::Frame`] for a frame that cannot be drawn: a camera without a direction, an unknown mesh, a
+    /// palette with another number of joints, or too much data for the device. [`RenderError::Lost`] if the device
+    /// is lost, [`RenderError::OutOfMemory`] if it has no memory left, [`RenderError::Refused`] for other errors of
+    /// the graphics library.
     pub fn draw(&mut self, frame: &Frame<'_>) -> Result<Image, RenderError> {
         let encoder = self.encoded(frame)?;
         self.submit(encoder, |encoder| self.target.copy_out(encoder))?;
         self.target.read(&self.gpu)
     }
 
-    /// Has a picture drawn that stays on the device, and does not wait for it: to measure what drawing
-    /// costs, with [`Gpu::wait`].
+    /// Draws a picture without reading it back, and does not wait for it. With [`Gpu::wait`] it measures the
+    /// cost of drawing.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -101,18 +104,18 @@ impl Renderer {
         self.submit(encoder, |_| {})
     }
 
-    /// Bytes that the last picture took to the device: palettes, places and overlays.
+    /// Bytes that were uploaded for the last picture: palettes, matrices, uniforms and overlays.
     #[doc(hidden)]
     pub fn uploaded(&self) -> u64 {
         self.uploaded
     }
 
-    /// The device.
+    /// The device that it draws with.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Vertices of a skinned mesh as the device poses them, in model space: those that are drawn.
+    /// Positions of a skinned mesh's vertices as the device poses and draws them, in model space.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -151,8 +154,8 @@ impl Renderer {
             .collect())
     }
 
-    /// Has a skinned mesh posed on the device, and does not wait for it: to measure what posing costs,
-    /// with [`Gpu::wait`].
+    /// Poses a skinned mesh on the device, and does not wait for it. With [`Gpu::wait`] it measures the cost
+    /// of posing.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
@@ -171,14 +174,16 @@ impl Renderer {
     fn check(&self, frame: &Frame<'_>) -> Result<(), RenderError> {
         let wrong = |what: &str| Err(RenderError::Frame(what.into()));
         if !frame.camera.is_valid() {
-            return wrong("the camera is not finite, or looks nowhere, or straight up or down");
+            return wrong(
+                "the camera is not finite, its view is zero or along `up`, or its angle is out of range",
+            );
         }
         let light = &frame.light;
         let lit = light.to_sun.is_finite() && light.to_sun.length_squared() > 0.0;
         let shadow = light.shadow_center.is_finite() && light.shadow_radius > 0.0;
         let air = light.fog >= 0.0 && light.fog.is_finite();
         if !lit || !shadow || !air || !light.shadow_radius.is_finite() {
-            return wrong("the light has no direction, or its shadow or fog no size");
+            return wrong("the light has no direction, or its shadow or fog is out of range");
         }
         let limits = self.gpu.device.limits();
         let most = limits
@@ -187,7 +192,7 @@ impl Renderer {
             / 64;
         if frame.drawn.len() as u64 > most {
             return wrong(&format!(
-                "{} meshes, where this device takes {most}: join some of them",
+                "{} meshes, but this device takes at most {most}: join some of them",
                 frame.drawn.len()
             ));
         }
@@ -196,7 +201,7 @@ impl Renderer {
                 return wrong("it shows a mesh of another renderer");
             };
             if !drawn.world_from_model.is_valid() {
-                return wrong("a mesh stands at a place that is not finite");
+                return wrong("the `world_from_model` of a mesh is not valid");
             }
             if drawn.palette.is_some() && mesh.skin.is_none() {
                 return wrong("a palette for a mesh without joints");
@@ -205,7 +210,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Room for one more instance of a skinned mesh than `number`.
+    /// Makes room for instances 0 to `number` of a skinned mesh.
     fn make_room(&mut self, mesh: RenderMeshId, number: usize) -> Result<(), RenderError> {
         let index = mesh.0 as usize;
         let unknown = || RenderError::Frame("it shows a mesh of another renderer".into());
@@ -221,7 +226,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// For each mesh of the frame, which of its instances it is.
+    /// For each mesh of the frame, the number of its posed instance.
     fn places(&mut self, frame: &Frame<'_>) -> Result<Vec<usize>, RenderError> {
         let mut used = vec![0; self.meshes.len()];
         let mut places = Vec::with_capacity(frame.drawn.len());
@@ -268,7 +273,7 @@ impl Renderer {
         Ok(encoder)
     }
 
-    /// Hands commands over, and some more after them.
+    /// Submits commands, after `after` has added more.
     fn submit(
         &self,
         mut encoder: CommandEncoder,
@@ -384,7 +389,7 @@ impl Renderer {
         let most = self.gpu.device.limits().max_buffer_size;
         if contents.len() as u64 > most {
             return Err(RenderError::Frame(format!(
-                "an overlay of {} bytes, where this device takes {most}: draw fewer lines and triangles",
+                "an overlay of {} bytes, but this device takes {most}: draw fewer lines and triangles",
                 contents.len()
             )));
         }
@@ -440,7 +445,7 @@ fn depth(view: &wgpu::TextureView, clear: f32) -> RenderPassDepthStencilAttachme
     }
 }
 
-/// From the model to the world relative to the eye.
+/// From model space to world space relative to the eye.
 fn view_from_model(drawn: &Drawn<'_>, eye: DVec3) -> Mat4 {
     let root = &drawn.world_from_model;
     let axes = DMat3::from_quat(root.rotation) * root.scale;
@@ -455,7 +460,7 @@ fn view_from_model(drawn: &Drawn<'_>, eye: DVec3) -> Mat4 {
     .as_mat4()
 }
 
-/// As the shader has them.
+/// The uniforms of a frame, in the layout of the shader.
 fn globals(frame: &Frame<'_>, clip_from_view: DMat4) -> Vec<f32> {
     let light = &frame.light;
     let to_sun = light.to_sun.as_dvec3().normalize();

@@ -10,10 +10,10 @@ use wgpu::{
 use crate::mesh::{Mesh, PALETTE_BYTES, POSED_BYTES, Skin};
 use crate::{Gpu, RenderError};
 
-/// Vertices to a workgroup, as in the shader.
+/// Vertices in a workgroup, as in the shader.
 const GROUP: u32 = 64;
 
-/// Workgroups along one axis, as in the shader: the least that devices allow.
+/// Most workgroups along the first axis, as in the shader: within the limit of every device.
 const ROW: u32 = 32_768;
 
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub(crate) struct Skinning {
     pipeline: ComputePipeline,
 }
 
-/// One posed mesh.
+/// The buffers of one posed instance of a mesh.
 #[derive(Debug)]
 pub(crate) struct Posed {
     pub(crate) vertices: Buffer,
@@ -48,7 +48,7 @@ impl Skinning {
         Self { pipeline }
     }
 
-    /// Room for one instance of a mesh.
+    /// Creates the buffers for one instance of a mesh.
     pub(crate) fn posed(&self, gpu: &Gpu, mesh: &Mesh, skin: &Skin) -> Posed {
         let vertices = gpu.device.create_buffer(&BufferDescriptor {
             label: Some("posed"),
@@ -78,7 +78,7 @@ impl Skinning {
         }
     }
 
-    /// Poses an instance; gives the bytes that went to the device.
+    /// Poses an instance; gives the number of uploaded bytes.
     pub(crate) fn run(
         &self,
         gpu: &Gpu,
@@ -90,7 +90,7 @@ impl Skinning {
         let matrices = palette.matrices();
         if matrices.len() != posed.joint_count {
             return Err(RenderError::Frame(format!(
-                "a palette of {} joints for a mesh on {}",
+                "a palette of {} joints for a mesh with {}",
                 matrices.len(),
                 posed.joint_count
             )));

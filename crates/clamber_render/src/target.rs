@@ -1,4 +1,4 @@
-//! What is drawn into, and how it comes back.
+//! The textures that are drawn into, and how a picture is read back.
 
 use std::sync::mpsc;
 
@@ -19,7 +19,7 @@ pub(crate) const SAMPLES: u32 = 4;
 /// Texels along a side of the shadow map: more is sharper, and slower in software.
 pub(crate) const SHADOW: u32 = 2048;
 
-/// Rows of a picture begin at multiples of this in a buffer.
+/// Rows of a picture begin at multiples of this in a buffer, bytes.
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 #[derive(Debug)]
@@ -94,7 +94,7 @@ impl Target {
         );
     }
 
-    /// The picture, once the commands have run.
+    /// Waits for the commands to finish, and reads the picture.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Image, RenderError> {
         let rows = read(gpu, &self.readback)?;
         let used = self.width as usize * 4;
@@ -111,12 +111,12 @@ impl Target {
     }
 }
 
-/// All bytes of a buffer that can be mapped.
+/// Reads all bytes of a buffer that can be mapped, after waiting for the device.
 pub(crate) fn read(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, RenderError> {
     let (sender, receiver) = mpsc::channel();
     gpu.checked(|| {
         buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-            // Nobody waits for it any more if the device was lost.
+            // Fails if the device was lost: then the receiver is gone.
             let _ = sender.send(mapped);
         });
     })?;
@@ -143,7 +143,7 @@ fn extent(width: u32, height: u32) -> Extent3d {
     }
 }
 
-/// Bytes that a picture takes on its way back.
+/// Bytes of the buffer that a picture is read back through.
 pub(crate) fn readback_bytes(width: u32, height: u32) -> u64 {
     u64::from(row_bytes(width)) * u64::from(height)
 }

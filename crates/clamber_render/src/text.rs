@@ -1,4 +1,4 @@
-//! Text on a finished picture.
+//! Draws text on a finished picture.
 
 use core::convert::Infallible;
 
@@ -11,7 +11,7 @@ use embedded_graphics::text::{Baseline, Text};
 
 use crate::Image;
 
-/// How large text is.
+/// The size of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextSize {
     /// 6 x 13 pixels a character: for pictures of less than 600 rows.
@@ -20,10 +20,10 @@ pub enum TextSize {
     Large,
 }
 
-/// Pixels of the box around text, beyond the text.
+/// Margin between the text and the edge of its box, pixels.
 const MARGIN: u32 = 8;
 
-/// Share of the picture that shows through the box.
+/// Share of the picture's colours that shows through the box.
 const THROUGH: f32 = 0.35;
 
 impl TextSize {
@@ -36,17 +36,17 @@ impl TextSize {
 }
 
 impl Image {
-    /// Writes lines of text, white on a dark box, which begins at a column and a row of pixels.
+    /// Draws lines of text, white on a dark box with its top left corner at this column and row of pixels.
     ///
-    /// The font has ASCII: other characters, and tabs, become question marks. What reaches beyond the
-    /// picture is cut off; empty text draws nothing.
+    /// The font has only ASCII characters: others, and tabs, become question marks. Text that reaches beyond the
+    /// picture is cut off. Empty text draws nothing.
     pub fn text(&mut self, [column, row]: [u32; 2], size: TextSize, text: &str) {
         if text.is_empty() || column >= self.width || row >= self.height {
             return;
         }
         let font = size.font();
         let Size { width, height } = font.character_size;
-        // No more than there is room for, so that no length of text overflows a coordinate.
+        // No more characters than there is room for, so that long text does not overflow a coordinate.
         let fit = |pixels: u32, each: u32| (pixels / each) as usize + 1;
         let (columns, rows) = (fit(self.width, width), fit(self.height, height));
         let shown = |c: char| {
@@ -74,7 +74,7 @@ impl Image {
     }
 }
 
-/// A picture from one of its pixels on.
+/// A picture with the origin moved to one of its pixels.
 struct Canvas<'a> {
     image: &'a mut Image,
     origin: [u32; 2],

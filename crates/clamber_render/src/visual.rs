@@ -2,7 +2,7 @@ use clamber_gltf::{Rig, VisualMesh};
 
 use crate::{Paint, RenderMesh, SkinSource};
 
-/// A mesh of a rig, as a renderer takes it.
+/// A visual mesh of a rig, prepared for a renderer.
 #[derive(Clone, Debug)]
 pub struct VisualSource<'a> {
     mesh: &'a VisualMesh,
@@ -11,7 +11,7 @@ pub struct VisualSource<'a> {
 }
 
 impl VisualSource<'_> {
-    /// For [`Renderer::add_mesh`](crate::Renderer::add_mesh).
+    /// The data for [`Renderer::add_mesh`](crate::Renderer::add_mesh).
     pub fn source(&self) -> RenderMesh<'_> {
         RenderMesh {
             positions: &self.mesh.positions,
@@ -28,8 +28,10 @@ impl VisualSource<'_> {
     }
 }
 
-/// The visual meshes of a rig for a renderer, in the rig's order: colours of vertices times base colours of
-/// materials, and the look of each surface's kind. A vertex that several materials share has the last one's.
+/// Prepares the visual meshes of a rig for a renderer, in the rig's order.
+///
+/// The colour of a vertex is its own colour times the base colour of its material. Its look follows from the
+/// surface kind of the material's tag. A vertex that several materials share gets those of the last one.
 ///
 /// ```no_run
 /// use clamber_render::{Gpu, Renderer, visual_meshes};

@@ -1,10 +1,10 @@
-//! Without any graphics driver there is an error that says what to install.
+//! Tests that without any graphics driver there is an error that says what to install.
 
 use std::process::Command;
 
 use clamber_render::{Gpu, RenderError};
 
-/// Set for the process that finds no driver.
+/// Environment variable of the child process, which finds no driver.
 const CHILD: &str = "CLAMBER_WITHOUT_ADAPTER";
 
 #[test]
@@ -17,7 +17,7 @@ fn no_adapter_is_an_error_that_says_what_to_install() {
         return;
     }
     let this = std::env::current_exe().unwrap();
-    // What chooses a driver is read from the environment, which a test must not change in its own process.
+    // Drivers are chosen by environment variables, which a test must not change in its own process.
     let output = Command::new(this)
         .args([
             "--exact",

@@ -1,4 +1,4 @@
-//! Overlays are as long and as wide as they are said to be.
+//! Tests that overlays have the length and width that they are given.
 
 #![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
 
@@ -10,10 +10,10 @@ use glam::DVec3;
 const WIDTH: u32 = 240;
 const ROWS: u32 = 120;
 
-/// Columns and rows of what is red: first and last of each.
+/// First and last column, and first and last row, of the red pixels.
 fn extent(image: &Image) -> [u32; 4] {
     let red = image.pixels.chunks_exact(4).enumerate().filter(|(_, p)| {
-        // Most of a pixel: edges are smoothed.
+        // Mostly red: edges are smoothed.
         p[0] > 180 && p[1] < 140 && p[2] < 140
     });
     let start = [u32::MAX, 0, u32::MAX, 0];
@@ -24,13 +24,13 @@ fn extent(image: &Image) -> [u32; 4] {
 }
 
 #[test]
-fn an_arrow_ends_at_its_tip_and_a_line_where_it_is_told() {
+fn arrows_and_lines_have_their_ends_and_width() {
     const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
     let Some(gpu) = common::gpu("an arrow") else {
         return;
     };
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
-    // Half of the height of the picture is 6 m times the tangent of half the angle.
+    // Half of the picture's height shows 6 m times the tangent of half the field of view.
     let metre = f64::from(ROWS) / 2.0 / (6.0 * libm::tan(25f64.to_radians()));
     let middle = DVec3::new(f64::from(WIDTH) / 2.0, f64::from(ROWS) / 2.0, 0.0);
     for (from, along) in [
@@ -66,7 +66,7 @@ fn an_arrow_ends_at_its_tip_and_a_line_where_it_is_told() {
             } else {
                 ([top, bottom], right + 1 - left)
             };
-            // A tip is thinner than a pixel before it ends.
+            // Near its end, a tip is thinner than a pixel.
             assert!(
                 (f64::from(along[0]) - low).abs() < 3.5,
                 "{what} from {from}: {along:?} {low}"

@@ -1,4 +1,4 @@
-//! What is seen is where it should be.
+//! Tests that meshes, shadows and overlays are where they should be, and that bad input is an error.
 
 #![expect(
     clippy::unwrap_used,
@@ -27,7 +27,7 @@ const SQUARE: [Vec3; 4] = [
     Vec3::new(-1.0, 1.0, 0.0),
 ];
 
-/// A red square of 2 m around the origin, across Z, on one joint.
+/// Adds a red square of 2 m around the origin, perpendicular to Z, on one joint.
 fn square(renderer: &mut Renderer) -> RenderMeshId {
     let influence = Influence {
         joint: JointId(0),
@@ -68,7 +68,7 @@ fn at(mesh: RenderMeshId, place: DVec3) -> Drawn<'static> {
     }
 }
 
-/// Mean column and row, and the number, of the pixels that `wanted` says yes to.
+/// The mean column and row, and the number, of the pixels for which `wanted` is true.
 fn find(image: &Image, wanted: impl Fn([u8; 4]) -> bool) -> (f64, f64, u32) {
     let (mut x, mut y, mut count) = (0.0, 0.0, 0u32);
     for (index, pixel) in image.pixels.chunks_exact(4).enumerate() {
@@ -95,12 +95,12 @@ fn renderer(what: &str) -> Option<Renderer> {
 }
 
 #[test]
-fn a_square_is_where_it_stands_near_the_origin_and_far_from_it() {
+fn a_square_is_drawn_at_its_place_near_the_origin_and_far_from_it() {
     let Some(mut renderer) = renderer("places") else {
         return;
     };
     let mesh = square(&mut renderer);
-    // Half of the height of the picture is 6 m times the tangent of half the angle.
+    // Half of the picture's height shows 6 m times the tangent of half the field of view.
     let metre = f64::from(ROWS) / 2.0 / (6.0 * libm::tan(25f64.to_radians()));
     for origin in [DVec3::ZERO, DVec3::new(1e5, 3e3, -2e5)] {
         for aside in [DVec3::ZERO, DVec3::new(1.5, -0.5, 0.0)] {
@@ -126,7 +126,7 @@ fn a_square_is_where_it_stands_near_the_origin_and_far_from_it() {
 }
 
 #[test]
-fn a_palette_moves_it_and_two_instances_have_one_each() {
+fn palettes_move_two_instances_of_a_mesh_independently() {
     let Some(mut renderer) = renderer("poses") else {
         return;
     };
@@ -154,7 +154,7 @@ fn a_palette_moves_it_and_two_instances_have_one_each() {
 }
 
 #[test]
-fn what_is_nearer_hides_what_is_behind_and_casts_a_shadow_on_it() {
+fn a_nearer_mesh_hides_the_one_behind_it_and_casts_a_shadow_on_it() {
     let Some(mut renderer) = renderer("shadows") else {
         return;
     };
@@ -167,7 +167,7 @@ fn what_is_nearer_hides_what_is_behind_and_casts_a_shadow_on_it() {
     let wall = at(wall.unwrap(), DVec3::new(0.0, 0.0, -1.5));
     let draw = |renderer: &mut Renderer, drawn| renderer.draw(&frame(DVec3::ZERO, drawn)).unwrap();
     let bare = draw(&mut renderer, vec![wall]);
-    // In either order.
+    // The order of the meshes does not matter.
     for drawn in [
         vec![wall, at(mesh, DVec3::ZERO)],
         vec![at(mesh, DVec3::ZERO), wall],
@@ -188,7 +188,7 @@ fn what_is_nearer_hides_what_is_behind_and_casts_a_shadow_on_it() {
 }
 
 #[test]
-fn overlays_lie_where_they_are_in_the_world_and_are_faint_behind_things() {
+fn overlays_are_at_their_place_in_the_world_and_faint_behind_meshes() {
     let Some(mut renderer) = renderer("overlays") else {
         return;
     };
@@ -215,7 +215,7 @@ fn overlays_lie_where_they_are_in_the_world_and_are_faint_behind_things() {
     assert_eq!(find(&behind, is_green).2, 0);
     let bare = renderer.draw(&with(Overlay::default())).unwrap();
     assert_ne!(behind.pixels, bare.pixels);
-    // A line is as many pixels wide as it says, near and far.
+    // A line has its width in pixels, near and far.
     for (z, width) in [(0.1, 3.0), (0.1, 8.0), (3.0, 8.0)] {
         let mut line = Overlay::default();
         let end = |y: f64| DVec3::new(0.02, y, z);
@@ -269,7 +269,7 @@ fn the_same_frame_gives_the_same_picture() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_an_error() {
+fn frames_and_meshes_that_cannot_be_drawn_are_errors() {
     let Some(mut renderer) = renderer("errors") else {
         return;
     };
@@ -346,7 +346,7 @@ fn what_cannot_be_drawn_is_an_error() {
             "{source:?}: {result:?}"
         );
     }
-    // It draws on.
+    // The renderer can still draw.
     assert!(find(&renderer.draw(&good()).unwrap(), is_red).2 > 500);
 }
 

@@ -1,4 +1,4 @@
-//! What the sun shines on is lit evenly, and what is behind something is not lit.
+//! Tests that faces in the sun are lit evenly, and faces behind a wall are not lit.
 
 #![expect(
     clippy::unwrap_used,
@@ -14,15 +14,15 @@ use glam::{DVec3, Vec3};
 
 const SIDE: u32 = 120;
 
-/// If something stands between the ground and the sun.
+/// Whether a wall stands between the ground and the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sun {
     Free,
     BehindAWall,
 }
 
-/// Darkest and lightest in the middle of a picture of a square of 40 m, seen from +Z and lit by a sun that
-/// stands `height` above it, as a sine; its normals lean towards the sun by `lean`.
+/// The darkest and the lightest pixel in the middle of a picture of a square of 40 m, seen from +Z. `height` is the
+/// sine of the sun's angle above the square, and `lean` is how far the square's normals lean towards the sun.
 fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
     let to_sun = Vec3::new((1.0 - height * height).sqrt(), 0.0, height);
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -35,7 +35,7 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
         triangles: &[[0, 1, 2], [0, 2, 3]],
         ..RenderMesh::default()
     });
-    // A wall across the sun's way.
+    // A wall between the sun and a part of the square.
     let wall = [
         [3.0, -20.0, 0.0],
         [3.0, 20.0, 0.0],
@@ -57,7 +57,7 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
         light: Light {
             to_sun,
             fog: 0.0,
-            // Texels of 10 cm and more, as wide as half a pixel: bands of them would show.
+            // Texels of at least 10 cm are half a pixel wide, so bands of them would show.
             ..Light::over(DVec3::ZERO, 100.0)
         },
         drawn: vec![drawn(ground.unwrap())],
@@ -78,7 +78,7 @@ fn lit(renderer: &mut Renderer, height: f32, lean: f32, sun: Sun) -> [u8; 2] {
 }
 
 #[test]
-fn a_face_shows_no_bands_of_its_own_shadow_and_that_of_a_wall() {
+fn a_face_shows_no_bands_of_its_own_shadow_but_the_shadow_of_a_wall() {
     let Some(gpu) = common::gpu("bands") else {
         return;
     };

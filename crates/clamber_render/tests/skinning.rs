@@ -1,4 +1,4 @@
-//! The device poses vertices as the collider does.
+//! Tests that the device poses vertices as the collider's skinning does.
 
 #![expect(clippy::panic, reason = "a test's helpers may fail like the test")]
 
@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 
 const JOINTS: usize = 12;
 
-/// Vertices with one to eight influences each, more of them than one row of workgroups holds if so said.
+/// Vertices with one to eight influences each.
 struct Body {
     positions: Vec<Vec3>,
     influences: Vec<Influence>,
@@ -76,7 +76,7 @@ fn palette(joints: usize) -> Palette {
     }))
 }
 
-/// In f64.
+/// The posed positions, computed in f64.
 fn expected(body: &Body, palette: &Palette) -> Vec<DVec3> {
     let mut first = 0;
     let vertices = body.positions.iter().zip(&body.ends);
@@ -103,7 +103,7 @@ fn posed_positions_are_within_a_hundred_thousandth_of_the_extent() {
         return;
     };
     let mut renderer = Renderer::new(gpu, 16, 16).unwrap();
-    // Fewer than one workgroup, some, and more than one row of them.
+    // Vertices for less than one workgroup, for some, and for more than one row of workgroups.
     for count in [3, 1000, 2_200_000] {
         let body = body(count);
         let mesh = renderer.add_mesh(&source(&body)).unwrap();

@@ -1,12 +1,12 @@
-//! Pictures of a battle look like those that are stored in `tests/stored`.
+//! Tests that pictures of a battle look like the pictures in `tests/stored`.
 //!
-//! Two pictures look alike if two measures of `image-compare` say so: the structure (SSIM) of both at a quarter of
-//! their size, and the colours (root mean square) of both at a sixteenth. The bounds lie between what another driver
-//! may do, edges a pixel aside and noise of two levels, and what mistakes do: no shadow, another pose, fur or
-//! stone drawn plain, another light, no overlay. That both fall on their side is asserted with each stored picture.
+//! Two pictures look alike if two measures of `image-compare` are above their bounds: the structure (SSIM) at a quarter
+//! of their size, and the colours (root mean square) at a sixteenth. The bounds allow what another driver may change:
+//! edges moved by a pixel, and noise of two levels. They do not allow mistakes: no shadow, another pose, fur or stone
+//! drawn plain, another light, no overlay. The test asserts both with each stored picture.
 //!
-//! After a failure, the new picture and where it differs lie in `tmp` in cargo's target folder. If the new ones are
-//! right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test stored` stores them; look at them first.
+//! After a failure, the new picture and a picture of the differences are in `tmp` in cargo's target folder. If the new
+//! pictures are right, `CLAMBER_BLESS=1 cargo test -p clamber_render --test stored` stores them; look at them first.
 
 #![expect(
     clippy::unwrap_used,
@@ -34,11 +34,11 @@ use image_compare::{Algorithm, rgb_similarity_structure};
 const WIDTH: u32 = 320;
 const ROWS: u32 = 180;
 
-/// The least likeness in structure: 1 is the same. Other drivers were taken for 0.942 at worst.
+/// The lowest allowed likeness in structure; 1 is the same. Simulated drivers have 0.942 at worst.
 const STRUCTURE: f64 = 0.92;
 
-/// The least likeness in colours: 1 is the same. Other drivers were taken for 0.995 at worst; of mistakes, stone
-/// drawn plain has 0.991, and so has a sun with a tenth more blue.
+/// The lowest allowed likeness in colours; 1 is the same. Simulated drivers have 0.995 at worst. Of the mistakes,
+/// stone drawn plain has 0.991, and so has a sun with a tenth more blue.
 const COLOR: f64 = 0.993;
 
 /// A picture at a tick.
@@ -46,9 +46,9 @@ struct Shot {
     name: &'static str,
     tick: u64,
     camera: fn(&Battle<'_>, f64) -> Camera,
-    /// One that shows.
+    /// A joint whose motion is visible.
     joint: &'static str,
-    /// What is so near that it shows when it is drawn plain.
+    /// Surface kinds that are near enough that drawing them plain is visible.
     near: &'static [SurfaceKind],
     overlay: bool,
 }
@@ -92,7 +92,7 @@ const SHOTS: [Shot; 4] = [
 ];
 
 #[test]
-fn a_battle_looks_as_stored_and_no_mistake_does() {
+fn a_battle_looks_as_stored_and_pictures_with_mistakes_do_not() {
     let Some(gpu) = common::gpu("stored") else {
         return;
     };
@@ -214,7 +214,7 @@ fn rgb(image: &Image) -> RgbImage {
     RgbImage::from_raw(image.width, image.height, pixels).unwrap()
 }
 
-/// What is wrong with a picture, if anything.
+/// Compares a picture with the stored one, or stores it. Describes the difference; `None` if they look alike.
 fn compare_with_stored(image: &Image, name: &str) -> Option<String> {
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/stored/{name}.png"));
     if std::env::var_os("CLAMBER_BLESS").is_some() {
@@ -269,7 +269,7 @@ fn load(path: &Path) -> Image {
     }
 }
 
-/// The skeleton about the chest, the climber's surroundings, and what is under its feet.
+/// The overlay of a shot, if it is wanted: the skeleton, and shapes around the climber.
 fn overlay(battle: &Battle<'_>, wanted: bool) -> Overlay {
     let mut over = Overlay::default();
     if !wanted {
@@ -293,7 +293,7 @@ fn overlay(battle: &Battle<'_>, wanted: bool) -> Overlay {
     over
 }
 
-/// The creature's palette with one joint, and all that hang on it, turned by 30 degrees.
+/// The creature's palette with one joint and all joints below it turned by 30 degrees.
 fn bent(battle: &Battle<'_>, name: &str) -> Palette {
     let joints = battle.creature().skeleton.joints();
     let bent = joints.iter().position(|joint| joint.name == name).unwrap();
@@ -320,7 +320,8 @@ fn bent(battle: &Battle<'_>, name: &str) -> Palette {
     }))
 }
 
-/// What another driver may do, and more: each pixel is one of those around it, two levels off at most.
+/// Simulates another driver, and more: each pixel becomes one of its neighbours or stays, with at most two levels of
+/// noise.
 fn another_driver(image: &Image) -> Image {
     let mut rng = fastrand::Rng::with_seed(3);
     let mut other = image.clone();
@@ -341,13 +342,13 @@ fn another_driver(image: &Image) -> Image {
     other
 }
 
-/// A sun with a tenth less of red, green or blue, nearly: sky and tone take about half of the change.
+/// Simulates a sun with about a tenth less red, green or blue: sky and tone mapping halve the change.
 fn dimmed(image: &Image, channel: usize) -> Image {
     const LEFT: f64 = 0.95;
     let mut dimmed = image.clone();
     for pixel in dimmed.pixels.chunks_exact_mut(4) {
         let encoded = f64::from(pixel[channel]) / 255.0;
-        // sRGB: a power but for the darkest.
+        // sRGB: a power, except for the darkest colours.
         let encoded = if encoded <= 0.04045 {
             encoded * LEFT
         } else {

@@ -1,4 +1,4 @@
-//! Text lands where it is put, and nowhere else.
+//! Tests that text is drawn where it is placed, and nowhere else.
 
 use clamber_render::{Image, TextSize};
 
@@ -14,7 +14,7 @@ fn grey(width: u32, height: u32) -> Image {
     }
 }
 
-/// What a pixel shows.
+/// What a pixel belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     Picture,
@@ -32,7 +32,7 @@ fn shown(image: &Image, column: u32, row: u32) -> Shown {
     }
 }
 
-/// Columns and rows of all that shows so: first and last of each.
+/// First and last column, and first and last row, of the pixels that show `wanted`.
 fn extent(image: &Image, wanted: Shown) -> Option<[u32; 4]> {
     let mut found: Option<[u32; 4]> = None;
     for row in 0..image.height {
@@ -47,7 +47,7 @@ fn extent(image: &Image, wanted: Shown) -> Option<[u32; 4]> {
 }
 
 #[test]
-fn letters_stand_in_their_box_and_nothing_else_changes() {
+fn letters_are_in_their_box_and_nothing_else_changes() {
     for (size, width, height) in [(TextSize::Small, 6, 13), (TextSize::Large, 10, 20)] {
         let mut image = grey(WIDTH, ROWS);
         image.text([20, 4], size, "HEH\nH");
@@ -97,7 +97,7 @@ fn letters_stand_in_their_box_and_nothing_else_changes() {
 }
 
 #[test]
-fn what_reaches_out_of_the_picture_is_cut_off() {
+fn text_that_reaches_out_of_the_picture_is_cut_off() {
     let long = "M".repeat(100_000);
     let high = "M\n".repeat(100_000);
     for (width, rows) in [(1, 1), (7, 3), (WIDTH, ROWS)] {
@@ -114,7 +114,7 @@ fn what_reaches_out_of_the_picture_is_cut_off() {
             }
         }
     }
-    // Nothing comes back in on the other side.
+    // Text does not wrap around to the other side.
     let mut image = grey(WIDTH, ROWS);
     image.text([WIDTH - 30, 10], TextSize::Large, &long);
     let drawn = extent(&image, Shown::Box);
@@ -141,7 +141,7 @@ fn text_outside_of_the_picture_and_empty_text_draw_nothing() {
     }
     image.text([3, 3], TextSize::Small, "");
     assert!(image == untouched);
-    // A picture without pixels, and one with fewer than it says.
+    // A picture without pixels, and one with fewer pixels than its size.
     let mut broken = Image {
         width: 0,
         height: 0,

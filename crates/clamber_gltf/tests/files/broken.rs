@@ -1,4 +1,4 @@
-//! Files that claim too much, and files with changed values, flipped bits and cuts.
+//! Files that claim too much memory, and files with changed values, flipped bits and cuts.
 
 use allocation_counter::measure;
 use clamber_gltf::{LoadOptions, Rig, load_slice};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::builder::File;
 
-/// Poses a rig in the middle of every clip, as a user would; a rig that loads must not panic later.
+/// Poses a rig in the middle of every clip, as a user would: a rig that was loaded must not panic later.
 fn use_rig(rig: &Rig) {
     let mut surface = SkinnedSurface::new(rig.collider.clone());
     for clip in &rig.clips {
@@ -23,7 +23,7 @@ fn use_rig(rig: &Rig) {
 }
 
 #[test]
-fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
+fn data_that_is_read_many_times_is_refused_before_memory_runs_out() {
     let mut file = File::square();
     let vertices = 4_998;
     let many = vec![0.5f32; vertices * 3];
@@ -40,7 +40,7 @@ fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
     let error = file.load().unwrap_err();
     assert!(error.to_string().contains("more memory"), "{error}");
 
-    // Sparse over nothing: a claim that no bytes back.
+    // Sparse without a buffer view: a huge count without data.
     let mut file = File::square();
     let accessor = file.json["accessors"][0].as_object_mut().unwrap();
     accessor.remove("bufferView");
@@ -57,7 +57,7 @@ fn a_file_that_is_read_again_and_again_is_refused_before_memory_is() {
 }
 
 #[test]
-fn what_is_small_in_a_file_and_large_in_memory_is_charged() {
+fn data_that_is_small_in_a_file_but_large_in_memory_is_refused() {
     let refused = |file: &File, what: &str| {
         let error = file.load().unwrap_err().to_string();
         assert!(error.contains("more memory"), "{what}: {error}");
@@ -95,8 +95,8 @@ fn what_is_small_in_a_file_and_large_in_memory_is_charged() {
     refused(&file, "a long name of many joints");
 }
 
-/// Files that take as much as they may: one large mesh, shown by as many nodes as the budget lets
-/// through, and by one more, is the worst that a file can ask for.
+/// Loads files that take as much memory as they may. The worst is one large mesh, shown by as many nodes
+/// as the budget allows, and by one more.
 #[test]
 fn the_greediest_file_stays_within_a_hundred_times_its_size() {
     let vertices = 30_000;
@@ -137,7 +137,7 @@ fn the_greediest_file_stays_within_a_hundred_times_its_size() {
 }
 
 #[test]
-fn sparse_accessors_cannot_replace_more_than_there_is() {
+fn sparse_accessors_cannot_replace_more_elements_than_there_are() {
     let mut file = File::square();
     let indices = file.accessor("SCALAR", 5121, 5, &[0, 1, 2, 3, 3]);
     let values = file.floats("VEC3", &[0.5; 15]);
@@ -152,7 +152,7 @@ fn sparse_accessors_cannot_replace_more_than_there_is() {
     assert_eq!(moved, glam::Vec3::splat(0.5));
 }
 
-/// Every place in a JSON value, as a pointer.
+/// Appends JSON pointers to every place in a value.
 fn pointers(value: &Value, at: String, all: &mut Vec<String>) {
     match value {
         Value::Array(items) => {
@@ -242,7 +242,7 @@ fn no_flip_or_cut_of_bytes_panics() {
         }
     }
     for cut in 0..glb.len() {
-        // With the header as it was, and with the length that is left.
+        // First with the header's length unchanged, then with the length that is left.
         let mut broken = glb[..cut].to_vec();
         assert!(
             load_slice(&broken, &LoadOptions::default()).is_err(),
@@ -253,7 +253,7 @@ fn no_flip_or_cut_of_bytes_panics() {
             let _ = load_slice(&broken, &LoadOptions::default());
         }
     }
-    // The header alone, claiming less than itself.
+    // The header alone, with a claimed length of 0.
     let mut short = glb[..12].to_vec();
     short[8..12].fill(0);
     assert!(load_slice(&short, &LoadOptions::default()).is_err());

@@ -1,4 +1,4 @@
-//! Where the bytes come from.
+//! Buffers in data URIs, and in files beside the document.
 
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn buffers_come_from_data_uris_and_from_files_beside_the_document() {
             "{refused}: {error}"
         );
     }
-    // Two buffers in one file, the first of them shorter.
+    // Two buffers in one file, the first one shorter.
     let mut twice: serde_json::Value =
         serde_json::from_slice(&file.gltf("a%20b/data.bin")).unwrap();
     let whole = twice["buffers"][0].clone();

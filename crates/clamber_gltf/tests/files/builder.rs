@@ -1,4 +1,4 @@
-//! A small file, made in code.
+//! Builds small files in code.
 
 use clamber_gltf::{GltfErrorKind, LoadOptions, Rig, load_slice};
 use clamber_surface::geometry::Similarity;
@@ -13,8 +13,8 @@ pub(crate) struct File {
 }
 
 impl File {
-    /// A square of two triangles on two joints, the upper one turned by a clip; the joints hang
-    /// under a plain node.
+    /// A square of two triangles on two joints. A clip turns the upper joint. The joints are under a
+    /// plain node.
     pub(crate) fn square() -> Self {
         let mut file = Self {
             json: json!({
@@ -137,7 +137,7 @@ impl File {
         accessors.len() - 1
     }
 
-    /// As a GLB.
+    /// The file as a GLB.
     pub(crate) fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         if json.is_object() && json.get("buffers").is_none() {
@@ -146,7 +146,7 @@ impl File {
         glb_of(&serde_json::to_vec(&json).unwrap(), &self.bytes)
     }
 
-    /// As a `.gltf` whose buffer is at a URI.
+    /// The file as a `.gltf` whose buffer is at a URI.
     pub(crate) fn gltf(&self, uri: &str) -> Vec<u8> {
         let mut json = self.json.clone();
         json["buffers"] = json!([{"byteLength": self.bytes.len(), "uri": uri}]);
@@ -184,7 +184,7 @@ pub(crate) fn joint_names(rig: &Rig) -> Vec<&str> {
     joints.map(|joint| joint.name.as_str()).collect()
 }
 
-/// The rig's skin at a time of its first clip.
+/// The rig's surface, posed at a time of its first clip.
 pub(crate) fn posed(rig: &Rig, time: f64) -> SkinnedSurface {
     let rest = rig.skeleton.rest_pose();
     let pose = rig.clips[0].sample(&rest, time, Playback::Clamp).unwrap();

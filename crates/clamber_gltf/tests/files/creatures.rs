@@ -23,7 +23,7 @@ fn the_square_loads_as_it_was_made() {
             .iter()
             .all(|tag| tag.kind == SurfaceKind::Fur)
     );
-    // Half way the upper edge has turned by 45 degrees about (0, 1), at twice the size.
+    // At half time the upper edge has turned by 45 degrees about (0, 1), at twice the size.
     assert_eq!(rig.clips[0].name, "turn");
     let surface = posed(&rig, 0.5);
     let corner = surface.in_model().position(VertexId(2)).unwrap();
@@ -33,7 +33,7 @@ fn the_square_loads_as_it_was_made() {
 }
 
 #[test]
-fn what_does_not_concern_a_collider_is_passed_over() {
+fn harmless_extensions_and_unused_channels_meshes_and_skins_are_skipped() {
     let mut file = File::square();
     file.json["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_mesh_quantization"]);
     file.json["extensionsRequired"] = file.json["extensionsUsed"].clone();
@@ -42,7 +42,7 @@ fn what_does_not_concern_a_collider_is_passed_over() {
         .unwrap();
     channels.push(json!({"sampler": 0, "target": {"path": "rotation"}}));
     channels.push(json!({"sampler": 0, "target": {"node": 1, "path": "pointer"}}));
-    // Of a node outside the skeleton, and with values that do not fit.
+    // A channel of a node outside the skeleton, with values that do not fit.
     channels.push(json!({"sampler": 0, "target": {"node": 3, "path": "scale"}}));
     file.json["nodes"]
         .as_array_mut()
@@ -59,8 +59,8 @@ fn what_does_not_concern_a_collider_is_passed_over() {
 }
 
 #[test]
-fn joints_and_bind_matrices_beyond_the_skin() {
-    // A third bind matrix is legal to have, whatever it holds, and belongs to no one.
+fn surplus_bind_matrices_are_ignored_and_unknown_joints_refused() {
+    // A third bind matrix is legal, whatever it holds, and belongs to no joint.
     let mut file = File::square();
     let mut binds = [f32::NAN; 48];
     for k in 0..8 {
@@ -79,7 +79,7 @@ fn joints_and_bind_matrices_beyond_the_skin() {
         error.to_string().contains("joint 1 of a skin of 1"),
         "{error}"
     );
-    // Where it weighs nothing, it is padding.
+    // With a weight of 0 it is padding.
     let all_on_joint_0 = file.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(4));
     let attributes = &mut file.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["WEIGHTS_0"] = json!(all_on_joint_0);
@@ -96,7 +96,7 @@ fn joints_and_bind_matrices_beyond_the_skin() {
 #[test]
 fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     let mut file = File::square();
-    // Doubled, through nothing, to mirrored and non-uniform.
+    // From doubled, through zero, to mirrored and non-uniform.
     let times = file.floats("SCALAR", &[0.0, 1.0, 2.0]);
     let scales = file.floats("VEC3", &[2.0, 2.0, 2.0, 0.0, 0.0, 0.0, -3.0, 1e-6, 1.0]);
     let animation = &mut file.json["animations"][0];
@@ -104,7 +104,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     samplers.push(json!({"input": times, "output": scales}));
     let channels = animation["channels"].as_array_mut().unwrap();
     channels.push(json!({"sampler": 1, "target": {"node": 0, "path": "scale"}}));
-    // Both joints as they are: only the node above moves.
+    // Both joints stay as they are: only the node above moves.
     channels.remove(0);
     let rig = file.load().unwrap();
     for (time, scale) in [
@@ -122,7 +122,7 @@ fn animated_nodes_above_the_joints_move_them_at_any_scale() {
     }
 }
 
-/// A second pair of joints, under a root of their own, and a mesh on them.
+/// Adds a second pair of joints, under a root of their own, and a mesh on them.
 fn with_a_stranger(file: &mut File) {
     let root = file.push(
         "nodes",
@@ -138,14 +138,14 @@ fn with_a_stranger(file: &mut File) {
 }
 
 #[test]
-fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
+fn skins_that_share_joints_are_one_creature_and_others_another_one() {
     let mut file = File::square();
-    // The same nodes the other way round, and bound where they are.
+    // The same nodes in reverse order, without bind matrices.
     let again = file.push("skins", json!({"joints": [2, 1]}));
     let twice = json!({"mesh": 0, "skin": again});
     file.push("nodes", twice.clone());
     file.push("nodes", twice);
-    // A joint that hangs under another skin's.
+    // A joint under a joint of another skin.
     let finger = file.node_under(2, json!({"name": "finger"}));
     let nail = file.node_under(finger, json!({"name": "nail"}));
     let third = file.push("skins", json!({"joints": [finger, nail]}));
@@ -154,7 +154,7 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
 
     let rig = file.load().unwrap();
     let names = joint_names(&rig);
-    // "lower" is bound alike by two; "upper" by the first one elsewhere.
+    // Two skins bind "lower" alike, but "upper" with different matrices.
     assert_eq!(
         names,
         ["lower", "upper", "upper", "finger", "nail", "armature"]
@@ -163,7 +163,7 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
     assert_eq!(
         rig.collider.triangles().len(),
         6,
-        "what is shown twice is one"
+        "a mesh shown twice is one"
     );
     assert_eq!(
         rig.report.build.cracks, 0,
@@ -177,7 +177,7 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
     };
     assert_eq!(*warning, expected);
     let text = warning.to_string();
-    assert!(text.contains("creature of skins 0, 1, 2; other creatures passed over: 1"));
+    assert!(text.contains("creature of skins 0, 1, 2; skipped other creatures: 1"));
 
     let pick = |skin| LoadOptions::default().with_skin(skin);
     let stranger = load_slice(&file.glb(), &pick(3)).unwrap();
@@ -198,10 +198,10 @@ fn skins_of_the_same_joints_are_one_creature_and_others_another_one() {
 }
 
 #[test]
-fn all_creatures_of_a_file_can_be_had() {
+fn load_all_gives_all_creatures_of_a_file() {
     let mut file = File::square();
     with_a_stranger(&mut file);
-    // A second skin of the stranger's.
+    // A second skin of the stranger.
     let joints = file.json["skins"][1]["joints"].clone();
     let second = file.push("skins", json!({"joints": joints}));
     file.push("nodes", json!({"mesh": 0, "skin": second}));
@@ -244,7 +244,7 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
         (JointId(1), Vec3::new(2.0, 1.0, 0.0))
     );
     assert!(eye.major && eye.hit_points == 3.0 && eye.name == "eye");
-    // As the file says; and a node of scale 0.4 under one of 2, in an armature of 2.
+    // The radius in the file; and the scale of a node of 0.4 under one of 2, in an armature of 2.
     assert_eq!((lower.radius, eye.radius), (0.25, 0.4 * 2.0 * 2.0));
     let [warning] = rig.report.warnings.as_slice() else {
         panic!("{:?}", rig.report.warnings);
@@ -266,7 +266,7 @@ fn weak_points_are_on_the_joint_that_they_hang_under() {
 }
 
 #[test]
-fn nodes_in_a_circle_are_refused() {
+fn nodes_in_a_cycle_are_refused() {
     let mut file = File::square();
     file.json["nodes"][2]["children"] = json!([0]);
     let error = file.load().unwrap_err();

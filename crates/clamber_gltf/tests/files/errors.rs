@@ -1,4 +1,4 @@
-//! What errors say.
+//! Messages of errors.
 
 use std::error::Error;
 
@@ -24,7 +24,7 @@ fn said(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn files_that_are_something_else_are_told_apart_from_files_cut_short() {
+fn other_formats_and_files_cut_short_have_different_errors() {
     for (bytes, text) in [
         (&b""[..], "the file is empty"),
         (b"hello", "neither GLB nor glTF"),
@@ -46,13 +46,13 @@ fn files_that_are_something_else_are_told_apart_from_files_cut_short() {
     assert!(other.contains("`asset`"), "{other}");
 }
 
-/// True if an error tells its cause, and tells it once.
+/// True if the chain of an error contains its cause exactly once.
 fn tells_once(error: &dyn Error, cause: &str) -> bool {
     chain(error).matches(cause).count() == 1
 }
 
 #[test]
-fn no_cause_is_told_twice() {
+fn each_cause_is_told_once() {
     let missing = load("no/such/file.glb").unwrap_err();
     let GltfErrorKind::Read { error, .. } = &missing.kind else {
         panic!("{missing}");

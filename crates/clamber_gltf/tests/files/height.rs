@@ -7,10 +7,10 @@ use serde_json::json;
 
 use crate::builder::File;
 
-/// The square, 2 m tall in its armature of scale 2, moved by translations of every interpolation, with a weak point.
+/// The square, 2 m tall in its armature of scale 2, with a weak point. A clip translates it with every interpolation.
 fn moving_square() -> File {
     let mut file = File::square();
-    // Not where it is bound, and bound where the inverse bind matrices have a translation.
+    // The creature stands apart from its bind pose, whose inverse matrices have a translation.
     file.json["nodes"][0]["translation"] = json!([0.5, -3, 0]);
     let weak = json!({"name": "eye", "translation": [0, 0.25, 0.5],
         "extras": {"clamber": {"weak_point": {"hit_points": 1, "radius": 0.3}}}});
@@ -64,7 +64,7 @@ fn skinned(rig: &Rig, time: Option<f64>) -> Vec<Vec3> {
 }
 
 #[test]
-fn every_length_is_multiplied() {
+fn scaling_multiplies_every_length() {
     let file = moving_square();
     let (plain, scaled) = (file.load().unwrap(), with_height(&file, 5.0).unwrap());
     assert_eq!(plain.report.scale, None);
@@ -87,20 +87,20 @@ fn every_length_is_multiplied() {
 }
 
 #[test]
-fn what_has_no_height_or_cannot_have_it_is_refused() {
+fn bad_heights_and_creatures_without_height_are_refused() {
     let file = File::square();
     for wanted in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let error = with_height(&file, wanted).unwrap_err();
         assert!(matches!(error, GltfErrorKind::BadHeight { .. }), "{error}");
     }
-    // Laid down.
+    // The square lies down, and is flat.
     let mut flat = File::square();
     flat.json["nodes"][0]["rotation"] = json!([1, 0, 0, 0]);
     flat.json["nodes"][0]["scale"] = json!([2, 0, 2]);
     let error = with_height(&flat, 1.0).unwrap_err();
     let expected = matches!(error, GltfErrorKind::NoHeight { found, .. } if found == 0.0);
     assert!(expected, "{error}");
-    // The joints are farther away than f32 reaches at that height.
+    // At that height the joints are farther away than f32 can express.
     let mut far = File::square();
     far.json["nodes"][0]["scale"] = json!([1e-20, 1e-20, 1e-20]);
     far.json["nodes"][0]["translation"] = json!([1e20, 0, 0]);

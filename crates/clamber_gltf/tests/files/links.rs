@@ -1,4 +1,4 @@
-//! Symbolic links in a model's folder: a document from elsewhere must not read what lies outside of it.
+//! Symbolic links in a model's folder: an untrusted document must not read files outside the folder.
 
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use clamber_gltf::{GltfErrorKind, load};
 
 use crate::builder::File;
 
-/// A folder of a model, and one beside it with a buffer that is none of the model's business.
+/// A model's folder, and a folder beside it with a buffer that the model must not read.
 struct Folders {
     root: PathBuf,
     file: File,
@@ -52,7 +52,7 @@ fn links_that_lead_out_of_the_folder_are_refused() {
     folders.link("../elsewhere", "folder");
     folders.link("relative.bin", "twice.bin");
     folders.link("../model-beside.bin", "prefix.bin");
-    // Its path begins with the folder's as text, but is not below it.
+    // As text its path begins with the folder's path, but it is not in the folder.
     std::fs::write(folders.root.join("model-beside.bin"), &folders.file.bytes).unwrap();
     folders.link("/dev/zero", "endless.bin");
     for uri in [
@@ -105,14 +105,14 @@ fn the_model_and_its_folder_may_be_links() {
     let folder = folders.root.join("linked");
     symlink(folders.root.join("model"), &folder).unwrap();
     load(folder.join("square.gltf")).unwrap();
-    // Its buffers are those beside the link, as for any other program that opens it.
+    // Its buffers are looked up beside the link, as other programs do.
     let apart = folders.root.join("elsewhere/link.gltf");
     symlink(folders.document("data.bin"), &apart).unwrap();
     load(&apart).unwrap();
 }
 
 #[test]
-fn links_that_lead_nowhere_cannot_be_read() {
+fn dangling_and_circular_links_cannot_be_read() {
     let folders = Folders::new("nowhere");
     folders.link("missing.bin", "dangling.bin");
     folders.link("loop.bin", "loop.bin");

@@ -1,4 +1,4 @@
-//! Small files made here: what they load as, and what becomes of them when they are broken.
+//! Tests with small files made in code: what they load as, and how broken ones are refused.
 
 #![expect(
     clippy::unwrap_used,

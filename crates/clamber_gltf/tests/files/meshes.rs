@@ -1,4 +1,4 @@
-//! Meshes for collision and for the eye, rigid ones, morph targets.
+//! Collision meshes, visual meshes, rigid meshes and morph targets.
 
 use clamber_gltf::{Alpha, GltfErrorKind, ImportWarning};
 use clamber_surface::mesh::VertexId;
@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::builder::{File, joint_names, posed};
 
 #[test]
-fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() {
+fn visual_meshes_keep_normals_texture_coordinates_colours_and_materials() {
     let mut file = File::square();
     let normals = file.floats("VEC3", &[0.0, 0.0, 0.5].repeat(4));
     let corners = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
@@ -24,7 +24,7 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
     attributes["TEXCOORD_1"] = json!(second);
     attributes["COLOR_0"] = json!(colors);
     attributes["COLOR_1"] = json!(colors);
-    // The same vertices once more, in another material.
+    // The same vertices once more, with another material.
     let mut other = file.json["meshes"][0]["primitives"][0].clone();
     other["material"] = json!(1);
     file.json["meshes"][0]["primitives"]
@@ -70,7 +70,7 @@ fn what_is_to_be_seen_keeps_normals_texture_coordinates_colours_and_materials() 
 }
 
 #[test]
-fn meshes_to_be_seen_make_one_collider_with_their_tags() {
+fn visual_meshes_merge_into_one_collider_with_their_tags() {
     let mut file = File::square();
     let apart: [[f32; 3]; 3] = [[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]];
     let positions = file.positions(&apart);
@@ -92,7 +92,7 @@ fn meshes_to_be_seen_make_one_collider_with_their_tags() {
         );
     }
 
-    // Positions need not state their range; normals have to be as many.
+    // Positions may lack their range. Normals must be as many as positions.
     let accessor = file.json["accessors"][positions].as_object_mut().unwrap();
     accessor.remove("min");
     accessor.remove("max");
@@ -102,7 +102,7 @@ fn meshes_to_be_seen_make_one_collider_with_their_tags() {
     file.json["meshes"][0]["primitives"][1]["indices"] = json!(four);
     let error = file.load().unwrap_err().to_string();
     assert!(
-        error.contains("4 corners make no whole triangles"),
+        error.contains("has 4 corners, not a multiple of 3"),
         "{error}"
     );
     let primitive = file.json["meshes"][0]["primitives"][1]
@@ -115,7 +115,7 @@ fn meshes_to_be_seen_make_one_collider_with_their_tags() {
 }
 
 #[test]
-fn one_mesh_can_be_shown_to_two_purposes() {
+fn two_nodes_can_give_one_mesh_different_roles() {
     let role = |role: &str| json!({"clamber": {"role": role}});
     let mut file = File::square();
     file.json["nodes"][3]["extras"] = role("visual");
@@ -128,7 +128,7 @@ fn one_mesh_can_be_shown_to_two_purposes() {
 }
 
 #[test]
-fn roles_say_what_is_for_collision() {
+fn roles_select_collision_and_visual_meshes() {
     let role = |role: &str| json!({"clamber": {"role": role}});
     let mut file = File::square();
     file.json["nodes"][3]["extras"] = role("visual");
@@ -140,7 +140,7 @@ fn roles_say_what_is_for_collision() {
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (2, 0));
 
-    // Once one is for collision, what does not say is to be seen.
+    // If one mesh is for collision, a mesh without a role is visual only.
     let mut seen = file.json["meshes"][0].clone();
     seen["primitives"].as_array_mut().unwrap().pop();
     let three: [[f32; 3]; 3] = [[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]];
@@ -163,7 +163,7 @@ fn roles_say_what_is_for_collision() {
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (3, 2));
 
-    // Of the mesh where its node says nothing.
+    // The role of the mesh applies where its node has none.
     file.json["meshes"][0]["extras"] = role("visual");
     let rig = file.load().unwrap();
     assert_eq!((rig.collider.triangles().len(), rig.visual.len()), (1, 2));
@@ -188,7 +188,7 @@ fn a_rigid_mesh_under_a_joint_follows_it_alone() {
         between,
         json!({"name": "plate", "mesh": plate, "translation": [0, 0, 3]}),
     );
-    // One that hangs under no joint.
+    // One under no joint.
     file.push("nodes", json!({"mesh": plate}));
 
     let rig = file.load().unwrap();
@@ -233,7 +233,7 @@ fn a_file_without_skins_is_one_creature_of_rigid_pieces() {
 }
 
 #[test]
-fn morph_targets_stand_at_their_rest_weights() {
+fn morph_targets_are_applied_at_their_rest_weights() {
     let mut file = File::square();
     let up = file.positions(&[[0.0, 0.0, 1.0]; 4]);
     let aside = file.positions(&[[4.0, 0.0, 0.0]; 4]);
@@ -250,10 +250,10 @@ fn morph_targets_stand_at_their_rest_weights() {
     assert_eq!(
         z(&file).unwrap(),
         Vec3::new(0.0, 0.0, 2.0),
-        "the node's win"
+        "the node's weights win"
     );
 
-    // The same mesh at other weights is another one.
+    // The same mesh with other weights is another mesh.
     file.push("nodes", json!({"mesh": 0, "skin": 0}));
     assert_eq!(file.load().unwrap().collider.triangles().len(), 4);
 

@@ -1,4 +1,4 @@
-//! Buffers that the caller gives.
+//! Buffers from a resolver.
 
 use std::io;
 
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::builder::File;
 
-/// A document whose buffers are at these URIs, the last of them with the data.
+/// A document whose buffers are at these URIs. The last one has the data.
 fn document(file: &File, uris: &[(&str, usize)]) -> Vec<u8> {
     let mut json = file.json.clone();
     let buffers = uris.iter();
@@ -20,7 +20,7 @@ fn document(file: &File, uris: &[(&str, usize)]) -> Vec<u8> {
 }
 
 #[test]
-fn each_file_is_asked_for_once_by_its_decoded_path() {
+fn the_resolver_is_called_once_per_file_with_the_decoded_path() {
     let file = File::square();
     let all = file.bytes.len();
     let uris = [
@@ -65,7 +65,7 @@ fn files_that_are_short_or_missing_are_errors() {
 }
 
 #[test]
-fn paths_out_of_the_folder_are_refused_before_anyone_is_asked() {
+fn paths_out_of_the_folder_are_refused_before_the_resolver_is_called() {
     let file = File::square();
     for uri in [
         "/data.bin",
@@ -85,7 +85,7 @@ fn paths_out_of_the_folder_are_refused_before_anyone_is_asked() {
 }
 
 #[test]
-fn what_a_file_has_beyond_its_buffers_gives_no_memory_to_take() {
+fn bytes_beyond_the_buffers_do_not_raise_the_limit_of_memory() {
     let mut file = File::square();
     let vertices = 20_000;
     let zeros = json!({"componentType": 5126, "count": vertices, "type": "VEC3"});

@@ -1,4 +1,4 @@
-//! Tags from the file, and from the caller.
+//! Tags from the file and from the caller.
 
 use clamber_gltf::{LoadOptions, Rig, load_slice};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::builder::File;
 
-/// Three primitives: of the square's nameless fur, of "horn", and of no material.
+/// A file of three primitives: with the square's unnamed fur material, with "horn", and without a material.
 fn three() -> File {
     let mut file = File::square();
     let extras = json!({"clamber": {"surface": "stone", "user": 7}});
@@ -22,7 +22,7 @@ fn three() -> File {
         }
         primitives.push(primitive);
     }
-    // Rigid, so that positions are enough.
+    // Rigid, so that positions suffice.
     file.json.as_object_mut().unwrap().remove("skins");
     let body = file.json["nodes"][3].as_object_mut().unwrap();
     body.remove("skin");
@@ -33,7 +33,7 @@ fn load(options: &LoadOptions) -> Rig {
     load_slice(&three().glb(), options).unwrap()
 }
 
-/// The collider's tags. The visual meshes have the same.
+/// The tags of the collider, after checking that the visual meshes have the same.
 fn tags(rig: &Rig) -> Vec<SurfaceTag> {
     let seen = rig.visual_collider().unwrap();
     assert_eq!(seen.tags(), rig.collider.tags());
@@ -46,7 +46,7 @@ fn tags(rig: &Rig) -> Vec<SurfaceTag> {
 }
 
 #[test]
-fn extras_of_materials_tag_triangles_and_the_rest_is_the_default() {
+fn extras_of_materials_tag_triangles_and_others_get_the_default() {
     let (fur, horn) = (SurfaceKind::Fur, SurfaceTag::new(SurfaceKind::Stone));
     let fur = SurfaceTag::new(fur);
     let expected = [fur, fur, horn.with_user(7), SurfaceTag::default()];
@@ -54,7 +54,7 @@ fn extras_of_materials_tag_triangles_and_the_rest_is_the_default() {
 }
 
 #[test]
-fn the_tagger_is_asked_for_every_surface_and_sees_what_the_file_says() {
+fn the_tagger_is_called_for_every_material_with_its_tag_in_the_file() {
     let options = LoadOptions::default().with_tags(|name, of_file| match name {
         Some("horn") => of_file.with_ledge().with_user(of_file.user + 1),
         Some(name) => panic!("no material is called {name}"),
@@ -70,7 +70,7 @@ fn the_tagger_is_asked_for_every_surface_and_sees_what_the_file_says() {
 }
 
 #[test]
-fn one_call_tags_all_of_it() {
+fn with_tag_tags_every_surface() {
     let stone = SurfaceTag::new(SurfaceKind::Stone).with_user(u32::MAX);
     let rig = load(&LoadOptions::default().with_tag(stone));
     assert_eq!(tags(&rig), [stone; 4]);

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::builder::File;
 
-/// The weights of the square's vertices for its two joints, in a file with other ones.
+/// The joints and weights of the square's vertices, after loading.
 fn weights_of(file: &File) -> Vec<Vec<(u32, f32)>> {
     let collider = file.load().unwrap().collider;
     let vertex = |v| {
@@ -62,7 +62,7 @@ fn every_component_type_gives_the_same_weights() {
 }
 
 #[test]
-fn sums_other_than_one_are_normalised_and_reported() {
+fn weights_that_do_not_sum_to_one_are_normalised_and_reported() {
     let mut file = File::square();
     let weights = file.floats("VEC4", &[0.5, 1.0, 0.0, 0.0].repeat(4));
     replace(&mut file, "WEIGHTS_0", weights);
@@ -75,7 +75,7 @@ fn sums_other_than_one_are_normalised_and_reported() {
         assert!((a * (1u32 << 24) as f32 - third).abs() <= 1.0, "{a}");
     }
     assert_eq!(file.load().unwrap().report.build.worst_weight_error, 0.5);
-    // None at all: the first joint named has them.
+    // All weights are zero: the first joint named moves the vertex.
     let weights = file.floats("VEC4", &[0.0; 16]);
     replace(&mut file, "WEIGHTS_0", weights);
     let rig = file.load().unwrap();
@@ -103,7 +103,7 @@ fn further_sets_add_influences_and_a_half_set_is_refused() {
         "{error}"
     );
     replace(&mut file, "WEIGHTS_1", weights);
-    // One joint had all; now it has two thirds, and the other one a third.
+    // The first joint had all the weight. Now it has two thirds, and the other one a third.
     let two_thirds = weights_of(&file)[0][0].1;
     assert!((two_thirds - 2.0 / 3.0).abs() < 1e-6, "{two_thirds}");
 }

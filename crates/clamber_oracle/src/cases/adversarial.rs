@@ -1,4 +1,4 @@
-//! Motions that sweeps find hard, at human scale.
+//! Cases that are hard for sweeps, at human scale.
 
 use core::f64::consts::TAU;
 
@@ -8,36 +8,36 @@ use super::Case;
 use super::place::{across, direction, point, turned};
 use crate::{Core, MovingPair};
 
-/// What is hard about it.
+/// What is hard about a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Nothing.
+    /// Nothing: a random case.
     Random,
-    /// A triangle of height 1e-7.
+    /// The triangle has a height of 1e-7.
     Sliver,
-    /// A triangle that is all but a line, of height 1e-20 to 1e-3, which the core is close to.
+    /// The triangle is nearly a line, with a height of 1e-20 to 1e-3, and the core is close to it.
     Needle,
-    /// The core passes a corner, an edge or a face about as far away as its radius.
+    /// The core passes a corner, an edge or a face at a distance of about the radius.
     Grazing,
-    /// The core slides along a face at radius and twice the tolerance.
+    /// The core slides along a face, at a distance of the radius plus twice the tolerance.
     Slide,
-    /// Corners go round by up to a full turn.
+    /// The triangle's corners move to where a rotation of up to a full turn takes them.
     Spin,
-    /// At half of the way the triangle is a line or a point.
+    /// Halfway, the triangle collapses to a line or a point.
     Collapse,
-    /// Nothing moves faster than the smallest numbers.
+    /// All displacements are denormal numbers.
     Denormal,
-    /// Triangle and core move as one.
+    /// Triangle and core have the same motion.
     Still,
-    /// A kilometre from the origin.
+    /// A random or grazing case, a kilometre from the origin.
     Far,
-    /// They overlap at the start.
+    /// Triangle and core overlap at the start.
     Inside,
-    /// The core has no radius.
+    /// The radius is 0.
     Thin,
 }
 
-/// All of them.
+/// All kinds of adversarial cases.
 pub const KINDS: [Kind; 12] = [
     Kind::Random,
     Kind::Sliver,
@@ -53,7 +53,7 @@ pub const KINDS: [Kind; 12] = [
     Kind::Thin,
 ];
 
-/// Before rounding.
+/// A case before it is rounded to f32.
 #[derive(Clone, Copy)]
 struct Draft {
     corners: [[DVec3; 3]; 2],
@@ -63,7 +63,7 @@ struct Draft {
     tolerance: f64,
 }
 
-/// A case of a kind, with a sphere or a capsule.
+/// A random case of a kind, with a sphere or a capsule.
 pub fn adversarial(kind: Kind, rng: &mut fastrand::Rng) -> Case {
     let mut draft = random(rng);
     match kind {
@@ -85,7 +85,7 @@ pub fn adversarial(kind: Kind, rng: &mut fastrand::Rng) -> Case {
             draft.ends = draft.ends.map(|end| end + offset);
         }
         Kind::Inside => {
-            // More than rounding takes off the overlap.
+            // Large enough that rounding cannot remove the overlap.
             draft.radius = draft.radius.max(1e-3);
             let weights = [rng.f64(), rng.f64(), rng.f64()];
             let [a, b, c] = draft.corners[0];
@@ -124,7 +124,7 @@ fn core(ends: [Vec3; 2], motions: [Vec3; 2], is_sphere: bool) -> Core {
     }
 }
 
-/// The core is on its way to where the triangle is going, about.
+/// The core moves roughly towards the place where the triangle ends.
 fn random(rng: &mut fastrand::Rng) -> Draft {
     let start = [(); 3].map(|()| point(rng));
     let shift = point(rng) * [0.0, 0.1, 2.0][rng.usize(0..3)];
@@ -156,13 +156,13 @@ fn sliver(draft: &mut Draft, rng: &mut fastrand::Rng) {
     }
 }
 
-/// A length between two powers of ten.
+/// A random length between two powers of ten, given by their exponents.
 fn between_powers(rng: &mut fastrand::Rng, low: f64, high: f64) -> f64 {
     libm::exp10(low + (high - low) * rng.f64())
 }
 
-/// Often with a corner at the origin and along an axis or in a plane of two, where f32 holds heights as
-/// small as these.
+/// Often the triangle has a corner at the origin and lies along an axis or in a coordinate plane, where f32
+/// can hold such small heights.
 fn needle(draft: &mut Draft, rng: &mut fastrand::Rng) {
     let long = point(rng) * [DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE][rng.usize(0..3)];
     let base = [DVec3::ZERO, point(rng)][rng.usize(0..2)];
@@ -192,8 +192,8 @@ fn needle(draft: &mut Draft, rng: &mut fastrand::Rng) {
     draft.tolerance = [0.0, 1e-9, 1e-6, 1e-4][rng.usize(0..4)];
 }
 
-/// At some time the core is beside a point of the triangle, by about the radius, and all of the triangle
-/// is on the other side.
+/// At some time the core is at about the radius from a point of the triangle, and the whole triangle is on the
+/// other side of the plane through that point.
 fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
     let n = direction(rng);
     let top = draft.corners[0][0];
@@ -201,7 +201,7 @@ fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
     for corners in &mut draft.corners {
         let lift = corners[0] - top;
         for (k, corner) in corners.iter_mut().enumerate() {
-            // Those that support the core stay in a plane, the others below it.
+            // Corners that support the core stay in a plane, the others stay below it.
             let height = n.dot(*corner - top - lift);
             let below = if k < supports { 0.0 } else { -height.abs() };
             *corner += n * (below - height);
@@ -226,7 +226,7 @@ fn grazing(draft: &mut Draft, rng: &mut fastrand::Rng) {
     draft.motions = [motion; 2];
 }
 
-/// In planes of two axes, so that no rounding tilts them.
+/// The triangle is in coordinate planes, so that rounding does not tilt it.
 fn slide(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     let tolerance = [1e-4, 1e-3, 1e-6][rng.usize(0..3)];
     let mut case = draft.rounded(rng.bool());
@@ -261,7 +261,7 @@ fn spin(draft: &mut Draft, rng: &mut fastrand::Rng) {
         draft.motions = ends.map(|p| turned(p - hub, axis, angle) - (p - hub));
     }
     if rng.bool() {
-        // Where it has to pass.
+        // Near the hub, where the triangle has to pass.
         draft.ends = draft
             .ends
             .map(|p| p - draft.ends[0] + hub + point(rng) * 0.3);
@@ -281,7 +281,7 @@ fn collapse(draft: &mut Draft, rng: &mut fastrand::Rng) {
         *end = m * 2.0 - p;
     }
     if rng.bool() {
-        // There when it happens.
+        // The core is near the centre when the triangle collapses.
         let at = center + point(rng) * draft.radius;
         let apart = draft.ends[1] - draft.ends[0];
         draft.ends = [
@@ -291,12 +291,12 @@ fn collapse(draft: &mut Draft, rng: &mut fastrand::Rng) {
     }
 }
 
-/// Side by side, with gaps of some steps of f32, at speeds that are denormal.
+/// Triangle and core are side by side, a few f32 steps apart, with denormal displacements.
 fn denormal(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     let mut case = draft.rounded(rng.bool());
     let size = [1.0, 1.0, 1e-20, 1e-38][rng.usize(0..4)];
     let corners = case.pair.corners[0].map(|p| p * size);
-    // Close to the origin denormal speeds are speeds; elsewhere the sum is rounded away.
+    // Near the origin a denormal displacement moves a corner; elsewhere it is lost to rounding.
     let later = corners.map(|p| p + slow(rng));
     case.pair.corners = [corners, later];
     case.pair.radius *= size;
@@ -317,7 +317,7 @@ fn denormal(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     case
 }
 
-/// Of coordinates below the smallest normal number, down to the smallest of all.
+/// A vector of denormal coordinates, down to the smallest number.
 fn slow(rng: &mut fastrand::Rng) -> Vec3 {
     let mut part = || {
         let places = rng.u32(1..=23);
@@ -327,7 +327,7 @@ fn slow(rng: &mut fastrand::Rng) -> Vec3 {
     Vec3::new(part(), part(), part())
 }
 
-/// All in multiples of 2^-10, so that all of it moves by exactly the same.
+/// All coordinates are multiples of 2^-10, so that all points move by exactly the same vector.
 fn still(draft: &Draft, rng: &mut fastrand::Rng) -> Case {
     let coarse = |p: DVec3| ((p * 1024.0).round() / 1024.0).as_vec3();
     let shift = coarse(point(rng) * [0.0, 1.0, 8.0][rng.usize(0..3)]);

@@ -1,22 +1,22 @@
-//! Motions in multiples of powers of two, of which something is known by how they are made.
+//! Cases in multiples of powers of two, whose answer is partly known from their construction.
 
 use glam::{DMat3, DVec3};
 
 use super::Case;
 use crate::{Core, MovingPair};
 
-/// What is known of a case.
+/// What is known about the answer to a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
     /// At this time the distance is at most the radius.
     Touches(f64),
-    /// The distance is always greater than radius and tolerance.
+    /// The distance is always greater than the radius plus the tolerance.
     Misses,
-    /// Nothing.
+    /// Nothing is known.
     Nothing,
 }
 
-/// Matrices of integers that turn, mirror and scale by 1, 3 and 9.
+/// Integer matrices that rotate or mirror, and scale by the factor beside them: 1, 3 and 9.
 const TURNS: [(DMat3, f64); 3] = [
     (DMat3::IDENTITY, 1.0),
     (
@@ -37,10 +37,10 @@ const TURNS: [(DMat3, f64); 3] = [
     ),
 ];
 
-/// Of all lengths but the tolerance's share of gaps.
+/// The tolerance, before the case is scaled.
 const TOLERANCE: f64 = 1.0 / 4096.0;
 
-/// Numbers that f32 holds.
+/// A case before it is turned and scaled. All numbers are exact.
 #[derive(Clone, Copy)]
 struct Draft {
     corners: [[DVec3; 3]; 2],
@@ -51,7 +51,7 @@ struct Draft {
     known: Known,
 }
 
-/// A vertex and a face, or two edges, with what is known of them.
+/// A random case of a vertex and a face or of two edges, and what is known about its answer.
 pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
     loop {
         let draft = match rng.usize(0..5) {
@@ -59,7 +59,7 @@ pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
             2 | 3 => above_plane(rng),
             _ => random(rng),
         };
-        // Few need more places than f32 has.
+        // Few cases need more digits than f32 has; these are drawn again.
         if let Some(case) = draft.placed(rng) {
             return (case, draft.known);
         }
@@ -67,7 +67,7 @@ pub fn constructed(rng: &mut fastrand::Rng) -> (Case, Known) {
 }
 
 impl Draft {
-    /// Turned, mirrored and scaled, if f32 holds all of it.
+    /// The case, turned, mirrored and scaled; `None` if a number of it is not exact in f32.
     fn placed(&self, rng: &mut fastrand::Rng) -> Option<Case> {
         let (turn, factor) = TURNS[rng.usize(0..TURNS.len())];
         let scale = [1.0, 1.0 / 64.0, 1024.0, 1.0 / (1u64 << 40) as f64][rng.usize(0..4)];
@@ -110,13 +110,13 @@ impl Draft {
     }
 }
 
-/// A vector of integers.
+/// A random vector of integers from `-most` to `most`.
 fn integers(rng: &mut fastrand::Rng, most: i32) -> DVec3 {
     let mut integer = || f64::from(rng.i32(-most..=most));
     DVec3::new(integer(), integer(), integer())
 }
 
-/// Eighths that sum to 1; of only so many corners.
+/// Random weights in eighths that sum to 1, all on the first `corners` corners.
 fn weights(rng: &mut fastrand::Rng, corners: usize) -> [f64; 3] {
     let mut eighths = [0u8; 3];
     for _ in 0..8 {
@@ -158,8 +158,8 @@ fn crossing(rng: &mut fastrand::Rng) -> Draft {
     }
 }
 
-/// One to three corners move in the plane z = 0, the others below it; the core moves at a height above
-/// it, and at one time is right above a point of what is in the plane.
+/// One to three corners move in the plane z = 0, the others below it. Each end of the core keeps its height
+/// above the plane. At one time the core is exactly above a point of the corner, edge or face in the plane.
 fn above_plane(rng: &mut fastrand::Rng) -> Draft {
     let is_edge = rng.bool();
     let supports = rng.usize(1..=3);
@@ -173,8 +173,8 @@ fn above_plane(rng: &mut fastrand::Rng) -> Draft {
         }
     }
     let radius = [0.0, 1.0 / 64.0, 1.0, 40.0][rng.usize(0..4)];
-    // Of the tolerance: below, at and above what touches, and what may be reported.
-    // What would be lower is in the plane.
+    // Height over the radius in tolerances: below, at and above the limits of contact and of what may be
+    // reported. A height below the plane becomes 0.
     let over = [-1.0, 0.0, 0.0, 0.5, 1.0, 1.0 + 1.0 / 16.0, 2.0, 2.0][rng.usize(0..8)];
     let time = f64::from(rng.u32(0..=32)) / 32.0;
     let support = if is_edge { supports.min(2) } else { supports };

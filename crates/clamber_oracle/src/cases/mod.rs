@@ -1,4 +1,4 @@
-//! Moving pairs for sweeps to answer: hard ones, and ones whose answer is known in part.
+//! Test cases for sweeps: hard ones, and ones whose answer is partly known.
 
 mod adversarial;
 mod constructed;
@@ -9,11 +9,11 @@ pub use constructed::{Known, constructed};
 
 use crate::MovingPair;
 
-/// A pair, and how near a sweep has to come.
+/// A test case for a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
-    /// What moves.
+    /// The moving triangle and sphere or capsule.
     pub pair: MovingPair,
-    /// Of the sweep.
+    /// Tolerance of the sweep: how much the distance at a hit may exceed the radius.
     pub tolerance: f32,
 }

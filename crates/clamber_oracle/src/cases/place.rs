@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-/// In the cube of half side 1.
+/// A random point with coordinates from -1 to 1.
 pub(super) fn point(rng: &mut fastrand::Rng) -> DVec3 {
     let mut coordinate = || rng.f64() * 2.0 - 1.0;
     DVec3::new(coordinate(), coordinate(), coordinate())
 }
 
-/// A unit vector.
+/// A random unit vector.
 pub(super) fn direction(rng: &mut fastrand::Rng) -> DVec3 {
     loop {
         let p = point(rng);
@@ -18,7 +18,7 @@ pub(super) fn direction(rng: &mut fastrand::Rng) -> DVec3 {
     }
 }
 
-/// A unit vector at right angles to another.
+/// A random unit vector perpendicular to the unit vector `n`.
 pub(super) fn across(rng: &mut fastrand::Rng, n: DVec3) -> DVec3 {
     let p = direction(rng);
     (p - n * n.dot(p))

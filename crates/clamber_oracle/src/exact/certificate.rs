@@ -1,13 +1,14 @@
-//! Proofs that a triangle and a core stay apart for a stretch of time.
+//! Proofs that a triangle and a core stay apart during an interval of time.
 //!
-//! For any vector n the gap `min n.(p(t) - a(t))` over the core's ends p and the corners a is a
-//! minimum of linear functions of time, hence concave, and at most |n| times the distance: that it is
-//! above `radius |n|` at two times proves that the distance is above the radius at all times
-//! between. Where no n does for a stretch, one is tried that turns linearly from the first time to the
-//! last: a gap along it is quadratic, and nowhere less than the least of its Bernstein coefficients. Where
-//! that does not either, the stretch is halved. The gap is first bounded in f64, with all roundings against
-//! the proof, and where that leaves it open, computed in rational numbers. So which n is tried decides only
-//! how soon a proof is found.
+//! For any vector n, the gap is `min n.(p(t) - a(t))` over the core's ends p and the corners a. It is a
+//! minimum of linear functions of time, hence concave, and it is at most |n| times the distance. So if it
+//! is above `radius |n|` at two times, the distance is above the radius at all times between them. If no n
+//! proves this for an interval, a vector is tried that changes linearly from the interval's first time to
+//! its last. Each `n(t).(p(t) - a(t))` is then quadratic in time, and nowhere less than the least of its
+//! Bernstein coefficients. If that fails too, the interval is halved.
+//!
+//! The gap is first bounded in f64, with all rounding errors taken against the proof. Where that cannot
+//! decide, it is computed in rational numbers. So the choice of n decides only how soon a proof is found.
 
 use std::cell::LazyCell;
 
@@ -19,48 +20,48 @@ use super::number::{Exact, dot, length_sq, minus, number, rounded};
 use super::pair::ExactPair;
 use crate::MovingPair;
 
-/// Stretches that a proof may take; what has one takes far fewer.
+/// Most intervals that a proof may take. Pairs that can be proved take far fewer.
 const STRETCHES: usize = 20_000;
 
 /// Twice the largest relative error of a gap's lines at a time: of each difference of points, its
 /// products, their sums and their means, ten roundings of 2^-53.
 const LOST: f64 = 24.0 / (1u64 << 53) as f64;
 
-/// For stretches shorter than this, directions are computed in rational numbers if those in f64 fail.
+/// In intervals shorter than this, directions are computed in rational numbers if those in f64 fail.
 const SHORT: f64 = 1e-9;
 
-/// More than what products below the smallest f64 lose.
+/// More than products lose by underflow.
 const UNDERFLOW: f64 = 1e-300;
 
-/// What is shown of the time before another.
+/// What is proved about the distance in an interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Apart {
-    /// The distance is greater than the radius all the time.
+    /// The distance is greater than the radius at all times.
     Always,
-    /// It is not greater at this time.
+    /// The distance is at most the radius at this time.
     Until(f64),
-    /// Neither could be shown near this time.
+    /// Neither could be proved near this time.
     Unknown(f64),
 }
 
-/// The last time of a stretch.
+/// Whether an interval of time includes its last time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Last {
-    /// Belongs to it.
+    /// The interval includes its last time.
     Included,
-    /// Does not: there the distance may be the radius.
+    /// It does not: at its last time the distance may equal the radius.
     Excluded,
 }
 
-/// A moving triangle and core, in f64 and, where that is asked for, in rational numbers.
+/// A moving triangle and core, in f64 and, where needed, in rational numbers.
 pub struct Motion<'a> {
-    /// From the corners to the ends, at both times; each coordinate is rounded once.
+    /// The vectors from the corners to the ends, at both times; each coordinate is rounded once.
     lines: [[[DVec3; 3]; 2]; 2],
     exact: LazyCell<ExactPair, Box<dyn FnOnce() -> ExactPair + 'a>>,
 }
 
 impl Motion<'static> {
-    /// Of a pair in rational numbers.
+    /// The motion of a pair in rational numbers.
     pub fn of_exact(pair: ExactPair) -> Self {
         Self {
             lines: rounded_lines(&pair),
@@ -70,7 +71,7 @@ impl Motion<'static> {
 }
 
 impl<'a> Motion<'a> {
-    /// Of a pair in f32.
+    /// The motion of a pair in f32.
     ///
     /// # Panics
     /// If a coordinate is not finite.
@@ -86,16 +87,16 @@ impl<'a> Motion<'a> {
         &self.exact
     }
 
-    /// What is shown of the times from 0 to `until`.
+    /// Proves or refutes that the distance is greater than the radius from time 0 to `until`.
     ///
     /// # Panics
-    /// If the radius is not finite, or the time not in 0..=1.
+    /// If the radius is not finite, or `until` is not in 0..=1.
     pub fn apart(&self, radius: f64, until: f64, last: Last) -> Apart {
-        assert!((0.0..=1.0).contains(&until), "{until} is no time");
+        assert!((0.0..=1.0).contains(&until), "{until} is not in 0..=1");
         let exact_radius = number(radius);
         let size = self.size();
         let is_met = |time: f64| {
-            // By far most times are nowhere near, by more than the guess is off.
+            // The guess rules out most times: its error is far smaller than the margin here.
             let about = self.nearest(time).distance;
             about <= radius * (1.0 + 1e-6) + size * 1e-9
                 && self.exact.is_within(time, &exact_radius)
@@ -132,8 +133,8 @@ impl<'a> Motion<'a> {
             .map_or(Apart::Always, |[from, _]| Apart::Unknown(*from))
     }
 
-    /// One of three directions proves it for a stretch, given by its first, middle and last time. At
-    /// the last the gap may equal the radius.
+    /// True if a direction proves the interval, given by its first, middle and last time. At the last time
+    /// the gap may equal the radius.
     fn is_certified(&self, radius: f64, [from, middle, to]: [f64; 3]) -> bool {
         let mut open = Vec::new();
         let directions = [to, from, middle].map(|time| self.nearest(time).direction);
@@ -153,14 +154,14 @@ impl<'a> Motion<'a> {
         if open.iter().any(|n| is_shown(&n.to_array().map(number))) {
             return true;
         }
-        // Of a sliver rounding may choose the wrong edge. In rational numbers none is.
+        // For a sliver, rounding may choose the wrong edge. In rational numbers the edge is right.
         to - from < SHORT
             && [to, from]
                 .iter()
                 .any(|time| is_shown(&self.exact.apart(&number(*time))))
     }
 
-    /// `None` if rounding leaves it open.
+    /// Whether a direction separates the pair in an interval; `None` if rounding leaves it open.
     fn separates(&self, n: DVec3, radius: f64, times: [f64; 2]) -> Option<bool> {
         if n == DVec3::ZERO {
             return Some(false);
@@ -183,7 +184,8 @@ impl<'a> Motion<'a> {
         all.then_some(true)
     }
 
-    /// Along a direction that goes linearly from the first to the last; false if rounding leaves it open.
+    /// True if a direction that changes linearly from `n` to `m` separates the pair in an interval; false if
+    /// rounding leaves it open.
     fn separates_turning(&self, [n, m]: [DVec3; 2], radius: f64, [from, to]: [f64; 2]) -> bool {
         if n == DVec3::ZERO || m == DVec3::ZERO {
             return false;
@@ -218,7 +220,7 @@ impl<'a> Motion<'a> {
                 let h0 = dot(n, &minus(end, &first[corner]));
                 let h1 = dot(n, &minus(end_later, &last[corner]));
                 let gaps = times.each_ref().map(|time| &h0 + (&h1 - &h0) * time);
-                // Above at the first time, not below at the last: above at all between.
+                // Above the limit at the first time and not below it at the last: above at all times between.
                 let squares = gaps.each_ref().map(|gap| gap * gap);
                 gaps[0] > Relaxed::ZERO
                     && squares[0] > limit_sq
@@ -236,7 +238,7 @@ impl<'a> Motion<'a> {
     fn nearest(&self, time: f64) -> Nearest {
         let at = |end: &[[DVec3; 3]; 2], k: usize| end[0][k] * (1.0 - time) + end[1][k] * time;
         let [first, second] = &self.lines;
-        // Relative to the first end, the corners are where they are as seen from it.
+        // All points are relative to the first end.
         let corners = [0, 1, 2].map(|k| -at(first, k));
         let axis = at(second, 0) - at(first, 0);
         nearest(corners, [DVec3::ZERO, axis])
@@ -248,8 +250,8 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// From the corners to the ends, each coordinate rounded once; `None` where f64 does not hold the last
-/// place of an end.
+/// The vectors from the corners to the ends, each coordinate rounded once; `None` if an end at time 1 is not
+/// exact in f64.
 fn lines(pair: &MovingPair) -> Option<[[[DVec3; 3]; 2]; 2]> {
     let [ends, motions] = pair.ends().map(|points| points.map(|p| p.as_dvec3()));
     let [first, last] = pair.corners.map(|corners| corners.map(|p| p.as_dvec3()));

@@ -1,4 +1,4 @@
-//! Distances in rational numbers, and proofs that a sweep's answer is right or wrong.
+//! Distances in rational numbers, and proofs that the answer of a sweep is right or wrong.
 
 mod certificate;
 mod nearest;

@@ -1,20 +1,20 @@
-//! Where triangle and core are nearest, in f64: a guess that certificates start from. Nothing is proved
-//! by it.
+//! The nearest features of triangle and core, in f64: a guess that certificates start from. It proves
+//! nothing.
 
 use glam::DVec3;
 
-/// Of triangle and core at one time.
+/// The nearest features of triangle and core at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
-    /// About.
+    /// Approximate distance.
     pub(super) distance: f64,
-    /// Unit vector from the triangle to the core; at right angles to the features that are nearest, so
-    /// that it stays a separating direction however near they come. Zero if there is none.
+    /// Unit vector from the triangle to the core. It is perpendicular to the nearest features, so that it
+    /// stays a separating direction however near they come. Zero if there is none.
     pub(super) direction: DVec3,
     features: Features,
 }
 
-/// What is nearest, by how much of it the direction is at right angles to.
+/// The nearest features, ordered by how many dimensions of them are perpendicular to the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Features {
     /// No direction is known.
@@ -27,12 +27,12 @@ enum Features {
     Plane,
 }
 
-/// What differs by less, as a share, is as near.
+/// Distances that differ by less than this share count as equal.
 const EQUAL: f64 = 1e-13;
 
 impl Nearest {
-    /// Of what is as near, the most features: where a point is all but above a line's end, only the line
-    /// gives a direction that separates all of it.
+    /// Takes new features if they are nearer. Of equally near ones, the higher kind wins: if a point is almost
+    /// above a line's end, only the line gives a direction that separates all of it.
     fn offer(&mut self, distance: f64, direction: DVec3, features: Features) {
         let features = if direction == DVec3::ZERO {
             Features::None
@@ -51,7 +51,7 @@ impl Nearest {
     }
 }
 
-/// Of a triangle and a segment; either may have collapsed.
+/// The nearest features of a triangle and a segment; either may have collapsed.
 pub(super) fn nearest(corners: [DVec3; 3], ends: [DVec3; 2]) -> Nearest {
     let mut best = Nearest {
         distance: f64::INFINITY,

@@ -3,27 +3,27 @@
 use dashu::rational::Relaxed;
 use glam::{DVec3, Vec3};
 
-/// A point or vector.
+/// A point or vector in rational numbers.
 pub type Exact = [Relaxed; 3];
 
-/// A number, exactly.
+/// Converts a number exactly.
 ///
 /// # Panics
-/// If it is not finite.
+/// If the number is not finite.
 pub fn number(x: f64) -> Relaxed {
-    assert!(x.is_finite(), "{x} is no rational number");
+    assert!(x.is_finite(), "{x} is not finite");
     Relaxed::try_from(x).unwrap_or_default()
 }
 
-/// A point, exactly.
+/// Converts a point exactly.
 ///
 /// # Panics
-/// If it is not finite.
+/// If a coordinate is not finite.
 pub fn exact(p: Vec3) -> Exact {
     p.to_array().map(|x| number(f64::from(x)))
 }
 
-/// The point in f64, each coordinate rounded once.
+/// Converts a point to f64, each coordinate rounded once.
 pub fn rounded(p: &Exact) -> DVec3 {
     let [x, y, z] = p;
     DVec3::new(x.to_f64().value(), y.to_f64().value(), z.to_f64().value())
@@ -44,7 +44,7 @@ pub fn between(a: &Exact, b: &Exact, time: &Relaxed) -> Exact {
     zip(a, b, |a, b| a + (b - a) * time)
 }
 
-/// The scalar product.
+/// The dot product.
 pub fn dot(a: &Exact, b: &Exact) -> Relaxed {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
@@ -58,7 +58,7 @@ fn cross(a: &Exact, b: &Exact) -> Exact {
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-/// The square of its length.
+/// The squared length of a vector.
 pub fn length_sq(a: &Exact) -> Relaxed {
     dot(a, a)
 }
@@ -71,12 +71,12 @@ fn within_unit(t: &Relaxed) -> bool {
     *t >= Relaxed::ZERO && *t <= Relaxed::ONE
 }
 
-/// The shorter one.
+/// The shorter one of two vectors; the first one if they are equally long.
 fn shorter(a: Exact, b: Exact) -> Exact {
     if length_sq(&b) < length_sq(&a) { b } else { a }
 }
 
-/// From the nearest point of a segment, which may be a point, to a point.
+/// The vector from the nearest point of a segment, which may be a point, to a point.
 fn from_segment(p: &Exact, [a, b]: [&Exact; 2]) -> Exact {
     let (along, from) = (minus(b, a), minus(p, a));
     let (share, whole) = (dot(&from, &along), length_sq(&along));
@@ -89,7 +89,7 @@ fn from_segment(p: &Exact, [a, b]: [&Exact; 2]) -> Exact {
     }
 }
 
-/// From the nearest point of one segment to that of the other; each may be a point.
+/// The vector between the nearest points of two segments, from the first to the second; each may be a point.
 fn between_segments([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Exact {
     let to_ends = shorter(from_segment(c, [a, b]), from_segment(d, [a, b]));
     let from_ends = shorter(from_segment(a, [c, d]), from_segment(b, [c, d]));
@@ -109,7 +109,7 @@ fn between_segments([a, b]: [&Exact; 2], [c, d]: [&Exact; 2]) -> Exact {
     }
 }
 
-/// From the nearest point of a triangle, which may be a segment or a point, to a point.
+/// The vector from the nearest point of a triangle, which may be a segment or a point, to a point.
 pub fn from_triangle(p: &Exact, corners: &[Exact; 3]) -> Exact {
     let [a, b, c] = corners;
     let edges = shorter(
@@ -122,8 +122,8 @@ pub fn from_triangle(p: &Exact, corners: &[Exact; 3]) -> Exact {
     }
 }
 
-/// From the nearest point of a triangle to that of a segment; either may have collapsed. Zero where
-/// they meet.
+/// The vector from the nearest point of a triangle to the nearest point of a segment; either may have
+/// collapsed. Zero if they intersect.
 pub fn between_triangle_and_segment(corners: &[Exact; 3], [p, q]: [&Exact; 2]) -> Exact {
     if crosses([p, q], corners) {
         return [Relaxed::ZERO, Relaxed::ZERO, Relaxed::ZERO];
@@ -140,7 +140,8 @@ pub fn between_triangle_and_segment(corners: &[Exact; 3], [p, q]: [&Exact; 2]) -
     ends.into_iter().flatten().fold(edges, shorter)
 }
 
-/// From the foot on the face to a point, if the foot falls inside.
+/// The vector from the projection of a point on the face to the point; `None` if the projection is outside
+/// the face, or the face has no area.
 fn from_face(p: &Exact, corners: &[Exact; 3]) -> Option<Exact> {
     let [a, b, c] = corners;
     let n = cross(&minus(b, a), &minus(c, a));
@@ -154,14 +155,14 @@ fn from_face(p: &Exact, corners: &[Exact; 3]) -> Option<Exact> {
     (inside(a, b) && inside(b, c) && inside(c, a)).then(|| scaled(&n, &(height / n_sq)))
 }
 
-/// True if a segment meets the face from one side to the other.
+/// True if a segment crosses or touches the face without lying in its plane.
 fn crosses([p, q]: [&Exact; 2], corners: &[Exact; 3]) -> bool {
     let [a, b, c] = corners;
     let n = cross(&minus(b, a), &minus(c, a));
     let (from, to) = (dot(&minus(p, a), &n), dot(&minus(q, a), &n));
     let zero = Relaxed::ZERO;
     let one_side = (from > zero && to > zero) || (from < zero && to < zero);
-    // What lies in the plane meets the face at an edge or has an end in it.
+    // A segment in the plane meets the face at an edge, or has an end in it.
     if one_side || from == to {
         return false;
     }
@@ -196,7 +197,7 @@ mod tests {
         length_sq(&apart)
     }
 
-    /// No corner and end are nearer along the vector than it is long: so it is the shortest.
+    /// Asserts that along the vector no corner and end are nearer than the vector is long. So it is the shortest.
     fn assert_separates(apart: &Exact, corners: &[Exact; 3], ends: [&Exact; 2]) {
         for (corner, end) in corners.iter().flat_map(|c| ends.map(|end| (c, end))) {
             let gap = dot(apart, &minus(end, corner));
@@ -205,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_that_are_known() {
+    fn known_distances() {
         let floor = [at(0.0, 0.0, 0.0), at(4.0, 0.0, 0.0), at(0.0, 4.0, 0.0)];
         let above = at(1.0, 1.0, 3.0);
         assert_eq!(point_triangle_sq(&above, &floor), number(9.0));
@@ -214,7 +215,7 @@ mod tests {
             point_triangle_sq(&at(-3.0, -4.0, 12.0), &floor),
             number(169.0)
         );
-        // A face that has collapsed is its edges.
+        // A collapsed face consists of its edges.
         let line = [at(0.0, 0.0, 0.0), at(4.0, 0.0, 0.0), at(2.0, 0.0, 0.0)];
         assert_eq!(point_triangle_sq(&above, &line), number(10.0));
         let through = [&above, &at(1.0, 1.0, -1.0)];
@@ -232,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn segments_that_are_skew_parallel_or_points() {
+    fn skew_and_parallel_segments_and_points() {
         let along = [&at(-1.0, 0.0, 0.0), &at(1.0, 0.0, 0.0)];
         let across = [&at(0.0, -1.0, 2.0), &at(0.0, 1.0, 2.0)];
         assert_eq!(segments_sq(along, across), number(4.0));

@@ -5,17 +5,17 @@ use super::number::{
 };
 use crate::MovingPair;
 
-/// A [`MovingPair`] in exact arithmetic, less the radius.
+/// A [`MovingPair`] in exact arithmetic, without its radius.
 #[derive(Clone, Debug)]
 pub struct ExactPair {
-    /// Of the triangle, at both times.
+    /// Corners of the triangle, at time 0 and at time 1.
     pub corners: [[Exact; 3]; 2],
-    /// Of the core, at both times.
+    /// Ends of the core, at time 0 and at time 1. Those of a sphere are equal.
     pub ends: [[Exact; 2]; 2],
 }
 
 impl ExactPair {
-    /// From the triangle's nearest point to the core's, at a time.
+    /// The vector from the triangle's nearest point to the core's nearest point, at a time.
     pub fn apart(&self, time: &Relaxed) -> Exact {
         let [from, to] = &self.corners;
         let corners = [0, 1, 2].map(|k| between(&from[k], &to[k], time));
@@ -28,7 +28,10 @@ impl ExactPair {
         }
     }
 
-    /// True if they are at most so far apart at a time.
+    /// True if triangle and core are at most `distance` apart at a time.
+    ///
+    /// # Panics
+    /// If the time is not finite.
     pub fn is_within(&self, time: f64, distance: &Relaxed) -> bool {
         length_sq(&self.apart(&number(time))) <= distance * distance
     }

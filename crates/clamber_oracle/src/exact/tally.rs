@@ -1,35 +1,36 @@
 use super::verdict::Claim;
 use crate::cases::{Case, Known};
 
-/// False answers that are kept to be shown.
+/// Number of false answers whose descriptions are kept.
 const SHOWN: usize = 3;
 
-/// What sweeps answered, and whether that is right.
+/// Counts of answers of sweeps, and of false ones among them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
-    /// Answers.
+    /// Number of claims.
     pub cases: usize,
-    /// Contacts.
+    /// Claims with a time of contact.
     pub hits: usize,
-    /// Touching before the time that was claimed, or known to touch where no contact was.
+    /// Claims of a time after the first contact, or of no contact where there is one.
     pub late: usize,
-    /// Contacts farther away than radius and tolerance, or known to be none, and not flagged.
+    /// Claims of a contact whose distance exceeds radius plus tolerance or which is a known miss, and which are not
+    /// flagged as undecided.
     pub too_far: usize,
-    /// Could neither be proved nor refuted.
+    /// Claims for which it could be neither proved nor refuted that they are late.
     pub unproved: usize,
-    /// Contacts that say that they may be too far away.
+    /// Claims that are flagged as undecided.
     pub undecided: usize,
-    /// Of these, those that are.
+    /// Undecided claims that are too far.
     pub undecided_far: usize,
-    /// The first false answers.
+    /// Descriptions of the first 3 claims that are late, too far or unproved.
     pub shown: Vec<String>,
 }
 
 impl Tally {
-    /// Counts a claim, and whether it is true.
+    /// Checks a claim, and counts the result.
     ///
     /// # Panics
-    /// If a number of the case or the claim is not finite, or its time not in 0..=1.
+    /// If a number of the case or the claim is not finite, or the claimed time is not in 0..=1.
     pub fn count(&mut self, case: &Case, known: Known, claim: &Claim) {
         let verdict = claim.check(&case.pair, case.tolerance);
         let known_late = match known {
@@ -52,7 +53,7 @@ impl Tally {
         }
     }
 
-    /// True if no answer was false.
+    /// True if no claim was late, too far or unproved.
     pub fn holds(&self) -> bool {
         self.late + self.too_far + self.unproved == 0
     }

@@ -2,32 +2,32 @@ use super::certificate::{Apart, Last, Motion};
 use super::number::number;
 use crate::MovingPair;
 
-/// What a sweep says of a pair.
+/// The answer of a sweep for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Claim {
-    /// When they first touch; `None` if they never do.
+    /// Time of first contact, from 0 to 1; `None` if the pair never touches.
     pub time: Option<f64>,
-    /// It may be farther away then than tolerated.
+    /// True if the sweep says that the distance may exceed radius plus tolerance at that time.
     pub undecided: bool,
 }
 
-/// Whether a [`Claim`] holds.
+/// The result of checking a [`Claim`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
-    /// Whether they are apart before the time claimed, or all the time.
+    /// Whether the pair is apart before the claimed time; without one, whether it is apart from time 0 to 1.
     pub before: Apart,
-    /// At that time they are within radius and tolerance.
+    /// True if the distance at the claimed time is at most radius plus tolerance, and for a claim without a time.
     pub near: bool,
 }
 
-/// Below this share of the lengths involved a tolerance counts as that, as the sweeps say.
+/// The least tolerance as a share of [`MovingPair::size`], as sweeps document it. A smaller one is raised to this.
 const LEAST_TOLERANCE: f64 = 1.0 / (1u64 << 45) as f64;
 
 impl Claim {
-    /// Checks the claim: proofs, in exact arithmetic where f64 leaves anything open.
+    /// Proves or refutes the claim, in exact arithmetic where f64 cannot decide.
     ///
     /// # Panics
-    /// If a number of the pair, the time or the tolerance is not finite, or the time not in 0..=1.
+    /// If a number of the pair, the time or the tolerance is not finite, or the time is not in 0..=1.
     pub fn check(&self, pair: &MovingPair, tolerance: f32) -> Verdict {
         let motion = Motion::new(pair);
         let radius = f64::from(pair.radius);
@@ -47,12 +47,12 @@ impl Claim {
 }
 
 impl Verdict {
-    /// They touch before the time claimed.
+    /// True if the pair touches before the claimed time, or touches although the claim has no time.
     pub fn is_late(&self) -> bool {
         matches!(self.before, Apart::Until(_))
     }
 
-    /// It could not be shown whether they do.
+    /// True if [`Verdict::is_late`] could be neither proved nor refuted.
     pub fn is_unknown(&self) -> bool {
         matches!(self.before, Apart::Unknown(_))
     }

@@ -2,28 +2,28 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why queries cannot be read.
+/// An error from reading queries.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum QueryFileError {
     /// A file cannot be read.
     #[error("{}: {source}", .file.display())]
     Read {
-        /// Its path.
+        /// Path of the file.
         file: PathBuf,
-        /// Why not.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A file's path does not say of what kind its queries are.
+    /// The path of a file does not tell the kind of its queries.
     #[error("{}: expected `edge-edge` or `vertex-face` in the path", .file.display())]
     Kind {
-        /// Its path.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// A row is no vertex.
+    /// A row, or the query that begins with it, is not valid.
     #[error("{}:{line}: {reason}", .file.display())]
     Row {
-        /// The file's path.
+        /// Path of the file.
         file: PathBuf,
         /// Number of the row, from 1.
         line: usize,
@@ -31,11 +31,11 @@ pub enum QueryFileError {
         reason: RowError,
     },
     /// A file ends within a query.
-    #[error("{}: {rows} rows are no whole number of queries of 8", .file.display())]
+    #[error("{}: {rows} rows, not a multiple of the 8 rows of a query", .file.display())]
     Rows {
-        /// Its path.
+        /// Path of the file.
         file: PathBuf,
-        /// How many rows it has.
+        /// Number of rows in the file.
         rows: usize,
     },
 }
@@ -44,39 +44,39 @@ pub enum QueryFileError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RowError {
-    /// Not as many columns as a row has.
+    /// The row does not have 7 columns.
     #[error("expected 7 columns, found {found}")]
     Columns {
-        /// How many it has.
+        /// Number of columns in the row.
         found: usize,
     },
     /// A column is not an integer.
     #[error("column {column}: expected an integer, found `{found}`")]
     Integer {
-        /// From 1.
+        /// Number of the column, from 1.
         column: usize,
-        /// What it holds.
+        /// Text of the column.
         found: String,
     },
-    /// A coordinate's second integer is 0.
+    /// The denominator of a coordinate is 0.
     #[error("column {column}: a denominator of 0")]
     Denominator {
-        /// From 1.
+        /// Number of the column, from 1.
         column: usize,
     },
-    /// The last column.
+    /// The last column is neither 0 nor 1.
     #[error("column 7: expected 0 or 1, found `{found}`")]
     Label {
-        /// What it holds.
+        /// Text of the column.
         found: String,
     },
     /// The rows of one query differ in the last column.
-    #[error("column 7 differs from that of the query's first row")]
+    #[error("column 7 differs from column 7 of the query's first row")]
     LabelDiffers,
     /// The query is too large or too small for f32.
-    #[error("a query of extent {extent:e}, which f32 does not hold: expected 1e-30 to 1e30, or 0")]
+    #[error("a query of extent {extent:e} does not fit f32: expected 1e-30 to 1e30, or 0")]
     Extent {
-        /// The largest side of the box of its points.
+        /// The largest side of the bounding box of its points.
         extent: f64,
     },
 }

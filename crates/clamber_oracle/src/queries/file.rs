@@ -1,6 +1,6 @@
-//! Query files as of the data sets of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo 2021, *A
-//! Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*: eight rows
-//! a query, each a vertex in rational numbers and whether the query's motion ever touches.
+//! Reads query files of the data sets of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo 2021, *A
+//! Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*. A query has
+//! eight rows. Each row is a vertex in rational numbers, and whether the query's motion ever touches.
 
 use std::path::Path;
 
@@ -14,10 +14,11 @@ use crate::exact::Exact;
 /// Rows of a query.
 const ROWS: usize = 8;
 
-/// The queries of a file, whose path holds `edge-edge` or `vertex-face`.
+/// Reads the queries of a file, whose path must contain `edge-edge` or `vertex-face`. The last of these in
+/// the path is the kind of the queries.
 ///
 /// # Errors
-/// [`QueryFileError`] if the file cannot be read, the path holds neither, or a row is not as it should be.
+/// [`QueryFileError`] if the file cannot be read, the path contains neither, or a row is not valid.
 pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
     let text = std::fs::read_to_string(file).map_err(|source| QueryFileError::Read {
         file: file.to_owned(),
@@ -26,7 +27,7 @@ pub fn read_queries(file: &Path) -> Result<Vec<FileQuery>, QueryFileError> {
     parse_queries(file, &text)
 }
 
-/// The queries of a file's text.
+/// Parses the queries of a file's text. The path `file` gives their kind, and is named in errors.
 ///
 /// # Errors
 /// As [`read_queries`].
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_folder_says_the_kind() {
+    fn the_last_kind_in_the_path_counts() {
         let kind = |path: &str| kind_of(Path::new(path));
         assert_eq!(kind("a/vertex-face/1.csv"), Some(QueryKind::VertexFace));
         assert_eq!(kind("a/edge-edge/1.csv"), Some(QueryKind::EdgeEdge));
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_file_and_line() {
+    fn errors_name_the_file_and_the_line() {
         let good = ["0,1,0,1,0,1,0\n"; 8].concat();
         let says = |file: &str, text: String| {
             let read = parse_queries(Path::new(file), &text);
@@ -172,7 +173,7 @@ mod tests {
             let found = replaced(row);
             assert!(found.contains(expected), "{found}\nexpected {expected}");
         }
-        assert!(error(good + "0,1,0,1,0,1,0\n").contains("9 rows are no whole number"));
+        assert!(error(good + "0,1,0,1,0,1,0\n").contains("9 rows, not a multiple"));
         let missing = read_queries(Path::new("no/such/vertex-face.csv")).unwrap_err();
         assert!(missing.to_string().starts_with("no/such/vertex-face.csv: "));
     }

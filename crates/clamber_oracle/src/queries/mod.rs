@@ -1,8 +1,8 @@
-//! Continuous collision queries from files, whose answers are known.
+//! Continuous collision queries from files, with known answers.
 //!
-//! A vertex becomes a sphere and an edge a capsule; the face, or the other edge as a collapsed face, is the triangle. A
-//! query is moved near the origin in exact arithmetic, and rounded to f32 ([`FileQuery::rounded`]). It is to be asked
-//! with a radius that is larger than the rounding by far: so what touches must be found.
+//! The vertex of a query becomes a sphere, an edge a capsule. The triangle is the face, or the other edge as a
+//! collapsed face. A query is moved to the origin in exact arithmetic, and rounded to f32 ([`FileQuery::rounded`]). Its
+//! radius is far larger than the rounding, so a sweep must find every contact.
 
 mod error;
 mod file;

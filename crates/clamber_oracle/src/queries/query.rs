@@ -5,7 +5,7 @@ use super::error::RowError;
 use crate::exact::{Exact, ExactPair, exact, minus, rounded};
 use crate::{Core, MovingPair};
 
-/// What a query is between.
+/// The two shapes of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QueryKind {
     /// A moving point and a moving triangle.
@@ -14,30 +14,30 @@ pub enum QueryKind {
     EdgeEdge,
 }
 
-/// A query in rational numbers, and its answer.
+/// A query of a file, in rational numbers, and its answer.
 #[derive(Clone, Debug)]
 pub struct FileQuery {
     kind: QueryKind,
-    /// At both times: the vertex and the face, or the ends of one edge and of the other. Relative to the
-    /// first point at time 0.
+    /// At time 0 and at time 1: the vertex and the face, or the ends of one edge and of the other. Relative
+    /// to the first point at time 0.
     points: [[Exact; 4]; 2],
     touches: bool,
     line: usize,
     extent: f64,
 }
 
-/// Extents that f32 holds with room for the squares that queries take.
+/// Extents that f32 can hold, with room for the squares that queries compute.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Radius and tolerance, as a share of a query's extent.
+/// The radius, and the tolerance before rounding, each as a share of a query's extent.
 const REACH: f64 = 1e-5;
 
-/// By how much the distance may change where the points are rounded, as a share of the extent: no
-/// coordinate is larger than the extent, so each point is off by sqrt(3) 2^-24 at most, on both sides.
+/// Bound on the change of the distance when the points are rounded, as a share of the extent. No coordinate
+/// is larger than the extent, so each of the two nearest points is off by at most sqrt(3) 2^-24.
 const ROUNDED: f64 = 2.2e-7;
 
 impl FileQuery {
-    /// Of points in the files' order.
+    /// A query of points in the order of the files.
     pub(super) fn new(
         kind: QueryKind,
         points: [Exact; 8],
@@ -59,36 +59,37 @@ impl FileQuery {
         })
     }
 
-    /// Whether the two touch at any time, by the file.
+    /// True if the two shapes touch at some time, according to the file.
     pub fn touches(&self) -> bool {
         self.touches
     }
 
-    /// Of its first row, from 1.
+    /// The line of its first row in the file, from 1.
     pub fn line(&self) -> usize {
         self.line
     }
 
-    /// Within which a sweep is to find the other: a hundred-thousandth of the extent, which is
-    /// the largest side of the box of all points.
+    /// The radius for a sweep: 1e-5 of the extent, which is the largest side of the bounding box of all
+    /// points.
     pub fn radius(&self) -> f32 {
         (self.extent * REACH) as f32
     }
 
-    /// What radius and tolerance may not exceed together, for the points as they are.
+    /// The largest distance of the exact points at which a sweep may report a hit: radius plus tolerance.
     pub fn reach(&self) -> f64 {
         f64::from(self.radius()) + self.extent * REACH
     }
 
-    /// The tolerance for the points as rounded: less, by as much as that may bring them nearer.
+    /// The tolerance for a sweep of the rounded points: [`FileQuery::reach`] less the radius and less what
+    /// rounding may change the distance by.
     pub fn tolerance(&self) -> f32 {
         let tolerance = (self.extent * (REACH - ROUNDED)) as f32;
         tolerance.next_down().max(0.0)
     }
 
-    /// The points as they are: face and vertex, or an edge as a collapsed face and the other.
+    /// The exact points: the face and the vertex, or one edge as a collapsed face and the other edge.
     pub fn exact(&self) -> ExactPair {
-        // By number among the points at one time.
+        // Indices of the points at one time.
         let (corners, ends) = match self.kind {
             QueryKind::VertexFace => ([1, 2, 3], [0, 0]),
             QueryKind::EdgeEdge => ([2, 3, 3], [0, 1]),
@@ -100,13 +101,13 @@ impl FileQuery {
         }
     }
 
-    /// The points rounded to f32, to be asked.
+    /// The points rounded to f32, as the input of a sweep.
     pub fn rounded(&self) -> MovingPair {
         let ExactPair { corners, ends } = self.exact();
         let round = |p: &Exact| rounded(p).as_vec3();
         let [starts, lasts] = &ends;
         let starts_rounded = starts.each_ref().map(round);
-        // From the rounded start, so that the end is off by one rounding as well.
+        // Measured from the rounded start, so that the end too is off by only one rounding.
         let motion = |k: usize| round(&minus(&lasts[k], &exact(starts_rounded[k])));
         let motions: [Vec3; 2] = [motion(0), motion(1)];
         MovingPair {

@@ -5,7 +5,7 @@ use clamber_climber::{
 };
 use prost::Message;
 
-/// A state and an input in which every field has a value of its own.
+/// A state and an input in which every field has a different value.
 fn everything() -> (ClimberState, ClimberInput) {
     let mut number = 0.0;
     let mut next = || {
@@ -78,7 +78,7 @@ fn everything() -> (ClimberState, ClimberInput) {
     (state, input)
 }
 
-/// As they are read again.
+/// Writes a state and an input, and reads them back.
 fn read_back(state: &ClimberState, input: &ClimberInput) -> (ClimberState, ClimberInput) {
     let message = Tick {
         input: input.into(),
@@ -91,13 +91,13 @@ fn read_back(state: &ClimberState, input: &ClimberInput) -> (ClimberState, Climb
     (read.state.to_climber().unwrap(), read.input.into())
 }
 
-/// All that holds numbers, in words: two of them are equal if their bits are, and a negative zero shows.
+/// A state and an input as text. Two texts are equal if all bits are, and a negative zero has its sign.
 fn words(state: &ClimberState, input: &ClimberInput) -> String {
     format!("{state:?} {input:?}")
 }
 
 #[test]
-fn every_field_comes_back_in_every_mode() {
+fn every_field_reads_back_in_every_mode() {
     let (state, input) = everything();
     let custom = [0, 1, u16::MAX].map(ClimberMode::Custom);
     for mode in ClimberMode::ALL.into_iter().chain(custom) {
@@ -115,7 +115,7 @@ fn every_field_comes_back_in_every_mode() {
     assert_eq!(read_back(&state, &input), (state, input));
 }
 
-/// Every number of a state and an input, to be changed.
+/// All numbers of a state and an input, as mutable references.
 fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<&'a mut f64> {
     fn all(v: &mut DVec3) -> [&mut f64; 3] {
         [&mut v.x, &mut v.y, &mut v.z]
@@ -168,10 +168,10 @@ fn numbers<'a>(state: &'a mut ClimberState, input: &'a mut ClimberInput) -> Vec<
 }
 
 #[test]
-fn every_bit_of_every_number_survives_a_negative_zero_and_the_smallest_too() {
+fn every_number_reads_back_bit_for_bit_negative_zeros_and_denormals_too() {
     let (mut state, mut input) = everything();
     let count = numbers(&mut state, &mut input).len();
-    // Fifteen vectors and the coordinates, a rotation, the damage, nine numbers, eight of the game's modes.
+    // Fifteen vectors and the coordinates, a rotation, the damage, nine numbers, and the memory of the game's modes.
     assert_eq!(count, 3 * 16 + 4 + 1 + 9 + 8);
     for index in 0..count {
         for value in [-0.0, 0.0, f64::from_bits(1), -f64::MAX, -f64::MIN_POSITIVE] {
@@ -186,7 +186,7 @@ fn every_bit_of_every_number_survives_a_negative_zero_and_the_smallest_too() {
 }
 
 #[test]
-fn a_mode_of_another_version_is_refused_with_its_number() {
+fn an_unknown_mode_is_refused_with_its_number() {
     let climber = Climber::new(ClimberConfig::default(), DVec3::ZERO).unwrap();
     let mut message = State::from(climber.state());
     message.mode = 7;

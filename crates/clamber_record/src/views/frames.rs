@@ -7,11 +7,11 @@ use glam::{DMat3, DQuat, DVec3};
 use super::{CLIMBER, CREATURE, WORLD, Z_UP, rotation, timestamp, vector};
 use crate::taken::Taken;
 
-/// Transforms that stand before those of the joints.
+/// Number of transforms before the joints' transforms.
 const OWN: usize = 3;
 
-/// Where creature, climber and joints are. Every joint hangs off the creature, not off its parent: these
-/// transforms know no scale.
+/// Transforms of creature, climber and joints. The parent of every joint is the creature, not the parent joint,
+/// since these transforms have no scale.
 pub(crate) struct Frames {
     /// Kept for its names and its memory.
     message: FrameTransforms,
@@ -49,7 +49,7 @@ impl Frames {
         }
     }
 
-    /// Joints without a place in the palette keep their last transform.
+    /// Updates the message. Joints that the palette lacks keep their last transform.
     pub(crate) fn update(&mut self, nanoseconds: u64, taken: &Taken) -> &FrameTransforms {
         let (state, world_from_model) = (&taken.state, &taken.world_from_model);
         let now = timestamp(nanoseconds);
@@ -79,13 +79,13 @@ fn place(
     frame.rotation = Some(rotation(turn));
 }
 
-/// The rotation that takes +Z to a unit vector, about as upright as Y.
+/// The rotation that takes +Z to a unit vector and keeps Y as upright as possible.
 fn facing(heading: DVec3) -> DQuat {
     let right = DVec3::Y.cross(heading).normalize_or(DVec3::X);
     DQuat::from_mat3(&DMat3::from_cols(right, heading.cross(right), heading))
 }
 
-/// The rotation nearest to a linear map's first two columns: without scale, shear and mirroring.
+/// A rotation from a linear map's first two columns, without scale, shear and mirroring: x keeps its direction.
 fn upright(map: &DMat3) -> DQuat {
     let x = map.x_axis.normalize_or(DVec3::X);
     let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());

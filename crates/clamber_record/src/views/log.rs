@@ -4,7 +4,7 @@ use foxglove::messages::log::Level;
 
 use super::timestamp;
 
-/// A line about an event.
+/// The log line of an event.
 pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
     let (level, message) = match event {
         ClimberEvent::Landed { obstacle, speed } => (
@@ -47,7 +47,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ClimberEvent::Released => (Level::Info, "let go".to_owned()),
         ClimberEvent::ShakenOff { shake, .. } => (
             Level::Warning,
-            format!("out of strength, the grip opened at a shake of {shake:.1} m/s^2"),
+            format!("shaken off: out of stamina, at a shake of {shake:.1} m/s^2"),
         ),
         ClimberEvent::Tumbled { .. } => (Level::Warning, "knocked down".to_owned()),
         ClimberEvent::KnockedOff { from, .. } => (
@@ -56,7 +56,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ),
         ClimberEvent::Crushed { depth } => (
             Level::Warning,
-            format!("crushed: {:.1} mm of room are missing", depth * 1e3),
+            format!("crushed: overlapped by {:.1} mm", depth * 1e3),
         ),
         ClimberEvent::Hurt { damage } => (
             Level::Warning,
@@ -68,9 +68,9 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         }
         ClimberEvent::NotFinite => (
             Level::Error,
-            "an obstacle answered with numbers that are not finite: nothing happened".to_owned(),
+            "an obstacle gave numbers that are not finite: the step was skipped".to_owned(),
         ),
-        // One that is newer than this list.
+        // An event that is newer than this list.
         other => (Level::Info, format!("{other:?}")),
     };
     Log {

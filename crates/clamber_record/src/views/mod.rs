@@ -1,4 +1,4 @@
-//! What people look at: foxglove's own messages.
+//! Views for people, as foxglove's own messages.
 
 mod frames;
 mod log;
@@ -13,19 +13,19 @@ pub(crate) use skin::Skin;
 use foxglove::messages::{Color, Pose, Quaternion, Timestamp, Vector3};
 use glam::{DQuat, DVec3};
 
-/// The frame of everything in world space.
+/// The frame of world space.
 const WORLD: &str = "world";
 
-/// The creature's own: its model space turned and moved into the world, in metres.
+/// The creature's frame: model space times its scale, in metres, rotated and translated into the world.
 const CREATURE: &str = "creature";
 
-/// The climber's: its centre, +Z where it faces.
+/// The climber's frame: its centre, with +Z along its heading.
 const CLIMBER: &str = "climber";
 
-/// A frame whose Z points up, for viewers that expect that.
+/// A frame with Z up, for viewers that expect that.
 const Z_UP: &str = "z_up";
 
-/// Wraps after 136 years.
+/// Converts a time, which wraps after 136 years.
 fn timestamp(nanoseconds: u64) -> Timestamp {
     let second = 1_000_000_000;
     Timestamp::new((nanoseconds / second) as u32, (nanoseconds % second) as u32)

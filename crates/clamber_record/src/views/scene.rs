@@ -9,15 +9,16 @@ use glam::{DQuat, DVec3, Vec3};
 use super::{CREATURE, WORLD, color, pose, rotation, timestamp, vector};
 use crate::taken::{Taken, TakenSkin};
 
-/// Marks a vertex without a place among the points.
+/// Marks a vertex that is not among the points.
 const NOWHERE: u32 = u32::MAX;
 
-/// Skin that this tick's queries touched, the triangle that supports the climber, the climber.
+/// The view of the scene: triangles that this tick's queries reached, the triangle that supports the climber, and
+/// the climber's body.
 pub(crate) struct Scene {
     radius: f64,
-    /// From the climber's ball to the one above it, while it is upright.
+    /// From the climber's lower ball to its upper one, while it is upright.
     upright: DVec3,
-    /// By vertex: its place among the points. Kept for its memory, all [`NOWHERE`] between ticks.
+    /// For each vertex, its index among the points. Kept for its memory; all are [`NOWHERE`] between calls.
     places: Vec<u32>,
 }
 
@@ -30,7 +31,7 @@ impl Scene {
         }
     }
 
-    /// `positions` are those of all vertices of the surface, in model space.
+    /// `positions` are the posed positions of all vertices of the surface, in model space.
     pub(crate) fn message(
         &mut self,
         nanoseconds: u64,
@@ -53,8 +54,8 @@ impl Scene {
         touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
 
         let mut support = entity("support", CREATURE);
-        // A support on another obstacle has a key of its own meaning, which may name a triangle by chance:
-        // only one that the contact lies on counts.
+        // The key of a support on another obstacle has another meaning, and may name a triangle by chance. So the
+        // triangle counts only if the contact lies on it.
         let key = state.support.map(|support| support.attachment.material.key);
         let on = key.filter(|_| contact_is_on(taken, mesh, positions));
         let triangle = on.map(|key| TriangleId(key as u32)).into_iter();
@@ -69,7 +70,7 @@ impl Scene {
         }
     }
 
-    /// The climber's ball; upright and with a height, its capsule.
+    /// Adds the climber's body: a ball, or a capsule while it is upright and has a height.
     fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
         let tint = Some(color_of(state.mode));
         let diameter = 2.0 * self.radius;
@@ -95,7 +96,7 @@ impl Scene {
         }
     }
 
-    /// Triangles as a list of points and corners, in the creature's frame.
+    /// Triangles as a list of points and indices, in the creature's frame.
     fn list(
         &mut self,
         mesh: &ColliderMesh,
@@ -141,7 +142,8 @@ impl Scene {
     }
 }
 
-/// Green on its feet, amber to red by its hands, blue in the air, grey knocked down, violet in a mode of the game's own.
+/// The colour of a mode: green on the feet, amber to red on the hands, blue in the air, grey when knocked down, violet
+/// in the game's own modes.
 fn color_of(mode: ClimberMode) -> Color {
     match mode {
         ClimberMode::Standing => color(0.2, 0.7, 0.3, 0.9),
@@ -165,7 +167,7 @@ fn from_z_to(to: DVec3) -> DQuat {
     DQuat::from_xyzw(axis.x, axis.y, axis.z, real).normalize()
 }
 
-/// True if the climber's support names a triangle of the surface that its contact lies near.
+/// True if the climber's support names a triangle of the surface, and the contact lies near that triangle.
 fn contact_is_on(taken: &Taken, mesh: &ColliderMesh, positions: &[Vec3]) -> bool {
     let named = || {
         let support = taken.state.support?;

@@ -8,20 +8,20 @@ use super::{CREATURE, pose, timestamp};
 /// Bytes of a point: three f32.
 const STRIDE: usize = 12;
 
-/// Vertices of the posed skin, in the creature's frame, metres.
+/// The view of the skin: vertices as posed, in the creature's frame, metres.
 pub(crate) struct Skin {
     at_most: usize,
 }
 
 impl Skin {
-    /// So many points at most, evenly picked from the order of the vertices.
+    /// A view of at most `at_most` points, or 1, picked at even steps from the vertices.
     pub(crate) fn new(at_most: usize) -> Self {
         Self {
             at_most: at_most.max(1),
         }
     }
 
-    /// `positions` are those of all vertices of the mesh, in model space.
+    /// `positions` are the posed positions of all vertices of the mesh, in model space.
     pub(crate) fn message(
         &self,
         nanoseconds: u64,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Decodes a recording with the readers of other people, and checks counts and fields.
+"""Decodes a recording with third-party readers, and checks counts and fields.
 
 pip install mcap mcap-protobuf-support
 check.py FILE.mcap
@@ -49,7 +49,7 @@ def check_tick(message, count):
 
 def check_transforms(message):
     parents = {t.child_frame_id: t.parent_frame_id for t in message.transforms}
-    check(len(parents) == len(message.transforms), "two transforms of one name")
+    check(len(parents) == len(message.transforms), "two transforms with one name")
     check(parents.get("creature") == "world" == parents.get("climber"), f"{parents}")
     for t in message.transforms:
         q = t.rotation
@@ -59,9 +59,9 @@ def check_transforms(message):
 
 def check_skin(message):
     check([f.name for f in message.fields] == ["x", "y", "z"], "fields of a point")
-    check(len(message.data) % message.point_stride == 0, "a piece of a point")
+    check(len(message.data) % message.point_stride == 0, "an incomplete point")
     points = list(struct.iter_unpack("<fff", message.data))
-    check(points and all(abs(x) < 1e4 for p in points for x in p), "points out of the world")
+    check(points and all(abs(x) < 1e4 for p in points for x in p), "no points, or points too far away")
     return len(points)
 
 
@@ -70,10 +70,10 @@ def check_scene(message):
     check(set(entities) == {"touched", "support", "climber"}, f"{list(entities)}")
     for entity in entities.values():
         for triangles in entity.triangles:
-            check(len(triangles.indices) % 3 == 0, "a piece of a triangle")
+            check(len(triangles.indices) % 3 == 0, "an incomplete triangle")
             check(
                 all(i < len(triangles.points) for i in triangles.indices),
-                "a corner that is no point",
+                "a corner that is not a point",
             )
     return len(entities["touched"].triangles[0].indices) // 3
 
@@ -101,13 +101,13 @@ def main(path):
             elif topic == "/touched":
                 check(0 < decoded.clusters_touched <= decoded.clusters, f"{decoded}")
             elif topic == "/log":
-                check(decoded.message != "", "a log line of nothing")
+                check(decoded.message != "", "an empty log line")
             counts[topic] += 1
     for topic in WANTED:
         check(counts[topic] > 0, f"nothing on {topic}")
         stored = summary.statistics.channel_message_counts
         ids = [c.id for c in summary.channels.values() if c.topic == topic]
-        check(stored.get(ids[0], 0) == counts[topic], f"{topic}: the index counts otherwise")
+        check(stored.get(ids[0], 0) == counts[topic], f"{topic}: the index has another count")
     dt = float(metadata["clamber"]["tick_seconds"])
     check(abs(last * 1e-9 - (counts["/tick"] - 1) * dt) < 1e-6, "the last tick's time")
     check("seed" in metadata["settings"], "no seed")

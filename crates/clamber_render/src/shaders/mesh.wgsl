@@ -1,12 +1,12 @@
 // Meshes in sun, shadow and fog, and the sky behind them. Linear colours; the target is sRGB.
 
 struct Globals {
-    // From the world relative to the eye.
+    // View space is world space relative to the eye, without rotation.
     clip_from_view: mat4x4f,
     view_from_clip: mat4x4f,
     shadow_from_view: mat4x4f,
     to_sun: vec4f,
-    // Share of light that a metre of air takes; size of a texel of the shadow map; two unused.
+    // Share of light that a metre of air absorbs; size of a texel of the shadow map; two unused numbers.
     air: vec4f,
 }
 
@@ -22,17 +22,17 @@ struct Instance {
 const SUN = vec3f(4.2, 3.5, 2.6);
 const ZENITH = vec3f(0.14, 0.28, 0.60);
 const HORIZON = vec3f(0.80, 0.74, 0.62);
-// Texels of the shadow map that a face is lifted by: less shows bands of its own shadow on it.
+// Texels of the shadow map by which a face is lifted. With less, bands of the face's own shadow show on it.
 const LIFT = 3.0;
 
-// And so many along its smooth normal, if it is round.
+// Texels by which a round face is also lifted along its smooth normal.
 const LIFT_ROUND = 2.0;
 
-// Cosines of the angle between a face and its smooth normal between which it is taken for a part of something
-// round, 37 and 18 degrees: balls and capsules of two dozen sides have up to 15.
+// Cosines of the angle between a face and its smooth normal. From the first to the second (37 to 18 degrees) the face
+// goes from flat to part of a round shape. Balls and capsules of two dozen sides have angles up to 15 degrees.
 const ROUND = vec2f(0.80, 0.95);
 
-// Cosines of the angle to the sun between which a face of something round goes dark.
+// Cosines of the angle to the sun between which a face of a round shape goes dark.
 const TURNED = vec2f(-0.3, -0.1);
 
 const BOUNCE = vec3f(0.13, 0.12, 0.08);
@@ -97,17 +97,17 @@ fn noise(p: vec3f) -> f32 {
     return mix(near, far, u.z);
 }
 
-// How much of the sun reaches a point of a flat face: the mean over 3 x 3 texels around it.
+// The share of sunlight that reaches a point of a flat face: the mean over 3 x 3 texels around it.
 //
-// Those texels and their filter reach 2 sqrt(2) texels aside, where the face is nearer to the sun by as much
-// times the tangent of its slope. Lifted along the face's normal by as much times the sine it is in front of
-// all of them. A face of something round is lifted along its smooth normal as well, out of the shadow of the
-// next face where the shape turns away; on fur the two have little to do with each other.
+// These texels and their filter reach 2 sqrt(2) texels to the side. There the face is nearer to the sun by that
+// length times the tangent of its slope. So the point is lifted along the face's normal by that length times the
+// sine, in front of all these texels. A face of a round shape is lifted along its smooth normal as well, out of the
+// shadow of the next face where the shape turns away. On fur the two normals are hardly related.
 fn sunlit(view: vec3f, face: vec3f, smooth_normal: vec3f) -> f32 {
     let facing = dot(face, globals.to_sun.xyz);
     let slope = sqrt(max(1.0 - facing * facing, 0.0));
     let round = smoothstep(ROUND.x, ROUND.y, dot(face, smooth_normal));
-    // A face that is turned away is dark, however its smooth normal leans.
+    // A flat face that is turned away from the sun is dark, whatever its smooth normal.
     let flat = smoothstep(0.0, 0.1, facing);
     let turned = mix(flat, smoothstep(TURNED.x, TURNED.y, facing), round);
     if (turned <= 0.0) {
@@ -121,7 +121,7 @@ fn sunlit(view: vec3f, face: vec3f, smooth_normal: vec3f) -> f32 {
     if (any(at < vec2f(0.0)) || any(at > vec2f(1.0)) || lifted.z < 0.0 || lifted.z > 1.0) {
         return turned;
     }
-    // Depth reaches over four radii of the shadow, the map over two: this is one texel.
+    // Depth covers four radii of the shadow and the map two, so this is the depth of one texel.
     let depth = lifted.z - 0.5 * globals.air.y;
     var sum = 0.0;
     for (var x = -1; x <= 1; x++) {
@@ -145,7 +145,7 @@ fn sky(direction: vec3f) -> vec3f {
 fn fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let distance = length(in.view);
     let toward = -in.view / max(distance, 1e-6);
-    // Of the triangle itself, towards the eye.
+    // Normal of the triangle itself, towards the eye.
     var face = normalize(cross(dpdx(in.view), dpdy(in.view)));
     face *= select(-1.0, 1.0, dot(face, toward) > 0.0);
     var n = normalize(in.normal);
@@ -190,7 +190,7 @@ fn fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     return vec4f(tone(color), 1.0);
 }
 
-// Rolls bright light off instead of cutting it.
+// Tone mapping: compresses bright light instead of clipping it.
 fn tone(color: vec3f) -> vec3f {
     let x = color * 0.92;
     return x * (2.2 * x + 0.10) / (x * (1.85 * x + 1.05) + 0.16);

@@ -1,8 +1,8 @@
-// Lines of a width in pixels, and triangles, over the picture; faint where something is in front of them.
+// Lines of a width in pixels, and triangles, over the picture. Parts behind a mesh are faint.
 
 struct Globals {
     clip_from_view: mat4x4f,
-    // Of the picture in pixels; opacity; unused.
+    // Size of the picture in pixels; opacity; unused.
     size: vec4f,
 }
 
@@ -21,7 +21,7 @@ struct Seen {
     @location(0) color: vec4f,
 }
 
-// Towards the eye, so that what lies on a surface is in front of it.
+// Factor of depth towards the eye, so that overlays on a surface are in front of it.
 const NEARER = 1.002;
 
 fn project(position: vec3f) -> vec4f {
@@ -37,7 +37,7 @@ fn vertex(in: Vertex) -> Seen {
     var here = project(in.position.xyz);
     if (in.position.w > 0.0) {
         var there = project(in.other.xyz);
-        // What is behind the eye is cut off at the near plane.
+        // The part behind the eye is cut off at the near plane.
         let near = 0.1;
         if (here.w < near && there.w > near) {
             here = mix(here, there, (near - here.w) / (there.w - here.w));

@@ -1,5 +1,6 @@
-// Linear blend skinning, in the order of the collider's: each row of a matrix times the position as
-// ((m0 x + m1 y) + (m2 z + m3)), times the weight, summed by ascending joint. Devices may fuse and reorder.
+// Linear blend skinning, in the order of the collider's skinning: each row of a matrix times the position as
+// ((m0 x + m1 y) + (m2 z + m3)), times the weight, summed by ascending joint. Devices may fuse and reorder
+// operations.
 
 struct Vertex {
     position: vec4f,
@@ -43,7 +44,7 @@ fn skin(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
             rows[row] += influence.weight * m.xyz;
         }
     }
-    // Normals go by the cofactors, which stay right where skin stretches.
+    // Normals are transformed by the cofactors, which is right for stretched skin too.
     let n = vertex.normal.xyz;
     let normal = vec3f(
         dot(cross(rows[1], rows[2]), n),

@@ -1,10 +1,10 @@
-//! What tests of pictures share.
+//! Helpers that tests of pictures share.
 
 use clamber_render::{Gpu, RenderError};
 
-/// A device; `None`, said loudly, where there is none and none is required.
+/// Opens a device; `None`, with a message, if there is none and none is required.
 ///
-/// `CLAMBER_REQUIRE_GPU` makes its absence a failure.
+/// With `CLAMBER_REQUIRE_GPU` set, a missing device is a failure.
 pub(crate) fn gpu(what: &str) -> Option<Gpu> {
     match Gpu::new() {
         Ok(gpu) => {

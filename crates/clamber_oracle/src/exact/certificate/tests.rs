@@ -1,4 +1,4 @@
-//! Certificates on motions whose first contact is known, and against distances at many times.
+//! Tests certificates with motions whose first contact is known, and against distances at many times.
 
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ const FLOOR: [Vec3; 3] = [
     Vec3::new(10.0, 0.0, -5.0),
 ];
 
-/// A sphere of radius 1 that falls from 3 by 4: at 1 at time 1/2.
+/// A sphere of radius 1 that falls by 4 from a height of 3. At time 1/2 its height is 1.
 fn falling() -> MovingPair {
     MovingPair {
         corners: [FLOOR; 2],
@@ -24,7 +24,7 @@ fn falling() -> MovingPair {
 }
 
 #[test]
-fn a_fall_is_clear_until_contact_and_not_a_bit_longer() {
+fn a_fall_is_clear_up_to_contact_and_not_at_the_next_f64() {
     let pair = falling();
     let motion = Motion::new(&pair);
     for until in [0.0, 0.25, 0.5f64.next_down(), 0.5] {
@@ -78,7 +78,7 @@ fn a_passage_through_a_face_between_two_clear_ends_is_found() {
 }
 
 #[test]
-fn what_is_certified_is_apart_at_random_times() {
+fn certified_pairs_are_apart_at_random_times() {
     let mut rng = fastrand::Rng::with_seed(60);
     let (mut clear, mut met) = (0, 0);
     for case in 0..2_000 {
@@ -117,7 +117,7 @@ fn what_is_certified_is_apart_at_random_times() {
 }
 
 #[test]
-fn a_pair_in_rational_numbers_has_the_certificates_of_the_same_in_f32() {
+fn a_pair_in_rational_numbers_has_the_same_certificates_as_in_f32() {
     let pair = falling();
     let motion = Motion::of_exact((&pair).into());
     assert_eq!(motion.apart(1.0, 0.5, Last::Excluded), Apart::Always);
