@@ -1,4 +1,4 @@
-//! An engine of one's own: slices and a palette. No glTF, no rapier.
+//! clamber in a custom engine: slices and a palette, without glTF and rapier.
 
 use clamber::prelude::*;
 use glam::{DVec3, Vec3};
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut climber = Climber::new(ClimberConfig::default(), DVec3::new(0.5, 0.9, 0.0))?;
 
     for tick in 0..=120u8 {
-        // The engine's own animation: both edges rise, the right one twice as fast.
+        // The engine's animation: both edges rise, the right one twice as fast.
         let height = f32::from(tick) / 120.0;
         let mut matrices = [Affine::IDENTITY; 2];
         matrices[0].rows[1][3] = height;

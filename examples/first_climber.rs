@@ -1,4 +1,4 @@
-//! A character on rapier's terrain: falls, lands on a turning platform, is carried round, jumps off.
+//! A character on rapier's terrain falls, lands on a turning platform, is carried round, and jumps off.
 
 use clamber::prelude::*;
 use clamber::world::rapier3d::prelude::*;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             println!("tick {tick:3}  {event:?} at {at:.2}");
         }
         if tick == 199 {
-            // 4 m from the axis, as where it landed: carried on a circle, not along tangents.
+            // Still 4 m from the axis, where it landed: it is carried on a circle, not along tangents.
             let level = climber.state().position * DVec3::new(1.0, 0.0, 1.0);
             assert!((level.length() - 4.0).abs() < 1e-4, "{level}");
             assert!(level.z.abs() > 1.0, "not carried");

@@ -1,4 +1,4 @@
-//! An arrow sticks in a shaking creature and follows the skin: place, heading, velocity, stretch.
+//! An arrow in a shaking creature follows a point of skin; its velocity is measured.
 
 use clamber::geometry::Ray;
 use clamber::prelude::*;

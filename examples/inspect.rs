@@ -1,7 +1,7 @@
-//! What the import finds in a creature's file, and how the creature fares in motion.
+//! Reports what the import finds in a creature's file, and checks the creature in motion.
 //!
-//! `cargo install --path . --example inspect` installs it for those who make creatures; `inspect
-//! --help` lists the options. What it measures is in `clamber_scenes::inspect`.
+//! `cargo install --path . --example inspect` installs it for artists; `inspect --help` lists the options. The checks
+//! are in `clamber_scenes::inspect`.
 
 use std::process::ExitCode;
 

@@ -1,6 +1,7 @@
-//! A character controller of one's own on the mover alone: it walks, jumps, falls, and rides the walking giant.
+//! A custom character controller on the mover alone: it walks, jumps, falls, and rides the walking giant.
 //!
-//! Jolt and box3d call this layer a character's mover. Everything above it is here: one struct, one tick.
+//! Jolt and box3d have such a mover, too. Everything above it is in this file: one struct, with one function for a
+//! tick.
 
 use clamber::mover::{Ground, GroundProbe, Mover, MoverBody, MoverMemory, Path, StepUp, Walking};
 use clamber::prelude::*;
@@ -16,26 +17,26 @@ const MAX_SLOPE: f64 = 0.87;
 const STEP_HEIGHT: f64 = 0.3;
 /// How far below the feet a walking character still finds the ground, metres.
 const SNAP: f64 = 0.2;
-/// How far a material point may be from where it was left, metres: more than rounding, less than is seen.
+/// How far a material point may be from its last position, metres: more than rounding, too little to be seen.
 const SLACK: f64 = 0.01;
 
-/// Of the run below.
+/// Tick of the run below in which the player jumps.
 const JUMP_TICK: u32 = 360;
 
 struct Controller {
     position: DVec3,
     velocity: DVec3,
-    /// Velocity of the ground, or of the last one: its own motion is measured against this.
+    /// Velocity of the ground, in the air that of the last ground. The player's own motion is relative to it.
     base: DVec3,
     /// `None` in the air.
     ground: Option<Attachment>,
     memory: MoverMemory,
-    /// Deepest that the core has been in anything, metres.
+    /// Deepest penetration of the core into any obstacle so far, metres.
     deepest: f64,
 }
 
 impl Controller {
-    /// In the air.
+    /// Starts in the air, at rest.
     fn at(position: DVec3) -> Self {
         Self {
             position,
@@ -47,7 +48,7 @@ impl Controller {
         }
     }
 
-    /// One tick. `walk` is a level velocity over the ground.
+    /// Makes one tick. `walk` is a level velocity over the ground.
     fn step(
         &mut self,
         walk: DVec3,
@@ -71,7 +72,8 @@ impl Controller {
         Ok(())
     }
 
-    /// Where the ground takes it by the tick's end; `None` in the air, and where the ground is gone.
+    /// The position to which the ground carries the player by the end of the tick; `None` in the air, or if the ground
+    /// is gone.
     fn be_carried(&mut self, mover: &Mover<'_>) -> Option<DVec3> {
         let mut ground = self.ground.take()?;
         let followed = ground.follow(mover.obstacle(ground.obstacle)?, DT, SLACK)?;
@@ -97,7 +99,7 @@ impl Controller {
         self.position = moved.position;
         self.velocity = mover.clip_velocity(self.base + walk, self.base, None);
         if walk == DVec3::ZERO {
-            // Stays on its material point, or leans where it is pushed.
+            // It stays on its material point, or on the point that it is pushed to.
             self.ground = self.ground.map(|ground| ground.moved_to(moved.position));
             return;
         }
@@ -156,7 +158,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rest = giant.skeleton.rest_pose();
     let pace = DVec3::Z * giant.walk_speed.ok_or("no speed")?;
     let mut skin = SkinnedSurface::new(giant.collider.clone());
-    // Above the back, as fast as the giant.
+    // The player starts above the back, as fast as the giant.
     let mut player = Controller::at(DVec3::new(0.0, 36.0, 0.0));
     (player.velocity, player.base) = (pace, pace);
     let (mut rode, mut drift, mut walked, mut nearest) = (0, 0.0f64, 0.0, f64::INFINITY);
@@ -179,7 +181,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (ground, start) = (player.ground, player.position);
         player.step(walk, jumps, &[(ObstacleId(1), &skin)])?;
 
-        // How far it went over the skin, by where the skin alone would have carried it.
+        // How far it moved over the skin: the distance from where the skin alone would have carried it.
         if let (Some(mut ground), Some(_)) = (ground, player.ground) {
             ground.follow(&skin, DT, SLACK).ok_or("the skin is gone")?;
             let went = player.position.distance(ground.position());
@@ -187,11 +189,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             if walk != DVec3::ZERO {
                 walked += went;
             } else if tick < JUMP_TICK {
-                // It comes down in a fold of the shoulder, which may push it by millimetres.
+                // Only before the jump: it lands in a fold of the shoulder, which may push it by millimetres.
                 drift = drift.max(went);
             }
         }
-        // How high it jumped, against the velocity of the skin that it left.
+        // How high it jumped, relative to the motion of the skin that it left.
         if jumps {
             jump_from = start;
         }

@@ -1,4 +1,4 @@
-//! A ray from above against a creature in mid-stride: it meets the posed skin, not the bind pose.
+//! A ray from above at a walking creature hits the posed skin, not the bind pose.
 
 use clamber::prelude::*;
 use glam::DVec3;

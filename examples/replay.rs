@@ -1,4 +1,4 @@
-//! Fights a recorded battle again and compares every tick, bit for bit.
+//! Simulates a recorded battle again, and compares every tick bit for bit.
 //!
 //! `cargo run --release --features record --example battle -- --record target/battle.mcap`, then
 //! `cargo run --release --features record --example replay -- target/battle.mcap`. With `--from TICK` it
@@ -12,13 +12,13 @@ use clamber::record::{Ending, Recording};
 use clamber_scenes::battle;
 use clap::Parser;
 
-/// Fights a recorded battle again and compares every tick, bit for bit.
+/// Simulates a recorded battle again, and compares every tick bit for bit.
 ///
 /// Exits with 1 if a tick differs, with 2 if there is nothing to replay.
 #[derive(Debug, Parser)]
 #[command(name = "replay", version)]
 struct Options {
-    /// What `battle --record FILE` wrote.
+    /// The recording that `battle --record FILE` wrote.
     #[arg(value_name = "FILE.mcap")]
     path: PathBuf,
 

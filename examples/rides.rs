@@ -1,4 +1,5 @@
-//! The battle's ride on many models: which checks hold on creatures that were not made for this project.
+//! Runs the battle's ride on many models, and reports which checks hold on creatures that were not made for this
+//! project.
 //!
 //! `cargo run --release --example rides -- --help` lists the options. The rides themselves are
 //! `clamber_scenes::battle::ride_all`.

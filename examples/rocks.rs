@@ -9,16 +9,16 @@ use std::process::ExitCode;
 use clamber_scenes::giant::giant;
 use clamber_scenes::rocks::{Outcome, Rocks, RocksOptions, TICK};
 
-/// Seconds in which rocks fall on the giant, and in which those that are left come to rest; and that are
-/// added, as often as it takes but no more than so often, while one is still in the air.
+/// Seconds in which rocks fall on the giant; seconds in which the remaining rocks come to rest; and seconds that are
+/// added while a rock is still in the air, with the maximum number of times.
 const FALL: f64 = 8.0;
 const SETTLE: f64 = 8.0;
 const WAIT: (f64, u32) = (1.0, 8);
 
-/// Deepest that a rock may reach into the skin once it has settled, metres.
+/// Largest depth of a settled rock in the skin, metres.
 const DEEPEST: f64 = 0.02;
 
-/// Ticks between two looks at whether a rock is inside the giant.
+/// Ticks between two checks whether a rock is inside the giant.
 const LOOK_EVERY: u32 = 10;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! The battle from the ground to the head, by its own checks.
+//! The battle's climb from the ground to the head passes its own checks.
 
 use clamber::climber::ClimberMode;
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE, Story, Summary, run};
@@ -19,12 +19,12 @@ fn the_climb_goes_from_the_ground_to_the_head_through_all_modes() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Of the other climbs.
+/// Seeds of the other climbs.
 const SEEDS: [u64; 6] = [2, 3, 4, 5, 6, 7];
 
-/// Whatever becomes of a climber, it is never inside the giant, and never far from what it holds.
+/// Even if a climber does not arrive, it is never inside the giant, and never far from its hold.
 #[test]
-fn other_climbs_are_as_sound() {
+fn climbs_with_other_seeds_pass_all_checks_but_the_arrival() {
     let creature = giant().unwrap();
     let mut arrived = 0;
     for seed in SEEDS {
@@ -50,7 +50,7 @@ fn other_climbs_are_as_sound() {
             summary.arrived_s
         );
         let failed = summary.checks.iter().filter(|check| !check.holds);
-        // That it is shaken off and does not make it in time is its own affair.
+        // A climber may be shaken off and not arrive in time.
         let failed: Vec<_> = failed
             .filter(|check| check.name != "never at the top")
             .collect();

@@ -1,4 +1,4 @@
-//! The project's own giant: what its file promises to examples, benches and whoever borrows it.
+//! The project's own giant: the properties that examples, benches and other users rely on.
 
 #![expect(
     clippy::unwrap_used,
@@ -30,7 +30,7 @@ fn positions_of(surface: &SkinnedSurface) -> Vec<Vec3> {
 }
 
 #[test]
-fn the_file_has_what_the_giant_is_to_have() {
+fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
     let rig = rig();
     let joints = rig.skeleton.joints().len();
     assert!(joints >= 40, "{joints} joints");
@@ -104,7 +104,7 @@ fn ledges_are_level_and_wide_enough_to_stand_on() {
 }
 
 #[test]
-fn everything_promised_of_a_creature_holds_for_it() {
+fn it_passes_the_inspection() {
     let options = InspectOptions {
         poses: 4,
         ..InspectOptions::of(giant::path())
@@ -113,7 +113,7 @@ fn everything_promised_of_a_creature_holds_for_it() {
     println!("{inspection}");
     assert!(inspection.holds(), "{inspection}");
     assert!(inspection.query_hits > 1_000);
-    // The worst places are slots between stone and fur, which the collision mesh closes.
+    // The largest distances are at slots between stone and fur, which the collision mesh closes.
     let distance = inspection.collision_to_visual.unwrap();
     assert!(
         distance.median_m < 0.15 && distance.worst_m < 2.0,
@@ -181,7 +181,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
         if tick == 0 {
             continue;
         }
-        // The lowest point bears weight.
+        // The lowest point is on a foot that stands.
         let positions = positions_of(&surface);
         let lowest =
             (0..positions.len()).min_by(|a, b| positions[*a].y.total_cmp(&positions[*b].y));
@@ -193,7 +193,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
     slides.sort_by(f32::total_cmp);
     let median = slides[slides.len() / 2];
     println!("soles slide at {median:.3} m/s in the median while it walks at {speed} m/s");
-    // The joints of the feet do not; the skin of the soles rolls, and follows the shins a little.
+    // The joints of the feet do not slide. The skin of the soles rolls, and follows the shins a little.
     assert!(
         f64::from(median) < speed / 10.0,
         "soles slide at {median} m/s"
@@ -201,7 +201,7 @@ fn its_feet_do_not_slide_when_it_walks_at_its_speed() {
 }
 
 #[test]
-fn it_can_be_had_at_any_size() {
+fn it_can_be_made_with_any_number_of_vertices() {
     let whole = volume(&rig().collider);
     for vertices in [3_000, 20_000, 100_000] {
         let mesh = giant::giant_of(vertices).unwrap().collider;

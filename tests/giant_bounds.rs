@@ -1,5 +1,5 @@
-//! The giant's bounds over all its clips, from outside: whatever stands above a vertex (root box, lanes
-//! of nodes, its cluster's lane and its boxes) must let a query through that asks at that very vertex.
+//! The giant's bounds over all its clips, checked through queries: a query at a vertex must pass all bounds that
+//! contain the vertex (root box, lanes of nodes, its cluster's lane, its boxes).
 
 #![expect(
     clippy::unwrap_used,
@@ -11,7 +11,7 @@ use clamber::prelude::*;
 use clamber_scenes::giant;
 use glam::Vec3;
 
-/// Asks at every `stride`th vertex in `poses` poses of each clip; gives how many there were.
+/// Checks every `stride`th vertex in `poses` poses of each clip; returns the number of checks.
 fn check(poses: u32, stride: usize) -> usize {
     let creature = giant::giant().unwrap();
     let mesh = &creature.collider;

@@ -1,6 +1,5 @@
-//! A battle with rapier in it, and the hash of every bit that came of it: creature, climber, rocks. The same in every
-//! build and on every platform with the feature `deterministic`. What needs no rapier is as golden without it:
-//! `crates/clamber_climber/tests/golden`.
+//! Hashes of every bit of battles with rapier: creature, climber, rocks. With the feature `deterministic` they are the
+//! same in every build and on every platform. Golden tests without rapier are in `crates/clamber_climber/tests/golden`.
 //!
 //! `cargo test --release --features deterministic --test golden_battle`
 
@@ -10,10 +9,11 @@ use clamber::climber::ClimberMode;
 use clamber_scenes::battle::{Battle, BattleOptions, CREATURE};
 use clamber_scenes::giant::giant;
 
-/// Changes whenever a result does, if only by one bit, or rapier: then see that it should have, and put the new one in.
+/// Hash of the battle. It changes with any bit of a result, and with rapier. Check that a change is intended, then
+/// store the new hash.
 const BATTLE: u64 = 0xf693_9554_6661_67f7;
 
-/// The same of a climb.
+/// Hash of the climb.
 const CLIMB: u64 = 0xb919_164a_dcd1_3dbd;
 
 #[test]
@@ -26,7 +26,7 @@ fn a_climb_has_the_same_bits_in_every_build() {
         battle.step(options.input_at(tick)).unwrap();
         modes.insert(battle.climber().state().mode.number());
     }
-    // Or the hash is of little.
+    // Otherwise the hash would cover too little.
     assert!(modes.len() == ClimberMode::ALL.len(), "modes {modes:?}");
     let found = battle.recording().hash();
     assert!(found == CLIMB, "the hash is {found:#018x}");
@@ -44,7 +44,7 @@ fn a_battle_has_the_same_bits_in_every_build() {
         carried +=
             usize::from(support.is_some_and(|support| support.attachment.obstacle == CREATURE));
     }
-    // Or the hash is of little.
+    // Otherwise the hash would cover too little.
     assert!(carried > 600, "{carried} ticks on the creature");
     let found = battle.recording().hash();
     assert!(found == BATTLE, "the hash is {found:#018x}");

@@ -15,7 +15,7 @@ use clamber_scenes::inspect::{InspectOptions, inspect};
 use clamber_scenes::test_data;
 use glam::{DVec3, Vec3};
 
-/// Files of the test data that the importer refuses: where, and why.
+/// Files of the test data that the importer refuses: start of the path, and its end with the error.
 #[rustfmt::skip]
 const REFUSED: [(&str, &str); 13] = [
     // Points and lines.
@@ -27,10 +27,10 @@ const REFUSED: [(&str, &str); 13] = [
     (PRIMITIVE_MODE, "08.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "09.gltf: no mesh with triangles for collision in a file without skins"),
     (PRIMITIVE_MODE, "10.gltf: no mesh with triangles for collision in a file without skins"),
-    // Points once more.
+    // Points, too.
     ("fixtures/KhronosGroup+glTF-Validator/joints_no_weights", ".gltf: no mesh with triangles for collision in skin 0"),
     ("fixtures/KhronosGroup+glTF-Validator/joints_weights_complex", ".gltf: no mesh with triangles for collision in skins 0, 1"),
-    // Its triangles have all corners in one place.
+    // All corners of its triangles are at one point.
     ("fixtures/mosra+magnum-plugins/skin-shared", ".gltf: the meshes of skins 0, 1 make no collider: no usable triangle"),
     // Exported with weights of 0 / 0.
     ("models/Crab", ".glb: mesh 0, primitive 0: weights [NaN, NaN, NaN, NaN] of vertex 1223"),
@@ -94,7 +94,7 @@ fn pose_in_every_clip(name: &str, rig: &Rig) {
 }
 
 #[test]
-fn everything_promised_of_a_creature_holds_for_every_model() {
+fn every_model_passes_the_inspection() {
     let files = test_data::gltf_files("inspection of all models").unwrap();
     let mut inspected = 0;
     for (name, path) in files.iter().filter(|(name, _)| name.starts_with("models/")) {
@@ -114,7 +114,7 @@ fn everything_promised_of_a_creature_holds_for_every_model() {
 }
 
 #[test]
-fn what_fixtures_are_made_to_show() {
+fn fixtures_show_the_features_that_they_are_made_for() {
     let Some(first) = test_data::file("fixtures", "models/Trex.glb") else {
         return;
     };
@@ -162,7 +162,7 @@ fn areas(rig: &Rig) -> impl Iterator<Item = f64> {
 
 #[test]
 fn at_rest_a_man_stands_upright() {
-    // His mesh lies on its back; the node above the skeleton raises it.
+    // The mesh lies on its back; the node above the skeleton raises it.
     let Some(path) = test_data::file("bind pose", "models/CesiumMan.glb") else {
         return;
     };
@@ -197,7 +197,7 @@ fn materials_are_tagged_by_the_callers_function() {
         fur
     });
     let rig = load_with(&path, &options).unwrap();
-    // Its materials, then none.
+    // Called for each material, then for triangles without one.
     let names = names.lock().unwrap();
     let mut expected: Vec<_> = rig.materials.iter().map(|m| m.name.clone()).collect();
     assert!(!expected.is_empty());
@@ -207,7 +207,7 @@ fn materials_are_tagged_by_the_callers_function() {
 }
 
 #[test]
-fn bad_files_say_what_is_wrong() {
+fn errors_of_bad_files_name_the_cause() {
     let missing = load(Path::new("no/such/file.glb")).unwrap_err();
     assert!(
         missing.to_string().contains("no/such/file.glb"),
@@ -246,7 +246,7 @@ fn bad_files_say_what_is_wrong() {
     );
 }
 
-/// A document of two triangles, one above the other, the upper one of a material whose extras give the number 7.
+/// A document of two triangles, one above the other. The extras of the upper one's material have the user number 7.
 fn two_triangles() -> String {
     let corners = |y: f32| [[0.0, y, 0.0], [0.0, y, 1.0], [1.0, y, 0.0]];
     let floats = corners(1.0).into_iter().chain(corners(0.0)).flatten();
@@ -271,7 +271,7 @@ fn two_triangles() -> String {
     )
 }
 
-/// The numbers found from above and from below, by the surface and by the world.
+/// The user numbers of hits from above and from below, equal for the surface's ray and the obstacle's.
 fn users_found(options: &LoadOptions) -> [u32; 2] {
     let rig = load_slice(two_triangles().as_bytes(), options).unwrap();
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();

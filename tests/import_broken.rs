@@ -1,5 +1,5 @@
-//! Real models, cut short and with flipped bits: an error or a rig that can be used, never a panic,
-//! an endless loop, or memory without measure.
+//! Real models, cut short or with flipped bits: loading gives an error or a usable rig, never a panic, an endless loop,
+//! or unbounded memory.
 
 #![expect(
     clippy::unwrap_used,
@@ -13,20 +13,20 @@ use clamber::gltf::{LoadOptions, load_slice};
 use clamber::prelude::*;
 use clamber_scenes::test_data;
 
-/// Cuts of each model, and as many with flipped bits.
+/// Number of cuts of each model, and of variants with flipped bits.
 const TRIALS: usize = 1_000;
 
-/// Memory at its peak, bytes for each byte of the file.
+/// Largest peak of memory, bytes per byte of the file.
 const MEMORY: u64 = 100;
 
-/// What no broken model may take to load.
+/// Longest time that a broken model may take to load.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 #[test]
 fn cut_models_are_refused() {
     let loaded = each_model("cut models", |bytes, rng| {
         let mut cut = bytes[..rng.usize(0..bytes.len())].to_vec();
-        // Every other one claims the length that is left.
+        // Half of them have the remaining length in their header.
         if cut.len() >= 12 && rng.bool() {
             let length = cut.len() as u32;
             cut[8..12].copy_from_slice(&length.to_le_bytes());
@@ -40,7 +40,7 @@ fn cut_models_are_refused() {
 fn models_with_flipped_bits_load_or_are_refused() {
     each_model("models with flipped bits", |bytes, rng| {
         let mut flipped = bytes.to_vec();
-        // The JSON, behind the container's header, is where most of the meaning is.
+        // Half of them have flipped bits only in the headers and the JSON, which matter most.
         let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
         let reach = if rng.bool() { length + 20 } else { bytes.len() };
         for _ in 0..rng.usize(1..4) {
@@ -50,7 +50,7 @@ fn models_with_flipped_bits_load_or_are_refused() {
     });
 }
 
-/// Loads every model as `broken` leaves it, and uses what loads; gives how many do.
+/// Loads every model as `broken` changes it, and poses those that load; returns their number.
 fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>) -> usize {
     let mut all_loaded = 0;
     for path in test_data::five_models(test) {
@@ -63,7 +63,7 @@ fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>)
             let mut rig = None;
             let start = Instant::now();
             let memory = measure(|| rig = load_slice(&bytes, &LoadOptions::default()).ok());
-            // Not for speed: some milliseconds are usual.
+            // This does not test speed: some milliseconds are usual.
             assert!(
                 start.elapsed() < PATIENCE,
                 "{name}, trial {trial}: {:?}",
@@ -79,7 +79,7 @@ fn each_model(test: &str, broken: impl Fn(&[u8], &mut fastrand::Rng) -> Vec<u8>)
                 continue;
             };
             loaded += 1;
-            // What loads can be posed, or says why not.
+            // A rig that loads can be posed, or gives an error.
             let mut surface = SkinnedSurface::new(rig.collider.clone());
             let mut positions = Vec::new();
             let clip = rig.clips.get(trial % rig.clips.len().max(1));

@@ -1,4 +1,4 @@
-//! What is seen agrees with what is touched: on the giant, and on models from files.
+//! The rendered skin agrees with the surface that is queried: on the giant, and on models from files.
 
 #![expect(
     clippy::unwrap_used,
@@ -58,7 +58,7 @@ fn the_device_poses_the_skin_as_the_collider_does() {
     }
 }
 
-/// Pixels that `wanted` says yes to, as columns and rows.
+/// Columns and rows of the pixels for which `wanted` returns true.
 fn find(image: &Image, wanted: impl Fn([u8; 3]) -> bool) -> Vec<[f64; 2]> {
     let pixels = image.pixels.chunks_exact(4).enumerate();
     let found = pixels.filter(|(_, pixel)| wanted([pixel[0], pixel[1], pixel[2]]));
@@ -83,7 +83,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     let giant = giant().unwrap();
     let mut renderer = Renderer::new(gpu, WIDTH, ROWS).unwrap();
     let skin = add_collider(&mut renderer, &giant.collider, [0.0, 0.0, 1.0]).unwrap();
-    // A pillar on the point of its contact.
+    // The climber is drawn as a pillar on its contact.
     let corners: Vec<Vec3> = (0..8)
         .map(|i| {
             let side = |bit: u32| if i >> bit & 1 == 1 { 0.2 } else { -0.2 };
@@ -121,7 +121,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
             palette,
         };
         let mut frame = Frame {
-            // From aside and above.
+            // From the side and above.
             camera: Camera::new(hit.point + DVec3::new(6.0, 8.0, 3.0), hit.point),
             light: Light {
                 fog: 0.0,
@@ -158,7 +158,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
         let foot = red.iter().map(|p| p[1]).fold(0.0, f64::max);
         assert!((foot - middle[1]).abs() <= 8.0, "its foot is in row {foot}");
         assert!(mean(&red)[1] < middle[1], "it stands on its head");
-        // What is under its foot is skin.
+        // Below its foot there is skin.
         let blue = find(&image, |[r, g, b]| b > 50 && r < b / 2 && g < b);
         let below = blue
             .iter()

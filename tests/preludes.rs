@@ -1,13 +1,13 @@
-//! The preludes of clamber and of rapier can both be imported whole: a name that both have does not compile here.
+//! The preludes of clamber and rapier can be glob-imported together: a name in both does not compile here.
 
-// In `use`, an ambiguous name is a lint.
+// An ambiguous name in `use` is only a lint.
 #![deny(ambiguous_glob_imports)]
 
 use clamber::prelude::*;
 #[expect(unused_imports, reason = "only its names matter")]
 use clamber::world::rapier3d::prelude::*;
 
-/// Uses every name, so that one that is ambiguous is an error, and lists them.
+/// Uses every name, so that an ambiguous one is an error, and lists the names.
 macro_rules! use_each {
     ($($name:ident)*) => {
         $(
@@ -26,7 +26,7 @@ use_each! {
     SurfacePoint SurfaceTag SweepHit TargetMotion Transform TriangleId
 }
 
-/// Or a name that is added to the prelude would not be looked at above.
+/// Otherwise a name that is added to the prelude would not be checked above.
 #[test]
 fn every_name_of_the_prelude_is_used() {
     let source = include_str!("../crates/clamber/src/lib.rs");

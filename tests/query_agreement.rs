@@ -1,5 +1,5 @@
-//! Every query against brute force over all triangles, on real models in motion: equal in every
-//! bit, at seeded places near the skin.
+//! Every query has the same bits as brute force over all triangles, on real models in motion, at seeded places near the
+//! skin.
 
 #![expect(
     clippy::unwrap_used,
@@ -11,11 +11,11 @@ use clamber_scenes::inspect::compare_queries;
 use clamber_scenes::{Creature, beast::beast, test_data};
 use glam::{DQuat, DVec3};
 
-/// Poses of each clip, and places in each pose.
+/// Number of poses of each clip, and of places in each pose.
 const POSES: u32 = 4;
 const PLACES: usize = 12;
 
-/// Compares all queries over the poses of all clips; gives how many hits there were.
+/// Compares all queries over the poses of all clips; returns the number of hits.
 fn assert_agreement(creature: &Creature) -> usize {
     let mut rng = fastrand::Rng::with_seed(0x5eed);
     let mut surface = SkinnedSurface::new(creature.collider.clone());

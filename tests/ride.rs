@@ -1,4 +1,4 @@
-//! Riding the creature: the scene's own checks, at length and under other conditions.
+//! Riding the creature passes the scene's own checks, over long times and under various conditions.
 
 #![expect(
     clippy::unwrap_used,
@@ -12,7 +12,7 @@ use clamber_scenes::battle::{
 use clamber_scenes::beast::beast;
 use clamber_scenes::{Creature, test_data};
 
-/// Stands without input for so many seconds; gives the ticks.
+/// Stands without input for some seconds; returns the recorded ticks.
 fn stand(creature: &Creature, height: f64, seed: u64, seconds: u32) -> Recording {
     let options = BattleOptions {
         height: Some(height),
@@ -49,7 +49,7 @@ fn a_minute_without_input_moves_the_contact_by_less_than_a_tenth_of_a_millimetre
 }
 
 #[test]
-fn size_does_not_matter() {
+fn standing_is_as_exact_on_creatures_of_any_height() {
     let creature = beast(3_000);
     for height in [10.0, 40.0, 100.0] {
         assert_stood_fast(
@@ -60,7 +60,7 @@ fn size_does_not_matter() {
 }
 
 #[test]
-fn a_minute_on_a_model_from_a_file() {
+fn a_minute_of_standing_on_a_model_from_a_file() {
     let Some(path) = test_data::file("riding a model", "models/Trex.glb") else {
         return;
     };
@@ -76,11 +76,11 @@ const FAILING: [&str; 4] = [
     "godot_platformer_enemy",
 ];
 
-/// Files with weights that are not numbers.
+/// Models with weights that are NaN, which are refused.
 const REFUSED: [&str; 2] = ["Crab", "Wasp"];
 
 #[test]
-fn third_party_models_pass_all_checks_but_the_known_ones() {
+fn all_third_party_models_but_the_known_ones_pass_all_checks() {
     if test_data::file("rides on third-party models", "models/Trex.glb").is_none() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Skinning against f64, as a share of the stated bound, over all clips of real models.
+//! The error of skinning against f64 stays within the stated bound, over all clips of real models.
 
 #![expect(
     clippy::unwrap_used,
@@ -10,11 +10,11 @@ use clamber::skin::skin;
 use clamber_scenes::inspect::skinning_error_share;
 use clamber_scenes::{Creature, beast::beast, test_data};
 
-/// Poses of each clip.
+/// Number of poses of each clip.
 const POSES: u32 = 12;
 
-/// The worst error of any coordinate of any vertex over the poses of all clips, as a share of its
-/// bound, and how many vertices were compared.
+/// The largest error of any coordinate of any vertex over the poses of all clips, as a share of its bound, and the
+/// number of vertices that were compared.
 fn worst_share(creature: &Creature) -> (f64, usize) {
     let rest = creature.skeleton.rest_pose();
     let (mut worst, mut compared) = (0.0f64, 0);

@@ -1,5 +1,5 @@
-//! A climber's steady tick allocates nothing, whatever it is doing and whatever it is on: what happens once, an event or
-//! a push, is what a report takes memory for.
+//! A climber's steady tick allocates nothing, in any mode and on any obstacle. Only ticks with an event or a push may
+//! allocate, for their report.
 
 #![expect(
     clippy::unwrap_used,
@@ -23,18 +23,18 @@ const GRIP: ClimberInput = ClimberInput {
     ..ClimberInput::IDLE
 };
 
-/// Ticks of a mode in which nothing happened, and how many of those took memory.
+/// Counts of a mode's ticks with and without events, and the ticks without events that allocated.
 #[derive(Debug, Default)]
 struct Ticks {
     steady: u32,
-    /// With an event, which may.
+    /// Ticks with an event, which may allocate.
     eventful: u32,
-    /// The steady ticks that took memory, and how often.
+    /// The steady ticks that allocated, and their number of allocations.
     allocating: Vec<(u32, u64)>,
 }
 
 impl Ticks {
-    /// One tick among obstacles, counted if it is in the mode before and after.
+    /// Makes one tick, and counts it if the climber is in the mode before and after it.
     fn step(
         &mut self,
         climber: &mut Climber,
@@ -64,7 +64,7 @@ impl Ticks {
         }
     }
 
-    /// After the first few, none took memory.
+    /// Asserts that no steady tick allocated after the first few.
     fn assert_steady(&self, told: &str, least: u32) {
         let late = self.allocating.iter().find(|(tick, _)| *tick > WARM);
         assert_eq!(late, None, "{told}: {self:?}");
@@ -73,7 +73,7 @@ impl Ticks {
     }
 }
 
-/// Steady ticks before counting.
+/// Number of steady ticks that may allocate, as a warm-up.
 const WARM: u32 = 20;
 
 #[test]
@@ -93,7 +93,7 @@ fn climbing_up_and_across_the_walking_giant_allocates_nothing() {
         let mut ticks = Ticks::default();
         for tick in 1..=600 {
             stage.advance(f64::from(tick) * DT).unwrap();
-            // Now to one side, now to the other.
+            // To one side and the other by turns.
             let side = if tick / 120 % 2 == 0 { 1.0 } else { -1.0 };
             let input = ClimberInput {
                 climb: way * side,
@@ -140,7 +140,7 @@ fn hanging_from_the_giant_allocates_nothing() {
     stage.place(0.0).unwrap();
     let (point, normal) = stage.vertex(route.waypoints[route.waypoints.len() / 2]);
     let mut config = tour::config();
-    // Hangs from whatever it grips.
+    // It hangs from all that it grips.
     config.grip = config.grip.map(|grip| GripConfig {
         max_overhang: 0.0,
         ..grip
@@ -155,7 +155,7 @@ fn hanging_from_the_giant_allocates_nothing() {
     ticks.assert_steady("hanging", 200);
 }
 
-/// A closed box of stone on one joint, by its half sides.
+/// A closed box on one joint, given by half its sides.
 fn block(half: Vec3) -> SkinnedSurface {
     let corner = |k: u32| {
         let side = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
@@ -192,13 +192,13 @@ fn going_along_a_ledge_that_moves_allocates_nothing() {
     let mut block = block(Vec3::new(4.0, 3.0, 3.0));
     let rest = Palette::from_matrices([Affine::IDENTITY]);
     let place = |tick: u32| {
-        // To one side and up, and back, in parabolas.
+        // To one side and up, and back, on parabolas in time.
         let share = f64::from(tick % 150) / 75.0 - 1.0;
         Similarity::from_translation(DVec3::new(1.0, 0.4, 0.0) * (share * share))
     };
     block.place(&rest, place(0)).unwrap();
     let mut config = ClimberConfig::colossus_climber();
-    // On stone it only hangs.
+    // Without grips it only hangs from ledges.
     config.grip = None;
     let mut climber = Climber::new(config, DVec3::new(0.3, 2.75, 3.5)).unwrap();
     let mut ticks = Ticks::default();
@@ -224,11 +224,11 @@ fn walking_on_rapiers_ground_allocates_nothing() {
     world.insert_collider(floor, None);
     let wall = ColliderBuilder::cuboid(0.5, 1.0, 5.0).translation(Vector::new(4.0, 1.0, 0.0));
     world.insert_collider(wall, None);
-    // One that can be pushed, and is not.
+    // A body that can be pushed, but is not.
     let body = RigidBodyBuilder::dynamic().translation(Vector::new(-20.0, 0.5, 0.0));
     world.insert(body, ColliderBuilder::cuboid(0.5, 0.5, 0.5));
     let mut before = BodyPoses::new();
-    // It comes to rest.
+    // The body comes to rest.
     (0..120).for_each(|_| world.step());
     let mut climber = Climber::new(ClimberConfig::walker(), DVec3::Y * 0.41).unwrap();
     let mut ticks = Ticks::default();
@@ -236,7 +236,7 @@ fn walking_on_rapiers_ground_allocates_nothing() {
         before.record(&world.bodies);
         world.step();
         let terrain = RapierTerrain::of_world(&world, &before);
-        // Along the ground, then against the wall.
+        // The climber walks along the ground, then against the wall.
         let input = ClimberInput {
             walk: DVec3::new(1.0, 0.0, f64::from(tick % 60) / 30.0 - 1.0),
             ..ClimberInput::default()

@@ -1,4 +1,4 @@
-//! A steady tick allocates nothing: pose, queries and motion work in what they took on the first ones.
+//! A steady tick allocates nothing: pose, queries and motion reuse the memory of the first ticks.
 
 #![expect(
     clippy::unwrap_used,
@@ -12,7 +12,7 @@ use clamber::surface::CastOptions;
 use clamber_scenes::giant;
 use glam::{DQuat, DVec3, Vec3};
 
-/// What a tick keeps between ticks.
+/// The surface, and the buffers that are kept between ticks.
 struct Scene {
     surface: SkinnedSurface,
     palettes: Vec<Palette>,
@@ -23,21 +23,21 @@ struct Scene {
     found: usize,
 }
 
-/// Whether the creature's root moves, which makes the previous palette anew.
+/// Whether the creature's root moves, for which the previous palette is computed anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Root {
     Still,
     Moving,
 }
 
-/// Whether a tick asks for so much that the next one is skinned ahead.
+/// Whether a tick's queries reach so much that the next tick is skinned ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Touch {
     Little,
     Everything,
 }
 
-/// Ticks before counting, and counted ones.
+/// Number of ticks before counting, and of counted ticks.
 const WARM: usize = 4;
 const COUNTED: usize = 12;
 
@@ -121,7 +121,7 @@ fn a_steady_tick_allocates_nothing() {
     for root in [Root::Still, Root::Moving] {
         for touch in [Touch::Little, Touch::Everything] {
             let mut scene = Scene::new();
-            // Room for whatever any tick may find.
+            // Room for all hits that a tick may have.
             scene.hits.reserve(scene.surface.mesh().triangles().len());
             scene.swept.reserve(scene.surface.mesh().triangles().len());
             for tick in 0..WARM {

@@ -1,4 +1,4 @@
-//! Climbing tours from foot to head of creatures that idle, walk and shake gently.
+//! Climbing tours from foot to head, on creatures that idle, walk and shake gently.
 
 #![expect(
     clippy::unwrap_used,
@@ -8,7 +8,7 @@
 use clamber_scenes::tour::{Motion, Outcome, Stage, Ways, climb, config};
 use clamber_scenes::{Creature, giant, test_data};
 
-/// Metres.
+/// Height of the creatures, metres.
 const HEIGHT: f64 = 20.0;
 
 fn tours(creature: &Creature, tempo: f64, seeds: u64) {
@@ -34,17 +34,17 @@ fn tours(creature: &Creature, tempo: f64, seeds: u64) {
 }
 
 #[test]
-fn from_the_giants_foot_to_its_head() {
+fn tours_reach_the_giants_head() {
     tours(&giant::giant().unwrap(), 1.0, 20);
 }
 
 #[test]
-fn up_five_models() {
+fn tours_reach_the_heads_of_five_models() {
     for name in ["Trex", "Apatosaurus", "Triceratops", "Stag", "Bull"] {
         let Some(path) = test_data::file("tours", &format!("models/{name}.glb")) else {
             return;
         };
-        // Made for animals some two metres tall, or robots.
+        // The clips are made for animals about two metres tall, or for robots: slower here.
         tours(&Creature::load(&path).unwrap(), 0.12, 20);
     }
 }

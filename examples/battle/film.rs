@@ -23,10 +23,10 @@ const TICKS_A_SECOND: f64 = 60.0;
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
 
-/// How far before the skin a chasing camera stays, metres.
+/// Distance that a chasing camera keeps in front of the skin, for the fur, metres.
 const FUR: f64 = 1.2;
 
-/// A camera, what it films, and where the pictures go.
+/// A camera, the scene that it films, and the outputs of its pictures.
 pub(crate) struct Film {
     renderer: Renderer,
     stage: Stage,
@@ -39,11 +39,11 @@ pub(crate) struct Film {
     raw: bool,
     /// Pictures a second.
     rate: f64,
-    /// Ticks before the first.
+    /// Ticks before the first picture.
     from: u32,
     tick: u32,
     taken: u32,
-    /// Where a chasing camera looks from and at, behind what it follows.
+    /// Eye and target of a chasing camera, which lag behind the climber.
     eye: Option<[DVec3; 2]>,
 }
 
@@ -87,7 +87,7 @@ impl Film {
         self.tick += 1;
         self.overlays.watch(battle);
         let camera = self.follow(battle);
-        // As many in each second as are asked for, however they divide its ticks.
+        // The rate holds on average, even if it does not divide the ticks of a second.
         if tick < self.from {
             return Ok(());
         }
@@ -152,7 +152,8 @@ impl Film {
         }
     }
 
-    /// Behind who stands or flies, out from what one holds on to, and in front of whatever would hide it.
+    /// The chasing camera: behind a climber that stands or is in the air, outward from the skin that it holds, and in
+    /// front of skin that would hide it.
     fn chase(&mut self, battle: &Battle<'_>, middle: DVec3) -> Camera {
         let (config, state) = (battle.climber().config(), battle.climber().state());
         let out = match state.support {
@@ -172,7 +173,7 @@ impl Film {
         let mut eye = eye.lerp(wanted[0], 0.06);
         eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
         self.eye = Some([eye, target]);
-        // What is seen through is in front of the skin by as much as fur is long.
+        // The camera stays in front of the skin by the length of fur.
         let far = (eye - target).length();
         let toward = (eye - target).normalize_or(up);
         let hit = battle.surface().cast_ray(state.position, toward, far + FUR);
@@ -205,9 +206,9 @@ fn add_rock(
         TypedShape::Ball(ball) => ball.to_trimesh(24, 16),
         TypedShape::Cuboid(cuboid) => cuboid.to_trimesh(),
         TypedShape::Capsule(capsule) => capsule.to_trimesh(24, 12),
-        other => return Err(format!("a rock of a shape that is not drawn: {other:?}").into()),
+        other => return Err(format!("cannot draw a rock of the shape {other:?}").into()),
     };
-    // Round shapes have so many triangles that their edges do not show.
+    // Round shapes have so many triangles that no edges show.
     let (positions, triangles) = match shape.as_typed_shape() {
         TypedShape::Cuboid(_) => sharp(&positions, &triangles),
         _ => (positions, triangles),

@@ -1,7 +1,7 @@
-//! The main job: a climber climbs a walking, stomping, shaking creature from the ground to its head, and rocks fall on it.
+//! A climber climbs a walking, stomping, shaking creature from the ground to its head, while rocks fall on it.
 //!
-//! `cargo run --release --example battle -- --help` lists the options. The scene itself, its script
-//! and its checks are `clamber_scenes::battle`; with `--features render` it can be filmed.
+//! `cargo run --release --example battle -- --help` lists the options. The scene, its script and its checks are in
+//! `clamber_scenes::battle`. With `--features render` it can be filmed.
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod film;
@@ -14,8 +14,8 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
-/// A climber climbs a giant of stone and fur from the ground to its head, or rides on a creature, while it stomps,
-/// shakes and is struck by rocks. Prints what came of it, checks it, and writes a summary and a timeline.
+/// A climber climbs a giant of stone and fur from the ground to its head, or rides on a creature, while the creature
+/// stomps, shakes and is struck by rocks. Prints and checks the results, and writes a summary and a timeline.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 struct Options {
@@ -25,7 +25,7 @@ struct Options {
     film: FilmOptions,
 }
 
-/// How the battle is filmed.
+/// Options for filming the battle.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Filming, with --features render")]
 #[command(group = ArgGroup::new("pictures").multiple(true))]
@@ -34,19 +34,19 @@ struct FilmOptions {
     #[arg(long, value_name = "DIR", group = "pictures")]
     frames: Option<PathBuf>,
 
-    /// File for a moving picture of half the size.
+    /// File for an animated GIF of half the size.
     #[arg(long, value_name = "FILE", group = "pictures")]
     gif: Option<PathBuf>,
 
-    /// Writes pictures to standard output, bare: four bytes a pixel, red, green, blue, opacity.
+    /// Writes raw pictures to standard output: four bytes a pixel, red, green, blue, opacity.
     #[arg(long, group = "pictures")]
     raw: bool,
 
-    /// Where the camera is.
+    /// How the camera moves.
     #[arg(long, value_enum, default_value = "orbit", requires = "pictures")]
     camera: CameraKind,
 
-    /// What is drawn over the pictures, with commas between.
+    /// Overlays that are drawn over the pictures, separated by commas.
     #[arg(
         long,
         value_enum,
@@ -56,7 +56,7 @@ struct FilmOptions {
     )]
     overlay: Vec<OverlayKind>,
 
-    /// Pictures for a second of the battle, from 0.01 to 60: 0.25 is one in four seconds.
+    /// Pictures per second of the battle, from 0.01 to 60: 0.25 is one in four seconds.
     #[arg(
         long,
         value_name = "COUNT",
@@ -66,7 +66,7 @@ struct FilmOptions {
     #[arg(value_parser = rate, allow_negative_numbers = true)]
     rate: f64,
 
-    /// Seconds of the battle that pass before filming begins.
+    /// Seconds of the battle before filming begins.
     #[arg(
         long,
         value_name = "SECONDS",
@@ -76,7 +76,7 @@ struct FilmOptions {
     #[arg(value_parser = from, allow_negative_numbers = true)]
     from: f64,
 
-    /// Pixels along a row.
+    /// Width of a picture, pixels.
     #[arg(
         long,
         value_name = "PIXELS",
@@ -85,7 +85,7 @@ struct FilmOptions {
     )]
     width: u32,
 
-    /// Rows of pixels.
+    /// Height of a picture, rows of pixels.
     #[arg(
         long,
         value_name = "PIXELS",
@@ -123,7 +123,7 @@ enum CameraKind {
     Orbit,
     /// Follows the climber.
     Chase,
-    /// Stands in the valley and turns after the creature.
+    /// Stands in the valley and turns towards the creature.
     Fixed,
 }
 
@@ -135,17 +135,17 @@ enum OverlayKind {
     Capsules,
     /// Spheres around the parts.
     Spheres,
-    /// The skin's clusters: orange if skinned in this tick, else blue.
+    /// Clusters of the skin: orange if they were skinned in this tick, else blue.
     Clusters,
-    /// The triangle under the climber, and the way it came.
+    /// The triangle under the climber, and the climber's path.
     Contact,
-    /// A material point on each part, and the one under the climber, with their velocities.
+    /// A material point on each part, and the one that the climber is on, with their velocities.
     Anchors,
-    /// How climber and rocks moved in this tick, and where they touched something.
+    /// The motion of climber and rocks in this tick, and their contacts.
     Sweeps,
-    /// The pieces of skin that the physics engine has for the rocks.
+    /// The pieces of skin that the physics engine holds as colliders for the rocks.
     Rocks,
-    /// Text: time, what the climber does, its strength and health, shake, speeds, what was skinned.
+    /// Text: time, the climber's action, stamina and health, shake, speeds, share of vertices skinned, rocks.
     State,
 }
 
@@ -168,7 +168,7 @@ fn main() -> ExitCode {
     };
     let table = format!("{summary}  written to {}", written(&options));
     if options.film.raw {
-        // Standard output has the pictures.
+        // Standard output is used for the pictures.
         eprintln!("{table}");
     } else {
         println!("{table}");
@@ -181,7 +181,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Where all results are, by path.
+/// The paths of all results.
 fn written(options: &Options) -> String {
     let (battle, film) = (&options.battle, &options.film);
     let asked = [&battle.record, &film.frames, &film.gif];
@@ -208,6 +208,6 @@ fn filmed(options: &Options) -> Result<Summary, BattleError> {
 #[cfg(not(all(feature = "render", feature = "gltf", feature = "rapier")))]
 fn filmed(_: &Options) -> Result<Summary, BattleError> {
     Err(BattleError::Watching(
-        "built without pictures: add `--features render` to the command, before `--`".into(),
+        "built without rendering: add `--features render` to the command, before `--`".into(),
     ))
 }

@@ -1,6 +1,7 @@
-//! What is drawn over the pictures of a battle.
+//! Overlays on the pictures of a battle.
 //!
-//! Colours by name are of Okabe and Ito's set, which the colour-blind tell apart; white and magenta beside them.
+//! The named colours are of Okabe and Ito's set, which colour-blind people can tell apart, with white and magenta
+//! added.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,35 +18,35 @@ use glam::{DVec3, Vec3};
 
 use crate::OverlayKind;
 
-/// Points of the climber's way that are drawn.
+/// Number of points of the climber's path that are drawn.
 const WAY: usize = 90;
 
-/// Points of the way of the climber and of rocks that are drawn with their sweeps.
+/// Number of points of the paths of climber and rocks that are drawn with their sweeps.
 const TRAIL: usize = 20;
 
-/// Metres of arrow for a metre a second.
+/// Length of a velocity's arrow: metres per metre a second.
 const ARROW: f64 = 0.5;
 
 /// Radius of a dot, as a share of its distance from the eye: about 4 pixels at 720 rows.
 const DOT: f64 = 0.005;
 
-/// Parts of less than this share of the skin have no anchor.
+/// Parts with less than this share of the skin's area have no anchor.
 const LEAST_AREA: f32 = 0.005;
 
-/// What lies on the skin is drawn this much nearer to the eye, as a share of the creature's height: fur and
-/// stone as they are seen reach so far beyond the collider.
+/// How much nearer to the eye overlays on the skin are drawn, as a share of the creature's height: visible fur and
+/// stone reach that far beyond the collider.
 const NEARER: f64 = 0.02;
 
-/// The same for joints, which are seen through the skin.
+/// The same for joints, which must be seen through the skin.
 const THROUGH: f64 = 0.25;
 
-/// What moved farther than this in a tick was put there, metres.
+/// A body that moved farther than this in a tick was teleported, metres.
 const PUT: f64 = 2.0;
 
-/// What moved less than this in a tick lies still, metres: 0.12 m/s.
+/// A body that moved less than this in a tick lies still, metres: 0.12 m/s.
 const STILL: f64 = 0.002;
 
-/// Where text begins: column and row.
+/// Upper left corner of the text: column and row.
 const TEXT_AT: [u32; 2] = [16, 16];
 
 /// Pictures of fewer rows get small text.
@@ -58,19 +59,19 @@ const VERMILION: [f32; 3] = [0.67, 0.11, 0.0];
 const MAGENTA: [f32; 3] = [1.0, 0.2, 0.8];
 const WHITE: [f32; 3] = [1.0; 3];
 
-/// The kinds asked for, and what they remember from tick to tick.
+/// The selected kinds of overlays, and their data from earlier ticks.
 pub(crate) struct Overlays {
     kinds: Vec<OverlayKind>,
     anchors: Vec<MaterialPoint>,
-    /// Of the creature, metres.
+    /// Height of the creature, metres.
     height: f64,
-    /// How much nearer to the eye what lies on the skin is drawn, metres.
+    /// How much nearer to the eye overlays on the skin are drawn, metres.
     nearer: f64,
-    /// The climber's way, at its feet.
+    /// The climber's path, at its feet.
     way: Vec<DVec3>,
-    /// Where the climber's sphere was in the last ticks, since it was last put somewhere; now is last.
+    /// Positions of the climber's sphere in the last ticks, since it was last teleported; the current one is last.
     climber: Vec<DVec3>,
-    /// The same of each rock.
+    /// The same for each rock.
     rocks: Vec<Vec<DVec3>>,
 }
 
@@ -87,7 +88,7 @@ impl Overlays {
         }
     }
 
-    /// To be called before the first tick and after every one.
+    /// Records a tick. Call it before the first tick and after every one.
     pub(crate) fn watch(&mut self, battle: &Battle<'_>) {
         let config = battle.climber().config();
         let now = battle.climber().state().position;
@@ -120,14 +121,14 @@ impl Overlays {
                 OverlayKind::Anchors => self.anchors(&mut over, battle, eye),
                 OverlayKind::Sweeps => self.sweeps(&mut over, battle, eye),
                 OverlayKind::Rocks => rocks(&mut over, battle),
-                // Written once the picture is there.
+                // Text is written after the picture is drawn.
                 OverlayKind::State => {}
             }
         }
         over
     }
 
-    /// What stands on the picture as text.
+    /// Writes the text onto the picture.
     pub(crate) fn write(&self, battle: &Battle<'_>, image: &mut Image) {
         if self.kinds.contains(&OverlayKind::State) {
             let size = if image.height < ROWS_FOR_LARGE_TEXT {
@@ -176,7 +177,7 @@ impl Overlays {
         }
     }
 
-    /// The way of a ball, the last tick's with its ends; false if it lies still.
+    /// Draws a ball's path, and its sweep of the last tick; returns false if the ball lies still.
     fn sweep(
         &self,
         over: &mut Overlay,
@@ -193,14 +194,14 @@ impl Overlays {
         }
         over.path(trail, 2.0, seen_through(color, 0.5));
         over.capsule(from, to, radius, 1.5, opaque(color));
-        // In front of what moved.
+        // The arrow is drawn in front of the ball.
         let [from, to] = [from, to].map(|end| nearer(end, eye, 2.0 * self.nearer));
         over.arrow(from, to - from, 4.0, opaque(color));
         true
     }
 }
 
-/// Adds where something is now to where it was.
+/// Adds a position to a trail, which begins anew after a teleport.
 fn follow(trail: &mut Vec<DVec3>, now: DVec3) {
     if trail.last().is_some_and(|last| last.distance(now) > PUT) {
         trail.clear();
@@ -219,13 +220,13 @@ fn seen_through([red, green, blue]: [f32; 3], opacity: f32) -> Color {
     [red, green, blue, opacity]
 }
 
-/// The same place in the picture, but so many metres nearer to the eye, at most half of the way.
+/// Moves a point nearer to the eye by some metres, at most half of its distance. It stays at the same pixel.
 fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
     let distance = (place - eye).length();
     eye + (place - eye) * (1.0 - (by / distance).min(0.5))
 }
 
-/// A dot of much the same size wherever it is.
+/// Draws a dot that has about the same size at any distance.
 fn dot(over: &mut Overlay, at: DVec3, eye: DVec3, size: f64, color: [f32; 3]) {
     let radius = (at - eye).length() * DOT * size;
     for side in 0..8u32 {
@@ -241,8 +242,8 @@ fn dot(over: &mut Overlay, at: DVec3, eye: DVec3, size: f64, color: [f32; 3]) {
     }
 }
 
-/// For each part of the skin, at rest, what is seen first from outside in front of its middle: that is where
-/// the part is looked at from where most of it is seen, and from away from the creature's middle.
+/// A point on each part of the skin at rest: the first hit of a ray from outside through the part's middle. The ray
+/// comes from the side to which the part faces, and from the side away from the creature's middle.
 fn anchors(mesh: &Arc<ColliderMesh>) -> Vec<MaterialPoint> {
     let surface = SkinnedSurface::new(Arc::clone(mesh));
     let far = 4.0 * mesh.radius();
@@ -268,7 +269,7 @@ fn anchors(mesh: &Arc<ColliderMesh>) -> Vec<MaterialPoint> {
 struct Side {
     area: f32,
     middle: Vec3,
-    /// The sum of its triangles' normals, each as long as its area.
+    /// Sum of its triangles' normals, weighted by their areas.
     normal: Vec3,
 }
 
@@ -331,7 +332,7 @@ fn bounds(over: &mut Overlay, battle: &Battle<'_>, kind: OverlayKind) {
     }
 }
 
-/// The triangles that face the eye, and the borders between clusters.
+/// Draws the triangles that face the eye, and the borders between clusters.
 fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     let surface = battle.surface();
     for cluster in surface.clusters() {
@@ -340,7 +341,7 @@ fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
         } else {
             (SKY_BLUE, 0.22, 0.45)
         };
-        // How many triangles of the cluster have an edge.
+        // Per edge: its ends, and the number of triangles of the cluster that have it.
         let mut edges: BTreeMap<[VertexId; 2], ([DVec3; 2], u32)> = BTreeMap::new();
         for triangle in cluster.triangles {
             let Some(corners) = posed(surface, *triangle) else {
@@ -368,7 +369,7 @@ fn clusters(over: &mut Overlay, battle: &Battle<'_>, eye: DVec3, by: f64) {
     }
 }
 
-/// The corners of a triangle, in the world.
+/// The corners of a triangle in world space.
 fn posed(surface: &SkinnedSurface, triangle: TriangleId) -> Option<[DVec3; 3]> {
     let corners = surface.mesh().triangles().get(triangle.index())?;
     let [a, b, c] = corners.map(|vertex| surface.in_model().position(vertex));
@@ -391,7 +392,7 @@ fn contact(over: &mut Overlay, battle: &Battle<'_>, way: &[DVec3]) {
     over.sphere(support.attachment.point, 0.08, 2.0, [1.0, 0.1, 0.1, 1.0]);
 }
 
-/// Of the largest ball in a rock.
+/// Radius of the largest ball inside a rock.
 fn inner_radius(shape: &dyn Shape) -> f64 {
     f64::from(match shape.as_typed_shape() {
         TypedShape::Ball(ball) => ball.radius,
@@ -401,7 +402,7 @@ fn inner_radius(shape: &dyn Shape) -> f64 {
     })
 }
 
-/// Where a collider touched others, deepest point of each.
+/// The deepest contact point of a collider with each other one.
 fn touching(world: &PhysicsWorld, collider: ColliderHandle) -> Vec<DVec3> {
     let pairs = world.narrow_phase.contact_pairs_with(collider);
     let pairs = pairs.filter(|pair| pair.has_any_active_contact());
@@ -435,7 +436,7 @@ fn rocks(over: &mut Overlay, battle: &Battle<'_>) {
     }
 }
 
-/// As text, a line each.
+/// The battle's state as text, one value a line.
 fn state(battle: &Battle<'_>) -> String {
     let surface = battle.surface();
     let mesh = surface.mesh();
@@ -490,7 +491,7 @@ fn state(battle: &Battle<'_>) -> String {
     )
 }
 
-/// What is left of stamina and hit points, and how hard the hold shakes, if the climber knows of these.
+/// The remaining stamina and hit points, and the shake of the hold, if the climber is configured for them.
 fn strength(battle: &Battle<'_>) -> String {
     const CELLS: f64 = 20.0;
     let (config, state) = (battle.climber().config(), battle.climber().state());
@@ -511,7 +512,7 @@ fn strength(battle: &Battle<'_>) -> String {
     lines
 }
 
-/// What it does; to what, if it is supported.
+/// A mode as a verb, with a preposition if the climber has a support.
 fn verb(mode: ClimberMode) -> &'static str {
     match mode {
         ClimberMode::Standing => "stands on",

@@ -1,22 +1,22 @@
-//! A dash: a quarter of a second at 12 m/s where the climber faces, then a second until the next.
+//! A dash: a quarter of a second at 12 m/s in the direction that the climber faces, with a cooldown of one second.
 //!
-//! On the ground it follows the ground, and is relative to it: a platform that turns takes the dash round. In the air it
+//! On the ground the dash follows the ground, and is relative to it: a turning platform turns the dash. In the air it
 //! is level.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 
-/// Numbers of [`ModeContext::memory`]: seconds that are left of the dash, and until the next may begin.
+/// Indices into [`ModeContext::memory`]: seconds left of the dash, and seconds until the next may begin.
 const LEFT: usize = 0;
 const REST: usize = 1;
 
 pub(crate) struct Dash {
-    /// Bit of [`ClimberInput::actions`](clamber::climber::ClimberInput::actions) that begins it.
+    /// Bit of [`ClimberInput::actions`](clamber::climber::ClimberInput::actions) that begins the dash.
     pub(crate) action: u32,
     /// Metres a second.
     pub(crate) speed: f64,
     /// Seconds.
     pub(crate) duration: f64,
-    /// Seconds from the end of one to the next.
+    /// Seconds from the end of a dash to the next.
     pub(crate) cooldown: f64,
 }
 
@@ -59,13 +59,13 @@ impl CustomMode for Dash {
         }
         let left = context.memory()[LEFT] - context.dt();
         context.memory()[LEFT] = left.max(0.0);
-        // Half a tick, since tenths of seconds are no whole ticks, nor exact.
+        // Half a tick, since a duration need not be a whole number of ticks, and sums of ticks are rounded.
         let is_last = left < 0.5 * context.dt();
         let ground = context.config().ground;
-        // The heading turns with what the climber stands on.
+        // The heading turns with the ground that the climber stands on.
         let along = context.state().heading;
         let target = context.position() + along * (self.speed * context.dt());
-        // At the end it keeps the speed of a walk, or it would slide on.
+        // The last tick leaves the speed of a walk; otherwise the climber would slide on.
         let speed = if is_last {
             ground.walk_speed
         } else {

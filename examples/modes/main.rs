@@ -1,4 +1,4 @@
-//! Modes of a game's own: a dash, a vault, a wall run, swimming. Each is a file of under 100 lines beside this one.
+//! Custom modes: a dash, a vault, a wall run, swimming. Each is a file of under 100 lines beside this one.
 //!
 //! A climber does all four on its way through a course of rapier's bodies.
 
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let before = BodyPoses::default();
     let terrain = RapierTerrain::of_world(&world, &before);
-    // Handlers keep nothing: they may be made once, or anew in each tick.
+    // Handlers have no state: they may be made once, or anew in each tick.
     let (dash, vault, wall_run) = (Dash::default(), Vault::default(), WallRun { action: 4 });
     let pool = [DVec3::new(25.0, -3.0, -9.0), DVec3::new(65.0, -0.5, 9.0)];
     let swim = Swim::new(pool, DVec3::ZERO);
@@ -46,10 +46,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let at = climber.state().position;
         let runs = (13.0..23.0).contains(&at.x);
         let input = ClimberInput {
-            // Against the wall while it is there.
+            // Beside the wall the climber also presses against it.
             walk: DVec3::new(1.0, 0.0, if runs { 0.2 } else { 0.0 }),
             jump: (14.0..14.5).contains(&at.x) && climber.state().mode == ClimberMode::Standing,
-            // Dashes at once, and holds the other buttons.
+            // It presses the dash's button once, and holds the other buttons.
             actions: vault.action | wall_run.action | if tick == 60 { dash.action } else { 0 },
             ..ClimberInput::default()
         };
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    // Each once, in the order of the course.
+    // Each mode once, in the order of the course.
     assert_eq!(done, [1, 2, 3, 4]);
     assert_eq!(climber.state().mode, ClimberMode::Custom(swim.id()));
     Ok(())

@@ -1,29 +1,30 @@
-//! Swimming in a box of water, which may flow or move: Y is up.
+//! Swimming in a box of water, which may flow or move. Y is up.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use glam::DVec3;
 
-/// How much deeper than it floats the climber has to be to begin, and at most to stand up on the shore, metres. The gap
-/// between the two keeps it from doing both by turns.
+/// Depths below the floating position, metres: swimming begins below the first, and the climber stands up on the shore
+/// above the second. The gap between them avoids flicker.
 const BEGINS: f64 = 0.1;
 const ENDS: f64 = 0.05;
 
-/// How near the ground has to be under its feet on the shore, metres.
+/// Largest gap between feet and ground at which the climber stands up on the shore, metres.
 const SHORE: f64 = 0.05;
 
-/// Made anew for each tick where the water moves: handlers keep nothing.
+/// Handlers have no state: make this one anew for each tick if the water moves.
 pub(crate) struct Swim {
     /// Least and greatest corner of the water at the tick's end, in world space; its surface is the top.
     pub(crate) water: [DVec3; 2],
-    /// Of the water, metres a second.
+    /// Velocity of the water, metres a second.
     pub(crate) current: DVec3,
-    /// Bit of the input's `actions` that dives, as long as it is held. `jump_held` rises; a jump at the surface leaves.
+    /// Bit of the input's `actions` that dives while it is held. `jump_held` rises; a jump at the surface leaves the
+    /// water.
     pub(crate) dive: u32,
-    /// How deep the climber's position is below the surface as it floats, metres.
+    /// Depth of the climber's position below the surface while it floats, metres.
     pub(crate) float: f64,
-    /// Metres a second.
+    /// Swimming speed, metres a second.
     pub(crate) speed: f64,
-    /// How fast the velocity comes to what is wanted, metres a second squared.
+    /// Acceleration towards the wanted velocity, metres a second squared.
     pub(crate) acceleration: f64,
 }
 
@@ -39,7 +40,7 @@ impl Swim {
         }
     }
 
-    /// How far below where it floats; `None` beside the water.
+    /// Depth below the floating position, metres; `None` outside the water.
     fn depth(&self, position: DVec3) -> Option<f64> {
         let [low, high] = self.water;
         let level = DVec3::new(1.0, 0.0, 1.0);
@@ -77,7 +78,7 @@ impl CustomMode for Swim {
         let wanted = DVec3::new(input.walk.x, 0.0, input.walk.z).clamp_length_max(1.0);
         let wanted = (wanted + DVec3::Y * rise) * self.speed;
         let mut own = (velocity - self.current).move_towards(wanted, self.acceleration * dt);
-        // Not out of the water.
+        // It does not rise out of the water.
         own.y = own.y.min((depth / dt).max(-self.speed));
         context.move_by(self.current + own);
         let depth = self.depth(context.state().position);

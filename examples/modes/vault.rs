@@ -1,23 +1,23 @@
-//! A vault over a wall of up to 1.2 m: up along the wall, over it, and down behind it or onto it.
+//! A vault over a wall of up to 1.2 m: up along the wall, then over it, and down onto it or behind it.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::mover::LedgeProbe;
 use glam::DVec3;
 
-/// Number of [`ModeContext::memory`]: seconds that it has taken so far.
+/// Index into [`ModeContext::memory`]: seconds since the vault began.
 const TAKEN: usize = 2;
 
-/// Seconds after which it gives up: something came into the way.
+/// Seconds after which the vault is given up, if something is in the way.
 const PATIENCE: f64 = 1.5;
 
 pub(crate) struct Vault {
-    /// Bit of the input's `actions` that begins it, while the climber walks at the wall.
+    /// Bit of the input's `actions` that begins the vault while the climber walks at the wall.
     pub(crate) action: u32,
-    /// Highest wall, from the feet, metres. Lower than a step is walked over.
+    /// Height of the highest wall above the feet, metres. Walls lower than a step are walked over.
     pub(crate) height: f64,
     /// How far from the body the wall may be, metres.
     pub(crate) reach: f64,
-    /// Metres a second.
+    /// Speed of the vault, metres a second.
     pub(crate) speed: f64,
 }
 
@@ -58,7 +58,7 @@ impl CustomMode for Vault {
         };
         let to_top = ledge.touch.contact.point - position;
         let rise = to_top.dot(up) + body.radius + 2.0 * body.margin;
-        // Room above the climber, and from there to above the wall.
+        // There must be room above the climber, and from there to above the wall.
         let core = body.core_at(position);
         let over = ledge.facing * (to_top.dot(ledge.facing) + body.radius);
         let mover = context.mover();

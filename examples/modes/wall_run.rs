@@ -1,10 +1,10 @@
-//! A wall run: up to 1.5 s along a wall, from the air, until the climber has stood on its feet again.
+//! A wall run from the air: up to 1.5 s along walls in all, until the climber has stood on its feet again.
 
 use clamber::climber::{ClimberMode, CustomMode, ModeContext, NextMode};
 use clamber::mover::Touch;
 use glam::DVec3;
 
-/// Number of [`ModeContext::memory`]: seconds that it has run since it last stood.
+/// Index into [`ModeContext::memory`]: seconds of wall runs since the climber last stood.
 const RAN: usize = 3;
 
 /// How far from the body the wall may be, metres.
@@ -13,19 +13,19 @@ const REACH: f64 = 0.15;
 /// Sine of how far a wall may lean: 12 degrees.
 const LEAN: f64 = 0.2;
 
-/// Metres a second, and the slowest at which it begins.
+/// Speed of the run, and the least speed at which it begins, metres a second.
 const SPEED: f64 = 5.0;
 const LEAST_SPEED: f64 = 1.5;
 
-/// Seconds.
+/// Longest run, seconds.
 const DURATION: f64 = 1.5;
 
-/// As long as this bit of the input's `actions` is held.
+/// Runs as long as the bit `action` of the input's `actions` is held.
 pub(crate) struct WallRun {
     pub(crate) action: u32,
 }
 
-/// The nearest wall beside the climber. Beyond its end there is only its edge, which is none.
+/// The nearest wall beside the climber. The edge at a wall's end does not count.
 fn wall_beside(context: &mut ModeContext<'_, '_>) -> Option<Touch> {
     let (body, up, position) = (context.body(), context.up(), context.position());
     let touches = context.mover().overlap(&body, position, REACH);
@@ -38,7 +38,7 @@ fn wall_beside(context: &mut ModeContext<'_, '_>) -> Option<Touch> {
     nearest.copied()
 }
 
-/// The level part of a vector along the face that is touched, not round its edges.
+/// The level part of a vector along the touched face, not around its edges.
 fn along(wall: &Touch, vector: DVec3, up: DVec3) -> DVec3 {
     let level = wall.contact.normal.cross(up).normalize_or_zero();
     level * level.dot(vector)
@@ -79,7 +79,7 @@ impl CustomMode for WallRun {
         }
         context.memory()[RAN] += dt;
         let is_last = context.memory()[RAN] + 0.5 * dt > DURATION;
-        // Measured against the wall from now on, which may move.
+        // From now on velocities are relative to the wall, which may move.
         context.attach(&wall);
         let run = along(&wall, heading, up).normalize_or_zero() * SPEED;
         let gap = (wall.contact.distance - context.body().radius).max(0.0);

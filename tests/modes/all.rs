@@ -1,4 +1,4 @@
-//! What every mode has to do. That its state can be restored in any tick is checked by [`Scene::step`].
+//! Checks of every mode. [`Scene::step`] checks that a mode's state can be restored in any tick.
 
 use clamber::climber::{
     Blow, ClimberError, ClimberInput, ClimberMode, CustomMode, ModeContext, NextMode, StepRules,
@@ -10,7 +10,7 @@ use crate::modes::dash::Dash;
 use crate::scene::{DASH, SWIM, Scene, VAULT, WALL_RUN};
 use crate::{dash, swim, vault, wall_run};
 
-/// A mode, a scene that is in the midst of it, and how that goes on.
+/// A mode, a function that makes a scene in that mode, and one that continues the scene until the mode ends.
 type Play = (ClimberMode, fn(DVec3) -> Scene, fn(&mut Scene));
 
 const PLAYS: [Play; 4] = [
@@ -23,7 +23,7 @@ const PLAYS: [Play; 4] = [
 const FRAME: DVec3 = DVec3::new(25.0, -10.0, 13.0);
 
 #[test]
-fn in_a_frame_that_moves_every_mode_is_the_same() {
+fn every_mode_is_the_same_in_a_moving_frame() {
     for (mode, play, end) in PLAYS {
         let run = |frame| {
             let mut scene = play(frame);
@@ -67,7 +67,7 @@ fn a_blow_ends_every_mode_and_adds_its_velocity() {
 }
 
 #[test]
-fn without_its_handler_every_mode_ends_in_a_fall_as_fast_as_it_was() {
+fn without_its_handler_every_mode_ends_in_a_fall_with_the_same_velocity() {
     for (mode, play, _) in PLAYS {
         for frame in [DVec3::ZERO, FRAME] {
             let mut scene = play(frame);
@@ -76,7 +76,7 @@ fn without_its_handler_every_mode_ends_in_a_fall_as_fast_as_it_was() {
             let state = *scene.climber.state();
             assert!(!state.mode.is_custom(), "{mode:?}: {:?}", state.mode);
             let mut change = scene.velocity() - before;
-            // In the dash it is on the ground, and lands at once.
+            // During the dash the climber is on the ground, and lands at once.
             change.y = 0.0;
             assert!(change.length() < 1e-6, "{mode:?} {frame}: {change}");
         }
@@ -84,7 +84,7 @@ fn without_its_handler_every_mode_ends_in_a_fall_as_fast_as_it_was() {
 }
 
 #[test]
-fn two_modes_of_one_number_are_an_error_and_change_nothing() {
+fn two_modes_with_one_id_are_an_error_and_change_nothing() {
     let scene = Scene::new(DVec3::ZERO, DVec3::Y);
     let mut climber: Climber = scene.climber;
     let before = *climber.state();
@@ -102,7 +102,7 @@ fn two_modes_of_one_number_are_an_error_and_change_nothing() {
     assert_eq!(*climber.state(), before);
 }
 
-/// Never begins, and remembers how far below it the ground is.
+/// A mode that never begins, and stores the distance to the ground below the climber.
 struct Feel;
 
 impl CustomMode for Feel {
@@ -122,9 +122,9 @@ impl CustomMode for Feel {
     }
 }
 
-/// A post of 0.2 m, which a climber that looks from where it was a tick ago misses at 30 m/s.
+/// The post is 0.2 m wide. At 30 m/s, a probe from the position a tick ago would miss it.
 #[test]
-fn before_its_movement_a_mode_sees_the_ground_of_the_same_time() {
+fn before_its_movement_a_mode_finds_the_ground_where_it_is_at_that_time() {
     for frame in [DVec3::ZERO, FRAME] {
         let scene = Scene::new(frame, DVec3::Y * 2.4).without_floor();
         let mut scene = scene.with_box([-0.1, -9.0, -0.1], [0.1, 0.0, 0.1]);

@@ -3,7 +3,7 @@ use glam::{DQuat, DVec3};
 
 use crate::scene::{DASH, Motion, Scene, act, walk};
 
-/// On the floor, by an action held for a tick.
+/// A dash on the floor, after an action that is held for one tick.
 pub(crate) fn play(frame: DVec3) -> Scene {
     let mut scene = Scene::new(frame, DVec3::Y * 0.4).settled();
     scene.step(&act(DVec3::X, 1));
@@ -34,12 +34,12 @@ fn a_dash_is_a_quarter_of_a_second_at_12_metres_a_second() {
     scene.steps(10, &walk(DVec3::ZERO));
     assert!(
         scene.position().distance(from + DVec3::X * 3.0) < 0.1,
-        "slides on"
+        "it slides on"
     );
 }
 
 #[test]
-fn a_dash_held_comes_again_after_its_rest() {
+fn a_held_dash_repeats_after_its_cooldown() {
     let mut scene = Scene::new(DVec3::ZERO, DVec3::new(-40.0, 0.4, 0.0)).settled();
     let mut begun = Vec::new();
     for tick in 0..200 {
@@ -49,7 +49,7 @@ fn a_dash_held_comes_again_after_its_rest() {
             begun.push(tick);
         }
     }
-    // A quarter of a second and a second.
+    // A dash of 0.25 s and a cooldown of 1 s.
     assert_eq!(begun.len(), 3, "{begun:?}");
     assert!(
         begun
@@ -81,10 +81,10 @@ fn a_dash_in_the_air_is_level_and_falls_after_it() {
     assert!((went - DVec3::X * 2.8).length() < 1e-9, "{went}");
     scene.steps(10, &walk(DVec3::ZERO));
     assert_eq!(scene.mode(), ClimberMode::Falling);
-    assert!(scene.position().y < from.y, "hovers");
+    assert!(scene.position().y < from.y, "it hovers");
 }
 
-/// A platform of 4 m/s that rises, and one that turns by half a radian a second.
+/// One platform moves at 4 m/s and rises; the other one turns by half a radian a second.
 #[test]
 fn on_a_moving_platform_a_dash_is_relative_to_it() {
     let went_over = |motion: Motion| {

@@ -1,4 +1,4 @@
-//! Modes of a game's own, those of the example `modes`, on obstacles without any f32, with public items only.
+//! The custom modes of the example `modes`, on obstacles that compute in f64 only, through public items only.
 
 #![expect(
     clippy::unwrap_used,

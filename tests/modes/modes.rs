@@ -1,4 +1,4 @@
-//! The example's files.
+//! The modes of the example `modes`.
 
 #[path = "../../examples/modes/dash.rs"]
 pub(crate) mod dash;

@@ -1,4 +1,4 @@
-//! Boxes that move, water, and a climber among them, in a frame that moves as a whole.
+//! A climber among moving boxes and water, in a frame that moves as a whole.
 
 use clamber::climber::{ClimberConfig, ClimberInput, ClimberMode, CustomMode, StepReport};
 use clamber::prelude::{Climber, Obstacle, ObstacleId, StepRules, SurfaceKind};
@@ -17,7 +17,7 @@ pub(crate) const VAULT: ClimberMode = ClimberMode::Custom(2);
 pub(crate) const WALL_RUN: ClimberMode = ClimberMode::Custom(3);
 pub(crate) const SWIM: ClimberMode = ClimberMode::Custom(4);
 
-/// Where a thing of the scene is at a time, from where it was built.
+/// Rotation and translation of a box at a time, relative to where it was built.
 pub(crate) type Motion = fn(f64) -> (DQuat, DVec3);
 
 const TRIANGLES: [[u32; 3]; 12] = [
@@ -35,7 +35,7 @@ const TRIANGLES: [[u32; 3]; 12] = [
     [3, 7, 5],
 ];
 
-/// Positions and velocities are those of the frame.
+/// The scene. Positions and velocities are relative to the frame.
 pub(crate) struct Scene {
     boxes: Vec<Own>,
     water: Option<[DVec3; 2]>,
@@ -104,12 +104,13 @@ impl Scene {
         self
     }
 
-    /// One tick with all modes. Another climber that is put into the same state before it does the same, bit by bit.
+    /// Makes one tick with all modes. A second climber that is restored to the state before the tick must do the same,
+    /// bit for bit.
     pub(crate) fn step(&mut self, input: &ClimberInput) -> StepReport {
         self.step_without(input, None)
     }
 
-    /// [`Scene::step`] without the handler of a mode.
+    /// Like [`Scene::step`], without the handler of one mode.
     pub(crate) fn step_without(
         &mut self,
         input: &ClimberInput,
@@ -166,7 +167,7 @@ impl Scene {
         }
     }
 
-    /// Stands, on the floor.
+    /// Waits until the climber stands on the floor.
     pub(crate) fn settled(mut self) -> Self {
         self.steps(60, &ClimberInput::IDLE);
         assert_eq!(
@@ -194,7 +195,7 @@ impl Scene {
         self.climber.state().velocity - self.frame
     }
 
-    /// Ticks after which it was in a mode.
+    /// Number of ticks that ended in a mode.
     pub(crate) fn ticks_in(&self, mode: ClimberMode) -> usize {
         self.trace
             .iter()
@@ -210,7 +211,7 @@ pub(crate) fn walk(direction: DVec3) -> ClimberInput {
     }
 }
 
-/// With a button held.
+/// Walks with a button held.
 pub(crate) fn act(direction: DVec3, action: u32) -> ClimberInput {
     ClimberInput {
         actions: action,

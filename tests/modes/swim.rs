@@ -3,7 +3,7 @@ use glam::DVec3;
 
 use crate::scene::{SWIM, Scene, act, walk};
 
-/// Four metres of water over the floor, to x = 6, where a shore of steps begins.
+/// Four metres of water over the floor. From x = 6 on, steps lead ashore.
 fn pool(frame: DVec3, position: DVec3) -> Scene {
     let scene = Scene::new(frame, position).with_water([-20.0, 0.0, -9.0], [20.0, 4.0, 9.0]);
     let steps = (0..8_u8).map(|step| (6.0 + 0.6 * f64::from(step), 3.25 + 0.2 * f64::from(step)));
@@ -98,7 +98,7 @@ fn a_swimmer_comes_ashore_and_goes_in_again() {
     scene.steps(300, &walk(-DVec3::X));
     assert_eq!(scene.mode(), SWIM, "{:?}", scene.climber.state());
     assert!(scene.position().x < 5.0, "{}", scene.position());
-    // Once in and once out: no flicker between the two.
+    // It enters the water at most twice: no flicker at the shore.
     let modes = scene
         .trace
         .windows(2)

@@ -58,7 +58,7 @@ fn a_wall_is_not_vaulted_without_the_button() {
     assert_eq!(scene.ticks_in(VAULT), 0);
 }
 
-/// No room above the climber; none above the wall.
+/// There is no room above the climber, or above the wall.
 #[test]
 fn no_one_vaults_into_a_ceiling() {
     for from in [-9.0, 1.0] {
@@ -68,9 +68,9 @@ fn no_one_vaults_into_a_ceiling() {
     }
 }
 
-/// It gives up, and falls.
+/// The climber gives up, and falls.
 #[test]
-fn what_comes_into_the_way_ends_a_vault() {
+fn an_obstacle_in_the_way_ends_a_vault() {
     let wall = at_wall(DVec3::ZERO, 1.0, 0.3);
     let gate = |time: f64| {
         let shut = (time - 1.1).clamp(0.0, 0.2) * -20.0;

@@ -3,7 +3,7 @@ use glam::DVec3;
 
 use crate::scene::{Scene, WALL_RUN, act, walk};
 
-/// In the air beside a wall along X, at 4 m/s along it.
+/// A climber in the air beside a wall along X, with a velocity of 4 m/s along the wall.
 fn beside_wall(frame: DVec3, length: f64) -> Scene {
     let mut scene = Scene::new(frame, DVec3::new(0.0, 9.0, 0.45));
     scene = scene.with_box([-1.0, 0.0, -0.5], [length, 20.0, 0.0]);
@@ -36,7 +36,7 @@ fn a_wall_run_lasts_one_and_a_half_seconds_and_falls() {
         "{first} {last}"
     );
     assert!((last.y - first.y).abs() < 1e-6, "{first} {last}");
-    assert!(last.z < 0.401, "beside the wall: {last}");
+    assert!(last.z < 0.401, "it must stay at the wall: {last}");
     assert!(scene.position().y < last.y);
 }
 
@@ -46,13 +46,13 @@ fn a_wall_run_ends_where_the_wall_does() {
     scene.steps(60, &act(DVec3::X, 4));
     let ticks = scene.ticks_in(WALL_RUN);
     assert_eq!(scene.mode(), ClimberMode::Falling);
-    // 2 m, and as far as the ball still leans on the edge.
+    // 2 m, and the distance on which the ball still touches the edge.
     assert!((22..30).contains(&ticks), "{ticks}");
     assert!(scene.position().x > 3.0, "{}", scene.position());
 }
 
 #[test]
-fn a_wall_run_ends_when_its_button_does_and_by_a_jump_off_the_wall() {
+fn a_wall_run_ends_when_its_button_is_released_and_by_a_jump_off_the_wall() {
     let mut scene = play(DVec3::ZERO);
     assert_eq!(scene.mode(), WALL_RUN);
     scene.step(&walk(DVec3::X));

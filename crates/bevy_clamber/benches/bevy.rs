@@ -1,12 +1,16 @@
-//! What does a tick in Bevy cost over the core's own, and a surface that nothing moves?
+//! What does a tick in Bevy cost, compared with the core alone, and what does an idle surface cost?
 //!
-//! The giant walks, with climbers on its skin who ask what climbers ask: what is within reach of the body, what it
-//! meets on its way, what is nearest, what a ray meets, and how the point it holds moves. Beside it the core does the
-//! same by itself: it mixes the poses of two frames where the app animates in frames, composes the palette, advances,
-//! and answers in model space. Both take turns, tick by tick, within one process. Then a hundred giants stand still, and nothing is asked, beside reading their joints'
-//! `Transform`s alone. Schedules run on one thread: with Bevy's executor on more, waking those up costs more than a
-//! climber does, whatever its systems are. Times are medians. Prints a table and writes it to `target/measure/bevy.csv`: name, value,
-//! bound, holds. Fails if both do not answer alike.
+//! First the giant walks. Climbers on its skin make a climber's queries: triangles within reach of the body, the first
+//! contact on its way, the closest point, a ray, and the motion of the point that it holds. The core alone does the
+//! same work: if the app animates in frames it mixes the poses of two frames; it composes the palette, advances, and
+//! answers in model space. Both take turns, tick by tick, within one process.
+//!
+//! Then a hundred giants stand still, without queries. Their cost is compared with reading their joints' `Transform`s
+//! alone.
+//!
+//! Schedules run on one thread: with Bevy's multi-threaded executor, waking the threads costs more than a climber,
+//! whatever its systems are. Times are medians. Prints a table and writes it to `target/measure/bevy.csv`: name, value,
+//! bound, holds. Fails if the numbers of hits differ.
 //!
 //! `cargo bench -p bevy_clamber --bench bevy`; brief with `-- --test`.
 
@@ -42,7 +46,7 @@ use riders::{Answers, Asked, Rider, ask};
 /// Ticks a second.
 const RATE: f64 = 64.0;
 
-/// How much more a tick may cost in Bevy.
+/// Largest cost of a tick in Bevy, relative to the core's.
 const OVER: Bound = Bound::Most(1.1);
 
 fn main() -> ExitCode {
@@ -69,7 +73,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("bevy", brief)
 }
 
-/// Poses of the walk, a tick each.
+/// Poses of the walk, one for each tick.
 fn walk(creature: &Creature, ticks: usize) -> Result<Vec<Pose>, Box<dyn Error>> {
     let rest = creature.skeleton.rest_pose();
     let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
@@ -77,14 +81,14 @@ fn walk(creature: &Creature, ticks: usize) -> Result<Vec<Pose>, Box<dyn Error>> 
     Ok(poses.collect::<Result<_, _>>()?)
 }
 
-/// Runs a schedule of an app, and gives the microseconds that it took.
+/// Runs a schedule of an app, and returns its duration in microseconds.
 fn time(app: &mut App, schedule: impl ScheduleLabel) -> f64 {
     let start = Instant::now();
     app.world_mut().run_schedule(schedule);
     start.elapsed().as_secs_f64() * 1e6
 }
 
-/// As if a frame had passed, in the middle of which the next tick is.
+/// Advances the clocks by a frame, with the next tick in its middle.
 fn pass_frame(app: &mut App) {
     let frame = Duration::from_secs_f64(1.0 / RATE);
     let world = app.world_mut();
@@ -107,7 +111,7 @@ fn walking(
     let last = drawn.last().ok_or("no poses")?;
     let posed: Vec<Pose> = match timing {
         PoseTiming::EachTick => drawn.clone(),
-        // In the middle between two frames.
+        // A tick is in the middle between two frames.
         PoseTiming::EachFrame => {
             let before = std::iter::once(last).chain(&drawn);
             let between = before.zip(&drawn).map(|(a, b)| a.blend(b, 0.5));
@@ -159,7 +163,7 @@ fn walking(
             core.push(start.elapsed().as_secs_f64() * 1e6);
             Ok(found)
         };
-        // By turns, since the second finds warm caches.
+        // They take turns at being first, since the second finds warm caches.
         let found = if tick.is_multiple_of(2) {
             in_bevy(&mut giants);
             in_core()?
@@ -169,7 +173,7 @@ fn walking(
             found
         };
         let answers = giants.app.world().resource::<Answers>().0;
-        // The core's first tick has none before it.
+        // In its first tick the core has no previous pose.
         if tick > 0 && answers != found {
             return Err(format!("tick {tick}: {answers} hits in Bevy, {found} in the core").into());
         }
@@ -187,7 +191,7 @@ fn walking(
     Ok(())
 }
 
-/// Moments within a frame.
+/// Start and duration, microseconds, of the measured part of a frame.
 #[derive(Resource, Default)]
 struct Moments {
     start: Option<Instant>,
@@ -204,7 +208,7 @@ fn end(mut moments: ResMut<Moments>) {
         .map_or(0.0, |start| start.elapsed().as_secs_f64() * 1e6);
 }
 
-/// Whose joints, and room for what they are read into.
+/// The joints to read, and a buffer for their transforms.
 #[derive(Resource)]
 struct Joints(Vec<Entity>, Vec<Transform>);
 
@@ -254,7 +258,7 @@ fn idle(
         let _ = time(&mut giants.app, PostUpdate);
         let framed = giants.app.world().resource::<Moments>().taken;
         let read = time(&mut giants.app, Reading);
-        // The first come to rest.
+        // In the first turns the surfaces come to rest.
         if turn >= 5 {
             tick.push(ticked);
             frame.push(framed);

@@ -1,4 +1,4 @@
-//! A creature in a Bevy app without a window: its clip plays, a ray meets its skin, and an arrow that sticks there
+//! A creature in a Bevy app without a window: its clip plays, a ray hits its skin, and an arrow that is attached there
 //! follows it.
 
 use std::fmt::Write as _;
@@ -22,22 +22,22 @@ use clap::Parser;
 
 const COLOSSUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
 
-/// Ticks in a second: Bevy's own.
+/// Ticks per second, Bevy's default.
 const RATE: f64 = 64.0;
 
-/// Updates that a collider may take until it is built.
+/// Maximum number of updates to wait for the colliders.
 const PATIENCE: usize = 1_000_000;
 
-/// Sticks an arrow in an animated creature, without a window, and follows it.
+/// Sticks an arrow in an animated creature, without a window, and follows the arrow.
 #[derive(Parser)]
 struct Arguments {
     /// The creature, a .glb or .gltf file.
     #[arg(default_value = COLOSSUS)]
     file: PathBuf,
-    /// The clip that it plays; without this, one with "walk" in its name, or the first.
+    /// The clip to play [default: one with "walk" in its name, else the first].
     #[arg(long)]
     clip: Option<String>,
-    /// How long to follow the arrow.
+    /// Seconds to follow the arrow, from 0 to 3600.
     #[arg(long, default_value_t = 3.0, value_parser = seconds)]
     seconds: f64,
 }
@@ -47,7 +47,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     if (0.0..=3600.0).contains(&seconds) {
         Ok(seconds)
     } else {
-        Err("not from 0 to 3600".into())
+        Err("must be from 0 to 3600".into())
     }
 }
 
@@ -66,7 +66,7 @@ fn main() -> ExitCode {
 
 type Error = Box<dyn std::error::Error>;
 
-/// Bevy's is no `std::error::Error`.
+/// Converts Bevy's error, which is not a `std::error::Error`.
 fn not_run(error: RunSystemError) -> Error {
     error.to_string().into()
 }
@@ -78,7 +78,7 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
     let creature = spawn(&mut app, rig, clip.clone())?;
     wait(&mut app, &creature)?;
 
-    // An eye that looks at the creature from the right, from as far as it is large.
+    // An eye that looks at the creature from the right, at a distance of about its size.
     let (low, high) = bounds(&app, &creature);
     let size = (high - low).length();
     let eye = (low + high) / 2.0 + Vec3::new(1.0, 0.3, 0.2) * size;
@@ -97,7 +97,7 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
     let (tag, point, distance) = (hit.tag, hit.point, hit.distance);
     writeln!(
         seen,
-        "the ray from {eye:.2} meets {tag:?} at {point:.2}, {distance:.2} away"
+        "the ray from {eye:.2} hits {tag:?} at {point:.2}, {distance:.2} away"
     )?;
 
     let (mut before, mut way, mut fastest, mut worst) = (point, 0.0f32, 0.0f32, 0.0f32);
@@ -106,7 +106,7 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
         app.update();
         let place = app.world().get::<GlobalTransform>(arrow);
         let place = place.ok_or("the arrow is gone")?.translation();
-        // Each frame is one tick, so what is drawn is what is touched.
+        // Each frame is one tick, so queries see the pose that is drawn.
         let skin = app.world_mut().run_system_once_with(nearest, place);
         let skin = skin.map_err(not_run)?;
         worst = worst.max(skin.ok_or("the skin is gone")?.distance);
@@ -116,7 +116,7 @@ fn run(arguments: &Arguments) -> Result<String, Error> {
     }
     writeln!(
         seen,
-        "in {ticks} ticks the arrow went {way:.3}, at up to {fastest:.3} a second, and was at most {worst:.1e} off \
+        "in {ticks} ticks the arrow moved {way:.3}, at up to {fastest:.3} a second, and was at most {worst:.1e} off \
          the skin"
     )?;
     assert!(worst <= 1e-5 * size, "the arrow left the skin: {worst}");
@@ -179,7 +179,7 @@ fn spawn(app: &mut App, rig: Rig, clip: Option<String>) -> Result<SpawnedRig, Er
     Ok(app.world_mut().run_system_once(add).map_err(not_run)??)
 }
 
-/// Until every surface is there.
+/// Updates the app until every surface is built.
 fn wait(app: &mut App, creature: &SpawnedRig) -> Result<(), Error> {
     for _ in 0..PATIENCE {
         app.update();
@@ -196,7 +196,7 @@ fn wait(app: &mut App, creature: &SpawnedRig) -> Result<(), Error> {
         }
         std::thread::yield_now();
     }
-    Err("the colliders are never built".into())
+    Err("the colliders were not built in time".into())
 }
 
 /// Lowest and highest corner of a box around the skin.
@@ -216,8 +216,8 @@ fn bounds(app: &App, creature: &SpawnedRig) -> (Vec3, Vec3) {
     (low, high)
 }
 
-/// Sticks an arrow to the skin where an eye sees it nearest, a little towards the middle of the creature: a ray at the
-/// very nearest point, which may be a corner that sticks out, could pass it by.
+/// Attaches an arrow to the skin that is nearest to an eye. The ray aims a little towards the creature's middle: the
+/// nearest point itself may be a corner that sticks out, which a ray could miss.
 fn shoot(
     In((eye, middle)): In<(Vec3, Vec3)>,
     surfaces: SurfaceQuery,
@@ -230,7 +230,7 @@ fn shoot(
     let toward = Dir3::new(target - eye).map_err(|_| "the eye is on the skin")?;
     let hit = surfaces.cast_ray(Ray3d::new(eye, toward), f32::INFINITY, &all);
     let hit = hit.ok_or("the ray misses the skin that it is aimed at")?;
-    // Nothing is nearer than the nearest.
+    // No hit is nearer than the closest point.
     assert!(
         hit.distance >= nearest.distance * 0.9999,
         "{hit:?} {nearest:?}"

@@ -12,18 +12,18 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::{ClamberSystems, PosedSurface};
 
-/// The deepest hierarchy that an anchored entity may hang in.
+/// Maximum number of ancestors of an anchored entity that are followed.
 const MAX_DEPTH: usize = 4096;
 
-/// Sticks this entity to a point of skin: an arrow, the end of a rope, a decal, a light, a camera.
+/// Attaches this entity to a point of skin: an arrow, the end of a rope, a decal, a light, a camera.
 ///
-/// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, position
-/// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is left alone. When the
-/// surface or the triangle is gone the anchor is taken off, and [`AnchorLost`] is triggered. Of skin that is only
-/// disabled it is not, nor where a collider is built anew from the same mesh. An entity that is
-/// `Disabled` is gone, as for all of Bevy's queries.
+/// Made by [`SurfaceQuery::anchor_at`](crate::SurfaceQuery::anchor_at). Each frame, after animation, the position
+/// and rotation of its `Transform` follow the skin *as that frame draws it*; the scale is not changed. When the
+/// surface or the triangle is gone, the anchor is removed and [`AnchorLost`] is triggered. Disabling a triangle or a
+/// part does not remove it, nor does rebuilding the collider from the same mesh. A surface entity that is `Disabled`
+/// counts as gone, as in all of Bevy's queries.
 ///
-/// Under a parent that is scaled unevenly no rotation is exact: the position is, and where +Y points.
+/// Under a parent with a non-uniform scale no rotation is exact. The position and the direction of +Y are exact there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Component, Clone, Debug, PartialEq)]
@@ -32,17 +32,17 @@ pub struct SurfaceAnchor {
     /// The entity with the [`PosedSurface`].
     #[entities]
     pub surface: Entity,
-    /// The collider mesh that the point belongs to: on another one it is gone.
+    /// The collider mesh that the point belongs to. On a surface with another mesh, the anchor is lost.
     pub mesh: MeshId,
-    /// The point of skin, where it was last drawn, how the skin around it was turned, and how far off it the entity is.
-    /// Its obstacle is [`SurfaceAnchor::obstacle_of`] the surface.
+    /// The point of skin, its position and frame in world space as last drawn, and the offset of the entity from it,
+    /// metres, in that frame. Its obstacle is [`SurfaceAnchor::obstacle_of`] the surface.
     pub attachment: Attachment,
-    /// Rotation of the entity relative to the skin around the point.
+    /// Rotation of the entity relative to the frame of the skin around the point.
     pub rotation: Quat,
 }
 
 impl SurfaceAnchor {
-    /// At a point of a surface as it is posed now, turned in the world as given.
+    /// Anchors to a point of a surface in its current pose. `rotation` is the entity's rotation in world space.
     pub fn new(entity: Entity, surface: &SkinnedSurface, anchor: Anchor, rotation: Quat) -> Self {
         let world_from_model = surface.world_from_model();
         let skin = (world_from_model.rotation * anchor.frame.as_dquat()).normalize();
@@ -64,15 +64,16 @@ impl SurfaceAnchor {
         }
     }
 
-    /// The id that a surface's entity has as an obstacle.
+    /// The obstacle id of a surface, from the bits of its entity.
     pub fn obstacle_of(surface: Entity) -> ObstacleId {
         ObstacleId(surface.to_bits())
     }
 
-    /// The point of skin, to ask its surface about: [`ModelSpace::motion`](clamber_surface::surface::ModelSpace::motion).
+    /// The point of skin as an anchor of the core, for
+    /// [`ModelSpace::motion`](clamber_surface::surface::ModelSpace::motion). Its frame is the identity.
     ///
     /// # Errors
-    /// [`AnchorError::NoSkin`] if the attachment was changed to a point of something else.
+    /// [`AnchorError::NoSkin`] if the attachment was changed to a point that is not on a triangle.
     pub fn anchor(&self) -> Result<Anchor, AnchorError> {
         let point = &self.attachment.material;
         Ok(Anchor {
@@ -83,10 +84,10 @@ impl SurfaceAnchor {
         })
     }
 
-    /// Follows the skin to a pose of its surface; gives where the entity belongs, in world space. `None` if the point is
+    /// Follows the skin to a pose of its surface. Returns the entity's transform in world space; `None` if the point is
     /// gone.
     pub(crate) fn follow(&mut self, surface: &SkinnedSurface) -> Option<DAffine3> {
-        // The motion is not asked for: any tick will do.
+        // Only the position and frame are used, so any tick length will do.
         let motion = surface.in_world().motion(&self.anchor().ok()?, 1.0).ok()?;
         let attachment = &mut self.attachment;
         attachment.obstacle = Self::obstacle_of(self.surface);
@@ -102,27 +103,27 @@ impl SurfaceAnchor {
     }
 }
 
-/// Why something cannot be stuck to skin, or has no motion.
+/// Why an anchor cannot be made, or has no motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AnchorError {
     /// The entity has no [`PosedSurface`]: it was despawned, or its collider is not built yet.
     #[error("entity {0} has no posed surface")]
     NoSurface(Entity),
-    /// The anchor's attachment is to no triangle.
-    #[error("the anchor is at no point of skin")]
+    /// The anchor's attachment is not on a triangle.
+    #[error("the anchor is not attached to a triangle of skin")]
     NoSkin,
-    /// The surface does not know the point, or the tick has no length.
+    /// The surface refuses the point, because of another mesh or a removed triangle, or the length of the tick.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
 }
 
-/// Triggered on an entity whose [`SurfaceAnchor`] was taken off because what it stuck to is gone.
+/// Triggered on an entity whose [`SurfaceAnchor`] was removed because its surface or triangle is gone.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnchorLost {
-    /// That entity.
+    /// The entity that was anchored.
     pub entity: Entity,
-    /// What it stuck to; may be despawned.
+    /// The entity of the surface that it was anchored to; may be despawned.
     pub surface: Entity,
 }
 
@@ -141,7 +142,7 @@ impl Plugin for SurfaceAnchorPlugin {
     }
 }
 
-/// Poses those surfaces as drawn that something sticks to.
+/// Poses the surfaces that have anchors as this frame draws them.
 fn pose_anchored_surfaces(anchors: Query<&SurfaceAnchor>, mut surfaces: Query<&mut PosedSurface>) {
     for anchor in &anchors {
         if let Ok(mut surface) = surfaces.get_mut(anchor.surface) {
@@ -150,7 +151,7 @@ fn pose_anchored_surfaces(anchors: Query<&SurfaceAnchor>, mut surfaces: Query<&m
     }
 }
 
-/// Parents before children, so that what hangs under an anchored entity finds it where it is now.
+/// Moves parents before children, so that an anchored child sees the current transform of an anchored parent.
 fn follow(
     mut anchors: Query<(Entity, &mut SurfaceAnchor, Option<&ChildOf>)>,
     surfaces: Query<&PosedSurface>,
@@ -170,7 +171,7 @@ fn follow(
         };
         let Some(placed) = place(anchor.bypass_change_detection(), &surfaces) else {
             let surface = anchor.surface;
-            // Unless it goes at the same time.
+            // Silenced: the entity may be despawned at the same time.
             commands
                 .entity(entity)
                 .queue_silenced(move |mut entity: EntityWorldMut<'_>| {
@@ -180,7 +181,7 @@ fn follow(
             continue;
         };
         let Some(world) = placed else {
-            // This frame's pose cannot be had: it stays where it is.
+            // The surface has no pose for this frame: the entity stays where it is.
             continue;
         };
         let local = match child_of {
@@ -201,7 +202,8 @@ fn follow(
     }
 }
 
-/// Where an anchored entity belongs; `None` if the point is gone, `Some(None)` if the surface has no pose of this frame.
+/// The transform of an anchored entity in world space; `None` if the point is gone, `Some(None)` if the surface has no
+/// pose of this frame.
 fn place(anchor: &mut SurfaceAnchor, surfaces: &Query<&PosedSurface>) -> Option<Option<DAffine3>> {
     let surface = surfaces.get(anchor.surface).ok()?;
     surface
@@ -213,8 +215,8 @@ fn place(anchor: &mut SurfaceAnchor, surfaces: &Query<&PosedSurface>) -> Option<
     anchor.follow(drawn).map(Some)
 }
 
-/// The rotation and translation of a map that may be sheared, as under a parent that is scaled unevenly: +Y is kept,
-/// where arrows point. `None` if there is none.
+/// The rotation and translation of a map. If it is sheared, as under a parent with a non-uniform scale, the direction
+/// of +Y is kept, along which arrows point. `None` if the map is degenerate or not finite.
 fn turned_and_moved(map: &DAffine3) -> Option<(Quat, Vec3)> {
     let y = map.matrix3.y_axis.try_normalize()?;
     let z = map.matrix3.x_axis.cross(y).try_normalize()?;
@@ -224,7 +226,7 @@ fn turned_and_moved(map: &DAffine3) -> Option<(Quat, Vec3)> {
     (rotation.is_finite() && translation.is_finite()).then_some((rotation, translation))
 }
 
-/// How many entities stand above.
+/// Number of ancestors, `next` included.
 fn depth(
     mut next: Option<Entity>,
     transforms: &Query<(&mut Transform, Option<&ChildOf>)>,
@@ -243,7 +245,7 @@ fn depth(
     depth
 }
 
-/// Where a parent is in the world, from the transforms of this frame.
+/// A parent's transform in world space, from the `Transform`s of this frame.
 fn parent(entity: Entity, transforms: &Query<(&mut Transform, Option<&ChildOf>)>) -> DAffine3 {
     let mut world = DAffine3::IDENTITY;
     let mut next = Some(entity);

@@ -7,41 +7,41 @@ use bevy_platform::time::Instant;
 
 use crate::{ClamberSystems, PosedSurface};
 
-/// Tells Bevy's diagnostics what each tick gave the surfaces to do; beside [`ClamberPlugins`](crate::ClamberPlugins),
-/// in the same schedule.
+/// Reports the work of surfaces in each tick to Bevy's diagnostics. Add it beside
+/// [`ClamberPlugins`](crate::ClamberPlugins), with the same schedule.
 ///
-/// | path | what |
+/// | path | value |
 /// |---|---|
 /// | `clamber/surfaces` | entities with a [`PosedSurface`] |
-/// | `clamber/clusters_touched` | clusters that queries reached, the first time in a pose |
-/// | `clamber/vertices_skinned` | vertices that were skinned for them, or ahead of them where nearly all were before |
-/// | `clamber/triangles_tested` | triangles that no box ruled out, each as often as queries met it |
-/// | `clamber/pose_time` | milliseconds from before to after [`ClamberSystems::Pose`], with what other systems ran then |
+/// | `clamber/clusters_touched` | clusters that queries reached, each once per pose |
+/// | `clamber/vertices_skinned` | vertices skinned for queries, or ahead of them after a tick that reached nearly all |
+/// | `clamber/triangles_tested` | exact triangle tests, after bounding boxes have ruled out the other triangles |
+/// | `clamber/pose_time` | milliseconds from before to after [`ClamberSystems::Pose`], with the systems in between |
 ///
-/// All are sums over surfaces, one measurement a tick: right before [`ClamberSystems::Pose`], of the queries since the
-/// tick before; the time right after. Queries of the pose that a frame draws, as for picking and anchors, do not
-/// count.
+/// Each tick adds one measurement of each value. The counts are taken right before [`ClamberSystems::Pose`], as sums
+/// over all surfaces and all queries since the measurement before; the time is taken right after it. Queries of the
+/// pose that a frame draws, as for picking and anchors, do not count.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceDiagnosticsPlugin {
     schedule: InternedScheduleLabel,
 }
 
 impl SurfaceDiagnosticsPlugin {
-    /// `clamber/surfaces`
+    /// `clamber/surfaces`: entities with a [`PosedSurface`].
     pub const SURFACES: DiagnosticPath = DiagnosticPath::const_new("clamber/surfaces");
-    /// `clamber/clusters_touched`
+    /// `clamber/clusters_touched`: clusters that queries reached.
     pub const CLUSTERS_TOUCHED: DiagnosticPath =
         DiagnosticPath::const_new("clamber/clusters_touched");
-    /// `clamber/vertices_skinned`
+    /// `clamber/vertices_skinned`: vertices that were skinned.
     pub const VERTICES_SKINNED: DiagnosticPath =
         DiagnosticPath::const_new("clamber/vertices_skinned");
-    /// `clamber/triangles_tested`
+    /// `clamber/triangles_tested`: exact triangle tests.
     pub const TRIANGLES_TESTED: DiagnosticPath =
         DiagnosticPath::const_new("clamber/triangles_tested");
-    /// `clamber/pose_time`, milliseconds
+    /// `clamber/pose_time`: duration of [`ClamberSystems::Pose`], milliseconds.
     pub const POSE_TIME: DiagnosticPath = DiagnosticPath::const_new("clamber/pose_time");
 
-    /// With surfaces posed in a schedule of the fixed loop.
+    /// For surfaces that are posed in this schedule of the fixed loop.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -75,11 +75,11 @@ impl Plugin for SurfaceDiagnosticsPlugin {
     }
 }
 
-/// When this tick began to pose surfaces.
+/// Time at which the current tick began to pose surfaces.
 #[derive(Resource, Default)]
 struct PoseStart(Option<Instant>);
 
-/// What queries did, counted.
+/// Counts of the work of queries.
 #[derive(Clone, Copy, Default)]
 struct Counts {
     clusters_touched: u64,
@@ -88,7 +88,7 @@ struct Counts {
 }
 
 impl Counts {
-    /// Since the surface was last posed anew.
+    /// Counts since the surface was last posed anew.
     fn of(surface: &PosedSurface) -> Self {
         let counts = surface.diagnostics();
         Self {
@@ -104,7 +104,7 @@ impl Counts {
         self.triangles_tested += other.triangles_tested;
     }
 
-    /// Less those of an earlier time; edits may have made them fewer.
+    /// Difference to earlier counts. It saturates at 0, since edits may reduce counts.
     fn since(self, before: Self) -> Self {
         let less = u64::saturating_sub;
         Self {

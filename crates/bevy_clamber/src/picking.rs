@@ -1,4 +1,4 @@
-//! Pointers on skin: a backend of `bevy_picking`.
+//! A backend of `bevy_picking` that hits animated skin.
 
 use bevy_app::{App, Plugin, PreUpdate};
 use bevy_camera::Camera;
@@ -15,11 +15,11 @@ use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
 use crate::query::{in_f64, world_hit};
 use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 
-/// Where a pointer meets skin: the extra data of its `HitData`, whose position and outward unit normal are in world
-/// space.
+/// The point of skin that a pointer hits: the extra data of a `HitData`, whose position and outward unit normal are in
+/// world space.
 ///
-/// It names a point of the skin, not of space, so it holds as well in the frames after, as for a click, which Bevy
-/// tells where the pointer was a frame ago.
+/// It is a material point, so it stays valid when the skin moves in later frames. A click, for example, has the hit of
+/// the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Clone, Debug, PartialEq)]
@@ -27,43 +27,44 @@ use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 pub struct SurfacePick {
     /// The collider's triangle.
     pub triangle: TriangleId,
-    /// Its index among the mesh asset's triangles, as they stand in its list or strip; `None` for a triangle that an
+    /// Its index among the mesh asset's triangles, in the order of its list or strip; `None` for a triangle that an
     /// edit added.
     pub source_triangle: Option<u32>,
-    /// Weights of its corners: not negative, sum 1.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
     /// The part of the collider: the triangles that one joint moves most.
     pub part: PartId,
-    /// What it is made of.
+    /// The triangle's tag.
     pub tag: SurfaceTag,
-    /// Sticks an entity there, its +Y along the skin's outward normal.
+    /// Attaches an entity there when it is spawned with this component, its +Y along the skin's outward normal.
     pub anchor: SurfaceAnchor,
 }
 
-/// Pointers hit skin where it is drawn, not where the mesh was modelled; beside
+/// Makes pointers hit skin in the pose that is drawn, not in the bind pose. Add it beside
 /// [`ClamberPlugins`](crate::ClamberPlugins) and Bevy's `DefaultPickingPlugins`.
 ///
-/// In `PreUpdate`, in `PickingSystems::Backend`, after [`ClamberSystems::Build`], it casts each ray of Bevy's
-/// `RayMap` at all surfaces in the pose that the last frame drew, which is what the user has pointed at, and writes
-/// `PointerHits` with [`SurfacePick`] as extra data. The hit entity is that with the
-/// [`PosedSurface`], from either side of its skin; the depth is the distance from the ray's
-/// origin, on the camera's near plane.
+/// It runs in `PreUpdate`, in `PickingSystems::Backend`, after [`ClamberSystems::Build`]. It casts each ray of Bevy's
+/// `RayMap` at all surfaces, in the pose that the last frame drew, since that is the pose that the user has seen. It
+/// writes `PointerHits` with [`SurfacePick`] as extra data. The hit entity is the one with the [`PosedSurface`]; its
+/// skin is hit from either side. The depth is the distance from the ray's origin, which lies on the camera's near
+/// plane.
 ///
-/// As Bevy's backend for meshes does, it leaves out what no view shows (`ViewVisibility`), what shares no
-/// `RenderLayers` with the camera, and what is `Pickable::IGNORE`d, and it gives the hits the camera's order. What
-/// lies behind a surface that blocks lower ones, as all do without a `Pickable`, is not told, be it hoverable or not.
+/// Like Bevy's backend for meshes, it skips entities that no view shows (`ViewVisibility`), that share no
+/// `RenderLayers` with the camera, or that are `Pickable::IGNORE`, and it gives the hits the camera's order. A surface
+/// blocks all surfaces behind it if its `Pickable` says so, or if it has none. Blocked surfaces are not reported,
+/// hoverable or not.
 ///
 /// ```
 /// # use bevy_app::App;
 /// # use bevy_ecs::prelude::*;
 /// # use bevy_picking::events::PointerClick;
 /// # use bevy_clamber::SurfacePick;
-/// /// Sticks something to where the user has clicked, whatever the skin does.
+/// /// Attaches an entity to the point of skin that the user has clicked.
 /// fn stick(click: On<PointerClick>, mut commands: Commands) {
 ///     let Some(pick) = click.hit.extra_as::<SurfacePick>() else {
 ///         return;
 ///     };
-///     // The click goes on to the parents of what was clicked.
+///     // The click bubbles up to the parents of the clicked entity.
 ///     if pick.anchor.surface == click.entity {
 ///         commands.spawn(pick.anchor);
 ///     }
@@ -72,8 +73,8 @@ pub struct SurfacePick {
 /// app.add_observer(stick);
 /// ```
 ///
-/// Beside Bevy's `MeshPickingPlugin`, which picks skinned meshes in their bind pose, give the skinned ones
-/// `SimplifiedMesh(Handle::default())`: it finds no triangles of them then.
+/// Bevy's `MeshPickingPlugin` picks skinned meshes in their bind pose. If the app has both plugins, insert
+/// `SimplifiedMesh(Handle::default())` on the skinned meshes: Bevy's plugin then finds no triangles of them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SurfacePickingPlugin;
 
@@ -90,7 +91,7 @@ impl Plugin for SurfacePickingPlugin {
     }
 }
 
-/// What a pointer may hit.
+/// An entity that a pointer may hit.
 type Target = (
     Entity,
     &'static mut PosedSurface,
@@ -136,7 +137,7 @@ fn pick(
     }
 }
 
-/// The first point of skin along a ray, as the last frame drew it.
+/// The first point of skin along a ray, in the pose that the last frame drew.
 fn cast(
     entity: Entity,
     surface: &mut PosedSurface,

@@ -3,14 +3,14 @@ use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel, SystemSet};
 
 use crate::{SurfaceAnchorPlugin, SurfacePlugin};
 
-/// Surfaces and anchors, posed in a schedule that runs once a tick.
+/// The plugins for surfaces and anchors. Surfaces are posed in a schedule that runs once a tick.
 ///
 /// ```
 /// # use bevy_app::{App, FixedUpdate};
 /// use bevy_clamber::prelude::*;
 ///
 /// App::new().add_plugins(ClamberPlugins::default());
-/// // Posed with gameplay instead of after it:
+/// // Surfaces are posed with gameplay instead of after it:
 /// App::new().add_plugins(ClamberPlugins::in_schedule(FixedUpdate));
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub struct ClamberPlugins {
 }
 
 impl ClamberPlugins {
-    /// With surfaces posed in a schedule of the fixed loop.
+    /// Poses surfaces in this schedule of the fixed loop.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -28,7 +28,8 @@ impl ClamberPlugins {
 }
 
 impl Default for ClamberPlugins {
-    /// In [`FixedPostUpdate`], where physics engines step: after gameplay and animation of the same tick.
+    /// Poses surfaces in [`FixedPostUpdate`], where physics engines step: after gameplay and animation of the same
+    /// tick.
     fn default() -> Self {
         Self::in_schedule(FixedPostUpdate)
     }
@@ -42,17 +43,17 @@ impl PluginGroup for ClamberPlugins {
     }
 }
 
-/// When this crate's systems run, in this order within a frame, unless plugins are given other schedules.
+/// The sets of this crate's systems, in the order of a frame unless plugins are given other schedules.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClamberSystems {
-    /// In `PreUpdate`: colliders are built from mesh assets, surfaces appear and go.
+    /// In `PreUpdate`: colliders are built from mesh assets, surfaces are inserted and removed.
     Build,
-    /// In the schedule of `RigPlayerPlugin`, `FixedUpdate` unless told otherwise, before [`ClamberSystems::Pose`]: rigs
-    /// that `clamber_gltf` loaded play their clips. Part of `AnimationSystems`.
+    /// In the schedule of `RigPlayerPlugin`, `FixedUpdate` by default, before [`ClamberSystems::Pose`]: rigs that
+    /// `clamber_gltf` loaded play their clips. Part of `AnimationSystems`.
     Animate,
-    /// In the plugins' schedule, `FixedPostUpdate` unless told otherwise: surfaces take this tick's pose.
+    /// In the schedule of [`ClamberPlugins`], `FixedPostUpdate` by default: surfaces take this tick's pose.
     Pose,
-    /// In `PostUpdate`, after `AnimationSystems`: the poses that this frame draws are noted.
+    /// In `PostUpdate`, after `AnimationSystems`: the poses that this frame draws are recorded.
     Sample,
     /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: anchored
     /// entities are moved to the skin as it is drawn.

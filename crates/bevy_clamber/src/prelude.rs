@@ -1,4 +1,4 @@
-//! What most apps need: `use bevy_clamber::prelude::*;`.
+//! The items that most apps need: `use bevy_clamber::prelude::*;`.
 
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;

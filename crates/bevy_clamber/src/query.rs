@@ -9,14 +9,14 @@ use glam::DVec3;
 
 use crate::{AnchorError, PosedSurface, SurfaceAnchor};
 
-/// How far, as a factor, to look for what is no farther, in the units of another surface: each way rounds to f32
-/// once or twice.
+/// Factor on the nearest distance so far that limits the search on the other surfaces. It keeps equal distances in
+/// reach: converting a distance to a surface's units and back rounds to f32 once or twice each way.
 const EQUAL: f64 = 1.0 + 8.0 * f32::EPSILON as f64;
 
-/// All surfaces of the world, in world space, as posed in the last tick.
+/// A system parameter that queries all surfaces in world space, as posed in the last tick.
 ///
-/// Nearest first; of equal distances the smaller entity. What is not finite, or negative where it must not be,
-/// finds nothing; distances may be infinite. Reads only, so systems with it run in parallel.
+/// The nearest hit comes first; ties go to the smaller entity. Input that is not finite, and lengths that are negative,
+/// find nothing; maximum distances may be infinite. It only reads, so systems with it can run in parallel.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
@@ -26,7 +26,7 @@ const EQUAL: f64 = 1.0 + 8.0 * f32::EPSILON as f64;
 /// fn shoot(surfaces: SurfaceQuery, mut commands: Commands) {
 ///     let ray = Ray3d::new(Vec3::new(0.0, 1.0, 9.0), Dir3::NEG_Z);
 ///     let hit = surfaces.cast_ray(ray, 50.0, &SurfaceFilter::default());
-///     // An arrow that sticks there, whatever the skin does.
+///     // An arrow that stays on this point of skin as it moves.
 ///     if let Some(hit) = hit
 ///         && let Ok(anchor) = surfaces.anchor_at(&hit)
 ///     {
@@ -39,7 +39,7 @@ pub struct SurfaceQuery<'w, 's> {
     surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
 }
 
-/// Which surfaces a query sees. Default: all.
+/// Selects the surfaces that a query sees. Default: all.
 #[derive(Clone, Copy, Default)]
 pub struct SurfaceFilter<'a> {
     except: &'a [Entity],
@@ -47,7 +47,7 @@ pub struct SurfaceFilter<'a> {
 }
 
 impl<'a> SurfaceFilter<'a> {
-    /// All but these.
+    /// Selects all surfaces except those of these entities.
     pub fn except(entities: &'a [Entity]) -> Self {
         Self {
             except: entities,
@@ -55,7 +55,7 @@ impl<'a> SurfaceFilter<'a> {
         }
     }
 
-    /// Those that a function says yes to.
+    /// Selects the surfaces of the entities for which a function returns true.
     pub fn only(wanted: &'a (dyn Fn(Entity) -> bool + Sync)) -> Self {
         Self {
             wanted: Some(wanted),
@@ -72,44 +72,45 @@ impl<'a> SurfaceFilter<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EntityHit {
-    /// Whose skin: the entity with the [`PosedSurface`].
+    /// The entity with the [`PosedSurface`] that was hit.
     pub entity: Entity,
     /// The point.
     pub point: Vec3,
-    /// Outward unit normal of the triangle.
+    /// Outward unit normal of the triangle. If it has collapsed, the direction to the ray's origin, the query's point,
+    /// or the capsule's segment.
     pub normal: Vec3,
-    /// From the ray's origin, the query's point, or the capsule's segment, metres.
+    /// Distance from the ray's origin, the query's point, or the capsule's segment, metres.
     pub distance: f32,
     /// The collider's mesh.
     pub mesh: MeshId,
-    /// The collider's triangle; [`PosedSurface::source_triangle`] tells the mesh asset's.
+    /// The collider's triangle; [`PosedSurface::source_triangle`] gives its index in the mesh asset.
     pub triangle: TriangleId,
-    /// Weights of its corners: not negative, sum 1.
+    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],
     /// The part of the collider: the triangles that one joint moves most.
     pub part: PartId,
-    /// What it is made of.
+    /// The triangle's tag.
     pub tag: SurfaceTag,
 }
 
-/// The first contact of something that moves with skin, in world space.
+/// The first contact of a moving capsule with skin, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EntitySweepHit {
-    /// The contact, where it is at that time; its distance is from the capsule's segment.
+    /// The contact at `time`. Its distance is from the capsule's segment.
     pub hit: EntityHit,
-    /// Unit vector from the point to the capsule's segment; where that lies on the triangle itself, its normal.
+    /// Unit vector from the point to the capsule's segment; if the segment touches the triangle, the triangle's normal.
     pub separation_normal: Vec3,
-    /// Share of the motion that was made, 0 to 1.
+    /// Share of the motion that was made at the contact, 0..=1.
     pub time: f32,
-    /// They overlap at the start already; the time is 0.
+    /// True if the capsule overlaps the skin at the start; `time` is 0 then.
     pub started_inside: bool,
-    /// They do not touch before `time`, but how near they are then is not certain.
+    /// The solver could not certify the distance within the tolerance. There is no contact before `time`.
     pub undecided: bool,
 }
 
 impl SurfaceQuery<'_, '_> {
-    /// The first point along a ray, from either side of the skin.
+    /// The first point of skin that a ray hits, from either side, up to `max_distance` metres.
     pub fn cast_ray(
         &self,
         ray: Ray3d,
@@ -122,7 +123,8 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// True if a ray meets any skin; stops at the first that it finds.
+    /// True if a ray hits any skin, from either side, up to `max_distance` metres; stops at the first hit that it
+    /// finds.
     pub fn intersects_ray(
         &self,
         ray: Ray3d,
@@ -136,7 +138,8 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// Every triangle along a ray. `hits` is cleared first and keeps its memory.
+    /// Finds every triangle that a ray hits, from either side, up to `max_distance` metres. `hits` is cleared first and
+    /// keeps its memory.
     pub fn cast_ray_all(
         &self,
         ray: Ray3d,
@@ -152,11 +155,11 @@ impl SurfaceQuery<'_, '_> {
             space.cast_ray_all(origin, along, max_distance.into(), &mut found);
             hits.extend(found.drain(..).map(|hit| world_hit(entity, &hit)));
         }
-        // Stable: within a surface the core's order stands.
+        // A stable sort keeps the core's order within a surface.
         hits.sort_by(by_distance);
     }
 
-    /// The skin nearest to a point.
+    /// The point of skin nearest to a point, up to `max_distance` metres.
     pub fn closest_point(
         &self,
         point: Vec3,
@@ -170,8 +173,8 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// Every triangle within a capsule, each with its own point nearest to the capsule's segment. `hits` is
-    /// cleared first and keeps its memory.
+    /// Finds every triangle that overlaps a capsule, each with its own point nearest to the capsule's segment. `hits`
+    /// is cleared first and keeps its memory.
     pub fn overlap_capsule(
         &self,
         capsule: &Capsule,
@@ -187,8 +190,10 @@ impl SurfaceQuery<'_, '_> {
         hits.sort_unstable_by(by_distance_and_triangle);
     }
 
-    /// The first contact of a capsule, or a ball, each of whose ends goes straight by its own displacement, with all skin,
-    /// which stands still, or moves over the last tick meanwhile.
+    /// The first contact of a moving capsule, or ball, with skin.
+    ///
+    /// Each end of the capsule moves straight by its own displacement, metres. The skin stands still meanwhile, or
+    /// moves over the last tick, as `target` says. Ties of time go to the smaller distance, then to the smaller entity.
     pub fn cast_capsule(
         &self,
         capsule: &Capsule,
@@ -198,7 +203,7 @@ impl SurfaceQuery<'_, '_> {
     ) -> Option<EntitySweepHit> {
         let capsule = WorldCapsule::from(capsule);
         let displacements = displacements.map(|displacement| displacement.as_dvec3());
-        // As an obstacle does, so that a climber and its game see the same.
+        // The tolerance of a cast at an obstacle, so that a climber and its game get the same contact.
         let options = CastOptions::from(target).with_tolerance(capsule.sweep_tolerance());
         let hits = self.seen(filter).filter_map(|(entity, surface)| {
             let space = surface.in_world();
@@ -212,17 +217,17 @@ impl SurfaceQuery<'_, '_> {
         earlier.map(|(_, hit)| hit)
     }
 
-    /// What sticks an entity to a hit's point, its +Y along the skin's outward normal.
+    /// An anchor that attaches an entity to a hit's point, its +Y along the skin's outward normal.
     ///
     /// # Errors
-    /// [`AnchorError`], for a hit of a surface that is gone, of a triangle that was removed, or of another mesh than the
-    /// surface has now.
+    /// [`AnchorError`] if the hit's surface is gone, its triangle was removed, or the surface has another mesh by now.
     pub fn anchor_at(&self, hit: &EntityHit) -> Result<SurfaceAnchor, AnchorError> {
         let normal = hit.normal.try_normalize().unwrap_or(Vec3::Y);
         self.anchor_with_rotation(hit, Quat::from_rotation_arc(Vec3::Y, normal))
     }
 
-    /// What sticks an entity to a hit's point, as it is turned in the world now: an arrow in flight.
+    /// An anchor that attaches an entity to a hit's point with this rotation in world space, such as an arrow's in
+    /// flight.
     ///
     /// # Errors
     /// As [`SurfaceQuery::anchor_at`].
@@ -240,22 +245,23 @@ impl SurfaceQuery<'_, '_> {
         Ok(SurfaceAnchor::new(hit.entity, surface, anchor, rotation))
     }
 
-    /// How an anchored point moves over the last tick of `dt` seconds, in world space.
+    /// The motion of an anchored point over the last tick, which lasted `dt` seconds, in world space.
     ///
     /// # Errors
-    /// [`AnchorError`], as for [`SurfaceQuery::anchor_at`], and for a `dt` that is not positive and finite.
+    /// [`AnchorError`] as for [`SurfaceQuery::anchor_at`], and if `dt` is not positive and finite, or too short for
+    /// velocities in f32.
     pub fn motion(&self, anchor: &SurfaceAnchor, dt: f64) -> Result<WorldMotion, AnchorError> {
         let surface = self.surface(anchor.surface)?;
         Ok(surface.in_world().motion(&anchor.anchor()?, dt)?)
     }
 
-    /// One surface; `None` while it has had no pose that it could take, and is nowhere.
+    /// The surface of an entity; `None` if there is none, or if it has not had a valid pose yet.
     pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
         let (_, surface) = self.surfaces.get(entity).ok()?;
         surface.is_placed().then_some(surface)
     }
 
-    /// All surfaces that are somewhere, in no promised order.
+    /// All surfaces that have had a valid pose, in no promised order.
     pub fn iter(&self) -> impl Iterator<Item = (Entity, &PosedSurface)> {
         let all = self.surfaces.iter();
         all.filter(|(_, surface)| surface.is_placed())
@@ -271,7 +277,7 @@ impl SurfaceQuery<'_, '_> {
         self.iter().filter(|(entity, _)| filter.sees(*entity))
     }
 
-    /// The nearest that `find` finds up to a distance, which shrinks as something is found.
+    /// The nearest hit of `find` on any surface. The maximum distance shrinks with each nearer hit.
     fn nearest(
         &self,
         filter: &SurfaceFilter<'_>,
@@ -307,7 +313,7 @@ fn by_distance_and_triangle(a: &EntityHit, b: &EntityHit) -> std::cmp::Ordering 
     by_distance(a, b).then_with(|| a.triangle.cmp(&b.triangle))
 }
 
-/// Origin and direction.
+/// Origin and direction of a ray, in f64.
 pub(crate) fn in_f64(ray: Ray3d) -> (DVec3, DVec3) {
     (ray.origin.as_dvec3(), ray.direction.as_vec3().as_dvec3())
 }

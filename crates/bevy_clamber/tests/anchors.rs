@@ -1,4 +1,4 @@
-//! Things that stick to skin.
+//! Entities that are anchored to skin follow it as it is drawn.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -13,7 +13,7 @@ use bevy_shape::Ray3d;
 use bevy_transform::components::{GlobalTransform, Transform};
 use common::{animate, app, drawn, limb};
 
-/// Sticks an entity to where a ray along -X at a height meets the limb.
+/// Attaches an entity to the point of skin that a ray hits.
 fn stick(app: &mut bevy_app::App, from: Vec3, toward: Dir3) -> Entity {
     let ray = Ray3d::new(from, toward);
     let ask = move |surfaces: SurfaceQuery| {
@@ -35,7 +35,7 @@ fn an_anchor_lies_on_the_skin_as_it_is_drawn() {
             app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
             let limb = limb(&mut app, place, SkinnedCollider::default());
             app.update();
-            // On the lowest ring, where the ray meets a corner's edge that does not move, then on the tip.
+            // The ray hits the lower half of the limb.
             let above = place.transform_point(Vec3::new(0.0, 0.5, 0.1)) + Vec3::X * 9.0;
             let arrow = stick(&mut app, above, Dir3::NEG_X);
             let anchor = *app.world().get::<SurfaceAnchor>(arrow).unwrap();
@@ -72,7 +72,7 @@ fn an_anchor_lies_on_the_skin_as_it_is_drawn() {
 }
 
 #[test]
-fn an_anchor_turns_with_the_skin_and_hangs_under_whatever_it_likes() {
+fn an_anchor_turns_with_the_skin_under_any_parent() {
     let mut app = app(60.0);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
@@ -93,7 +93,7 @@ fn an_anchor_turns_with_the_skin_and_hangs_under_whatever_it_likes() {
 }
 
 #[test]
-fn what_stands_off_the_skin_goes_along_with_it() {
+fn an_offset_from_the_skin_moves_and_turns_with_it() {
     let mut app = app(60.0);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
     limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
@@ -116,7 +116,7 @@ fn what_stands_off_the_skin_goes_along_with_it() {
 }
 
 #[test]
-fn a_lost_surface_is_told() {
+fn a_despawned_surface_triggers_anchor_lost() {
     #[derive(Resource, Default)]
     struct Lost(Vec<AnchorLost>);
     let mut app = app(60.0);

@@ -1,4 +1,4 @@
-//! Mesh assets that come late, change, go, and make no sense.
+//! Mesh assets that are loaded late, change, are removed, or are broken.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -50,7 +50,7 @@ fn frames(app: &mut App, frames: usize) {
     }
 }
 
-/// Inverse bind poses that lift.
+/// Inverse bind poses, each a translation along Y.
 fn bindposes_at(lifts: impl IntoIterator<Item = f32>) -> SkinnedMeshInverseBindposes {
     let poses = lifts
         .into_iter()
@@ -58,7 +58,7 @@ fn bindposes_at(lifts: impl IntoIterator<Item = f32>) -> SkinnedMeshInverseBindp
     SkinnedMeshInverseBindposes::from(poses.collect::<Vec<_>>())
 }
 
-/// The limb's vertices, without indices, as a list of something.
+/// The limb's vertices, without indices, with another topology.
 fn listed_as(topology: PrimitiveTopology) -> Mesh {
     let (from, mut mesh) = (
         limb_mesh(),
@@ -74,7 +74,7 @@ fn listed_as(topology: PrimitiveTopology) -> Mesh {
     mesh
 }
 
-/// Half as high.
+/// The limb's mesh, half as high.
 fn short() -> Mesh {
     let mut mesh = limb_mesh();
     let Some(VertexAttributeValues::Float32x3(positions)) =
@@ -94,7 +94,7 @@ fn height(app: &App, entity: Entity) -> f32 {
 }
 
 #[test]
-fn assets_that_come_later_are_waited_for() {
+fn a_collider_waits_for_assets_that_are_loaded_later() {
     for mesh_first in [true, false] {
         let mut app = app(64.0);
         let mesh = app.world().resource::<Assets<Mesh>>().reserve_handle();
@@ -139,7 +139,7 @@ fn assets_that_come_later_are_waited_for() {
 }
 
 #[test]
-fn a_mesh_that_changes_is_built_once_and_shared() {
+fn a_changed_mesh_is_rebuilt_once_and_shared() {
     let mut app = app(64.0);
     let (first, mesh, bindposes) = limb(&mut app);
     let second = spawn_limb(
@@ -165,7 +165,7 @@ fn a_mesh_that_changes_is_built_once_and_shared() {
             app.update();
             std::thread::yield_now();
             for limb in [&first, &second] {
-                // The old one serves until the new one is there.
+                // The old mesh stays in use until the new one is built.
                 let now = mesh_of(&app, limb.mesh);
                 if !seen.iter().any(|mesh| Arc::ptr_eq(mesh, &now)) {
                     seen.push(now);
@@ -182,7 +182,7 @@ fn a_mesh_that_changes_is_built_once_and_shared() {
 }
 
 #[test]
-fn what_was_built_is_freed_with_its_asset() {
+fn a_collider_is_freed_with_its_mesh_asset() {
     let mut app = app(64.0);
     let (limb, mesh, _) = limb(&mut app);
     let weak = Arc::downgrade(&mesh_of(&app, limb.mesh));
@@ -195,7 +195,7 @@ fn what_was_built_is_freed_with_its_asset() {
     meshes.insert(&mesh, short()).unwrap();
     wait(&mut app, limb.mesh);
     assert_eq!(height(&app, limb.mesh), 1.0);
-    // With the last handle.
+    // The asset goes with its last handle.
     let weak = Arc::downgrade(&mesh_of(&app, limb.mesh));
     app.world_mut().entity_mut(limb.mesh).despawn();
     drop(mesh);
@@ -204,7 +204,7 @@ fn what_was_built_is_freed_with_its_asset() {
 }
 
 #[test]
-fn inverse_bind_poses_that_change_are_taken() {
+fn changed_inverse_bind_poses_pose_the_surface() {
     let mut app = app(64.0);
     let (limb, _, bindposes) = limb(&mut app);
     let lifted = |app: &App| {
@@ -214,7 +214,7 @@ fn inverse_bind_poses_that_change_are_taken() {
         surface.in_model().position(top).unwrap().y - surface.mesh().positions()[top.index()].y
     };
     assert_eq!(lifted(&app), 0.0);
-    // Modified, then removed and put there anew.
+    // The asset is modified, then removed and inserted anew.
     for (lift, remove) in [(0.25, false), (0.5, true)] {
         let mut assets = app
             .world_mut()
@@ -236,7 +236,7 @@ fn inverse_bind_poses_that_change_are_taken() {
 }
 
 #[test]
-fn components_that_change_make_another_surface() {
+fn changed_components_rebuild_the_surface() {
     let mut app = app(64.0);
     let (limb, _, _) = limb(&mut app);
     let other = add_mesh(&mut app, short());
@@ -244,7 +244,7 @@ fn components_that_change_make_another_surface() {
     wait(&mut app, limb.mesh);
     frames(&mut app, 2);
     assert_eq!(height(&app, limb.mesh), 1.0);
-    // Without one of them, there is no surface.
+    // Without one of the components there is no surface.
     let skin = app.world_mut().entity_mut(limb.mesh).take::<SkinnedMesh>();
     frames(&mut app, 2);
     assert!(app.world().get::<PosedSurface>(limb.mesh).is_none());
@@ -259,7 +259,7 @@ fn components_that_change_make_another_surface() {
     frames(&mut app, 1);
     wait(&mut app, limb.mesh);
     assert!(mesh_of(&app, limb.mesh).tags().iter().all(|t| *t == tag));
-    // The collider goes and comes back; what its triangles are made of is said still.
+    // The tag stays when the collider is removed and inserted again.
     let mut entity = app.world_mut().entity_mut(limb.mesh);
     entity.remove::<SkinnedCollider>();
     assert!(app.world().get::<PosedSurface>(limb.mesh).is_none());
@@ -269,7 +269,7 @@ fn components_that_change_make_another_surface() {
     assert!(mesh_of(&app, limb.mesh).tags().iter().all(|t| *t == tag));
 }
 
-/// What becomes of a mesh: the height of the collider, or why there is none.
+/// The result of building a mesh: the height of the collider, or the error.
 fn outcome(mesh: Mesh) -> Result<f32, ColliderError> {
     let mut app = app(64.0);
     let mesh = add_mesh(&mut app, mesh);
@@ -288,13 +288,13 @@ fn outcome(mesh: Mesh) -> Result<f32, ColliderError> {
 }
 
 #[test]
-fn meshes_come_compressed_and_as_strips() {
+fn compressed_meshes_and_triangle_strips_are_read() {
     let compressed = limb_mesh().compressed_mesh(&MeshCompressionArgs::regular());
     let height = outcome(compressed.unwrap()).unwrap();
     assert!((height - 2.0).abs() < 1e-4, "{height}");
     let strip = || listed_as(PrimitiveTopology::TriangleStrip);
     assert_eq!(outcome(strip()), Ok(2.0));
-    // Two strips, apart by the index that begins a new one.
+    // Two strips, separated by the index that starts a new one.
     let ends = [0, 1, 4, 5];
     let wide = ends.iter().chain(&[u32::MAX]).chain(&[76, 77, 80, 81]);
     let wide: Vec<u32> = wide.copied().collect();
@@ -331,7 +331,7 @@ fn strips_wind_as_lists_do() {
 }
 
 #[test]
-fn broken_meshes_are_told_apart() {
+fn each_broken_mesh_gives_its_own_error() {
     type Break = fn(&mut Mesh);
     type Wanted = fn(&ColliderError) -> bool;
     fn values(mesh: &mut Mesh, change: impl Fn(&mut Vec<[f32; 4]>)) {
@@ -401,7 +401,7 @@ fn broken_meshes_are_told_apart() {
 }
 
 #[test]
-fn a_mesh_that_is_mended_becomes_a_surface() {
+fn a_repaired_mesh_becomes_a_surface() {
     let mut app = app(64.0);
     let mut broken = limb_mesh();
     broken.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
@@ -419,7 +419,7 @@ fn a_mesh_that_is_mended_becomes_a_surface() {
 }
 
 #[test]
-fn more_inverse_bind_poses_than_joints_are_fine_and_fewer_are_told() {
+fn more_inverse_bind_poses_than_joints_are_fine_and_fewer_are_an_error() {
     for (count, fine) in [(5, true), (1, false), (0, false)] {
         let mut app = app(64.0);
         let mesh = add_mesh(&mut app, limb_mesh());
@@ -445,7 +445,7 @@ fn more_inverse_bind_poses_than_joints_are_fine_and_fewer_are_told() {
 }
 
 #[test]
-fn an_entity_may_go_in_the_moment_its_surface_comes() {
+fn an_entity_may_be_despawned_as_its_surface_is_inserted() {
     fn rival(
         added: On<Add<PosedSurface>>,
         all: Query<Entity, With<SkinnedCollider>>,

@@ -1,4 +1,4 @@
-//! Creatures that `clamber_gltf` loads: spawned, played, touched.
+//! Creatures that `clamber_gltf` loads: spawning, playing clips, surfaces.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -40,7 +40,7 @@ fn spawn(app: &mut App, assets: &RigAssets, place: Transform) -> SpawnedRig {
     spawned
 }
 
-/// With a surface on every mesh.
+/// Inserts a collider on every mesh, and waits for the surfaces.
 fn surfaces(app: &mut App, spawned: &SpawnedRig, collider: SkinnedCollider) {
     for mesh in &spawned.meshes {
         app.world_mut().entity_mut(*mesh).insert(collider);
@@ -50,7 +50,7 @@ fn surfaces(app: &mut App, spawned: &SpawnedRig, collider: SkinnedCollider) {
         assert!(!matches!(status, ColliderStatus::Failed(_)), "{status:?}");
         matches!(status, ColliderStatus::Ready)
     };
-    // They are large, and built on other threads: a minute is enough.
+    // The colliders are large, and are built on other threads: a minute is enough.
     for _ in 0..60_000 {
         app.update();
         if spawned.meshes.iter().all(|mesh| built(app, mesh)) {
@@ -58,12 +58,12 @@ fn surfaces(app: &mut App, spawned: &SpawnedRig, collider: SkinnedCollider) {
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    panic!("colliders are never built");
+    panic!("the colliders were not built in time");
 }
 
-/// Two creatures in an app whose frames take `1 / rate` seconds, whose first plays; what each tick showed of its
-/// first mesh: seconds, and how far its vertices are from where the rig's own arithmetic has them at that time,
-/// relative to the creature's size.
+/// Spawns two creatures in an app whose frames last `1 / rate` seconds, and plays a clip on the first. In each tick,
+/// checks the vertices of its first mesh against the rig's own sampling and skinning at the player's time, relative to
+/// the creature's size, and the player's time against the number of ticks.
 fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
     #[derive(Resource)]
     struct Watch {
@@ -102,7 +102,7 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
             let off = (*found - *expected).length() / size;
             assert!(off < 1e-5, "{elapsed} s: {found} not {expected}");
         }
-        // Starts with the first tick that it sees.
+        // The player starts in the first tick that sees it.
         let expected = (watch.seen as f64 + 1.0) * time.delta_secs_f64();
         let expected = expected.rem_euclid(clip.duration());
         assert!((player.time - expected).abs() < 1e-9, "{elapsed}");
@@ -124,7 +124,7 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
     }
     let seen = app.world().resource::<Watch>().seen;
     assert!((62..=66).contains(&seen), "{seen}");
-    // The other one stands still, on mesh assets of the same ids.
+    // The other creature stands still, and has the same mesh assets.
     let ids = |spawned: &SpawnedRig| {
         let mesh = spawned.meshes[0];
         app.world().get::<bevy_mesh::Mesh3d>(mesh).unwrap().id()
@@ -138,7 +138,7 @@ fn check_ticks(file: PathBuf, clip: &str, rate: f64) {
 }
 
 #[test]
-fn a_played_creature_is_touched_where_its_clip_has_it_in_that_tick() {
+fn a_tick_sees_the_pose_of_the_clip_at_the_players_time() {
     for rate in [30.0, 144.0] {
         check_ticks(COLOSSUS.into(), "walk", rate);
     }
@@ -163,11 +163,11 @@ fn meshes_have_the_tags_and_materials_of_the_file() {
         assert!(surface.mesh().tags().iter().all(|found| *found == tag));
         kinds.insert(tag);
     }
-    // Fur, hide, stone, ledges.
+    // Fur, skin, stone, ledges.
     assert_eq!(kinds.len(), 4);
 }
 
-/// The transform of the joint that a clip moves most, after some frames of 1/64 s with a player.
+/// The transforms of all joints, and the player, after some frames of 1/64 s.
 fn play(player: RigPlayer, frames: usize) -> (Vec<Transform>, RigPlayer) {
     let player_plugin = RigPlayerPlugin::in_schedule(PostUpdate);
     let mut app = app_with(64.0, (ClamberPlugins::default(), player_plugin));
@@ -218,7 +218,7 @@ fn clips_are_held_looped_slowed_and_reversed() {
 }
 
 #[test]
-fn what_cannot_be_played_moves_nothing() {
+fn a_missing_clip_or_a_time_that_is_not_finite_moves_nothing() {
     let (rest, _) = play(RigPlayer::new("no such clip"), 5);
     for (time, speed) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (f64::MAX, f64::MAX)] {
         let player = RigPlayer {
@@ -231,7 +231,7 @@ fn what_cannot_be_played_moves_nothing() {
 }
 
 #[test]
-fn joints_and_roots_that_are_gone_take_nothing_along() {
+fn a_despawned_joint_is_an_error_and_a_despawned_root_leaves_nothing() {
     let mut app = app_with(
         60.0,
         (ClamberPlugins::default(), RigPlayerPlugin::default()),
@@ -256,7 +256,7 @@ fn joints_and_roots_that_are_gone_take_nothing_along() {
 }
 
 #[test]
-fn more_joints_than_a_mesh_can_name_are_refused() {
+fn more_joints_than_a_mesh_can_index_are_refused() {
     let mut rig = clamber_gltf::load(COLOSSUS).unwrap();
     let joint: Joint = rig.skeleton.joints()[0].clone();
     let joint = Joint {

@@ -1,4 +1,4 @@
-//! Bevy's diagnostics hold what the surfaces say.
+//! Bevy's diagnostics agree with the surfaces' own counts.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -20,7 +20,7 @@ fn value(app: &App, path: &DiagnosticPath) -> f64 {
     store.get(path).unwrap().value().unwrap()
 }
 
-/// Two limbs in an app that has as many frames as ticks, and asks for one of them in each tick.
+/// An app with two limbs and one tick per frame. In each tick a ray hits one of the limbs.
 fn scene() -> App {
     let plugins = (ClamberPlugins::default(), Plugin::default());
     let mut app = app_with(64.0, plugins);
@@ -36,7 +36,7 @@ fn scene() -> App {
 }
 
 #[test]
-fn they_hold_the_sums_of_what_surfaces_say() {
+fn diagnostics_are_sums_over_all_surfaces() {
     #[derive(Resource, Default, Debug, PartialEq)]
     struct Said {
         surfaces: usize,
@@ -86,7 +86,7 @@ fn they_hold_the_sums_of_what_surfaces_say() {
 }
 
 #[test]
-fn a_surface_that_stands_still_counts_no_work_twice() {
+fn skinning_for_a_still_surface_is_counted_once() {
     let mut app = scene();
     for _ in 0..5 {
         app.update();
@@ -95,7 +95,7 @@ fn a_surface_that_stands_still_counts_no_work_twice() {
     assert!(tested > 0.0);
     for tick in 0..5 {
         app.update();
-        // The same ray meets the same triangles again, but all is skinned already.
+        // The same ray tests the same triangles again, but they are skinned already.
         assert_eq!(
             value(&app, &Plugin::TRIANGLES_TESTED),
             tested,

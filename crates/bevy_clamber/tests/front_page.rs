@@ -1,4 +1,4 @@
-//! An app written from the crate's front page alone: an arrow sticks in an animated fox and follows it.
+//! An app written from the crate's README alone: an arrow is attached to an animated fox and follows it.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -38,7 +38,7 @@ fn spawn_fox(
 }
 
 fn shoot(surfaces: SurfaceQuery, mut commands: Commands, arrows: Query<&SurfaceAnchor>) {
-    // The file's fox is some 150 units long, and looks along Z.
+    // The fox in the file is about 150 units long, and faces along Z.
     let ray = Ray3d::new(Vec3::new(200.0, 45.0, 0.0), Dir3::NEG_X);
     if let Some(hit) = surfaces.cast_ray(ray, 500.0, &SurfaceFilter::default())
         && let Ok(anchor) = surfaces.anchor_at(&hit)
@@ -48,7 +48,7 @@ fn shoot(surfaces: SurfaceQuery, mut commands: Commands, arrows: Query<&SurfaceA
     }
 }
 
-/// Where the arrow was in each frame, and how far the nearest skin was from there in the last tick.
+/// Position of the arrow in each frame, and its distance from the nearest skin in the last tick.
 #[derive(Resource, Default)]
 struct Seen(Vec<(Vec3, f32)>);
 
@@ -85,7 +85,7 @@ fn an_arrow_sticks_in_a_walking_fox() {
     .add_systems(Startup, spawn_fox)
     .add_systems(FixedUpdate, shoot)
     .add_systems(Last, watch)
-    // A tick a frame, so that what is drawn is what is touched.
+    // One tick per frame, so that queries see the pose that is drawn.
     .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
     app.finish();
     app.cleanup();
@@ -99,7 +99,7 @@ fn an_arrow_sticks_in_a_walking_fox() {
     }
     let seen = &app.world().resource::<Seen>().0;
     assert!(seen.len() > 192, "{}", seen.len());
-    // Left out: the frame in which the arrow appears, before it is placed.
+    // Without the frame in which the arrow is spawned, since it is not placed yet.
     let seen = &seen[1..];
     let worst = seen.iter().map(|(_, off)| *off).fold(0.0, f32::max);
     assert!(worst < 1e-3, "{worst}");

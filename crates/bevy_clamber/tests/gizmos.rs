@@ -1,4 +1,4 @@
-//! Surfaces are drawn with gizmos, without a renderer.
+//! Gizmos of surfaces, without a renderer.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -27,14 +27,14 @@ const NOTHING: SurfaceGizmos = SurfaceGizmos {
     velocities: false,
 };
 
-/// A limb that bends, is asked for in each tick, and has something stuck to it.
+/// A limb that bends, with an entity anchored to it.
 fn scene() -> (App, Limb, Entity) {
     let plugins = (
         ClamberPlugins::default(),
         GizmoPlugin,
         SurfaceGizmosPlugin::default(),
     );
-    // As many frames as ticks.
+    // One tick per frame.
     let mut app = app_with(64.0, plugins);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
@@ -44,13 +44,13 @@ fn scene() -> (App, Limb, Entity) {
         surfaces.anchor_at(&hit).ok()
     };
     let mut anchor = app.world_mut().run_system_once(stick).unwrap().unwrap();
-    // The point at the tip that moves most.
+    // A point at the tip, which moves most.
     anchor.attachment.material.key = u64::from(tip(&app, &limb).0);
     let arrow = app.world_mut().spawn(anchor).id();
     (app, limb, arrow)
 }
 
-/// The triangle that stands highest in the rest pose.
+/// The highest triangle in the rest pose.
 fn tip(app: &App, limb: &Limb) -> bevy_clamber::core::mesh::TriangleId {
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     let mesh = surface.mesh();
@@ -85,7 +85,7 @@ fn points(app: &App) -> Vec<Vec3> {
 #[test]
 fn each_kind_is_drawn_when_it_is_on_and_nothing_when_all_are_off() {
     let (mut app, _, _) = scene();
-    // In the fixed loop before surfaces are posed, as gameplay asks.
+    // In the fixed loop before surfaces are posed, like queries of gameplay.
     app.add_systems(FixedUpdate, |surfaces: SurfaceQuery| {
         let ray = Ray3d::new(Vec3::new(9.0, 0.35, 0.05), Dir3::NEG_X);
         assert!(surfaces.intersects_ray(ray, 99.0, &SurfaceFilter::default()));
@@ -125,7 +125,7 @@ fn each_kind_is_drawn_when_it_is_on_and_nothing_when_all_are_off() {
     ];
     for (name, kind) in kinds {
         show(&mut app, kind);
-        // Notes are taken in the tick before.
+        // Touched clusters are recorded in the tick before.
         app.update();
         app.update();
         let points = points(&app);
@@ -143,7 +143,7 @@ fn each_kind_is_drawn_when_it_is_on_and_nothing_when_all_are_off() {
 }
 
 #[test]
-fn nothing_is_touched_where_nobody_asks() {
+fn without_queries_no_clusters_or_contacts_are_drawn() {
     let (mut app, _, _) = scene();
     show(
         &mut app,
@@ -190,7 +190,7 @@ fn contacts_lie_on_the_skin_as_it_is_drawn() {
 }
 
 #[test]
-fn the_arrow_of_a_velocity_begins_at_its_anchor_and_points_along_its_way() {
+fn the_arrow_of_a_velocity_starts_at_its_anchor_and_points_along_its_motion() {
     let (mut app, _, arrow) = scene();
     show(
         &mut app,
@@ -211,7 +211,7 @@ fn the_arrow_of_a_velocity_begins_at_its_anchor_and_points_along_its_way() {
     let now = at(&app);
     let shaft = points(&app);
     assert!((shaft[0] - now).length() < 1e-5, "{} {now}", shaft[0]);
-    // A tenth of a second of the last tick but one's speed: surfaces lag a frame behind what is drawn.
+    // The arrow's length is 0.1 s of motion. Surfaces lag one frame behind the pose that is drawn.
     let expected = (now - before) * 64.0 * 0.1;
     let found = shaft[1] - shaft[0];
     assert!(expected.length() > 0.15, "{expected}");
@@ -222,7 +222,7 @@ fn the_arrow_of_a_velocity_begins_at_its_anchor_and_points_along_its_way() {
 }
 
 #[test]
-fn parts_hold_the_skin_that_is_drawn() {
+fn part_spheres_enclose_the_skin_that_is_drawn() {
     let (mut app, limb, _) = scene();
     show(
         &mut app,
@@ -234,7 +234,7 @@ fn parts_hold_the_skin_that_is_drawn() {
     for _ in 0..40 {
         app.update();
     }
-    // No face of the box around the bounds cuts the skin.
+    // The box around all spheres contains the skin.
     let points = points(&app);
     let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);

@@ -1,4 +1,4 @@
-//! Joints and what stands above them: moved, re-parented, gone, and nonsense.
+//! Joints and the entities above them: moved, reparented, missing, and with invalid transforms.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -57,7 +57,7 @@ fn in_model(app: &App, entity: Entity) -> Vec<Vec3> {
         .collect()
 }
 
-/// The farthest that any vertex is from where Bevy draws it. The limb's mesh is neither welded nor reordered.
+/// The largest distance of a vertex from where Bevy draws it. The limb's mesh is neither welded nor reordered.
 fn worst(app: &App, entity: Entity) -> f64 {
     let posed = oracle::posed(app, entity);
     let surface = surface(app, entity);
@@ -89,7 +89,7 @@ fn far_from_the_origin_the_pose_has_the_same_bits() {
     }
 }
 
-/// A limb whose lower joint hangs under nothing.
+/// A limb whose lower joint has no parent.
 fn rootless(app: &mut App, timing: SkinnedCollider) -> Limb {
     let limb = limb(app, Transform::IDENTITY, timing);
     app.world_mut()
@@ -113,7 +113,7 @@ fn a_skeleton_without_a_parent_is_as_exact_far_away() {
         frames(&mut app, 5);
         assert!(worst(&app, limb.mesh) < 1e-6, "{}", worst(&app, limb.mesh));
         assert_eq!(here, in_model(&app, limb.mesh));
-        // It moves as it is moved.
+        // A translation is motion.
         transform(&mut app, limb.joints[0]).translation.x += 0.5;
         let mut travelled = 0.0;
         for _ in 0..5 {
@@ -128,7 +128,7 @@ fn a_skeleton_without_a_parent_is_as_exact_far_away() {
 }
 
 #[test]
-fn scales_of_all_sorts_are_drawn_and_posed_alike() {
+fn surfaces_with_any_scale_are_posed_as_they_are_drawn() {
     let turned = Quat::from_xyzw(0.5, -0.5, 0.5, 0.5);
     let places = [
         Transform::from_scale(Vec3::splat(40.0)),
@@ -157,7 +157,7 @@ fn scales_of_all_sorts_are_drawn_and_posed_alike() {
 }
 
 #[test]
-fn nonsense_keeps_the_last_pose_is_told_and_passes() {
+fn an_invalid_transform_is_an_error_and_keeps_the_last_pose_until_it_is_repaired() {
     type Spoil = fn(&mut Transform);
     let spoils: [Spoil; 4] = [
         |t| t.scale = Vec3::ZERO,
@@ -169,7 +169,7 @@ fn nonsense_keeps_the_last_pose_is_told_and_passes() {
         for (index, spoil) in spoils.iter().enumerate() {
             for of_root in [true, false] {
                 if !of_root && index == 0 {
-                    // A joint may shrink to nothing: its skin is a point then.
+                    // A joint may have a scale of zero: its skin is a point then.
                     continue;
                 }
                 let case = format!("{index} {of_root} {timing:?}");
@@ -185,7 +185,7 @@ fn nonsense_keeps_the_last_pose_is_told_and_passes() {
                 for frame in 0..5 {
                     app.update();
                     let surface = surface(&app, limb.mesh);
-                    // What frames show reaches ticks a frame later.
+                    // With frame timing, ticks see the transform one frame later.
                     let told = surface.error().is_some();
                     assert!(told || frame == 0, "{case} {frame}");
                     assert_eq!(surface.world_from_model().translation.x, 4.0, "{case}");
@@ -203,7 +203,7 @@ fn nonsense_keeps_the_last_pose_is_told_and_passes() {
 }
 
 #[test]
-fn what_never_had_a_place_is_nowhere() {
+fn a_surface_without_a_valid_pose_is_not_found_by_queries() {
     for timing in BOTH {
         let mut app = app(64.0);
         let place = Transform::from_xyz(5.0, 0.0, 0.0).with_scale(Vec3::ZERO);
@@ -227,14 +227,14 @@ fn what_never_had_a_place_is_nowhere() {
         assert_eq!(
             surface.in_model().position(VertexId(0)),
             surface.in_model().previous_position(VertexId(0)),
-            "it came without motion"
+            "it appears without motion"
         );
     }
 }
 
-/// As where entities come over a network, in any order.
+/// For example when entities arrive over a network, in any order.
 #[test]
-fn a_joint_that_comes_late_makes_a_surface_all_the_same() {
+fn a_joint_that_gets_its_transform_late_makes_a_surface() {
     let mut app = app(64.0);
     let (mesh, bindposes) = (add_mesh(&mut app, limb_mesh()), add_bindposes(&mut app));
     let limb = spawn_limb(&mut app, mesh, bindposes, Transform::IDENTITY);
@@ -259,9 +259,9 @@ fn a_joint_that_comes_late_makes_a_surface_all_the_same() {
     assert!(worst(&app, limb.mesh) < 1e-6);
 }
 
-/// A creature that is hidden by scaling it to nothing, taken elsewhere, and shown again.
+/// The creature is hidden by a scale of zero, moved, and shown again.
 #[test]
-fn what_is_found_again_elsewhere_has_not_flown_there() {
+fn a_creature_that_is_hidden_and_shown_elsewhere_has_no_motion() {
     for timing in BOTH {
         let mut app = app(64.0);
         let limb = limb(&mut app, Transform::IDENTITY, timing);
@@ -291,7 +291,7 @@ fn what_is_found_again_elsewhere_has_not_flown_there() {
 }
 
 #[test]
-fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
+fn a_missing_joint_keeps_the_last_pose_until_it_is_back() {
     for timing in BOTH {
         let mut app = app(64.0);
         let limb = limb(&mut app, Transform::IDENTITY, timing);
@@ -313,7 +313,7 @@ fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
         app.world_mut().entity_mut(limb.joints[1]).insert(joint);
         frames(&mut app, 3);
         assert_eq!(surface(&app, limb.mesh).error(), None);
-        // Into another hierarchy, and back into this one, but elsewhere: not under joint 0, which is off the root.
+        // Into another hierarchy, and back into this one, but under the root instead of joint 0, which is off the root.
         transform(&mut app, limb.joints[0]).translation.y += 0.3;
         frames(&mut app, 4);
         let elsewhere = app.world_mut().spawn(Transform::IDENTITY).id();
@@ -330,7 +330,7 @@ fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
         frames(&mut app, 4);
         assert_eq!(surface(&app, limb.mesh).error(), None);
         assert!(worst(&app, limb.mesh) < 1e-6);
-        // Under another joint, in the same hierarchy, while nothing moves.
+        // Back under joint 0, in the same hierarchy, while nothing moves.
         app.world_mut()
             .entity_mut(limb.joints[1])
             .insert(ChildOf(limb.joints[0]));
@@ -343,7 +343,7 @@ fn a_joint_that_goes_keeps_the_last_pose_until_it_is_back() {
 }
 
 #[test]
-fn a_root_that_is_put_under_another_while_it_moves_is_followed() {
+fn a_root_that_is_reparented_while_it_moves_is_followed() {
     for timing in BOTH {
         let mut app = app(64.0);
         let limb = limb(&mut app, Transform::IDENTITY, timing);
@@ -370,7 +370,7 @@ fn a_root_that_is_put_under_another_while_it_moves_is_followed() {
     }
 }
 
-/// A ribbon of so many joints, one under the other, some of them named twice.
+/// A ribbon with a chain of joints, each the parent of the next.
 fn ribbon(app: &mut App, count: usize, place: Transform) -> Entity {
     let (mut positions, mut joints, mut weights) = (Vec::new(), Vec::new(), Vec::new());
     for joint in 0..count {
@@ -420,14 +420,14 @@ fn ribbon(app: &mut App, count: usize, place: Transform) -> Entity {
 }
 
 #[test]
-fn a_thousand_joints_in_one_chain_take_no_time() {
+fn a_chain_of_a_thousand_joints_is_followed_fast() {
     let mut app = app(64.0);
     let start = Instant::now();
     let entity = ribbon(&mut app, 1000, Transform::from_xyz(9.0, 0.0, 0.0));
     let built = start.elapsed();
     frames(&mut app, 3);
     assert!(worst(&app, entity) < 1e-4, "{}", worst(&app, entity));
-    // Its hierarchy changes in every frame.
+    // The hierarchy changes in every frame.
     let top = app.world().get::<SkinnedMesh>(entity).unwrap().joints[0];
     let start = Instant::now();
     for _ in 0..20 {
@@ -442,7 +442,7 @@ fn a_thousand_joints_in_one_chain_take_no_time() {
 }
 
 #[test]
-fn joints_that_are_named_twice_and_none_at_all() {
+fn duplicate_joints_make_a_surface_and_no_joints_are_an_error() {
     let mut app = app(64.0);
     let twice = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     let mut skin = app.world_mut().get_mut::<SkinnedMesh>(twice.mesh).unwrap();
@@ -474,7 +474,7 @@ fn app_mesh(app: &App, entity: Entity) -> Mesh3d {
 }
 
 #[test]
-fn joints_in_a_circle_are_told() {
+fn a_cycle_of_joints_is_an_error() {
     let mut app = app(64.0);
     let mesh = add_mesh(&mut app, limb_mesh());
     let bindposes = add_bindposes(&mut app);
@@ -485,7 +485,7 @@ fn joints_in_a_circle_are_told() {
     app.world_mut()
         .entity_mut(limb.mesh)
         .insert(SkinnedCollider::default());
-    // No whole update: Bevy's own systems go round in such a circle forever.
+    // Not a whole update: Bevy's own systems never end on such a cycle.
     for _ in 0..100_000 {
         app.world_mut().run_schedule(PreUpdate);
         std::thread::yield_now();
@@ -495,5 +495,5 @@ fn joints_in_a_circle_are_told() {
             return;
         }
     }
-    panic!("it is never told");
+    panic!("the cycle is not reported");
 }

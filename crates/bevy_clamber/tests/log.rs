@@ -1,4 +1,4 @@
-//! What goes wrong is one line in the log, not one a frame. A process of its own: the log is everybody's.
+//! A failure is logged once, not in each frame. This test has a process of its own, since the log is global.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -49,7 +49,7 @@ impl Subscriber for Lines {
     fn exit(&self, _: &span::Id) {}
 }
 
-/// How many lines there were since this was asked last.
+/// Number of lines since the last call.
 fn lines() -> usize {
     let lines = std::mem::take(&mut *LINES.lock().unwrap());
     println!("{lines:#?}");
@@ -57,10 +57,10 @@ fn lines() -> usize {
 }
 
 #[test]
-fn each_failure_is_one_line() {
+fn each_failure_is_logged_once() {
     tracing::subscriber::set_global_default(Lines).unwrap();
     let mut app = app(64.0);
-    // A broken mesh that two show.
+    // A broken mesh on two entities.
     let mut broken = limb_mesh();
     broken.insert_attribute(Mesh::ATTRIBUTE_POSITION, vec![[f32::NAN; 3]; 84]);
     let mesh = add_mesh(&mut app, broken);
@@ -86,7 +86,7 @@ fn each_failure_is_one_line() {
             joints: timing,
             root: timing,
         };
-        // A joint that is gone, and a root that is scaled to nothing.
+        // A joint that is gone, and a root with a scale of zero.
         let gone = limb(&mut app, Transform::IDENTITY, collider);
         app.world_mut().entity_mut(gone.joints[1]).despawn();
         for _ in 0..20 {

@@ -1,4 +1,4 @@
-//! The same scene in avian and in rapier is the same obstacle.
+//! The same scene in avian and in rapier answers queries of obstacles alike.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -19,13 +19,13 @@ use glam::{DQuat, DVec3};
 /// Ticks a second.
 const RATE: f64 = 64.0;
 
-/// Radians a second that the carousel turns: an eighth of a radian a tick, whose chord is no tangent.
+/// Radians a second that the carousel turns: an eighth of a radian a tick, so that chord and tangent differ.
 const SPIN: f64 = 8.0;
 
-/// Metres a second that it moves.
+/// Metres a second that the carousel moves.
 const DRIFT: f64 = 3.0;
 
-/// How far apart two engines may be, metres.
+/// Largest difference between the answers of two engines, metres.
 const SAME: f64 = 1e-5;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -35,16 +35,16 @@ enum Kind {
     Sensor,
 }
 
-/// Moved by the game, in ticks.
+/// Marks the body that the game moves in each tick.
 #[derive(Component)]
 struct Carousel;
 
-/// A tilted axis, so that a wrong order of turns shows.
+/// The carousel's axis. It is tilted, so that a wrong order of rotations shows.
 fn axis() -> DVec3 {
     DVec3::new(0.28, 0.96, 0.0)
 }
 
-/// Where the carousel is at a time.
+/// Rotation and position of the carousel at a time.
 fn carousel(seconds: f64) -> (DQuat, DVec3) {
     let half = 0.5 * SPIN * seconds;
     let (sin, cos) = (libm::sin(half), libm::cos(half));
@@ -61,7 +61,7 @@ fn turn_carousel(time: Res<Time<Fixed>>, mut all: Query<&mut Transform, With<Car
     }
 }
 
-/// A rolling ground, and a shape of every kind on it.
+/// A hilly ground, and shapes of several kinds on it.
 fn scene() -> Vec<(SharedShape, Transform, Kind)> {
     let side = 13_u32;
     let height = |x: u32, z: u32| 0.8 * ((x * 7 + z * 5) % 6) as f32 / 6.0;
@@ -115,7 +115,7 @@ fn app() -> App {
     app
 }
 
-/// After some ticks.
+/// Runs an app for some ticks.
 fn run(mut app: App) -> App {
     app.finish();
     app.cleanup();
@@ -156,7 +156,7 @@ fn rapier() -> App {
     run(app)
 }
 
-/// What an engine's obstacle says.
+/// The answer of avian's obstacle.
 fn ask_avian<R: 'static>(
     app: &mut App,
     ask: impl Fn(&dyn Obstacle) -> R + Send + Sync + 'static,
@@ -165,6 +165,7 @@ fn ask_avian<R: 'static>(
     app.world_mut().run_system_once(system).unwrap()
 }
 
+/// The answer of rapier's obstacle.
 fn ask_rapier<R: 'static>(
     app: &mut App,
     ask: impl Fn(&dyn Obstacle) -> R + Send + Sync + 'static,
@@ -173,10 +174,10 @@ fn ask_rapier<R: 'static>(
     app.world_mut().run_system_once(system).unwrap()
 }
 
-/// A contact, and how its point moves.
+/// A contact, and the motion of its point.
 type Answer = (Contact, Option<PointMotion>);
 
-/// All answers to some hundreds of questions: rays, closest points, overlaps, each with motion.
+/// The answers to some hundreds of queries: rays, closest points and overlaps, each with the motion of its points.
 fn interrogate(obstacle: &dyn Obstacle) -> Vec<(String, Vec<Answer>)> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut vector = |size: f64| {
@@ -192,7 +193,7 @@ fn interrogate(obstacle: &dyn Obstacle) -> Vec<(String, Vec<Answer>)> {
         answers.push((name, hit.into_iter().map(with_motion).collect()));
         let reach = 0.5 + from.x.abs();
         let near = obstacle.closest_point(from, reach);
-        // The normal of which triangle, where two meet, is not said.
+        // Where two triangles meet, the normal may be either one's.
         let near = near.map(|contact| Contact {
             normal: contact.separation_normal(from),
             ..contact
@@ -208,7 +209,7 @@ fn interrogate(obstacle: &dyn Obstacle) -> Vec<(String, Vec<Answer>)> {
     answers
 }
 
-/// How far apart two answers are, metres; without end if they point elsewhere.
+/// The difference of two answers, metres; `f64::MAX` if their normals or rotations differ.
 fn apart(a: &Answer, b: &Answer) -> f64 {
     let (a_motion, b_motion) = (a.1.unwrap(), b.1.unwrap());
     let turned = (a_motion.turn * DVec3::X - b_motion.turn * DVec3::X).length();
@@ -243,13 +244,14 @@ fn avian_answers_as_rapier_does() {
             carried += usize::from(a.1.unwrap().velocity != DVec3::ZERO);
         }
     }
-    println!("{contacts} contacts, {carried} of them on what moves, at most {worst:.1e} m apart");
+    println!("{contacts} contacts, {carried} on moving bodies, at most {worst:.1e} m apart");
     assert!(contacts > 500 && carried > 50, "{contacts} {carried}");
 }
 
-/// What capsules meet that are cast and swept, and how what they meet moves; near the carousel every other time.
+/// The name of a cast, its first contact, and the motion of the contact's point.
 type Meeting = (String, Option<SweepContact>, Option<PointMotion>);
 
+/// Casts and sweeps capsules, every other one near the carousel.
 fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
     let mut random = fastrand::Rng::with_seed(8);
     let mut vector = |size: f64| {
@@ -270,7 +272,7 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
         let turning = [by, vector(2.0)];
         let cast = obstacle.cast_capsule(&capsule, [by; 2], TargetMotion::Still);
         let swept = obstacle.cast_capsule(&capsule, turning, TargetMotion::Moving);
-        // The first contact beyond those that it begins inside of.
+        // The first contact that is not an overlap at the start.
         let past =
             obstacle.cast_capsule_where(&capsule, turning, TargetMotion::Moving, &mut |met| {
                 !met.started_inside
@@ -285,7 +287,7 @@ fn sweep(obstacle: &dyn Obstacle) -> Vec<Meeting> {
 }
 
 #[test]
-fn capsules_meet_in_avian_what_they_meet_in_rapier() {
+fn casts_of_capsules_agree_in_avian_and_rapier() {
     let avian = ask_avian(&mut avian(), sweep);
     let rapier = ask_rapier(&mut rapier(), sweep);
     let (mut met, mut carried, mut inside, mut past, mut grazed) = (0, 0, 0, 0, 0);
@@ -300,7 +302,7 @@ fn capsules_meet_in_avian_what_they_meet_in_rapier() {
         past += usize::from(was_inside && question.contains("past"));
         was_inside = a.started_inside;
         carried += usize::from(motion.unwrap().velocity != DVec3::ZERO);
-        // What comes near slowly may stop anywhere within the tolerance.
+        // A cast that approaches slowly may stop anywhere within the tolerance.
         grazed += usize::from((a.time - b.time).abs() > 1e-3);
         assert!((a.time - b.time).abs() < 0.05, "{question}: {a:?} {b:?}");
         assert_eq!(
@@ -313,7 +315,7 @@ fn capsules_meet_in_avian_what_they_meet_in_rapier() {
         }
     }
     println!(
-        "{met} meetings, {carried} on what moves, {inside} inside, {past} past those, {grazed} grazed"
+        "{met} contacts, {carried} on moving bodies, {inside} inside, {past} past those, {grazed} grazed"
     );
     assert!(
         met > 400 && carried > 100 && inside > 50 && past > 20,
@@ -322,14 +324,14 @@ fn capsules_meet_in_avian_what_they_meet_in_rapier() {
     assert!(grazed < 8, "{grazed}");
 }
 
-/// What the carousel's motion must be, whatever the engine.
+/// Checks the carousel's motion; returns the number of points.
 fn check_motion(obstacle: &dyn Obstacle, now: f64) -> usize {
     let before = now - 1.0 / RATE;
     let (rotation, place) = carousel(now);
     let mut checked = 0;
     for x in [-2.5, -1.0, 0.5, 2.0] {
         for z in [-2.0, 0.25, 2.5] {
-            // From above, on its upper side.
+            // From above, on the upper face.
             let local = DVec3::new(x, 0.25, z);
             let point = rotation * local + place;
             let normal = rotation * DVec3::Y;
@@ -368,7 +370,7 @@ fn check_motion(obstacle: &dyn Obstacle, now: f64) -> usize {
 }
 
 #[test]
-fn what_turns_moves_by_its_chord_and_not_by_its_tangent() {
+fn a_point_on_a_turning_body_moves_by_its_chord_and_not_by_its_tangent() {
     let (mut avian, mut rapier) = (avian(), rapier());
     for _ in 0..3 {
         let now = avian.world().resource::<Time<Fixed>>().elapsed_secs_f64();
@@ -380,7 +382,7 @@ fn what_turns_moves_by_its_chord_and_not_by_its_tangent() {
     }
 }
 
-/// What the trait promises of bad input and of sizes without end.
+/// Checks what the trait promises for bad input and for infinite sizes.
 fn check_limits(obstacle: &dyn Obstacle) {
     let mut contacts = Vec::new();
     for bad in [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(1e300)] {
@@ -432,7 +434,7 @@ fn check_limits(obstacle: &dyn Obstacle) {
     }
     assert!(contacts.is_empty(), "{contacts:?}");
 
-    // Any length of direction; distances in metres. Up to the limit, and the limit with it.
+    // A direction may have any length; distances are in metres. A hit at exactly the limit counts.
     let hit = obstacle
         .cast_ray(above, DVec3::NEG_Y * 7.0, f64::INFINITY)
         .unwrap();
@@ -452,14 +454,14 @@ fn check_limits(obstacle: &dyn Obstacle) {
         288 + 3 + 2 + 1,
         "every triangle, every convex part"
     );
-    // Inside a solid: negative, and the way out is along the normal.
+    // Inside a solid the distance is negative, and the normal points out of the solid.
     let inside = obstacle
         .closest_point(DVec3::new(-3.0, 2.0, -5.0), 1.0)
         .unwrap();
     assert!((inside.distance + 0.5).abs() < SAME, "{inside:?}");
     assert!((inside.normal - DVec3::Y).length() < 1e-5, "{inside:?}");
     let moved = obstacle.motion(&hit.material, 0.0);
-    assert_eq!(moved, None, "no time, no motion");
+    assert_eq!(moved, None, "a tick of no length has no motion");
     let mut nobody = hit.material;
     nobody.key = u64::MAX;
     assert_eq!(obstacle.motion(&nobody, 0.1), None);
@@ -472,7 +474,7 @@ fn limits_and_bad_input_are_as_the_trait_says() {
 }
 
 #[test]
-fn what_stands_still_again_and_what_is_gone_says_so() {
+fn a_stopped_body_has_zero_velocity_and_a_missing_one_no_motion() {
     use avian3d::prelude::Collider;
     let on_carousel = |obstacle: &dyn Obstacle, now| {
         let (rotation, place) = carousel(now);
@@ -493,7 +495,7 @@ fn what_stands_still_again_and_what_is_gone_says_so() {
     }
     let body = move |obstacle: &dyn Obstacle| obstacle.body_of(&material);
     assert_eq!(ask_avian(&mut avian, body), carousel.to_bits());
-    // Of another shape, and the shape again.
+    // With another shape the point is gone; with the first shape it is back.
     let shape = avian.world().get::<Collider>(carousel).cloned();
     for (shape, holds) in [(Some(Collider::sphere(0.1)), false), (shape, true)] {
         avian
@@ -515,7 +517,7 @@ fn what_stands_still_again_and_what_is_gone_says_so() {
 }
 
 #[test]
-fn what_avian_moves_by_velocity_is_met_where_it_is_with_its_children() {
+fn child_colliders_are_hit_where_the_velocity_of_their_body_moves_them() {
     use avian3d::prelude::{
         AngularVelocity, Collider, LinearVelocity, PhysicsPlugins, Position, RigidBody, Rotation,
     };
@@ -549,7 +551,7 @@ fn what_avian_moves_by_velocity_is_met_where_it_is_with_its_children() {
             (ray, obstacle.motion(&ray.material, 1.0 / RATE).unwrap())
         });
         let top = center + DVec3::Y * 0.25;
-        // Far along the way, f32 resolves no more.
+        // Far from the origin, f32 is no more exact.
         assert!(
             (contact.point - top).length() < 3e-5,
             "tick {tick}: {contact:?} {top}"

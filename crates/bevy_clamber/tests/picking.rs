@@ -1,4 +1,4 @@
-//! Pointers hit skin where it is drawn.
+//! Pointers hit skin in the pose that is drawn.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -29,11 +29,11 @@ use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_window::{PrimaryWindow, Window};
 use common::{Limb, animate, app_with, bend, drawn, limb};
 
-/// What was told in the last update.
+/// The `PointerHits` of the last update.
 #[derive(Resource, Default)]
 struct Told(Vec<PointerHits>);
 
-/// Looks along -Z, from in front of the limb's middle.
+/// A camera in front of the limb's middle that looks along -Z, with its window and pointer.
 #[derive(Clone, Copy)]
 struct Viewer {
     camera: Entity,
@@ -63,7 +63,7 @@ fn picking_app(rate: f64) -> (App, Viewer) {
     let projection = PerspectiveProjection::default();
     let camera = Camera {
         order: 3,
-        // What `CameraPlugin` computes, which needs images.
+        // `CameraPlugin` would compute these values, but it needs images.
         computed: ComputedCameraValues {
             clip_from_view: projection.get_clip_from_view(),
             target_info: Some(RenderTargetInfo {
@@ -88,7 +88,7 @@ fn picking_app(rate: f64) -> (App, Viewer) {
     (app, viewer)
 }
 
-/// Where on the window a place is seen.
+/// The location on the window at which a point in the world is seen.
 fn location(app: &App, viewer: Viewer, place: Vec3) -> Location {
     let camera = app.world().get::<Camera>(viewer.camera).unwrap();
     let from = app.world().get::<GlobalTransform>(viewer.camera).unwrap();
@@ -99,7 +99,7 @@ fn location(app: &App, viewer: Viewer, place: Vec3) -> Location {
     }
 }
 
-/// Points at a place, and tells what is hit there.
+/// Moves the pointer to a point in the world, and returns the hits there.
 fn point_at(app: &mut App, viewer: Viewer, place: Vec3) -> Vec<(Entity, HitData)> {
     let location = location(app, viewer, place);
     let mut pointer = app.world_mut().entity_mut(viewer.pointer);
@@ -110,7 +110,7 @@ fn point_at(app: &mut App, viewer: Viewer, place: Vec3) -> Vec<(Entity, HitData)
     told.iter().flat_map(|hits| hits.picks.clone()).collect()
 }
 
-/// What Bevy's own ray cast hits where a place is seen.
+/// The first hit of Bevy's own ray cast, from the camera through a point in the world.
 fn bevy_hit(app: &mut App, viewer: Viewer, place: Vec3) -> Option<Vec3> {
     let position = location(app, viewer, place).position;
     let camera = app.world().get::<Camera>(viewer.camera).unwrap();
@@ -133,7 +133,7 @@ fn bend_down(app: &mut App, limb: &Limb) {
     app.update();
 }
 
-/// In front of the skin of the upper half where it is modelled, and where it is bent to.
+/// A point on the front skin of the upper half in the bind pose, and one in the bent pose.
 const MODELLED: Vec3 = Vec3::new(0.05, 1.7, 0.2);
 const BENT: Vec3 = Vec3::new(-0.7, 1.05, 0.2);
 
@@ -157,11 +157,11 @@ fn a_pointer_hits_the_pose_where_bevys_ray_cast_hits_the_bind_pose() {
     let (point, normal) = (hit.position.unwrap(), hit.normal.unwrap());
     assert!((point - BENT).length() < 1e-4, "{hit:?}");
     assert!((normal - Vec3::Z).length() < 1e-4, "{hit:?}");
-    // From the near plane, 0.1 m before the eye, which is 7.8 m before the skin.
+    // The depth is from the near plane, 0.1 m in front of the eye; the eye is 7.8 m in front of the skin.
     let along = (BENT - Vec3::new(0.0, 1.0, 8.0)).length() * (1.0 - 0.1 / 7.8);
     assert!((hit.depth - along).abs() < 1e-4, "{hit:?}");
 
-    // Bevy's backend beside ours sees nothing of the limb any more, as the documentation says.
+    // With this component Bevy's backend no longer hits the limb, as the documentation says.
     let nothing = SimplifiedMesh(Handle::default());
     app.world_mut().entity_mut(limb.mesh).insert(nothing);
     assert_eq!(bevy_hit(&mut app, viewer, MODELLED), None);
@@ -170,7 +170,7 @@ fn a_pointer_hits_the_pose_where_bevys_ray_cast_hits_the_bind_pose() {
 
 #[test]
 fn a_pointer_hits_skin_where_bevys_ray_cast_hits_the_air_in_front_of_it() {
-    // bevy#25605: skinning takes no notice of where the mesh's own entity is.
+    // bevy#25605: skinning ignores the transform of the mesh's own entity.
     let (mut app, viewer) = picking_app(60.0);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     let mut mesh = app.world_mut().entity_mut(limb.mesh);
@@ -185,7 +185,7 @@ fn a_pointer_hits_skin_where_bevys_ray_cast_hits_the_air_in_front_of_it() {
 }
 
 #[test]
-fn a_hit_lies_on_the_pose_that_the_last_frame_drew_and_says_where() {
+fn a_hit_is_a_point_of_the_pose_that_the_last_frame_drew() {
     let (mut app, viewer) = picking_app(30.0);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
     let place = Transform::from_xyz(0.1, 0.2, -0.3).with_scale(Vec3::splat(0.8));
@@ -195,7 +195,7 @@ fn a_hit_lies_on_the_pose_that_the_last_frame_drew_and_says_where() {
     let indices: Vec<usize> = mesh.indices().unwrap().iter().collect();
     let (mut worst, mut count) = (0.0f64, 0);
     for frame in 0..60 {
-        // Across the front of the upper half.
+        // A point on the front of the upper half.
         let at = drawn(&app, &limb, 60).lerp(drawn(&app, &limb, 83), 0.5);
         let at = at.as_vec3();
         let vertices: Vec<_> = (0..84).map(|vertex| drawn(&app, &limb, vertex)).collect();
@@ -219,12 +219,12 @@ fn a_hit_lies_on_the_pose_that_the_last_frame_drew_and_says_where() {
 }
 
 #[test]
-fn what_is_hidden_ignored_on_other_layers_or_disabled_is_not_hit() {
+fn skin_that_is_hidden_ignored_on_other_layers_or_disabled_is_not_hit() {
     let (mut app, viewer) = picking_app(60.0);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     app.update();
     let count = |app: &mut App| {
-        // What is drawn is decided at the end of a frame, what is hit at the start of the next.
+        // Visibility is computed at the end of a frame, and hits at the start of the next.
         app.update();
         point_at(app, viewer, MODELLED).len()
     };
@@ -246,7 +246,7 @@ fn what_is_hidden_ignored_on_other_layers_or_disabled_is_not_hit() {
     app.world_mut().entity_mut(viewer.camera).insert(other);
     assert_eq!(count(&mut app), 1);
 
-    // The front is gone: the inside of the back is seen.
+    // With the front disabled, the inside of the back is hit.
     let hits = point_at(&mut app, viewer, MODELLED);
     let front = *hits[0].1.extra_as::<SurfacePick>().unwrap();
     let mut surface = app.world_mut().get_mut::<PosedSurface>(mesh).unwrap();
@@ -287,7 +287,7 @@ fn skin_blocks_the_skin_behind_it_unless_it_lets_pointers_through() {
 }
 
 #[test]
-fn a_click_sticks_something_to_moving_skin() {
+fn a_click_attaches_an_entity_to_moving_skin() {
     #[derive(Resource)]
     struct Stuck(Entity);
     let (mut app, viewer) = picking_app(60.0);
@@ -335,7 +335,7 @@ fn a_click_sticks_something_to_moving_skin() {
         let found = app.world().get::<GlobalTransform>(arrow).unwrap();
         let apart = (found.translation().as_dvec3() - expected).length();
         assert!(apart < 1e-4, "frame {frame}: {apart}");
-        // Its +Y along the normal: that side of the limb shows it along its own Z.
+        // Its +Y points along the normal, which is +Z on this side of the limb.
         let up = found.rotation() * Vec3::Y;
         assert!((up - Vec3::Z).length() < 1e-3, "frame {frame}: {up}");
     }

@@ -1,6 +1,6 @@
-//! The prelude and those of Bevy can all be imported whole: a name that two of them have does not compile here.
+//! The preludes of this crate and of Bevy can be glob-imported together: a name in two of them does not compile here.
 
-// In `use`, an ambiguous name is a lint.
+// An ambiguous name in `use` is only a lint.
 #![deny(ambiguous_glob_imports)]
 
 #[expect(unused_imports, reason = "only their names matter")]
@@ -13,7 +13,7 @@ use {
 
 use bevy_clamber::prelude::*;
 
-/// Uses every name where it is there, so that one that is ambiguous is an error, and lists them.
+/// Uses every name under its `cfg`, so that an ambiguous one is an error, and lists the names.
 macro_rules! use_each {
     ($list:ident, $when:meta, $($name:ident)*) => {
         $(
@@ -36,7 +36,7 @@ use_each! { RIGS, cfg(feature = "clamber_gltf"),
     RigAssets RigJoints RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
 }
 
-/// Or a name that is added to the prelude would not be looked at above.
+/// Otherwise a name that is added to the prelude would not be checked above.
 #[test]
 fn every_name_of_the_prelude_is_used() {
     let lines = include_str!("../src/prelude.rs").lines();

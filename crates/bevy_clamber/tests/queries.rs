@@ -1,4 +1,4 @@
-//! Every query against brute force in f64, over several surfaces at once.
+//! Every query over several surfaces agrees with brute force in f64.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -19,10 +19,10 @@ use common::{Limb, add_bindposes, add_mesh, app, bend, limb_mesh, spawn_limb, wa
 use glam::DVec3;
 use oracle::{Corners, Random};
 
-/// What distances of metres may be off: some rounding of positions in f32, at up to 30 m.
+/// Largest error of a distance, metres: a few roundings of positions to f32, at up to 30 m.
 const CLOSE: f64 = 3e-5;
 
-/// Limbs in all sorts of places around the origin, each bent.
+/// Bent limbs around the origin, with various rotations and scales.
 fn crowd(app: &mut App) -> Vec<Limb> {
     let turned = Quat::from_xyzw(0.1, 0.7, -0.1, 0.7);
     let places = [
@@ -44,7 +44,7 @@ fn crowd(app: &mut App) -> Vec<Limb> {
     for (index, place) in places.into_iter().enumerate() {
         let limb = spawn_limb(app, mesh.clone(), bindposes.clone(), place);
         if index == 3 {
-            // Sheared: turned under what is scaled.
+            // Sheared: a rotation below a non-uniform scale.
             let squeezed = Transform::from_scale(Vec3::new(1.5, 0.5, 1.0));
             let above = app.world_mut().spawn(squeezed).id();
             app.world_mut().entity_mut(limb.root).insert(ChildOf(above));
@@ -69,7 +69,7 @@ fn turn(app: &mut App, limb: &Limb, seconds: f64) {
     joint.get_mut::<Transform>().unwrap().rotation = bend(seconds);
 }
 
-/// Asks, as a system would.
+/// Makes a query in a system.
 fn ask<R: Send + Sync + 'static>(
     app: &mut App,
     question: impl Fn(&SurfaceQuery<'_, '_>) -> R + Send + Sync + 'static,
@@ -90,7 +90,7 @@ fn all() -> SurfaceFilter<'static> {
     SurfaceFilter::default()
 }
 
-/// What a query puts into a vector, whatever it held.
+/// The hits of a query, made twice with the same vector, which it must clear.
 fn every(query: impl Fn(&mut Vec<EntityHit>)) -> Vec<EntityHit> {
     let mut hits = Vec::new();
     query(&mut hits);
@@ -104,7 +104,7 @@ fn posed(app: &App, limbs: &[Limb]) -> Vec<(Entity, Vec<Corners>)> {
     limbs.iter().map(of).collect()
 }
 
-/// A hit says where it is in all its ways.
+/// Checks that the fields of a hit agree with each other and with the posed triangles.
 fn check_hit(app: &App, hit: &EntityHit, posed: &[(Entity, Vec<Corners>)]) {
     let surface = app.world().get::<PosedSurface>(hit.entity).unwrap();
     let (_, triangles) = posed.iter().find(|(e, _)| *e == hit.entity).unwrap();
@@ -121,7 +121,7 @@ fn check_hit(app: &App, hit: &EntityHit, posed: &[(Entity, Vec<Corners>)]) {
 }
 
 #[test]
-fn rays() {
+fn rays_agree_with_brute_force() {
     let mut app = app(64.0);
     let limbs = crowd(&mut app);
     let posed = posed(&app, &limbs);
@@ -190,7 +190,7 @@ fn normals_point_out_of_the_skin_however_it_is_placed() {
     let mut app = app(64.0);
     let limbs = crowd(&mut app);
     for limb in limbs {
-        // From inside the tube, a ray meets the wall, whose normal points on.
+        // A ray from inside the tube hits the wall, whose normal points outward.
         let inside = oracle::world_from(&app, limb.joints[0]);
         let origin = inside.transform_point3(DVec3::Y * 0.3).as_vec3();
         let to = inside.transform_vector3(DVec3::new(1.0, 0.1, 0.05));
@@ -201,13 +201,13 @@ fn normals_point_out_of_the_skin_however_it_is_placed() {
         });
         let hit = hit.unwrap();
         let outward = hit.normal.dot(*ray.direction);
-        // The mesh's own winding decides; a mirror must not turn it.
+        // The winding of the mesh decides; mirroring must not flip the normal.
         assert!(outward > 0.0, "{hit:?} {outward}");
     }
 }
 
 #[test]
-fn nearest_points_and_overlaps() {
+fn nearest_points_and_overlaps_agree_with_brute_force() {
     let mut app = app(64.0);
     let limbs = crowd(&mut app);
     let posed = posed(&app, &limbs);
@@ -274,7 +274,7 @@ fn nearest_points_and_overlaps() {
     }
 }
 
-/// The skin at the last tick and the one before, in the world, on straight lines between them.
+/// The triangles in world space at the tick before the last and at the last. Points move straight between them.
 fn moving(app: &App, limbs: &[Limb]) -> Vec<[Corners; 2]> {
     let mut all = Vec::new();
     for limb in limbs {
@@ -294,7 +294,7 @@ fn between([from, to]: [Corners; 2], time: f64) -> Corners {
     [0, 1, 2].map(|corner| from[corner].lerp(to[corner], time))
 }
 
-/// A sweep's answer against distances at samples of its time.
+/// Checks a sweep's hit against the distances at sampled times.
 fn check_sweep(
     what: &str,
     hit: Option<&EntitySweepHit>,
@@ -303,7 +303,7 @@ fn check_sweep(
 ) {
     let end = hit.map_or(1.0, |hit| f64::from(hit.time));
     for sample in 0..20 {
-        // No contact before the time that is told.
+        // There is no contact before the reported time.
         let time = end * f64::from(sample) / 20.0;
         if time < end {
             let apart = distance_at(time);
@@ -327,7 +327,7 @@ fn check_sweep(
 }
 
 #[test]
-fn casts_and_sweeps() {
+fn casts_and_sweeps_agree_with_brute_force() {
     let mut app = app(64.0);
     let limbs = crowd(&mut app);
     // A large motion in the last tick.
@@ -407,7 +407,7 @@ fn casts_and_sweeps() {
             let aside = (center - hit.hit.point).normalize();
             let off = (aside - hit.separation_normal).length();
             assert!(off < 2e-3, "{case}: {aside} {hit:?}");
-            // The skin's own: they differ beside edges and on the inside.
+            // The separation normal differs from the triangle's at edges and on the inside.
             apart += usize::from(aside.dot(hit.hit.normal) < 0.99);
         }
     }
@@ -432,7 +432,7 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
     for entity in entities {
         wait(&mut app, entity);
     }
-    // Out of the order in which they are stored: the smallest comes last.
+    // Moves the smallest entity to another archetype, so that it comes last in storage order.
     app.world_mut()
         .entity_mut(entities[0])
         .insert(Name::new("moved"));
@@ -488,7 +488,7 @@ fn equal_distances_go_to_the_smaller_entity_and_filters_hide() {
 }
 
 #[test]
-fn what_is_not_finite_finds_nothing() {
+fn input_that_is_not_finite_finds_nothing() {
     let mut app = app(64.0);
     crowd(&mut app);
     let (nan, inf) = (f32::NAN, f32::INFINITY);
@@ -519,7 +519,7 @@ fn what_is_not_finite_finds_nothing() {
 }
 
 #[test]
-fn systems_ask_side_by_side() {
+fn two_systems_may_query_in_parallel() {
     #[derive(Resource, Default)]
     struct Found([std::sync::Mutex<Vec<Option<EntityHit>>>; 2]);
     fn look<const N: usize>(surfaces: SurfaceQuery, found: Res<Found>) {

@@ -1,4 +1,4 @@
-//! Anchors in hard places: under odd parents, under each other, on skin that is cut or built anew.
+//! Anchors in hard cases: under unusual parents, under each other, on skin that is cut or rebuilt.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -24,7 +24,7 @@ use bevy_transform::components::{GlobalTransform, Transform};
 use common::{Limb, animate, app, bend, limb};
 use glam::DVec3;
 
-/// What sticks to the limb where a ray along -X at a height meets it, in the limb's frame of rest.
+/// An anchor at the point of the limb that a ray along -X at a height hits.
 fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {
     let ray = Ray3d::new(Vec3::new(9.0, height, 0.05), Dir3::NEG_X);
     let ask = move |surfaces: SurfaceQuery| {
@@ -34,7 +34,7 @@ fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {
     app.world_mut().run_system_once(ask).unwrap().unwrap()
 }
 
-/// Where an anchor's point is drawn, and the direction out of the skin there.
+/// The drawn position of an anchor's point, and the outward normal of the skin there.
 fn on_skin(app: &App, limb: &Limb, anchor: &SurfaceAnchor) -> (DVec3, DVec3) {
     let posed = oracle::posed(app, limb.mesh);
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
@@ -58,7 +58,7 @@ fn jitter(app: &mut App, state: &mut u64) {
 }
 
 #[test]
-fn under_parents_of_all_sorts_and_under_each_other() {
+fn anchored_entities_follow_under_any_parent_and_under_each_other() {
     let mut app = app(60.0);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
     let at = Transform::from_scale(Vec3::splat(1.2));
@@ -72,7 +72,7 @@ fn under_parents_of_all_sorts_and_under_each_other() {
         }
         entity.id()
     };
-    // Made before what they hang under, so that they come first wherever entities are visited.
+    // Spawned before their parents, so that they come first in the order of entities.
     let first = spawn(None, Transform::IDENTITY);
     let second = spawn(None, Transform::IDENTITY);
     let third = spawn(None, Transform::IDENTITY);
@@ -121,7 +121,7 @@ fn under_parents_of_all_sorts_and_under_each_other() {
 }
 
 #[test]
-fn a_parent_that_is_nowhere_leaves_what_sticks_where_it_is() {
+fn a_parent_with_a_degenerate_scale_leaves_anchored_children_in_place() {
     for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0), Vec3::splat(f32::NAN)] {
         let mut app = app(60.0);
         app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
@@ -144,7 +144,7 @@ fn a_parent_that_is_nowhere_leaves_what_sticks_where_it_is() {
 }
 
 #[test]
-fn many_stick_to_one_limb_at_any_rate() {
+fn many_anchors_follow_one_limb_at_any_frame_rate() {
     for rate in [30.0, 60.0, 144.0] {
         let mut app = app(rate);
         app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
@@ -187,7 +187,7 @@ fn many_stick_to_one_limb_at_any_rate() {
 }
 
 #[test]
-fn what_sticks_to_still_skin_is_not_changed() {
+fn the_transform_of_an_anchor_on_still_skin_is_not_marked_as_changed() {
     #[derive(Resource, Default)]
     struct Seen(usize);
     fn look(
@@ -227,7 +227,7 @@ fn losing(app: &mut App) {
 }
 
 #[test]
-fn what_stuck_to_a_triangle_that_is_cut_out_is_lost_once() {
+fn an_anchor_on_a_removed_triangle_is_lost_once() {
     let mut app = app(60.0);
     losing(&mut app);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
@@ -248,7 +248,7 @@ fn what_stuck_to_a_triangle_that_is_cut_out_is_lost_once() {
     };
     assert_eq!(app.world().resource::<Lost>().0, [lost]);
     assert!(app.world().get::<SurfaceAnchor>(kept_arrow).is_some());
-    // What queries no longer see is skin still.
+    // A disabled triangle is still skin.
     let mut surface = app.world_mut().get_mut::<PosedSurface>(limb.mesh).unwrap();
     let hidden = surface
         .surface_mut()
@@ -267,7 +267,7 @@ fn what_stuck_to_a_triangle_that_is_cut_out_is_lost_once() {
 }
 
 #[test]
-fn what_sticks_stays_when_the_same_skin_is_built_anew() {
+fn anchors_stay_when_the_same_mesh_is_rebuilt() {
     let mut app = app(60.0);
     losing(&mut app);
     app.add_systems(PostUpdate, animate.in_set(AnimationSystems));
@@ -289,7 +289,7 @@ fn what_sticks_stays_when_the_same_skin_is_built_anew() {
 }
 
 #[test]
-fn a_hit_of_skin_that_is_no_more_sticks_nothing() {
+fn a_hit_on_a_mesh_that_was_replaced_gives_no_anchor() {
     let mut app = app(60.0);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     let ray = Ray3d::new(Vec3::new(9.0, 1.7, 0.05), Dir3::NEG_X);
@@ -298,7 +298,7 @@ fn a_hit_of_skin_that_is_no_more_sticks_nothing() {
     let stick = move |surfaces: SurfaceQuery| surfaces.anchor_at(&hit);
     let anchor = app.world_mut().run_system_once(stick).unwrap().unwrap();
     assert_eq!(anchor.mesh, hit.mesh);
-    // The same triangles of another shape.
+    // A mesh of another shape with the same triangles.
     let handle = app.world().get::<Mesh3d>(limb.mesh).unwrap().0.clone();
     let mut other = common::limb_mesh();
     other.scale_by(Vec3::new(1.5, 1.0, 1.5));
@@ -329,20 +329,20 @@ fn a_hit_of_skin_that_is_no_more_sticks_nothing() {
 }
 
 #[test]
-fn arrow_and_creature_may_go_together() {
+fn arrow_and_creature_may_be_despawned_together() {
     let mut app = app(60.0);
     losing(&mut app);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     let anchor = anchor_at(&mut app, 1.7);
     let arrows = [0; 5].map(|_| app.world_mut().spawn(anchor).id());
-    // The first that is told takes all the others with it.
+    // The first arrow that is lost despawns all others.
     app.add_observer(move |lost: On<AnchorLost>, mut commands: Commands| {
         for arrow in arrows.iter().filter(|arrow| **arrow != lost.entity) {
             commands.entity(*arrow).try_despawn();
         }
         commands.entity(lost.entity).try_despawn();
     });
-    // In the same schedule, by commands that wait as the plugin's own do.
+    // In the same schedule, by deferred commands, like the plugin's own.
     app.add_systems(
         PostUpdate,
         move |mut commands: Commands, mut done: Local<bool>| {

@@ -1,4 +1,4 @@
-//! A skinned mesh becomes a surface, and is posed as it is animated.
+//! A skinned mesh becomes a surface, which has the pose of its animation.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -15,7 +15,7 @@ use bevy_transform::components::Transform;
 use common::{SPIN, animate, app, limb};
 use glam::DVec3;
 
-/// Where a ray from the right, at a height, meets the limb.
+/// The hit of a ray from the right, at a height.
 fn meet(app: &mut bevy_app::App, height: f32) -> Option<EntityHit> {
     let ray = Ray3d::new(Vec3::new(9.0, height, 0.05), Dir3::NEG_X);
     let ask = move |surfaces: SurfaceQuery| surfaces.cast_ray(ray, 20.0, &SurfaceFilter::default());
@@ -23,7 +23,7 @@ fn meet(app: &mut bevy_app::App, height: f32) -> Option<EntityHit> {
 }
 
 #[test]
-fn a_limb_is_met_where_it_stands_and_where_it_is_bent_to() {
+fn a_ray_hits_a_limb_at_rest_and_where_it_is_bent_to() {
     let mut app = app(64.0);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     let hit = meet(&mut app, 1.8).unwrap();
@@ -45,7 +45,7 @@ fn a_limb_is_met_where_it_stands_and_where_it_is_bent_to() {
     assert!(meet(&mut app, 1.0).is_some());
 }
 
-/// Where the corner of the tip that is drawn last is at a time.
+/// Position of the tip's last corner at a time.
 fn tip(seconds: f64) -> DVec3 {
     let (sin, cos) = (libm::sin(SPIN * seconds), libm::cos(SPIN * seconds));
     let local = DVec3::new(-0.2, 1.0, 0.2);
@@ -56,7 +56,7 @@ fn tip(seconds: f64) -> DVec3 {
     )
 }
 
-/// Checks each tick of two seconds against the time that it should show, `lag` frames behind.
+/// Checks each tick of two seconds against the pose that it should have: one frame late for `PoseTiming::EachFrame`.
 fn check_ticks(rate: f64, timing: PoseTiming) {
     #[derive(Resource, Default)]
     struct Ticks(Vec<(f64, DVec3, DVec3)>);
@@ -110,14 +110,14 @@ fn check_ticks(rate: f64, timing: PoseTiming) {
 }
 
 #[test]
-fn ticks_lag_by_one_frame_where_frames_animate() {
+fn ticks_lag_by_one_frame_when_each_frame_animates() {
     for rate in [30.0, 60.0, 144.0] {
         check_ticks(rate, PoseTiming::EachFrame);
     }
 }
 
 #[test]
-fn ticks_do_not_lag_where_ticks_animate() {
+fn ticks_do_not_lag_when_each_tick_animates() {
     for rate in [30.0, 60.0, 144.0] {
         check_ticks(rate, PoseTiming::EachTick);
     }

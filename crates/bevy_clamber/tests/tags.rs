@@ -1,4 +1,4 @@
-//! What the triangles of a mesh are made of: by component, by function, changed later.
+//! Surface tags of meshes: from a component, from a function, and changed later.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -30,7 +30,7 @@ fn named(app: &mut App, name: &str, x: f32) -> Limb {
     limb
 }
 
-/// The tag that a ray along -Z finds there.
+/// The tag of the skin that a ray along -Z hits.
 fn tag_at(app: &mut App, x: f32) -> SurfaceTag {
     let ray = Ray3d::new(Vec3::new(x + 0.03, 1.5, 9.0), Dir3::NEG_Z);
     let ask = move |surfaces: SurfaceQuery| surfaces.cast_ray(ray, 20.0, &SurfaceFilter::default());
@@ -42,14 +42,14 @@ fn by_name(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
 }
 
 #[test]
-fn a_function_tags_what_has_no_tag_of_its_own() {
+fn a_function_tags_meshes_that_have_no_tag() {
     let mut app = app(60.0);
     app.insert_resource(SurfaceTagger::new(by_name));
     let collider = SkinnedCollider::default();
     let furry = named(&mut app, "furry", 0.0);
     let bald = named(&mut app, "bald", 5.0);
     let tagged = named(&mut app, "furry, but of stone", 10.0);
-    // In one command and in two.
+    // Tag and collider are inserted in one command, or in two.
     let world = app.world_mut();
     world
         .entity_mut(tagged.mesh)
@@ -83,7 +83,7 @@ fn without_a_function_the_tag_is_the_default_until_it_is_changed() {
 }
 
 #[test]
-fn a_mesh_that_comes_after_its_collider_is_tagged_by_what_comes_with_it() {
+fn a_mesh_that_is_inserted_after_its_collider_is_tagged_by_its_name() {
     let mut app = app(60.0);
     app.insert_resource(SurfaceTagger::new(by_name));
     let early = app.world_mut().spawn(SkinnedCollider::default()).id();

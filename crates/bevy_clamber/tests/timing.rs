@@ -1,4 +1,4 @@
-//! Ticks against frames: pauses, jitter, teleports, stillness.
+//! Ticks and frames: pauses, jitter, teleports, stillness.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -30,14 +30,14 @@ const SPEED: f64 = 3.0;
 #[derive(Component)]
 struct Walking;
 
-/// By the time of the schedule that it runs in.
+/// Moves the roots by the time of the schedule that it runs in.
 fn walk(time: Res<Time>, mut roots: Query<&mut Transform, With<Walking>>) {
     for mut root in &mut roots {
         root.translation.x = (SPEED * time.elapsed().as_secs_f64()) as f32;
     }
 }
 
-/// What a tick saw: its time, and where the foot's first vertex was and had been.
+/// Per tick: its time, and the foot's x in this tick and in the one before.
 #[derive(Resource, Default)]
 struct Ticks(Vec<[f64; 3]>);
 
@@ -78,7 +78,7 @@ fn frame(app: &mut App, milliseconds: u64) {
     app.update();
 }
 
-/// Ticks move on, without jumps back, from one to the next as each says; gives how many there were.
+/// Checks that each tick begins where the last one ended and does not move back. Returns the number of ticks.
 fn check(app: &App, what: &str) -> usize {
     let ticks = &app.world().resource::<Ticks>().0;
     for pair in ticks.windows(2) {
@@ -90,7 +90,7 @@ fn check(app: &App, what: &str) -> usize {
 }
 
 #[test]
-fn frames_of_any_length_never_run_backwards_nor_ahead() {
+fn with_frames_of_any_length_surfaces_move_neither_backwards_nor_ahead() {
     for collider in [FRAME, TICK] {
         let (mut app, limb) = walker(collider);
         let mut state = 7u64;
@@ -103,7 +103,7 @@ fn frames_of_any_length_never_run_backwards_nor_ahead() {
             frame(&mut app, 5 + (state >> 33) % 76);
             for [time, now, _] in &app.world().resource::<Ticks>().0[before..] {
                 match collider.root {
-                    // No farther than what was drawn last.
+                    // No farther than the pose that was drawn last.
                     PoseTiming::EachFrame => assert!(*now < drawn + 1e-4, "{now} {drawn}"),
                     PoseTiming::EachTick => assert!((now - SPEED * time).abs() < 1e-4),
                 }
@@ -116,7 +116,7 @@ fn frames_of_any_length_never_run_backwards_nor_ahead() {
 }
 
 #[test]
-fn time_that_is_scaled_or_stands() {
+fn ticks_follow_scaled_and_paused_time() {
     for collider in [FRAME, TICK] {
         let (mut app, _) = walker(collider);
         for (speed, paused) in [
@@ -142,7 +142,7 @@ fn time_that_is_scaled_or_stands() {
             assert_eq!(ticks == 0, paused || speed == 0.0, "{speed} {paused}");
         }
         check(&app, "scaled");
-        // At last it keeps up: a frame behind where frames move it.
+        // In the end it keeps up. With frame timing it lags by one frame, less than 0.1 s.
         let [time, now, _] = *app.world().resource::<Ticks>().0.last().unwrap();
         let lag = SPEED * time - now;
         assert!((-1e-4..SPEED * 0.1).contains(&lag), "{lag}");
@@ -150,9 +150,9 @@ fn time_that_is_scaled_or_stands() {
 }
 
 #[test]
-fn a_fixed_clock_that_lost_time_is_no_frame_behind_for_it() {
+fn ticks_move_evenly_after_the_fixed_clock_has_discarded_time() {
     let (mut app, _) = walker(FRAME);
-    // Half a second is thrown away, as after a load.
+    // The fixed clock discards its overstep once, as after loading.
     app.world_mut()
         .resource_mut::<Time<Virtual>>()
         .set_max_delta(Duration::from_secs(9));
@@ -175,7 +175,7 @@ fn a_fixed_clock_that_lost_time_is_no_frame_behind_for_it() {
     for _ in 0..30 {
         frame(&mut app, 40);
     }
-    // Each tick moves as far as the next.
+    // All ticks move equally far.
     let ticks = &app.world().resource::<Ticks>().0;
     for [_, now, before] in ticks {
         assert!((now - before - SPEED / 64.0).abs() < 1e-4, "{now} {before}");
@@ -204,7 +204,7 @@ fn a_surface_that_appears_between_ticks_has_not_moved() {
 
 #[test]
 fn a_teleport_is_no_motion() {
-    // By turns: told before and after the root is put elsewhere, in frames and in ticks.
+    // The root teleports in a frame's schedule or in a tick's.
     for collider in [FRAME, TICK] {
         for milliseconds in [7, 16, 33] {
             let mut app = app(60.0);
@@ -242,7 +242,7 @@ fn a_teleport_is_no_motion() {
 }
 
 #[test]
-fn joints_and_root_may_be_of_different_clocks() {
+fn joints_and_root_may_have_different_timings() {
     for (joints, root) in [
         (PoseTiming::EachTick, PoseTiming::EachFrame),
         (PoseTiming::EachFrame, PoseTiming::EachTick),
@@ -276,7 +276,7 @@ fn joints_and_root_may_be_of_different_clocks() {
 }
 
 #[test]
-fn only_what_moves_is_changed() {
+fn only_surfaces_that_move_are_marked_as_changed() {
     #[derive(Resource, Default)]
     struct Seen(Vec<Entity>);
     fn look(changed: Query<Entity, Changed<PosedSurface>>, mut seen: ResMut<Seen>) {
@@ -304,7 +304,7 @@ fn only_what_moves_is_changed() {
         let seen = &app.world().resource::<Seen>().0;
         assert!(!seen.contains(&still.mesh), "{collider:?}");
         assert!(seen.len() >= 19, "{collider:?} {}", seen.len());
-        // It stops: one tick more, in which it moved no longer.
+        // After it stops, one more tick changes the surface: its motion ends.
         for _ in 0..3 {
             app.update();
         }
@@ -323,7 +323,7 @@ fn only_what_moves_is_changed() {
 }
 
 #[test]
-fn an_app_in_each_of_two_threads_poses_as_one_alone() {
+fn two_apps_on_two_threads_pose_as_one_alone_does() {
     fn run() -> Vec<[f64; 3]> {
         let (mut app, _) = walker(FRAME);
         for _ in 0..100 {
@@ -338,7 +338,7 @@ fn an_app_in_each_of_two_threads_poses_as_one_alone() {
     let threads = [std::thread::spawn(run), std::thread::spawn(run)];
     for thread in threads {
         let found = thread.join().unwrap();
-        // How many frames passed while the collider was built differs; frames were longer then.
+        // The number of frames differs that passed while the collider was built. Those frames were longer.
         for [_, now, before] in &found[5..] {
             assert!((now - before - alone[50]).abs() < 1e-3, "{now} {before}");
         }
@@ -352,7 +352,7 @@ fn an_app_in_each_of_two_threads_poses_as_one_alone() {
 }
 
 #[test]
-fn what_is_put_into_a_surface_by_hand_lasts_until_the_next_tick() {
+fn a_pose_that_is_set_by_hand_lasts_until_the_next_tick() {
     let mut app = app(64.0);
     let limb = limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
     for _ in 0..4 {

@@ -1,5 +1,5 @@
-//! From the mouse to an arrow, through the picking backend of `bevy_clamber`: a press of the button comes with the
-//! point of skin that the pointer is on, in the pose that the last frame drew. That is what was aimed at.
+//! Shoots an arrow where the mouse is pressed, through the picking backend of `bevy_clamber`. A press carries the point
+//! of skin under the pointer in the pose that the last frame drew, which is the pose that the user aimed at.
 
 use bevy::picking::events::PointerPress;
 use bevy::picking::pointer::PointerButton;
@@ -23,7 +23,7 @@ fn shoot_where_pressed(
     else {
         return;
     };
-    // It goes on to the parents of what was pressed.
+    // The event bubbles up to the parents of the pressed entity.
     if press.button != PointerButton::Primary || press.entity != pick.anchor.surface {
         return;
     }

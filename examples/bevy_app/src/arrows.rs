@@ -1,4 +1,4 @@
-//! Arrows: what they look like, and how one comes to stick in skin.
+//! Arrows: their looks, and how they are attached to skin.
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -6,10 +6,10 @@ use bevy_clamber::prelude::*;
 
 use crate::creature::Creature;
 
-/// Length of an arrow, relative to half of the creature's height: giants are shot at with siege weapons.
+/// Length of an arrow, relative to half of the creature's height, so that it can be seen on a giant, too.
 const LENGTH: f32 = 0.26;
 
-/// What lies flat is taken for so high, relative to its radius.
+/// Least half height that is assumed of a creature, relative to its radius.
 const LOWEST: f32 = 0.3;
 
 /// Meshes of an arrow of length 1, which flies along -Y and whose point is at the origin.
@@ -19,7 +19,7 @@ struct Looks {
     feather: (Mesh3d, MeshMaterial3d<StandardMaterial>),
 }
 
-/// An arrow, and where it hit.
+/// Marks an arrow, and stores the point in the world that it hit.
 #[derive(Component)]
 pub struct Arrow {
     pub hit: Vec3,
@@ -61,7 +61,7 @@ pub struct Bow<'w, 's> {
 }
 
 impl Bow<'_, '_> {
-    /// Sticks an arrow to the first skin along a ray.
+    /// Attaches an arrow to the first point of skin along a ray.
     pub fn shoot(&mut self, ray: Ray3d) {
         let anywhere = SurfaceFilter::default();
         if let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere)
@@ -71,7 +71,7 @@ impl Bow<'_, '_> {
         }
     }
 
-    /// Sticks an arrow to a point of skin, which is at `point` in the world, as it flew: not upright on the skin.
+    /// Attaches an arrow to a point of skin, which is at `point` in the world. It keeps the direction of its flight.
     pub fn stick(&mut self, there: &SurfaceAnchor, point: Vec3, direction: Dir3) {
         let (Some(creature), Some(surface)) = (&self.creature, self.surfaces.get(there.surface))
         else {

@@ -1,4 +1,4 @@
-//! Loads the creature, makes its skin a surface, plays a clip, and measures it.
+//! Loads the creature, makes its skinned meshes surfaces, plays a clip, and measures the creature.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -12,14 +12,14 @@ use bevy_clamber::prelude::*;
 
 use crate::trouble::Trouble;
 
-/// Seconds to wait for the creature before it is given up. The giant of this project takes some seconds where
-/// nothing is optimised.
+/// Seconds to wait for the creature before the app gives up. The giant of this project takes some seconds in an
+/// unoptimised build.
 const PATIENCE: u64 = 120;
 
-/// What to do about a file.
+/// Advice that ends an error message.
 const ANOTHER: &str = "give a glTF or GLB file with a skinned mesh";
 
-/// How large the creature is and where it stands; there once its surfaces are.
+/// Size and place of the creature; inserted when its surfaces are built.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct Creature {
     /// Middle of its bounds in the world.
@@ -29,7 +29,7 @@ pub struct Creature {
 }
 
 impl Creature {
-    /// Height of what it stands on.
+    /// Height of the floor that it stands on.
     pub fn floor(&self) -> f32 {
         self.center.y - self.half_size.y
     }
@@ -40,15 +40,15 @@ impl Creature {
     }
 }
 
-/// What to show.
+/// The file and clip to show.
 #[derive(Resource)]
 struct Wanted {
-    /// Relative to the folder that assets are loaded from.
+    /// Path relative to the folder that assets are loaded from.
     file: PathBuf,
     clip: String,
 }
 
-/// What is being loaded.
+/// The file that is being loaded.
 #[derive(Resource)]
 struct Loading(Handle<Gltf>);
 
@@ -71,7 +71,7 @@ pub fn plugin(file: PathBuf, clip: String) -> impl Plugin {
 }
 
 fn load(wanted: Res<Wanted>, assets: Res<AssetServer>, mut commands: Commands) {
-    // Not as text, in which `#` would begin a label.
+    // Not from text, where `#` would begin a label.
     let path = AssetPath::from_path_buf(wanted.file.clone());
     commands.insert_resource(Loading(assets.load(path)));
 }
@@ -88,7 +88,7 @@ fn spawn(
 ) {
     if let LoadState::Failed(error) = assets.load_state(&loading.0) {
         commands.remove_resource::<Loading>();
-        // After the first line comes a backtrace.
+        // Only the first line: a backtrace follows it.
         let error = error.to_string();
         let error = error.lines().next().unwrap_or_default();
         trouble.end(format_args!("cannot be loaded: {error}; {ANOTHER}"));
@@ -123,8 +123,8 @@ fn spawn(
     creature.observe(play);
 }
 
-/// Whatever has a skinned mesh and is to be seen becomes a surface. What a file says is for collision only, as
-/// `assets/colossus.glb` does, is hidden: arrows stick to what one sees.
+/// Makes visible skinned meshes surfaces, and hides meshes that are for collision only, as in `assets/colossus.glb`:
+/// arrows stick to the visible meshes.
 fn add_colliders(
     ready: On<WorldInstanceReady>,
     children: Query<&Children>,
@@ -195,7 +195,7 @@ fn measure(
         trouble.end(format_args!("its skin has no size; {ANOTHER}"));
     } else {
         if !failed.is_empty() {
-            trouble.go_on(format_args!("arrows do not stick to all of it ({why})"));
+            trouble.go_on(format_args!("arrows do not stick to some meshes ({why})"));
         }
         commands.insert_resource(creature);
     }

@@ -1,4 +1,4 @@
-//! A window with an animated creature: click on it, and arrows stick to its skin and follow it.
+//! A window with an animated creature: click on it, and arrows stick in its skin and follow it.
 //!
 //! ```sh
 //! cargo run -- ../../assets/colossus.glb --clip walk
@@ -27,10 +27,10 @@ struct Arguments {
     /// The creature: any glTF or GLB file with a skinned mesh.
     #[arg(default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb"))]
     file: PathBuf,
-    /// Which animation it plays; its first if none is called so.
+    /// The animation to play; if the file has none of this name, its first one.
     #[arg(long, default_value = "walk")]
     clip: String,
-    /// Opens no window: shoots some arrows by itself, writes a picture here as PNG, and ends.
+    /// Opens no window: shoots some arrows by itself, writes a picture to this PNG file, and ends.
     #[arg(long, value_name = "PNG")]
     screenshot: Option<PathBuf>,
 }
@@ -45,9 +45,9 @@ fn main() -> AppExit {
             return AppExit::error();
         }
     };
-    // Bevy loads from one folder: the creature's, so that a glTF file finds what it refers to.
+    // Bevy loads assets from one folder: the creature's, so that a glTF file finds the files that it refers to.
     let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else {
-        eprintln!("{called} is no file; give a glTF or GLB file with a skinned mesh");
+        eprintln!("{called} is not a file; give a glTF or GLB file with a skinned mesh");
         return AppExit::error();
     };
     let defaults = DefaultPlugins.set(AssetPlugin {

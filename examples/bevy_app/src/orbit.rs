@@ -1,4 +1,4 @@
-//! A camera that goes around the creature: dragged with the right button, nearer and farther with the wheel.
+//! A camera that moves around the creature: drag with the right button to turn it, use the wheel to zoom.
 
 use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
@@ -9,13 +9,13 @@ use crate::creature::Creature;
 /// Radians that the camera turns for each pixel of a drag.
 const TURN: f32 = 0.005;
 
-/// Share of the distance that a line of the wheel goes.
+/// Share of the distance by which one line of the wheel zooms.
 const ZOOM: f32 = 0.1;
 
-/// How near to straight up or down the camera may look, radians.
+/// Steepest angle at which the camera may look up or down, radians.
 const STEEPEST: f32 = 1.5;
 
-/// Pixels that trackpads call a line.
+/// Pixels of a trackpad that count as one line.
 const LINE: f32 = 40.0;
 
 pub fn plugin(app: &mut App) {
@@ -33,7 +33,7 @@ fn orbit(
         MouseScrollUnit::Line => scroll.delta.y,
         MouseScrollUnit::Pixel => scroll.delta.y / LINE,
     };
-    // The cursor's way: what the mouse itself reports is missing on remote desktops.
+    // The motion of the cursor: remote desktops do not report the motion of the mouse itself.
     let way: Vec2 = moved.read().filter_map(|moved| moved.delta).sum();
     let dragged = if buttons.pressed(MouseButton::Right) {
         way * TURN

@@ -1,5 +1,5 @@
-//! Without a window: arrows fly by themselves, a pointer presses once, and what a camera sees becomes a PNG, if it
-//! is what it should be.
+//! Runs the app without a window: arrows fly by themselves, a pointer presses once, and the camera's picture is written
+//! as a PNG and checked.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -20,23 +20,23 @@ use crate::creature::Creature;
 use crate::proof::Proof;
 use crate::trouble::Trouble;
 
-/// Pixels.
+/// Size of the picture, pixels.
 const SIZE: UVec2 = UVec2::new(1280, 720);
 
-/// Each frame is so many seconds of the scene, however long it takes.
+/// Seconds of the scene per frame, however long the frame takes.
 const FRAME: f64 = 1.0 / 60.0;
 
-/// One shot a frame.
+/// Number of shots, one a frame.
 const SHOTS: u32 = 80;
 
 /// Frames after the last shot, which carry the arrows on.
 const AFTER: u32 = 45;
 
-/// Frames that are drawn; what uploads late is there in the last.
+/// Number of frames that are drawn, so that late uploads are in the last one.
 const DRAWN: u32 = 6;
 
-/// The frame in which a pointer presses, drawn as the one before must be: what no camera sees cannot be pointed at.
-/// One later the arrow is there.
+/// The frame in which a pointer presses. It and the frame before are drawn, since pointers hit only entities that a
+/// camera sees. The arrow is there one frame later.
 const PRESS: u32 = SHOTS + AFTER - 3;
 
 /// Frames to wait for the picture: the renderer is a few behind.
@@ -45,13 +45,13 @@ const PATIENCE: u32 = 600;
 pub fn no_window(defaults: impl PluginGroup) -> PluginGroupBuilder {
     defaults
         .set(WindowPlugin {
-            // Nobody opens it, but without one Bevy's picking has no rays.
+            // It is never opened, but without it Bevy's picking has no rays.
             primary_window: Some(Window::default()),
             exit_condition: ExitCondition::DontExit,
             ..default()
         })
         .set(RenderPlugin {
-            // Nothing is left out of the picture because it still compiles.
+            // Otherwise a pipeline that still compiles would leave a gap in the picture.
             synchronous_pipeline_compilation: true,
             ..default()
         })
@@ -59,13 +59,13 @@ pub fn no_window(defaults: impl PluginGroup) -> PluginGroupBuilder {
         .add(ScheduleRunnerPlugin::run_loop(Duration::ZERO))
 }
 
-/// What is written where.
+/// The picture to write, and the progress of the scene.
 #[derive(Resource)]
 struct Picture {
     path: PathBuf,
     target: Handle<Image>,
     frame: u32,
-    /// Where the pointer has pressed, pixels, and the arrow that came of it.
+    /// Where the pointer has pressed, pixels, and the arrow that was shot there.
     pressed: Option<(Vec2, Option<Entity>)>,
 }
 
@@ -91,7 +91,7 @@ pub fn plugin(path: PathBuf) -> impl Plugin {
     }
 }
 
-/// The camera sleeps until there is something to see: software renderers are slow.
+/// Draws into an image. The camera is inactive until the last frames, because software renderers are slow.
 fn draw_into_picture(
     camera: Single<(Entity, &mut Camera)>,
     picture: Res<Picture>,
@@ -103,7 +103,7 @@ fn draw_into_picture(
     commands.entity(entity).insert(target);
 }
 
-/// A shot each frame, some time for the skin to move on, then the picture.
+/// Shoots an arrow each frame, lets the skin move for a while, then takes the picture.
 fn play(
     mut picture: ResMut<Picture>,
     mut camera: Single<&mut Camera>,
@@ -125,11 +125,11 @@ fn play(
             .observe(write);
     }
     if frame == last + PATIENCE {
-        trouble.end("the renderer gives no picture");
+        trouble.end("the renderer returned no picture");
     }
 }
 
-/// Presses where an arrow is seen to stick, the one nearest to the middle of the picture: there is skin.
+/// Presses on the visible arrow that is nearest to the middle of the picture, since there is skin.
 fn press(
     mut picture: ResMut<Picture>,
     camera: Single<(&Camera, &GlobalTransform)>,
@@ -138,7 +138,7 @@ fn press(
     mut step: ResMut<TimeUpdateStrategy>,
     mut pointer: MessageWriter<PointerInput>,
 ) {
-    // `play` has counted already.
+    // `play` has already increased the number.
     let frame = picture.frame - 1;
     if frame == PRESS + 1
         && let Some((_, arrow)) = &mut picture.pressed
@@ -158,7 +158,7 @@ fn press(
         return;
     };
     picture.pressed = Some((position, None));
-    // From here the scene stands still: where the pointer was the arrow must be.
+    // From here on the scene stands still, so that the arrow must be where the pointer was.
     *step = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
     let location = Location {
         target: NormalizedRenderTarget::Image(picture.target.clone().into()),
@@ -176,7 +176,7 @@ fn press(
     }
 }
 
-/// From archers on both sides, at points spread evenly over the creature.
+/// The ray of a shot, by archers on both sides, at points that are spread evenly over the creature.
 fn shot(index: u32, creature: &Creature) -> Ray3d {
     let half = creature.half_size;
     let share = (index as f32 + 0.5) / SHOTS as f32;

@@ -1,4 +1,4 @@
-//! What a picture must show: arrows in skin that has carried them on, and one where the pointer has pressed.
+//! Checks the picture: arrows are in the skin, the skin has carried them, and one is where the pointer has pressed.
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -7,18 +7,18 @@ use bevy_clamber::prelude::*;
 use crate::arrows::Arrow;
 use crate::creature::Creature;
 
-/// How far an arrow may be from the skin, relative to the creature's radius. It lies on the skin as this frame draws
-/// it, and a query finds the skin a frame earlier: a foot that swings is some hundredths farther.
+/// Largest distance of an arrow from the skin, relative to the creature's radius. The arrow lies on the skin as this
+/// frame draws it, but a query sees the skin one frame earlier. A swinging foot moves some hundredths in a frame.
 const SKIN: f32 = 0.1;
 
-/// How far from the pointer its arrow may be, pixels. The scene stands still since, so nothing but rounding is in it;
-/// a hit in the pose of the tick, not of the frame that was seen, would be off by what the skin moves in a frame.
+/// Largest distance from the pointer to its arrow, pixels. The scene has stood still since, so only rounding counts. A
+/// hit in the pose of the tick instead of the drawn frame would be off by the motion of a frame.
 const POINTER: f32 = 0.5;
 
-/// Red pixels that one sees of each arrow at least, on an average: of the volley at the giant some 140 are seen of each.
+/// Least number of visible red pixels per arrow, on average. The giant's picture has about 140.
 const RED: usize = 10;
 
-/// What the picture is compared with.
+/// The state of the world that the picture is compared with.
 #[derive(SystemParam)]
 pub struct Proof<'w, 's> {
     creature: Res<'w, Creature>,
@@ -28,8 +28,7 @@ pub struct Proof<'w, 's> {
 }
 
 impl Proof<'_, '_> {
-    /// What there is to see; an error if it is not what it should be. `pressed` is where the pointer was, and its
-    /// arrow.
+    /// Checks the picture and the arrows, and describes them. `pressed` is where the pointer was, and its arrow.
     pub fn check(
         &self,
         pixels: impl Iterator<Item = [u8; 3]>,
@@ -40,10 +39,10 @@ impl Proof<'_, '_> {
             place.translation().distance(arrow.hit)
         };
         let Some(farthest) = self.arrows.iter().map(carried).max_by(f32::total_cmp) else {
-            return Err("no arrow has met its skin".into());
+            return Err("no arrow has hit its skin".into());
         };
         if farthest == 0.0 {
-            return Err("the skin carried no arrow on; `--clip` chooses one that moves".into());
+            return Err("the skin has moved no arrow; choose another clip with `--clip`".into());
         }
         let slack = SKIN * self.creature.radius();
         let anywhere = SurfaceFilter::default();
@@ -57,15 +56,15 @@ impl Proof<'_, '_> {
         let missed = self.missed_by(pressed)?;
         let red = pixels.filter(|&pixel| is_feather(pixel)).count();
         if red < RED * count {
-            return Err(format!("{count} arrows, of which one sees {red} pixels"));
+            return Err(format!("{count} arrows, but only {red} visible red pixels"));
         }
         Ok(format!(
-            "{count} arrows stick, {red} red pixels; the skin carried one {farthest:.2} m; \
-             the pointer's is {missed:.3} pixels from it"
+            "{count} arrows stick, {red} red pixels; the skin carried one by {farthest:.2} m; \
+             the pointer's arrow is {missed:.3} pixels from it"
         ))
     }
 
-    /// How far from the pointer its arrow is seen, pixels.
+    /// Distance from the pointer to its arrow in the picture, pixels.
     fn missed_by(&self, pressed: Option<(Vec2, Option<Entity>)>) -> Result<f32, String> {
         let Some((pointer, Some(arrow))) = pressed else {
             return Err(format!("the pointer shot no arrow: {pressed:?}"));
@@ -78,7 +77,7 @@ impl Proof<'_, '_> {
             .and_then(|(_, _, place)| camera.world_to_viewport(from, place.translation()).ok())
             .map_or(f32::INFINITY, |seen| seen.distance(pointer));
         if missed > POINTER {
-            return Err(format!("the pointer's arrow is {missed} pixels from it"));
+            return Err(format!("the pointer's arrow is {missed} pixels off"));
         }
         Ok(missed)
     }

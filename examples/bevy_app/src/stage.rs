@@ -1,4 +1,4 @@
-//! Everything around the creature, to its scale: window, camera, light, ground.
+//! The scene around the creature, scaled to its size: window, camera, light, ground.
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::Hdr;
@@ -7,10 +7,10 @@ use bevy::prelude::*;
 
 use crate::creature::Creature;
 
-/// Of the sky, and of what is far away.
+/// Colour of the sky and of the fog.
 const SKY: Color = Color::srgb(0.64, 0.80, 0.98);
 
-/// Stones that stand around, so that one sees how far the ground goes.
+/// Number of stones around the creature, which show how far the ground extends.
 const STONES: u32 = 70;
 
 /// Radians from one stone to the next, seen from the creature: the golden angle spreads them evenly.
@@ -107,7 +107,7 @@ fn set(
     for index in 0..STONES {
         let turn = Quat::from_rotation_y(index as f32 * GOLDEN_ANGLE);
         let away = radius * (2.5 + 0.14 * index as f32);
-        // Of many sizes, in no order that one sees.
+        // Many sizes, in no visible order.
         let size = radius * (0.07 + 0.08 * ((index * 7) % 11) as f32 / 11.0);
         let tall = size * (1.0 + ((index * 5) % 7) as f32 / 2.0);
         let place = Transform::from_translation(floor + turn * Vec3::Z * away)

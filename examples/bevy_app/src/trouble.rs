@@ -1,5 +1,5 @@
-//! What goes wrong with the creature's file. The log says it; without what the app is for, it ends, and otherwise
-//! the window's title says it as well. In both cases the exit code is not 0.
+//! Reports errors of the creature's file. They are logged. If the app cannot go on, it ends; otherwise the window's
+//! title shows the error as well. In both cases the exit code is not 0.
 
 use core::fmt::Display;
 
@@ -7,11 +7,11 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::window::ExitSystems;
 
-/// The creature's file, as the user has called it.
+/// The creature's file, as the user has written it.
 #[derive(Resource)]
 struct File(String);
 
-/// There once something went wrong that the app goes on after.
+/// Inserted after an error that the app survives.
 #[derive(Resource)]
 struct GoesOn;
 
@@ -26,7 +26,7 @@ pub fn plugin(file: String) -> impl Plugin {
     }
 }
 
-/// Tells the user.
+/// Reports errors to the user.
 #[derive(SystemParam)]
 pub struct Trouble<'w, 's> {
     file: Res<'w, File>,
@@ -35,13 +35,13 @@ pub struct Trouble<'w, 's> {
 }
 
 impl Trouble<'_, '_> {
-    /// Nothing can be done with this file.
+    /// Reports that the file cannot be used, and ends the app.
     pub fn end(&mut self, what: impl Display) {
         error!("{}: {what}", self.file.0);
         self.commands.write_message(AppExit::error());
     }
 
-    /// Not all can be done that should.
+    /// Reports that the file can be used only in part.
     pub fn go_on(&mut self, what: impl Display) {
         error!("{}: {what}", self.file.0);
         for mut window in &mut self.windows {
@@ -51,7 +51,7 @@ impl Trouble<'_, '_> {
     }
 }
 
-/// Of several exits in a frame, Bevy takes one that is an error.
+/// Adds an error to a regular exit: of several exits in a frame, Bevy takes one that is an error.
 fn fail_at_the_end(mut exits: ResMut<Messages<AppExit>>) {
     if !exits.is_empty() {
         exits.write(AppExit::error());

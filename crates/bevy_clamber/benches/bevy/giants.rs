@@ -20,7 +20,7 @@ use crate::common;
 /// An app with some giants, all at one place.
 pub(crate) struct Giants {
     pub(crate) app: App,
-    /// By giant, in the order of the skeleton.
+    /// Joints per giant, in the order of the skeleton.
     pub(crate) joints: Vec<Vec<Entity>>,
     pub(crate) surfaces: Vec<Entity>,
 }
@@ -74,7 +74,7 @@ impl Giants {
         }
     }
 
-    /// Other threads are not woken for a tick.
+    /// Runs the measured schedules on one thread, so that no other threads are woken.
     pub(crate) fn on_one_thread(&mut self) {
         self.app.edit_schedule(FixedPostUpdate, |schedule| {
             schedule.set_executor(SingleThreadedExecutor::new());
@@ -84,7 +84,7 @@ impl Giants {
         });
     }
 
-    /// As an animation would.
+    /// Writes a pose to the joints of all giants, as an animation would.
     pub(crate) fn pose(&mut self, pose: &Pose) {
         for joints in &self.joints {
             for (joint, transform) in joints.iter().zip(&pose.transforms) {
@@ -98,7 +98,7 @@ impl Giants {
         }
     }
 
-    /// What all of them share.
+    /// The collider mesh that all giants share.
     pub(crate) fn mesh(&self) -> Arc<ColliderMesh> {
         let surface = self.app.world().get::<PosedSurface>(self.surfaces[0]);
         Arc::clone(surface.unwrap().mesh())

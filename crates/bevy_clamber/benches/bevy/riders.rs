@@ -1,4 +1,4 @@
-//! What climbers on the giant ask in a tick, of a system in Bevy and of the core alone.
+//! The queries of climbers on the giant in a tick, by a system in Bevy and by the core alone.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use bevy_math::{Dir3, Quat, Vec3};
 use bevy_shape::Ray3d;
 use clamber_scenes::Creature;
 
-/// Half the height of a climber's segment, its radius, and how far it reaches and looks, metres.
+/// Half the length of a climber's segment, its radius, and how far it reaches and looks, metres.
 const HALF: f32 = 0.6;
 const RADIUS: f32 = 0.3;
 const REACH: f32 = 0.1;
@@ -29,7 +29,7 @@ pub(crate) struct Rider {
     anchor: Anchor,
 }
 
-/// Climbers on every so manieth triangle, as each pose carries them.
+/// For each pose, climbers that are spread evenly over the triangles.
 pub(crate) fn over(
     mesh: &Arc<ColliderMesh>,
     creature: &Creature,
@@ -72,7 +72,7 @@ impl Rider {
     }
 }
 
-/// The core's answers, in model space; gives how many there are.
+/// Makes the queries of the core, in model space; returns the number of hits.
 pub(crate) fn answer(
     surface: &SkinnedSurface,
     riders: &[Rider],
@@ -95,7 +95,7 @@ pub(crate) fn answer(
     found
 }
 
-/// Whom the system asks for.
+/// The climbers that the system makes queries for.
 #[derive(Resource, Default)]
 pub(crate) struct Asked(Vec<(Rider, SurfaceAnchor)>);
 
@@ -112,11 +112,11 @@ impl Asked {
     }
 }
 
-/// How many answers there were.
+/// Number of hits.
 #[derive(Resource, Default)]
 pub(crate) struct Answers(pub(crate) usize);
 
-/// The same questions, in world space.
+/// Makes the same queries in world space.
 pub(crate) fn ask(
     asked: Res<Asked>,
     surfaces: SurfaceQuery,

@@ -12,7 +12,7 @@ use super::{ColliderError, ColliderMeshes, ColliderStatus, ColliderTag, SkinnedC
 use crate::PosedSurface;
 use crate::surface::{Hierarchy, Rig};
 
-/// An asset that changed: what was built from it is built anew; one that is gone takes it along.
+/// Restarts the build of colliders whose assets changed, and removes surfaces whose assets are gone.
 pub(crate) fn forget_changed_assets(
     mut meshes: MessageReader<AssetEvent<Mesh>>,
     mut bindposes: MessageReader<AssetEvent<SkinnedMeshInverseBindposes>>,
@@ -47,7 +47,7 @@ pub(crate) fn forget_changed_assets(
     }
 }
 
-/// Waits for an asset that has changed. The surface serves until then, unless the asset is gone.
+/// Sets a collider back to waiting. Its surface stays until the next build is done, unless the asset is gone.
 fn begin_anew(
     entity: Entity,
     status: &mut Mut<'_, ColliderStatus>,
@@ -60,7 +60,7 @@ fn begin_anew(
     }
 }
 
-/// Components that a collider follows from.
+/// Components that a collider is built from.
 type Source = (
     Entity,
     Ref<'static, SkinnedCollider>,
@@ -71,7 +71,7 @@ type Source = (
     Option<&'static mut PosedSurface>,
 );
 
-/// Makes surfaces of what is loaded, and takes away those whose components are gone.
+/// Builds surfaces whose assets are loaded, and removes those whose components are gone.
 pub(crate) fn build_colliders(
     mut sources: Query<Source>,
     meshes: Res<Assets<Mesh>>,
@@ -98,7 +98,7 @@ pub(crate) fn build_colliders(
         }
         let wanted = match &*status {
             ColliderStatus::Waiting | ColliderStatus::Building => true,
-            // Parents and transforms may come a frame later than the mesh, and no asset tells of it.
+            // Parents and transforms may be added after the mesh, and no asset event reports it.
             ColliderStatus::Failed(error) => error.is_of_hierarchy(),
             ColliderStatus::Ready => false,
         };
@@ -138,7 +138,7 @@ pub(crate) fn build_colliders(
                 commands.entity(entity).try_insert(surface);
                 *status = ColliderStatus::Ready;
             }
-            // As before: told already.
+            // The same error as before: logged already.
             Err(error) if matches!(&*status, ColliderStatus::Failed(known) if *known == error) => {}
             Err(error) => {
                 if error.is_of_hierarchy()
@@ -153,14 +153,14 @@ pub(crate) fn build_colliders(
     }
 }
 
-/// Marked as changed only if it is.
+/// Sets a status to waiting; marks it as changed only if it was not.
 fn wait(status: &mut Mut<'_, ColliderStatus>) {
     if !matches!(**status, ColliderStatus::Waiting) {
         **status = ColliderStatus::Waiting;
     }
 }
 
-/// A matrix by columns, whose last row says nothing.
+/// An affine map from a matrix by columns; its last row is ignored.
 fn widen(columns: &[f32; 16]) -> DAffine3 {
     Affine::from_cols_array(columns).to_f64()
 }

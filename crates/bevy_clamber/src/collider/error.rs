@@ -2,69 +2,69 @@ use bevy_mesh::{PrimitiveTopology, VertexFormat};
 use clamber_surface::mesh::MeshError;
 use thiserror::Error;
 
-/// Why a mesh asset does not become a collider.
+/// Why no collider can be built from a skinned mesh.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ColliderError {
-    /// The mesh has given its data to the renderer.
+    /// The mesh's data was moved to the render world.
     #[error(
         "the mesh was moved to the render world; load it with RenderAssetUsages::MAIN_WORLD as well"
     )]
     MovedToRenderWorld,
-    /// A vertex attribute that skinning needs.
+    /// A vertex attribute that skinning needs is missing.
     #[error("the mesh has no {0}")]
     Missing(&'static str),
-    /// A vertex attribute in a format that has no meaning for it.
-    #[error("{attribute} are {format:?}, which is not understood")]
+    /// A vertex attribute has a format that is not supported.
+    #[error("{attribute} are stored as {format:?}, which is not supported")]
     Format {
-        /// Which one.
+        /// The attribute.
         attribute: &'static str,
-        /// How it is stored.
+        /// Its format.
         format: VertexFormat,
     },
     /// Positions are compressed relative to bounds that the mesh does not have.
-    #[error("positions are compressed, but the mesh has no `final_aabb` to undo it")]
+    #[error("positions are compressed, but the mesh has no `final_aabb` to decompress them")]
     NoBounds,
-    /// No list or strip of triangles.
-    #[error("a {0:?} has no triangles")]
+    /// The mesh is not a list or strip of triangles.
+    #[error("the mesh is a {0:?}, which has no triangles")]
     Topology(PrimitiveTopology),
-    /// Attributes of different lengths.
+    /// Two vertex attributes have different lengths.
     #[error("{positions} positions, but {found} {attribute}")]
     Length {
-        /// Vertices of the mesh.
+        /// Number of positions.
         positions: usize,
-        /// Which attribute.
+        /// The other attribute.
         attribute: &'static str,
         /// Its length.
         found: usize,
     },
-    /// The triangles do not make a collider.
+    /// `clamber_surface` refuses the mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// `SkinnedMesh` has more joints than inverse bind poses.
     #[error("{joints} joints, but {inverse_bindposes} inverse bind poses")]
     InverseBindposes {
-        /// Joints of `SkinnedMesh`.
+        /// Number of joints of `SkinnedMesh`.
         joints: usize,
-        /// Matrices of its asset.
+        /// Number of matrices in its asset.
         inverse_bindposes: usize,
     },
-    /// A joint is gone, has no `Transform`, or hangs under itself.
-    #[error("joint {joint} is gone, has no Transform, or its parents have none")]
+    /// A joint or one of its ancestors is gone or has no `Transform`, or the joint is its own ancestor.
+    #[error("joint {joint} or one of its parents is gone, has no Transform, or forms a cycle")]
     Joint {
-        /// Which one.
+        /// Index of the joint in `SkinnedMesh`.
         joint: usize,
     },
-    /// The joints share no parent: they are in several hierarchies.
-    #[error("joint {joint} hangs in another hierarchy than joint 0")]
+    /// The joints are in several hierarchies, without a common root.
+    #[error("joint {joint} is in another hierarchy than joint 0")]
     Hierarchies {
-        /// The first one that does.
+        /// Index of the first joint that is not in the hierarchy of joint 0.
         joint: usize,
     },
 }
 
 impl ColliderError {
-    /// It may go away as entities get their transforms and parents.
+    /// True for an error that may go away when entities get their transforms and parents.
     pub(crate) fn is_of_hierarchy(&self) -> bool {
         matches!(self, Self::Joint { .. } | Self::Hierarchies { .. })
     }

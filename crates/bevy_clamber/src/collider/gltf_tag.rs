@@ -1,11 +1,11 @@
-//! What a glTF file that Bevy has loaded says of its surfaces.
+//! Surface tags from the material extras of glTF files that Bevy loads.
 
 use bevy_ecs::prelude::*;
 use bevy_gltf::GltfMaterialExtras;
 use clamber_surface::mesh::SurfaceTag;
 
-/// The tag that the extras of a mesh's material give, by the keys and words that `clamber_gltf` reads. What is
-/// misspelt is a line in the log, and no tag.
+/// The tag in the extras of a mesh's material, with the keys and words that `clamber_gltf` reads. A misspelt tag is
+/// logged as an error and ignored.
 pub(super) fn tag_of(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
     let extras = mesh.get::<GltfMaterialExtras>()?;
     clamber_gltf::tag_in_extras(&extras.value).unwrap_or_else(|error| {
@@ -45,7 +45,7 @@ mod tests {
         let mut world = World::new();
         let ledge = r#"{"clamber": {"surface": "stone", "ledge": true}}"#;
         assert_eq!(tag(&mut world, extras(ledge)), LEDGE);
-        // Of a node or a primitive they say nothing of the surface, as in `clamber_gltf`.
+        // Extras of a node or a primitive do not tag the surface, as in `clamber_gltf`.
         let value = ledge.to_owned();
         let other = tag(&mut world, GltfExtras { value });
         assert_eq!(other, SurfaceTag::default());

@@ -10,15 +10,15 @@ use clamber_surface::mesh::{ColliderMesh, SurfaceTag};
 use super::ColliderError;
 use super::raw::RawMesh;
 
-/// A collider mesh and where its triangles come from.
+/// A collider mesh, and the source of its triangles.
 #[derive(Debug)]
 pub(crate) struct BuiltCollider {
     pub(crate) mesh: Arc<ColliderMesh>,
-    /// By triangle of the collider: which triangle of the mesh asset it is.
+    /// Per triangle of the collider: its index among the triangles of the mesh asset.
     pub(crate) source_triangles: Vec<u32>,
 }
 
-/// What two entities have in common that share a collider mesh.
+/// Entities with equal keys share a collider mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ColliderKey {
     pub(crate) mesh: AssetId<Mesh>,
@@ -26,7 +26,7 @@ pub(crate) struct ColliderKey {
     pub(crate) tag: SurfaceTag,
 }
 
-/// What came of a build, shared by all that wait for it.
+/// The result of a build, shared by all entities that use it.
 pub(crate) type Built = Result<Arc<BuiltCollider>, Arc<ColliderError>>;
 
 enum Entry {
@@ -34,14 +34,14 @@ enum Entry {
     Done(Built),
 }
 
-/// Collider meshes by mesh asset, as long as that asset lives.
+/// Collider meshes, kept until their mesh asset changes or is removed.
 #[derive(Resource, Default)]
 pub(crate) struct ColliderMeshes {
     entries: HashMap<ColliderKey, Entry>,
 }
 
 impl ColliderMeshes {
-    /// What came of a build, if it is done; starts it if nobody asked before. `mesh` is read then.
+    /// The result of a build; `None` while it runs. The first call for a key copies `mesh` and starts the build.
     pub(crate) fn get_or_build(&mut self, key: ColliderKey, mesh: &Mesh) -> Option<Built> {
         let entry = self
             .entries
@@ -70,7 +70,7 @@ impl ColliderMeshes {
         }
     }
 
-    /// Forgets what was built, or is being built, from a mesh asset.
+    /// Forgets the colliders that were built, or are being built, from a mesh asset.
     pub(crate) fn forget(&mut self, mesh: AssetId<Mesh>) {
         self.entries.retain(|key, _| key.mesh != mesh);
     }

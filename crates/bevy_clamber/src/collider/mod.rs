@@ -1,4 +1,4 @@
-//! From mesh assets to collider meshes: read, build away from the main thread, share, forget.
+//! Collider meshes from mesh assets: read, built off the main thread, shared between entities, freed with the asset.
 
 mod build;
 mod error;
@@ -20,17 +20,17 @@ pub(crate) use meshes::{BuiltCollider, ColliderMeshes};
 pub(crate) use tag::tag_colliders;
 pub use tag::{ColliderTag, SurfaceTagger};
 
-/// Makes a surface of the skinned mesh on this entity: its `Mesh3d` and `SkinnedMesh`.
+/// Makes the skinned mesh of this entity (its `Mesh3d` and `SkinnedMesh`) a surface.
 ///
-/// Once both assets are loaded, the collider is built away from the main thread, and shared by all that show
-/// the same mesh; then a [`PosedSurface`](crate::PosedSurface) appears here. [`ColliderStatus`] says how far it
-/// is, or what is wrong.
+/// Once both assets are loaded, the collider is built off the main thread; entities with the same mesh, number of
+/// joints and tag share it. When it is ready, a [`PosedSurface`](crate::PosedSurface) is inserted on this entity.
+/// [`ColliderStatus`] holds the progress, or the error.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
 /// # use bevy_mesh::skinning::SkinnedMesh;
 /// # use bevy_clamber::prelude::*;
-/// /// Whatever has a skinned mesh gets a collider, as scenes spawn.
+/// /// Gives every skinned mesh a collider as it is spawned.
 /// fn add_colliders(added: On<Add<SkinnedMesh>>, mut commands: Commands) {
 ///     commands.entity(added.entity).insert(SkinnedCollider::default());
 /// }
@@ -39,14 +39,14 @@ pub use tag::{ColliderTag, SurfaceTagger};
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(ColliderStatus)]
 pub struct SkinnedCollider {
-    /// When the joints are animated. Default: once a frame, as by Bevy's `AnimationPlugin`.
+    /// When the joints are animated. Default: once a frame, as Bevy's `AnimationPlugin` does.
     pub joints: PoseTiming,
-    /// When what stands above the joints is moved, as the root of a scene. Default: once a frame.
+    /// When the entities above the joints are moved, such as the root of a scene. Default: once a frame.
     pub root: PoseTiming,
 }
 
 impl SkinnedCollider {
-    /// For a creature that is animated and moved in the fixed loop: ticks see it without lag.
+    /// For a creature that is animated and moved in the fixed loop. Ticks see its pose without lag.
     pub const fn each_tick() -> Self {
         Self {
             joints: PoseTiming::EachTick,
@@ -55,19 +55,20 @@ impl SkinnedCollider {
     }
 }
 
-/// How far a [`SkinnedCollider`] is.
+/// The build state of a [`SkinnedCollider`].
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(opaque)]
 #[reflect(Component, Default, Clone, Debug)]
 #[non_exhaustive]
 pub enum ColliderStatus {
-    /// For mesh, inverse bind poses, `Mesh3d` or `SkinnedMesh`.
+    /// Waits for the mesh, the inverse bind poses, `Mesh3d` or `SkinnedMesh`.
     #[default]
     Waiting,
-    /// Being built.
+    /// The collider is being built.
     Building,
-    /// There is a [`PosedSurface`](crate::PosedSurface).
+    /// The entity has a [`PosedSurface`](crate::PosedSurface).
     Ready,
-    /// It cannot be built. Tried again when one of its assets or components changes.
+    /// The surface cannot be built. The build is tried again when one of its assets or components changes, and each
+    /// frame after [`ColliderError::Joint`] and [`ColliderError::Hierarchies`].
     Failed(Arc<ColliderError>),
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{BuiltCollider, ColliderError};
 
-/// What a collider takes of a mesh asset, copied as it stands: reading it can wait.
+/// The data of a mesh asset that a collider needs, copied as it is stored. It is decoded on another thread.
 pub(crate) struct RawMesh {
     positions: VertexAttributeValues,
     joints: VertexAttributeValues,
@@ -108,7 +108,7 @@ impl RawMesh {
             }
         }
         let pairs = joints.iter().flatten().zip(weights.iter().flatten());
-        // Files fill up with joint 0, or any other, and no weight.
+        // Unused influences have weight 0 and any joint index.
         Ok(pairs
             .map(|(joint, weight)| Influence {
                 joint: JointId(if *weight == 0.0 { 0 } else { u32::from(*joint) }),
@@ -123,7 +123,7 @@ impl RawMesh {
             Some(Indices::U32(indices)) => indices.clone(),
             None => (0..vertices as u32).collect(),
         };
-        // The index that begins another strip.
+        // The index that starts a new strip.
         let end = match &self.indices {
             Some(Indices::U16(_)) => Some(u32::from(u16::MAX)),
             Some(Indices::U32(_)) => Some(u32::MAX),

@@ -1,4 +1,4 @@
-//! What the triangles of a mesh are made of: said by a component, by a function, or by the file.
+//! Surface tags of meshes, set by a component, by a function, or by the file.
 
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh3d;
@@ -8,26 +8,26 @@ use clamber_surface::mesh::SurfaceTag;
 
 use super::SkinnedCollider;
 
-/// What the triangles of a mesh are made of. Changing it builds the collider anew.
+/// The surface tag of all triangles of a mesh. Changing it rebuilds the collider.
 ///
-/// A [`SkinnedCollider`] without one is given one: what the [`SurfaceTagger`] says, else, with the feature `gltf`,
-/// what the extras of its glTF material say, else the default.
+/// A [`SkinnedCollider`] without a tag gets one: from the [`SurfaceTagger`], else, with the feature `gltf`, from the
+/// extras of its glTF material, else the default.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 pub struct ColliderTag(pub SurfaceTag);
 
-/// A function that tags meshes as they become colliders, by whatever is on their entity.
+/// A resource with a function that tags meshes from the components of their entity.
 ///
-/// Asked once for each entity with a [`SkinnedCollider`] and no [`ColliderTag`], as soon as it has `Mesh3d` and
-/// `SkinnedMesh`. `None` leaves the answer to the file.
+/// It is called once for each entity with a [`SkinnedCollider`] and no [`ColliderTag`], as soon as the entity has
+/// `Mesh3d` and `SkinnedMesh`. If it returns `None`, the file's tag or the default is used.
 ///
 /// ```
 /// # use bevy_app::App;
 /// # use bevy_ecs::prelude::*;
 /// # use bevy_clamber::prelude::*;
 /// # let mut app = App::new();
-/// // Of what `bevy_gltf` spawns, `GltfMaterialName` has the material's name alone.
+/// // On meshes that `bevy_gltf` spawns, `GltfMaterialName` holds the material's name alone.
 /// app.insert_resource(SurfaceTagger::new(|mesh| {
 ///     let name = mesh.get::<Name>()?;
 ///     let fur = SurfaceTag::new(SurfaceKind::Fur);
@@ -38,7 +38,7 @@ pub struct ColliderTag(pub SurfaceTag);
 pub struct SurfaceTagger(Box<dyn Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync>);
 
 impl SurfaceTagger {
-    /// By a function of a mesh's entity.
+    /// Tags meshes by a function of their entity.
     pub fn new(
         tag_of: impl Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync + 'static,
     ) -> Self {

@@ -14,20 +14,19 @@ use thiserror::Error;
 use super::mesh::mesh;
 use crate::ColliderTag;
 
-/// Joints that a mesh asset of Bevy can name.
+/// Maximum number of joints that a Bevy mesh can index: its joint indices have 16 bits.
 const MAX_JOINTS: usize = 1 << 16;
 
-/// A rig has more joints than a mesh asset of Bevy can name.
+/// The rig has this many joints, more than a Bevy mesh can index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the rig has {0} joints, where a mesh asset can name {MAX_JOINTS}")]
+#[error("the rig has {0} joints, but a Bevy mesh can index at most {MAX_JOINTS}")]
 pub struct TooManyJoints(pub usize);
 
-/// A creature that `clamber_gltf` has loaded, as assets of Bevy: made once, [spawned](RigAssets::spawn) any number
-/// of times.
+/// A creature that `clamber_gltf` loaded, as Bevy assets: made once, [spawned](RigAssets::spawn) any number of times.
 ///
-/// A mesh asset for each primitive of what is to be seen, with the four strongest influences of each vertex, as
-/// many as Bevy has, renormalised. Meshes that are for collision only are not among them: see
-/// [`Rig::collider`] for these.
+/// Each primitive of the visual meshes becomes a mesh asset. Its vertices keep their four strongest influences, as many
+/// as Bevy supports, with weights normalised to a sum of 1. Meshes for collision only are left out; see
+/// [`Rig::collider`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RigAssets {
@@ -36,7 +35,7 @@ pub struct RigAssets {
     meshes: Vec<RigMesh>,
 }
 
-/// One primitive.
+/// One primitive of a visual mesh.
 #[derive(Clone, Debug)]
 struct RigMesh {
     name: String,
@@ -45,24 +44,26 @@ struct RigMesh {
     tag: SurfaceTag,
 }
 
-/// The entities of a creature.
+/// The entities of a creature that [`RigAssets::spawn`] spawned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SpawnedRig {
-    /// Above all others: despawning it takes all away. Has [`RigJoints`]; moving it moves the creature.
+    /// The parent of the whole creature: moving it moves the creature, despawning it despawns all. Has [`RigJoints`].
     pub root: Entity,
-    /// In the order of the rig's skeleton.
+    /// Joints, in the order of the rig's skeleton.
     pub joints: Vec<Entity>,
-    /// Skinned meshes, in the order of the rig's visual meshes and their primitives. A `SkinnedCollider` here
-    /// makes a surface.
+    /// Skinned meshes, in the order of the rig's visual meshes and their primitives. Insert a `SkinnedCollider` on one
+    /// to make it a surface.
     pub meshes: Vec<Entity>,
 }
 
-/// On a mesh of a [`SpawnedRig`]: which of [`Rig::materials`] it has. Without it, glTF's default material.
+/// The material of a mesh of a [`SpawnedRig`], as an index into [`Rig::materials`].
+///
+/// A mesh without this component has glTF's default material.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigMaterial(pub usize);
 
-/// On the root of a [`SpawnedRig`]: its joints, and what they were made from.
+/// A component on the root of a [`SpawnedRig`]: its joints, and the rig that they were made from.
 #[derive(Component, Clone, Debug)]
 pub struct RigJoints {
     pub(super) rig: Arc<Rig>,
@@ -73,22 +74,22 @@ pub struct RigJoints {
 }
 
 impl RigJoints {
-    /// Clips, names, weak points.
+    /// The loaded rig: clips, names, weak points.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
 
-    /// In the order of the rig's skeleton.
+    /// The joints' entities, in the order of the rig's skeleton.
     pub fn joints(&self) -> &[Entity] {
         &self.joints
     }
 }
 
 impl RigAssets {
-    /// Adds the meshes and inverse bind poses of a rig.
+    /// Adds the visual meshes and inverse bind poses of a rig to the assets.
     ///
     /// # Errors
-    /// [`TooManyJoints`] beyond 65,536 of them.
+    /// [`TooManyJoints`] if the rig has more than 65,536 joints.
     pub fn new(
         rig: Rig,
         meshes: &mut Assets<Mesh>,
@@ -99,7 +100,7 @@ impl RigAssets {
             return Err(TooManyJoints(joints.len()));
         }
         let matrices = joints.iter().map(|joint| {
-            // Widened and rounded back: the same bits.
+            // Widening to f64 and rounding back keeps the bits.
             DMat4::from(joint.inverse_bind.to_f64()).as_mat4()
         });
         let inverse_bindposes = inverse_bindposes.add(matrices.collect::<Vec<_>>());
@@ -121,16 +122,15 @@ impl RigAssets {
         })
     }
 
-    /// What it was made from.
+    /// The rig that the assets were made from.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
 
-    /// Spawns a creature at rest: a root at `place`, under it the joints, with names, and the skinned meshes, each
-    /// with the [`ColliderTag`] that the file gives its material.
+    /// Spawns a creature in its rest pose: a root at `place`, and below it the named joints and the skinned meshes.
     ///
-    /// Materials and visibility are the app's: an app that draws inserts `Visibility` on the root, and a material,
-    /// chosen by [`RigMaterial`], on each mesh.
+    /// Each mesh gets the [`ColliderTag`] of its material in the file. Materials and visibility are left to the app: to
+    /// draw the creature, insert `Visibility` on the root, and on each mesh a material chosen by its [`RigMaterial`].
     pub fn spawn(&self, commands: &mut Commands<'_, '_>, place: Transform) -> SpawnedRig {
         let skeleton = &self.rig.skeleton;
         let rest = skeleton.rest_pose();
@@ -179,7 +179,7 @@ impl RigAssets {
     }
 }
 
-/// With a rotation of unit length, as Bevy wants it.
+/// A Bevy `Transform`, whose rotation has unit length.
 pub(super) fn transform(local: &rig::Transform) -> Transform {
     let rotation = local.rotation.as_dquat();
     Transform {

@@ -3,13 +3,13 @@ use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
 use clamber_gltf::{VisualMesh, VisualPrimitive};
 use clamber_surface::mesh::Influence;
 
-/// Influences that Bevy's meshes have for each vertex.
+/// Influences per vertex in Bevy's meshes.
 const INFLUENCES: usize = 4;
 
-/// The triangles of one material as a mesh asset, with those vertices that they use.
+/// A mesh asset of one primitive, with the vertices that its triangles use.
 ///
-/// Positions, joints and weights; normals, two sets of texture coordinates and colours where the file has them. Of
-/// a vertex's influences the four strongest stay, of equal ones those of the smaller joints; their weights sum to 1.
+/// It has positions, joints and weights, and, if the file has them, normals, two sets of texture coordinates and
+/// colours. A vertex keeps its four strongest influences; ties go to the smaller joint id. Their weights sum to 1.
 pub(super) fn mesh(visual: &VisualMesh, primitive: &VisualPrimitive) -> Mesh {
     let (used, indices) = used_vertices(visual.positions.len(), &primitive.triangles);
     let positions: Vec<[f32; 3]> = pick(&visual.positions, &used, |p| p.to_array());
@@ -45,8 +45,8 @@ pub(super) fn mesh(visual: &VisualMesh, primitive: &VisualPrimitive) -> Mesh {
     mesh
 }
 
-/// The vertices that triangles use, in the order of their first use, and the triangles' corners among them. What
-/// names a vertex that does not exist is left out.
+/// The vertices that triangles use, in the order of their first use, and the triangles' indices into that list.
+/// Triangles with an index out of range are left out.
 fn used_vertices(count: usize, triangles: &[[u32; 3]]) -> (Vec<usize>, Vec<u32>) {
     let mut new_of_old = vec![None; count];
     let (mut used, mut indices) = (Vec::new(), Vec::new());
@@ -69,7 +69,7 @@ fn pick<T, U>(all: &[T], used: &[usize], as_attribute: impl Fn(&T) -> U) -> Vec<
     used.iter().map(|v| as_attribute(&all[*v])).collect()
 }
 
-/// What moves a vertex.
+/// The influences of a vertex.
 fn influences(visual: &VisualMesh, vertex: usize) -> &[Influence] {
     let ends = &visual.influence_ends;
     let start = vertex.checked_sub(1).and_then(|before| ends.get(before));
@@ -86,7 +86,7 @@ fn strongest(influences: &[Influence]) -> ([u16; 4], [f32; 4]) {
     let sum: f64 = sorted.iter().map(|i| f64::from(i.weight)).sum();
     let (mut joints, mut weights) = ([0; INFLUENCES], [0.0; INFLUENCES]);
     for (index, influence) in sorted.iter().enumerate() {
-        // Rigs with more joints are refused before.
+        // `RigAssets::new` refuses rigs with more joints.
         joints[index] = u16::try_from(influence.joint.0).unwrap_or(u16::MAX);
         weights[index] = (f64::from(influence.weight) / sum) as f32;
     }

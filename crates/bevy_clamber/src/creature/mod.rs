@@ -1,4 +1,4 @@
-//! Creatures that `clamber_gltf` loads, as entities: an app needs no `bevy_gltf` for them.
+//! Spawns creatures that `clamber_gltf` loads and plays their clips, without `bevy_gltf`.
 
 mod assets;
 mod mesh;

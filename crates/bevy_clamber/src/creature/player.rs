@@ -10,25 +10,25 @@ use thiserror::Error;
 use super::assets::{RigJoints, transform};
 use crate::ClamberSystems;
 
-/// Plays a clip on the joints of a spawned rig: put it on the root, beside its [`RigJoints`].
+/// Plays a clip on the joints of a spawned rig. Insert it on the root, beside [`RigJoints`].
 ///
-/// What no channel of the clip moves stands as at rest. A clip that the rig does not have, or a time that is not
-/// finite, moves nothing, and gives a line in the log.
+/// Joints and properties that no channel of the clip moves stay as in the rest pose. If the rig does not have the clip,
+/// or the time is not finite, nothing moves and a warning is logged.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Clone, Debug, PartialEq)]
 pub struct RigPlayer {
     /// Name of the clip.
     pub clip: String,
-    /// Seconds since the clip's first key frame, of the pose that the joints have.
+    /// Time of the current pose in the clip, seconds since its first key frame.
     pub time: f64,
-    /// Seconds of the clip in a second of the schedule's `Time`: 0 holds it, negative plays it backwards.
+    /// Seconds of the clip per second of the schedule's `Time`: 0 holds the pose, negative plays backwards.
     pub speed: f64,
-    /// Whether it starts anew at its end, or holds its last pose.
+    /// True to repeat the clip, false to stop at its end, or at its start when it plays backwards.
     pub looped: bool,
 }
 
 impl RigPlayer {
-    /// A clip from its start, at its own speed, again and again.
+    /// Plays a clip from its start, at its own speed, in a loop.
     pub fn new(clip: impl Into<String>) -> Self {
         Self {
             clip: clip.into(),
@@ -46,8 +46,10 @@ pub struct RigPlayerPlugin {
 }
 
 impl RigPlayerPlugin {
-    /// In a schedule of the fixed loop: colliders should then be `SkinnedCollider::each_tick()`. Or once a frame,
-    /// as in `PostUpdate`, for `SkinnedCollider::default()`.
+    /// Plays clips in this schedule.
+    ///
+    /// Use `SkinnedCollider::each_tick()` with a schedule of the fixed loop, and `SkinnedCollider::default()` with one
+    /// that runs once a frame, such as `PostUpdate`.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -75,7 +77,7 @@ impl Plugin for RigPlayerPlugin {
     }
 }
 
-/// Why a player moves nothing.
+/// Why a player cannot play its clip.
 #[derive(Debug, Error)]
 enum PlayError {
     #[error("the rig has no clip {0:?}")]
@@ -95,7 +97,7 @@ fn play(
         let player = player.bypass_change_detection();
         if let Err(error) = pose(player, joints, time.delta_secs_f64()) {
             if !told {
-                tracing::warn!("{entity} plays nothing: {error}");
+                tracing::warn!("{entity} cannot play its clip: {error}");
             }
             continue;
         }
@@ -108,7 +110,7 @@ fn play(
     }
 }
 
-/// Moves a player on, and takes the pose there.
+/// Advances a player's time, and samples the pose there.
 fn pose(player: &mut RigPlayer, joints: &mut RigJoints, dt: f64) -> Result<(), PlayError> {
     let clip = joints.rig.clip(&player.clip);
     let clip = clip.ok_or_else(|| PlayError::NoClip(player.clip.clone()))?;

@@ -13,20 +13,21 @@ use super::SurfaceGizmos;
 use super::touched::TouchedClusters;
 use crate::{PosedSurface, SurfaceAnchor};
 
-// After Okabe and Ito: told apart by the colour-blind too.
+// Colours by Okabe and Ito, which colour-blind people can tell apart.
 const PART: Color = Color::srgba(0.34, 0.71, 0.91, 0.5);
 const CLUSTER: Color = Color::srgb(0.9, 0.62, 0.0);
 const CONTACT: Color = Color::srgba(0.0, 0.62, 0.45, 0.6);
 const VELOCITY: Color = Color::srgb(0.94, 0.89, 0.26);
 
-/// Seconds of motion that the arrow of a velocity is long: a walking creature's can be seen, a fast one's do not
-/// leave the picture.
+/// Length of a velocity's arrow, seconds of motion: visible on a walking creature, and not longer than the picture on a
+/// fast one.
 const VELOCITY_ARROW: f64 = 0.1;
 
-/// Length of an anchor's axes, of the creature's radius: seen on all of it, and smaller than its limbs.
+/// Length of an anchor's axes, as a share of the mesh's radius: visible with the whole creature in view, and shorter
+/// than its limbs.
 const ANCHOR_AXES: f64 = 0.03;
 
-/// Parts, clusters and contacts.
+/// Draws parts, clusters and contacts.
 pub(super) fn draw_surfaces(
     mut surfaces: Query<(Entity, &mut PosedSurface)>,
     touched: Res<TouchedClusters>,
@@ -59,7 +60,7 @@ pub(super) fn draw_surfaces(
     }
 }
 
-/// Anchors and velocities.
+/// Draws anchors and velocities.
 pub(super) fn draw_anchors(
     anchors: Query<&SurfaceAnchor>,
     mut surfaces: Query<&mut PosedSurface>,
@@ -94,7 +95,7 @@ pub(super) fn draw_anchors(
         let motion = motion.and_then(|anchor| surface.in_world().motion(&anchor, seconds).ok());
         if let (true, Some(motion)) = (show.velocities, motion) {
             let arrow = (motion.velocity * VELOCITY_ARROW).as_vec3();
-            // The head of an arrow of no length has no direction.
+            // The head of an arrow of zero length has no direction.
             if arrow.try_normalize().is_some() {
                 gizmos.arrow(start, start + arrow, VELOCITY);
             }
@@ -128,7 +129,7 @@ fn draw_triangles(
     }
 }
 
-/// The edges that one triangle alone has, of those given.
+/// Draws the edges that belong to only one of the given triangles.
 fn draw_border(
     drawn: &SkinnedSurface,
     triangles: &[TriangleId],
@@ -154,7 +155,7 @@ fn corners(mesh: &ColliderMesh, triangle: TriangleId) -> Option<[VertexId; 3]> {
     mesh.triangles().get(triangle.index()).copied()
 }
 
-/// Of vertices, in the world.
+/// Positions of vertices in world space.
 fn positions<const N: usize>(drawn: &SkinnedSurface, vertices: [VertexId; N]) -> Option<[Vec3; N]> {
     let mut positions = [Vec3::ZERO; N];
     for (position, vertex) in positions.iter_mut().zip(vertices) {

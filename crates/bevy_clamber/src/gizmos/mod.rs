@@ -1,4 +1,4 @@
-//! What surfaces are and do, drawn with Bevy's gizmos.
+//! Draws surfaces, anchors and the work of queries with Bevy's gizmos.
 
 mod draw;
 mod touched;
@@ -14,7 +14,7 @@ use crate::ClamberSystems;
 use draw::{draw_anchors, draw_surfaces};
 use touched::{TouchedClusters, note_touched};
 
-/// Which kinds of [`SurfaceGizmosPlugin`] are drawn. Default: all.
+/// Which kinds of gizmos [`SurfaceGizmosPlugin`] draws. Default: all.
 ///
 /// ```
 /// # use bevy_app::App;
@@ -22,22 +22,22 @@ use touched::{TouchedClusters, note_touched};
 /// # use bevy_clamber::SurfaceGizmos;
 /// # let mut app = App::new();
 /// let show = SurfaceGizmos { parts: false, ..SurfaceGizmos::default() };
-/// // In front of the skin that they lie on.
+/// // The gizmos are drawn in front of the skin that they lie on.
 /// let config = GizmoConfig { depth_bias: -1.0, ..GizmoConfig::default() };
 /// app.insert_gizmo_config(show, config);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect, GizmoConfigGroup)]
 #[reflect(Default, Clone, Debug, PartialEq)]
 pub struct SurfaceGizmos {
-    /// Around the triangles that each joint moves most: the sphere that bounds them.
+    /// Bounding spheres of the parts; a part is the triangles that one joint moves most.
     pub parts: bool,
-    /// Borders of the clusters that queries reached: what was skinned for them.
+    /// Borders of the clusters that queries reached and that were skinned for them.
     pub clusters: bool,
-    /// Axes where entities are stuck to skin: X red, Y green, Z blue.
+    /// Axes of the entities that are anchored to skin: X red, Y green, Z blue.
     pub anchors: bool,
-    /// The triangles that queries came near to: those of the clusters that they reached.
+    /// The triangles of the clusters that queries reached.
     pub contacts: bool,
-    /// From anchors: how far the skin there moves in a tenth of a second, at its speed over the last tick.
+    /// Arrows from anchors: the displacement of the skin there in 0.1 s at its velocity over the last tick.
     pub velocities: bool,
 }
 
@@ -53,19 +53,19 @@ impl Default for SurfaceGizmos {
     }
 }
 
-/// Draws surfaces and anchors on the skin as it is drawn, as [`SurfaceGizmos`] says; beside
-/// [`ClamberPlugins`](crate::ClamberPlugins) and Bevy's `GizmoPlugin`, and in the same schedule as the former.
+/// Draws the gizmos that [`SurfaceGizmos`] selects. Add it beside Bevy's `GizmoPlugin` and
+/// [`ClamberPlugins`](crate::ClamberPlugins), with the schedule of the latter.
 ///
-/// In `PostUpdate`, after [`ClamberSystems::Anchor`], it draws this frame's pose. Clusters and contacts are those of
-/// queries since the surface's pose before its current one; before [`ClamberSystems::Pose`], which forgets them, they
-/// are noted. On a surface that stands still they add up until it moves.
+/// It draws in `PostUpdate`, after [`ClamberSystems::Anchor`], on the pose that this frame draws. Clusters and contacts
+/// are those that queries reached in the surface's current and previous pose. On a surface that stands still they
+/// accumulate until it moves.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceGizmosPlugin {
     schedule: InternedScheduleLabel,
 }
 
 impl SurfaceGizmosPlugin {
-    /// With surfaces posed in a schedule of the fixed loop.
+    /// For surfaces that are posed in this schedule of the fixed loop.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),

@@ -6,13 +6,13 @@ use clamber_surface::surface::SkinnedSurface;
 use super::SurfaceGizmos;
 use crate::PosedSurface;
 
-/// By surface and cluster: whether a query reached it before the last tick posed the surface.
+/// Per surface and cluster: whether a query reached it before the last tick posed the surface.
 #[derive(Resource, Debug, Default)]
 pub(super) struct TouchedClusters(EntityHashMap<Vec<bool>>);
 
 impl TouchedClusters {
-    /// By cluster of a surface, in the order of [`SkinnedSurface::clusters`]: whether a query reached it in its pose of
-    /// this or the last tick.
+    /// Per cluster of a surface, in the order of [`SkinnedSurface::clusters`]: whether a query reached it in the
+    /// current or previous pose.
     pub(super) fn of(
         &self,
         entity: Entity,
@@ -26,7 +26,7 @@ impl TouchedClusters {
     }
 }
 
-/// In each tick, before surfaces forget what was touched in the last one.
+/// Runs in each tick before surfaces are posed, since posing clears the touched clusters.
 pub(super) fn note_touched(
     surfaces: Query<(Entity, &PosedSurface)>,
     config: Res<GizmoConfigStore>,

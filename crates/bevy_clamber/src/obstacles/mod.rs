@@ -1,4 +1,4 @@
-//! Terrain and bodies of other engines, for whoever climbs.
+//! Terrain and bodies of physics engines, as obstacles for climbers.
 
 #[cfg(feature = "avian")]
 mod avian;

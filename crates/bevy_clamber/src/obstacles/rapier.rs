@@ -6,14 +6,14 @@ use bevy_rapier3d::prelude::{DefaultRapierContext, PhysicsSet, RapierRigidBodySe
 use bevy_rapier3d::prelude::{RapierContext, ReadRapierContext};
 use clamber_world::{BodyPoses, RapierTerrain};
 
-/// Notes where rapier's bodies were before each step, so that what stands on them can be carried.
+/// Records the poses of rapier's bodies before each step, so that climbers on them can be carried.
 #[derive(Clone, Copy, Debug)]
 pub struct RapierObstaclesPlugin {
     schedule: InternedScheduleLabel,
 }
 
 impl RapierObstaclesPlugin {
-    /// For a `RapierPhysicsPlugin` in this schedule: one that runs once a tick.
+    /// For a `RapierPhysicsPlugin` in this schedule, which must run once a tick.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -22,7 +22,7 @@ impl RapierObstaclesPlugin {
 }
 
 impl Default for RapierObstaclesPlugin {
-    /// For `RapierPhysicsPlugin::in_fixed_schedule`: in [`FixedUpdate`].
+    /// In [`FixedUpdate`], for `RapierPhysicsPlugin::in_fixed_schedule`.
     fn default() -> Self {
         Self::in_schedule(FixedUpdate)
     }
@@ -37,8 +37,8 @@ impl Plugin for RapierObstaclesPlugin {
 
 /// The default context of `bevy_rapier3d` as an obstacle.
 ///
-/// Needs [`RapierObstaclesPlugin`]. Reads only. What moves is seen as of the last step: query after
-/// `PhysicsSet::Writeback` for no lag.
+/// A read-only system parameter; needs [`RapierObstaclesPlugin`]. Moving bodies are seen where the last step has put
+/// them: query after `PhysicsSet::Writeback` to see them without lag.
 ///
 /// ```
 /// # use bevy_clamber::RapierObstacles;
@@ -59,8 +59,8 @@ pub struct RapierObstacles<'w, 's> {
 }
 
 impl RapierObstacles<'_, '_> {
-    /// All colliders but sensors; [`RapierTerrain::with_filter`] restricts them. `None` while there is no
-    /// default context.
+    /// All colliders except sensors; [`RapierTerrain::with_filter`] restricts them. `None` while there is no default
+    /// context.
     pub fn terrain(&self) -> Option<RapierTerrain<'_>> {
         let RapierContext {
             simulation,
@@ -77,14 +77,14 @@ impl RapierObstacles<'_, '_> {
     }
 }
 
-/// Where bodies were before the last step, and after it.
+/// Poses of the bodies before and after the last step.
 #[derive(Resource, Default)]
 struct StepPoses {
     before: BodyPoses,
     after: BodyPoses,
 }
 
-/// After a step. Not before one: what a game moves between two steps is motion, too.
+/// Records poses after each step, not before it, so that bodies that a game moves between two steps have motion, too.
 fn note(
     mut poses: ResMut<StepPoses>,
     bodies: Query<&RapierRigidBodySet, With<DefaultRapierContext>>,

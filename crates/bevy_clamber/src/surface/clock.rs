@@ -3,7 +3,7 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
 
-/// When the last poses were drawn, and where between that and this frame the current tick is.
+/// Time of the last frame, and the position of the current tick between it and this frame.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct PoseClock {
     drawn: Duration,
@@ -17,14 +17,14 @@ impl PoseClock {
     }
 }
 
-/// In the fixed loop, before surfaces are posed.
+/// Runs in the fixed loop, before surfaces are posed.
 pub(crate) fn tell_tick(
     mut clock: ResMut<PoseClock>,
     tick: Res<Time<Fixed>>,
     frame: Res<Time<Virtual>>,
 ) {
     let length = frame.elapsed().saturating_sub(clock.drawn).as_secs_f64();
-    // What is left of the frame after this tick; so much of it, also where time was thrown away.
+    // The time from this tick to the end of the frame. It is right even if the fixed clock has discarded time.
     let left = tick.overstep().as_secs_f64();
     clock.fraction = if length > 0.0 {
         (1.0 - left / length).clamp(0.0, 1.0)
@@ -33,7 +33,7 @@ pub(crate) fn tell_tick(
     };
 }
 
-/// At the end of a frame, when its poses are noted.
+/// Runs at the end of a frame, when its poses are recorded.
 pub(crate) fn tell_frame(mut clock: ResMut<PoseClock>, frame: Res<Time<Virtual>>) {
     clock.drawn = frame.elapsed();
 }

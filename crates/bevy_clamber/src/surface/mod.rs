@@ -1,4 +1,4 @@
-//! Surfaces on entities: which entities pose them, when their poses are read, and how they get to ticks.
+//! Surfaces on entities: the entities that pose them, when their transforms are read, and the pose of each tick.
 
 mod clock;
 mod plugin;
@@ -14,17 +14,18 @@ pub use posed::PoseError;
 pub use posed::PosedSurface;
 pub(crate) use rig::{Hierarchy, Rig};
 
-/// When an entity's `Transform` is written, which decides how it gets to ticks.
+/// When an entity's `Transform` is written. It decides which pose a tick sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, Debug, PartialEq, Hash)]
 pub enum PoseTiming {
     /// Once a frame, in `Update` or by Bevy's `AnimationPlugin` in `PostUpdate`.
     ///
-    /// A tick takes the pose between the last two that were drawn: at the same fraction of the last frame as the tick
-    /// is of this one. So it lags by one frame, and moves evenly at any frame rate.
+    /// A tick sees a pose between the last two that were drawn, interpolated at the tick's fraction of the current
+    /// frame. This pose lags by one frame, and moves evenly at any frame rate.
     #[default]
     EachFrame,
-    /// Once a tick, in the fixed loop before [`ClamberSystems::Pose`](crate::ClamberSystems::Pose). A tick takes
-    /// what it finds then: no lag.
+    /// Once a tick, in the fixed loop before [`ClamberSystems::Pose`](crate::ClamberSystems::Pose).
+    ///
+    /// A tick sees the `Transform` of that moment, without lag.
     EachTick,
 }

@@ -18,7 +18,7 @@ pub struct SurfacePlugin {
 }
 
 impl SurfacePlugin {
-    /// With surfaces posed in a schedule of the fixed loop.
+    /// Poses surfaces in this schedule of the fixed loop.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -67,7 +67,7 @@ impl Plugin for SurfacePlugin {
     }
 }
 
-/// Without the collider there is no surface.
+/// Removes the surface of a removed collider.
 fn remove_surface(removed: On<Remove<SkinnedCollider>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
         entity.try_remove::<(PosedSurface, ColliderStatus)>();

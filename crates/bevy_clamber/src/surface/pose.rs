@@ -3,10 +3,10 @@ use bevy_ecs::prelude::*;
 use super::rig::Hierarchy;
 use super::{PoseClock, PosedSurface};
 
-/// So few surfaces are posed sooner than other threads wake up.
+/// Up to this number, one thread poses all surfaces sooner than other threads wake up.
 const FEW: usize = 4;
 
-/// Once a tick.
+/// Runs once a tick.
 pub(crate) fn pose_surfaces(
     clock: Res<PoseClock>,
     surfaces: Query<&mut PosedSurface>,
@@ -21,14 +21,14 @@ pub(crate) fn pose_surfaces(
     });
 }
 
-/// Once a frame.
+/// Runs once a frame.
 pub(crate) fn sample_poses(surfaces: Query<&mut PosedSurface>, hierarchy: Hierarchy<'_, '_>) {
     each(surfaces, |mut surface| {
         surface.bypass_change_detection().sample(&hierarchy);
     });
 }
 
-/// On all cores where it pays.
+/// Runs on all cores if there are more than [`FEW`] surfaces.
 fn each(
     mut surfaces: Query<&mut PosedSurface>,
     run: impl Fn(Mut<'_, PosedSurface>) + Send + Sync + Clone,

@@ -17,56 +17,56 @@ use crate::{ColliderError, SkinnedCollider};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PoseError {
-    /// A joint is gone, or hangs where none can be followed.
+    /// A joint is gone, or its hierarchy cannot be followed.
     #[error(transparent)]
     Hierarchy(#[from] ColliderError),
     /// A transform is not finite, or has a rotation of no length.
     #[error(transparent)]
     Transform(#[from] RigError),
-    /// The creature is scaled to nothing.
-    #[error("the creature is scaled to nothing, or placed nowhere finite")]
+    /// The transforms above the joints have a scale of zero, or are not finite.
+    #[error("the creature's transform has a scale of zero or is not finite")]
     Placement,
     /// The surface refuses the palette.
     #[error(transparent)]
     Palette(#[from] SurfaceError),
 }
 
-/// The surface of a skinned mesh, as posed in this tick: appears beside a
-/// [`SkinnedCollider`](crate::SkinnedCollider) once its collider is built.
+/// The surface of a skinned mesh in this tick's pose. Inserted beside a [`SkinnedCollider`](crate::SkinnedCollider)
+/// once its collider is built.
 ///
-/// Read through [`SurfaceQuery`](crate::SurfaceQuery) in world space, or directly, in model space, as the
-/// [`SkinnedSurface`] that it dereferences to.
+/// Query all surfaces in world space through [`SurfaceQuery`](crate::SurfaceQuery). A single one dereferences to a
+/// [`SkinnedSurface`], which has queries in model space as well.
 #[derive(Component, Debug)]
 pub struct PosedSurface {
-    /// Whose it is.
+    /// The entity of this component.
     entity: Entity,
     surface: SkinnedSurface,
     collider: Arc<BuiltCollider>,
     rig: Rig,
     timing: SkinnedCollider,
-    /// As the last two frames drew it.
+    /// Transforms as the last two frames drew them.
     drawn: Locals,
     drawn_before: Locals,
-    /// Both are the same.
+    /// `drawn` and `drawn_before` are equal.
     drawn_is_still: bool,
     /// Why the last frame's pose is not known.
     drawn_error: Option<ColliderError>,
-    /// As the last tick posed it, and by which palette.
+    /// Transforms and palette of the last tick's pose.
     posed: Locals,
     palette: Palette,
-    /// It has been posed.
+    /// The surface has had a valid pose.
     is_placed: bool,
     /// Nothing moved in the last tick.
     still: bool,
-    /// The last tick posed the surface; else it had no need to.
+    /// The last tick posed the surface anew; false if it had no need to.
     posed_anew: bool,
-    /// The next pose is no motion.
+    /// The next pose is placed, without motion.
     restart: bool,
-    /// The next frame that is drawn is no motion.
+    /// The pose of the next frame has no motion.
     restart_drawn: bool,
     /// Somebody may have changed the surface since the last tick.
     edited: bool,
-    /// As drawn now, for those who ask.
+    /// The surface in a drawn pose; made on demand.
     as_drawn: Option<SkinnedSurface>,
     /// `as_drawn` has the last frame's pose.
     as_drawn_is_fresh: bool,
@@ -74,7 +74,7 @@ pub struct PosedSurface {
     scratch: Scratch,
 }
 
-/// Kept for its memory.
+/// Buffers, kept to reuse their memory.
 #[derive(Debug, Default)]
 struct Scratch {
     next: Locals,
@@ -119,33 +119,35 @@ impl PosedSurface {
         posed
     }
 
-    /// Why the surface kept its last pose in the last tick, if it did.
+    /// Why the surface kept its previous pose in the last tick; `None` if it did not have to.
     pub fn error(&self) -> Option<&PoseError> {
         self.error.as_ref()
     }
 
-    /// What moves it before the next tick, or the next frame, is a place and no motion: for a teleport, which would
-    /// else be a very fast way. To be called in the schedule that puts it elsewhere.
+    /// Marks the motion until the next tick and the next drawn frame as a teleport, which gives the skin no velocity.
+    ///
+    /// Otherwise a teleport would be a very fast motion. Call this in the schedule that moves the creature.
     pub fn forget_motion(&mut self) {
         self.restart = true;
         self.restart_drawn = true;
     }
 
-    /// For edits: disabled parts and triangles, holes. The next tick's pose overwrites any other.
+    /// Access for edits: disabling parts and triangles, cutting holes. The next tick overwrites a pose that is set
+    /// here.
     ///
-    /// Edits are gone where the collider is built anew, which a change of its mesh, skin or
-    /// [`ColliderTag`](crate::ColliderTag) does: a new component is inserted then, so an observer of
-    /// `On<Insert, PosedSurface>` can make them again.
+    /// Edits are lost when the collider is rebuilt, after a change of its mesh, skin or
+    /// [`ColliderTag`](crate::ColliderTag). A new component is inserted then, so an observer of
+    /// `On<Insert<PosedSurface>>` can repeat them.
     ///
-    /// Where something sticks to the surface, what a frame draws is kept as a second surface, and copied anew
-    /// after each call.
+    /// Anchors, picking and gizmos keep the drawn pose in a second surface. After each call it is copied anew when one
+    /// of them needs it.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
         self.edited = true;
         self.as_drawn = None;
         &mut self.surface
     }
 
-    /// Which triangle of the mesh asset a triangle of the collider is; `None` for one that an edit added.
+    /// The index in the mesh asset of a triangle of the collider; `None` for a triangle that an edit added.
     pub fn source_triangle(&self, triangle: TriangleId) -> Option<u32> {
         self.collider
             .source_triangles
@@ -153,7 +155,7 @@ impl PosedSurface {
             .copied()
     }
 
-    /// The last tick posed the surface, and so forgot what queries had touched.
+    /// True if the last tick posed the surface anew, which resets the counts of queries.
     #[cfg_attr(
         not(feature = "diagnostics"),
         expect(dead_code, reason = "only diagnostics ask")
@@ -166,19 +168,19 @@ impl PosedSurface {
         self.timing = timing;
     }
 
-    /// False if it had no pose yet that it could take: it is nowhere.
+    /// True once the surface has had a valid pose.
     pub(crate) fn is_placed(&self) -> bool {
         self.is_placed
     }
 
-    /// Notes the pose that a frame draws.
+    /// Records the pose that a frame draws.
     pub(crate) fn sample(&mut self, hierarchy: &Hierarchy<'_, '_>) {
         std::mem::swap(&mut self.drawn, &mut self.drawn_before);
         self.drawn_error = None;
         if self.rig.read(hierarchy, &mut self.drawn).is_err()
             && let Err(error) = self.follow(hierarchy)
         {
-            // As it was.
+            // The previous pose stays.
             self.drawn.clone_from(&self.drawn_before);
             self.drawn_error = Some(error);
         }
@@ -190,8 +192,8 @@ impl PosedSurface {
         }
     }
 
-    /// Takes the pose of a tick, `fraction` of the way from the last frame to this one. True if that changes
-    /// anything.
+    /// Takes the pose of a tick at a fraction of the time from the last frame to this one. Returns true if anything
+    /// changed.
     pub(crate) fn pose(&mut self, fraction: f64, hierarchy: &Hierarchy<'_, '_>) -> bool {
         let mut next = std::mem::take(&mut self.scratch.next);
         let posed = self.try_pose(fraction, hierarchy, &mut next);
@@ -200,7 +202,7 @@ impl PosedSurface {
             Ok(moved) => *moved,
             Err(_) => {
                 let moved = self.rest();
-                // Where it is found again it has not come to in one tick.
+                // When a valid pose comes again, the surface has not moved there in one tick.
                 self.forget_motion();
                 moved
             }
@@ -209,7 +211,7 @@ impl PosedSurface {
         self.tell(posed.err()) || moved
     }
 
-    /// Of both poses, the current and the one before, becomes what it is now.
+    /// Reads a hierarchy that has changed. Both drawn poses become the current one.
     fn follow(&mut self, hierarchy: &Hierarchy<'_, '_>) -> Result<(), ColliderError> {
         self.rig.follow(hierarchy)?;
         let read = self.rig.read(hierarchy, &mut self.drawn);
@@ -269,18 +271,18 @@ impl PosedSurface {
         self.is_placed = true;
         self.edited = false;
         self.still = same || self.restart;
-        // What was told to be no motion may not be drawn yet.
+        // The teleport may not be drawn yet.
         self.restart = self.restart_drawn && self.follows_frames();
         Ok(true)
     }
 
-    /// Stands still in the last pose. True if it has moved until now.
+    /// Repeats the last pose, so that the surface stands still. True if it moved until now.
     fn rest(&mut self) -> bool {
         if self.still || !self.is_placed {
             return false;
         }
         let world_from_model = *self.surface.world_from_model();
-        // Both were taken before.
+        // The surface has accepted both before.
         self.still = self
             .surface
             .advance(&self.palette, world_from_model)
@@ -332,12 +334,12 @@ impl PosedSurface {
         self.as_drawn.as_ref()
     }
 
-    /// As the last frame drew it, if anyone asked for that since.
+    /// The surface in the last frame's pose, if `pose_as_drawn` was called since.
     pub(crate) fn as_drawn(&self) -> Option<&SkinnedSurface> {
         self.as_drawn.as_ref().filter(|_| self.as_drawn_is_fresh)
     }
 
-    /// Keeps what went wrong; a line in the log when it begins. True if it is news.
+    /// Stores an error, and logs it if there was none before. True if the error has changed.
     fn tell(&mut self, error: Option<PoseError>) -> bool {
         if self.error == error {
             return false;

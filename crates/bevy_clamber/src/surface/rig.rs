@@ -1,4 +1,4 @@
-//! The entities that pose a skin: joints, what stands between and above them.
+//! The entities that pose a skin: joints, and the entities between and above them.
 
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::hierarchy::ChildOf;
@@ -13,54 +13,54 @@ use crate::ColliderError;
 /// The deepest hierarchy that is followed.
 const MAX_DEPTH: usize = 4096;
 
-/// How far from a similarity, relative to its scale, the placement of a creature may be and still be taken for
-/// one: rotations in f32 are no better.
+/// Largest deviation from a similarity, relative to its scale, at which a creature's placement is taken for one:
+/// rotations in f32 are no more accurate.
 const SIMILAR: f64 = 1e-6;
 
-/// Transforms of entities, and what they hang under.
+/// Transforms of entities, and their parents.
 pub(crate) type Hierarchy<'w, 's> = Query<'w, 's, (&'static Transform, Option<&'static ChildOf>)>;
 
-/// Whose transforms make the palette, and how.
+/// The entities whose transforms make the palette.
 ///
-/// Model space is that of the nearest entity above all joints; of a skeleton that hangs under nothing, the world's,
-/// moved to where its topmost joint is. The palette is composed there, so that it does not depend on where in the
-/// world a creature is.
+/// Model space is the space of the nearest entity above all joints. If a skeleton has no such entity, it is world
+/// space, moved to the topmost joint. The palette is composed in model space, so that it does not depend on the
+/// creature's place in the world.
 #[derive(Debug)]
 pub(crate) struct Rig {
     joints: Vec<Entity>,
-    /// By joint.
+    /// Per joint.
     joint_from_mesh: Vec<DAffine3>,
     tree: Tree,
 }
 
-/// How joints hang under each other.
+/// The hierarchy of the joints.
 #[derive(Debug)]
 struct Tree {
-    /// Joints, and what stands between them and model space; parents first.
+    /// Joints, and the entities between them and model space; parents first.
     nodes: Vec<Node>,
-    /// By joint, which node it is.
+    /// Per joint: its node.
     node_of_joint: Vec<u32>,
-    /// From model space up to the top of the hierarchy.
+    /// Entities from model space up to the top of the hierarchy.
     above: Vec<Entity>,
 }
 
 #[derive(Debug)]
 struct Node {
     entity: Entity,
-    /// Which node it hangs under; `None` under model space.
+    /// The parent's node; `None` for a child of model space.
     parent: Option<u32>,
 }
 
-/// Transforms as they were at some time.
+/// Transforms at some time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Locals {
-    /// Of the joints and what stands between them.
+    /// Of the joints and the entities between them.
     pub(crate) nodes: Pose,
-    /// Of what stands above them.
+    /// Of the entities above them.
     pub(crate) above: Pose,
 }
 
-/// A transform that was to be read is gone, or hangs elsewhere now.
+/// A transform that should be read is gone, or its entity has another parent now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Changed;
 
@@ -89,7 +89,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Reads all.
+    /// Reads all transforms.
     pub(crate) fn read(
         &self,
         hierarchy: &Hierarchy<'_, '_>,
@@ -99,7 +99,7 @@ impl Rig {
         self.read_root(hierarchy, &mut into.above)
     }
 
-    /// Reads the joints and what stands between them.
+    /// Reads the joints and the entities between them.
     pub(crate) fn read_joints(
         &self,
         hierarchy: &Hierarchy<'_, '_>,
@@ -116,7 +116,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Reads what stands above the joints.
+    /// Reads the entities above the joints.
     pub(crate) fn read_root(
         &self,
         hierarchy: &Hierarchy<'_, '_>,
@@ -130,10 +130,10 @@ impl Rig {
         Ok(())
     }
 
-    /// Where the creature stands, and its palette in model space, joint by joint.
+    /// Computes the creature's placement in the world, and its palette in model space, joint by joint.
     ///
-    /// What of the placement is no similarity goes into the palette. `None` if the placement has no volume or is
-    /// not finite, or if `locals` are of another hierarchy.
+    /// The part of the placement that is not a similarity goes into the palette. `None` if the placement has no volume
+    /// or is not finite, or if `locals` are of another hierarchy.
     pub(crate) fn compose(
         &self,
         locals: &Locals,
@@ -172,7 +172,7 @@ impl Rig {
 }
 
 impl Tree {
-    /// Each entity is visited once, however deep joints hang.
+    /// Visits each entity once, however deep the hierarchy is.
     fn new(joints: &[Entity], hierarchy: &Hierarchy<'_, '_>) -> Result<Self, ColliderError> {
         let mut nodes: Vec<Node> = Vec::with_capacity(joints.len());
         let mut known = EntityHashMap::<u32>::default();
@@ -211,8 +211,8 @@ impl Tree {
     }
 }
 
-/// How many of the first nodes stand above all joints: from the top down to the first that forks, or before the
-/// first joint.
+/// Number of the first nodes that are above all joints: from the top to the first node with several children, or to the
+/// node before the first joint, whichever comes first.
 fn above_all(nodes: &[Node], node_of_joint: &[u32]) -> usize {
     let mut children = vec![0; nodes.len()];
     for parent in nodes.iter().filter_map(|node| node.parent) {
@@ -229,7 +229,7 @@ fn above_all(nodes: &[Node], node_of_joint: &[u32]) -> usize {
     fork.map_or(joint, |fork| joint.min(fork + 1))
 }
 
-/// One entity's transform, if it still hangs where it did.
+/// The transform of an entity, if it still has the same parent.
 fn read(
     entity: Entity,
     parent: Option<Entity>,
@@ -246,8 +246,8 @@ fn read(
     })
 }
 
-/// An entity and what stands above it, up to what is known already: gives that, or none at the top of the hierarchy.
-/// `None` if one of them has no transform, or they hang in a circle.
+/// Writes an entity and its ancestors to `path`, up to the first known node, and returns that node, or `Some(None)` at
+/// the top of the hierarchy. `None` if one of them has no transform, or they form a cycle.
 fn path_up(
     entity: Entity,
     hierarchy: &Hierarchy<'_, '_>,
@@ -269,7 +269,7 @@ fn path_up(
     Some(None)
 }
 
-/// A placement as a similarity, and what stands before it: nothing, if it is one.
+/// Splits a placement into a similarity and a map that is applied before it: the identity, if the placement is one.
 fn split(map: &DAffine3) -> Option<(Similarity, DAffine3)> {
     let linear = map.matrix3;
     let scale = libm::cbrt(linear.determinant().abs());

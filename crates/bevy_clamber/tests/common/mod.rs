@@ -1,4 +1,4 @@
-//! A headless app and a limb of two joints, which bends.
+//! A headless app, and a limb of two joints that bends.
 
 #![allow(dead_code, reason = "no test uses all of it")]
 
@@ -42,17 +42,17 @@ pub(crate) fn app_with<Marker>(rate: f64, plugins: impl Plugins<Marker>) -> App 
     app
 }
 
-/// Where the upper joint is turned to at a time.
+/// Rotation of the upper joint at a time.
 pub(crate) fn bend(seconds: f64) -> Quat {
     let half = 0.5 * SPIN * seconds;
     Quat::from_xyzw(0.0, 0.0, libm::sin(half) as f32, libm::cos(half) as f32)
 }
 
-/// Marks what the animation turns.
+/// Marks the joints that the animation turns.
 #[derive(Component)]
 pub(crate) struct Bending;
 
-/// Turns by the time of the schedule that it runs in.
+/// Turns the marked joints by the time of the schedule that it runs in.
 pub(crate) fn animate(time: Res<Time>, mut joints: Query<&mut Transform, With<Bending>>) {
     for mut joint in &mut joints {
         joint.rotation = bend(time.elapsed().as_secs_f64());
@@ -67,8 +67,8 @@ pub(crate) struct Limb {
     pub(crate) mesh: Entity,
 }
 
-/// A square tube along Y, 2 m high and 0.4 m wide, the lower half on one joint at its foot, the upper on one in the
-/// middle, blended around that.
+/// A square tube along Y, 2 m high and 0.4 m wide. The lower half follows a joint at its foot, the upper half one in
+/// the middle, with blended weights around it.
 pub(crate) fn limb_mesh() -> Mesh {
     let rings = 21;
     let (mut positions, mut joints, mut weights) = (Vec::new(), Vec::new(), Vec::new());
@@ -140,7 +140,7 @@ pub(crate) fn spawn_limb(
     Limb { root, joints, mesh }
 }
 
-/// A limb with a collider, in an app that has made its surface.
+/// Spawns a limb with a collider, and waits for its surface.
 pub(crate) fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -> Limb {
     let mesh = add_mesh(app, limb_mesh());
     let inverse_bindposes = add_bindposes(app);
@@ -150,7 +150,7 @@ pub(crate) fn limb(app: &mut App, place: Transform, collider: SkinnedCollider) -
     limb
 }
 
-/// Updates until a collider is done, one way or the other.
+/// Updates the app until a collider is ready or has failed.
 pub(crate) fn wait(app: &mut App, entity: Entity) {
     for _ in 0..10_000 {
         app.update();
@@ -159,12 +159,12 @@ pub(crate) fn wait(app: &mut App, entity: Entity) {
             status,
             Some(ColliderStatus::Ready | ColliderStatus::Failed(_))
         ) {
-            // Commands of the last update have put the surface there.
+            // The commands of this update have inserted the surface.
             return;
         }
         std::thread::yield_now();
     }
-    panic!("the collider of {entity} is never done");
+    panic!("the collider of {entity} is neither ready nor failed");
 }
 
 /// Where a vertex of the limb's mesh is drawn, as Bevy's shader computes it, in f64.

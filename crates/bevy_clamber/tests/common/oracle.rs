@@ -1,4 +1,4 @@
-//! Queries by brute force in f64, over triangles posed from the entities' transforms alone.
+//! Brute-force queries in f64, over triangles that are posed from the entities' transforms alone.
 
 #![allow(dead_code, reason = "no test uses all of it")]
 
@@ -10,10 +10,10 @@ use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy_transform::components::Transform;
 use glam::{DAffine3, DQuat, DVec3};
 
-/// Three corners in the world.
+/// Corners of a triangle in world space.
 pub(crate) type Corners = [DVec3; 3];
 
-/// An entity's place in the world, from the transforms of it and all above it.
+/// An entity's transform in world space, from the `Transform`s of the entity and its ancestors.
 pub(crate) fn world_from(app: &App, entity: Entity) -> DAffine3 {
     let transform = app.world().get::<Transform>(entity).unwrap();
     let q = transform.rotation;
@@ -28,7 +28,7 @@ pub(crate) fn world_from(app: &App, entity: Entity) -> DAffine3 {
     }
 }
 
-/// Where a skinned mesh has its vertices now.
+/// The current positions of a skinned mesh's vertices, in world space.
 pub(crate) fn posed(app: &App, entity: Entity) -> Vec<DVec3> {
     let world = app.world();
     let skin = world.get::<SkinnedMesh>(entity).unwrap();
@@ -59,7 +59,7 @@ pub(crate) fn posed(app: &App, entity: Entity) -> Vec<DVec3> {
         .map(|((position, joints), weights)| {
             let rest = DVec3::from_array(position.map(f64::from));
             let images = joints.iter().zip(weights);
-            // They add up to 1 in f32 only, which matters far from the origin.
+            // The weights add up to 1 in f32 only, which matters far from the origin.
             let sum: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
             let position: DVec3 = images
                 .map(|(joint, weight)| {
@@ -81,7 +81,8 @@ pub(crate) fn triangles(app: &App, entity: Entity) -> Vec<Corners> {
     corners.iter().map(|c| c.map(|i| positions[i])).collect()
 }
 
-/// Distance along a unit ray to a triangle, and how near to its border that is, in barycentrics; from either side.
+/// Distance along a unit ray to a triangle, and the smallest barycentric coordinate of the hit, which is negative just
+/// outside the triangle. Hits from either side count.
 pub(crate) fn ray(origin: DVec3, along: DVec3, [a, b, c]: Corners) -> Option<(f64, f64)> {
     let (u, v) = (b - a, c - a);
     let p = along.cross(v);
@@ -104,7 +105,7 @@ fn on_segment(p: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
     a + d * t.clamp(0.0, 1.0)
 }
 
-/// Distance of a point to a triangle.
+/// Distance from a point to a triangle.
 pub(crate) fn point(p: DVec3, [a, b, c]: Corners) -> f64 {
     let normal = (b - a).cross(c - a);
     let inside = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) >= 0.0;
@@ -116,7 +117,7 @@ pub(crate) fn point(p: DVec3, [a, b, c]: Corners) -> f64 {
     apart.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Distance of two segments: of their ends, and of their lines where both feet are inside.
+/// Distance of two segments: the least of their ends' distances, and of their lines' if both nearest points are inside.
 fn segments(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
     let ends = [
         (a[0] - on_segment(a[0], b)).length(),
@@ -138,7 +139,7 @@ fn segments(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
     best
 }
 
-/// Distance of a segment to a triangle.
+/// Distance from a segment to a triangle.
 pub(crate) fn segment(ends: [DVec3; 2], corners: Corners) -> f64 {
     let along = ends[1] - ends[0];
     let length = along.length();
@@ -155,13 +156,13 @@ pub(crate) fn segment(ends: [DVec3; 2], corners: Corners) -> f64 {
     edges.into_iter().chain(ends).fold(f64::INFINITY, f64::min)
 }
 
-/// The least of a distance over triangles.
+/// The least distance over all triangles.
 pub(crate) fn least(all: &[Corners], distance: impl Fn(Corners) -> f64) -> f64 {
     let each = all.iter().map(|corners| distance(*corners));
     each.fold(f64::INFINITY, f64::min)
 }
 
-/// Numbers that look random, from 0 to 1.
+/// Pseudo-random numbers from 0 to 1.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -171,7 +172,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// In a cube of half a side.
+    /// A vector in a cube with sides of `2 * half`.
     pub(crate) fn vector(&mut self, half: f64) -> DVec3 {
         let mut one = || (self.next() * 2.0 - 1.0) * half;
         DVec3::new(one(), one(), one())

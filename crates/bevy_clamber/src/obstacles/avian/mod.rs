@@ -17,14 +17,14 @@ use crate::ClamberSystems;
 use moving::{MovingColliders, note};
 pub use terrain::AvianTerrain;
 
-/// Notes where avian's moving colliders are after each step, and were before it.
+/// Records the poses of avian's moving colliders after each step and before it.
 #[derive(Clone, Copy, Debug)]
 pub struct AvianObstaclesPlugin {
     schedule: InternedScheduleLabel,
 }
 
 impl AvianObstaclesPlugin {
-    /// For `PhysicsPlugins` in this schedule: one that runs once a tick.
+    /// For `PhysicsPlugins` in this schedule, which must run once a tick.
     pub fn in_schedule(schedule: impl ScheduleLabel) -> Self {
         Self {
             schedule: schedule.intern(),
@@ -33,7 +33,7 @@ impl AvianObstaclesPlugin {
 }
 
 impl Default for AvianObstaclesPlugin {
-    /// In [`FixedPostUpdate`], as avian's own default.
+    /// In [`FixedPostUpdate`], avian's own default.
     fn default() -> Self {
         Self::in_schedule(FixedPostUpdate)
     }
@@ -43,7 +43,7 @@ impl Plugin for AvianObstaclesPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<MovingColliders>()
             .add_systems(self.schedule, note.after(PhysicsSystems::Last))
-            // A creature whose root is a body stands where the step has put it.
+            // If a creature's root is a body, its surface is posed where the step has put it.
             .configure_sets(
                 self.schedule,
                 ClamberSystems::Pose.after(PhysicsSystems::Writeback),
@@ -51,7 +51,7 @@ impl Plugin for AvianObstaclesPlugin {
     }
 }
 
-/// What can be touched.
+/// Colliders that can be touched.
 type Solids<'w, 's> = Query<
     'w,
     's,
@@ -66,8 +66,8 @@ type Solids<'w, 's> = Query<
 
 /// Avian's world as an obstacle.
 ///
-/// Needs [`AvianObstaclesPlugin`]. Reads only. What moves is seen as of the last step: query after
-/// `PhysicsSystems::Last` for no lag.
+/// A read-only system parameter; needs [`AvianObstaclesPlugin`]. Moving bodies are seen where the last step has put
+/// them: query after `PhysicsSystems::Last` to see them without lag.
 ///
 /// ```
 /// # use bevy_clamber::AvianObstacles;
@@ -86,7 +86,7 @@ pub struct AvianObstacles<'w, 's> {
 }
 
 impl AvianObstacles<'_, '_> {
-    /// All colliders but sensors; [`AvianTerrain::with_filter`] restricts them.
+    /// All colliders except sensors; [`AvianTerrain::with_filter`] restricts them.
     pub fn terrain(&self) -> AvianTerrain<'_> {
         AvianTerrain::new(self, SpatialQueryFilter::DEFAULT)
     }

@@ -1,5 +1,5 @@
-//! Where colliders are that move. Avian's own trees and the positions of child colliders are those from before
-//! the solver moved the bodies: too early by a tick for whoever is carried.
+//! Poses of moving colliders. Avian's own trees and the positions of child colliders date from before the solver moved
+//! the bodies: one tick too early for climbers that are carried.
 
 use avian3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use avian3d::parry::math::Pose;
@@ -7,7 +7,7 @@ use avian3d::prelude::{Collider, ColliderOf, ColliderTransform, Position, RigidB
 use bevy_ecs::prelude::*;
 use clamber_world::RigidPose;
 
-/// Metres that bounds are too large, so that none is missed by rounding.
+/// Margin that is added to bounds, metres, so that rounding misses no collider.
 const LOOSE: f32 = 1e-3;
 
 /// A collider of a body that is not static.
@@ -15,15 +15,15 @@ const LOOSE: f32 = 1e-3;
 pub(super) struct MovingBody {
     pub(super) entity: Entity,
     pub(super) pose: RigidPose,
-    /// A step before, if it was elsewhere.
+    /// The pose before the last step, if it was another.
     pub(super) before: Option<RigidPose>,
-    /// Of the pose now.
+    /// Bounds in the current pose.
     pub(super) bounds: Aabb,
-    /// Of both poses, and so of all lines between.
+    /// Bounds in both poses, and so of all straight lines between them.
     pub(super) swept: Aabb,
 }
 
-/// Colliders of bodies that are not static, after the last step and before it; each by ascending entity.
+/// Colliders of bodies that are not static, after the last step and before it, both sorted by entity.
 #[derive(Resource, Debug, Default)]
 pub(super) struct MovingColliders {
     now: Vec<MovingBody>,
@@ -35,12 +35,12 @@ impl MovingColliders {
         self.now.iter()
     }
 
-    /// Where a collider is; `None` if it does not move.
+    /// The current pose of a collider; `None` if it is not a moving one.
     pub(super) fn pose(&self, entity: Entity) -> Option<RigidPose> {
         find(&self.now, entity).map(|moving| moving.pose)
     }
 
-    /// Where it was; `None` if it has not moved, or was not there.
+    /// The pose of a collider before the last step; `None` if it has not changed, or the collider is new.
     pub(super) fn previous_pose(&self, entity: Entity) -> Option<RigidPose> {
         find(&self.now, entity)?.before
     }
@@ -51,8 +51,8 @@ fn find(all: &[MovingBody], entity: Entity) -> Option<&MovingBody> {
     index.ok().map(|index| &all[index])
 }
 
-/// After a step. What a game moves between two steps is motion, too, as this looks at nothing but where colliders
-/// come to be.
+/// Records poses after a step. Bodies that a game moves between two steps have motion, too, since only the poses after
+/// steps are compared.
 pub(super) fn note(
     mut moving: ResMut<MovingColliders>,
     colliders: Query<(Entity, &Collider, &ColliderOf, Option<&ColliderTransform>)>,
@@ -86,7 +86,7 @@ pub(super) fn note(
     now.sort_unstable_by_key(|moving| moving.entity);
 }
 
-/// As parry takes it.
+/// A pose of parry, in f32.
 pub(super) fn in_f32(pose: &RigidPose) -> Pose {
     Pose::from_parts(pose.translation.as_vec3(), pose.rotation.as_quat())
 }

@@ -17,23 +17,25 @@ use glam::DVec3;
 use super::AvianObstacles;
 use super::moving::{MovingBody, in_f32};
 
-/// Share of a ray's length that is searched beyond its end, so that what ends there is not missed by rounding.
+/// How far bounds are searched beyond a ray's end, as a share of its length and, in addition, in metres. Otherwise
+/// rounding could miss a collider at the end.
 const LOOSE: f32 = 1e-4;
 
-/// An avian world as one obstacle: its colliders as of the last step, without sensors.
+/// An avian world as one obstacle: all its colliders except sensors, as of the last step.
 ///
-/// Made anew each tick; it only borrows. Height fields and triangle meshes answer per triangle, from both sides;
-/// convex shapes are solid: as `RapierTerrain` answers for the same shapes. Rays are parry's own: one that meets an
-/// edge between two triangles exactly may slip through.
+/// It only borrows: make it anew each tick. Height fields and triangle meshes are tested per triangle, from both sides.
+/// Convex shapes are solid. `RapierTerrain` gives the same answers for the same shapes. Rays are cast by parry: a ray
+/// that hits exactly an edge between two triangles may pass through.
 ///
-/// What stands still is found through avian's trees, what can move by its bounds, one after the other.
+/// Colliders that stand still are found through avian's trees. Those that can move are tried one after the other, by
+/// their bounds.
 pub struct AvianTerrain<'a> {
     world: &'a AvianObstacles<'a, 'a>,
     filter: SpatialQueryFilter,
     origin: DVec3,
 }
 
-/// What a ray met first.
+/// The first hit of a ray.
 struct RayHit {
     distance: f32,
     entity: Entity,
@@ -50,15 +52,14 @@ impl<'a> AvianTerrain<'a> {
         }
     }
 
-    /// Where avian's origin stands in the world, for scenes that are far larger than f32 can resolve. Zero if not
-    /// said.
+    /// Sets the position of avian's origin in world space, for scenes that are too large for f32. Default: zero.
     #[must_use]
     pub fn with_origin(mut self, origin: DVec3) -> Self {
         self.origin = origin;
         self
     }
 
-    /// Restricts what is seen, to collision layers or to all but some entities.
+    /// Restricts which colliders are seen: to some collision layers, or to all but some entities.
     #[must_use]
     pub fn with_filter(mut self, filter: SpatialQueryFilter) -> Self {
         self.filter = filter;
@@ -70,7 +71,7 @@ impl<'a> AvianTerrain<'a> {
         local.is_finite().then_some(local)
     }
 
-    /// A collider that is seen, and where it is.
+    /// A collider that the filter lets through, and its pose.
     fn solid(&self, entity: Entity) -> Option<(&Collider, RigidPose)> {
         let (position, rotation, collider, layers) = self.world.solids.get(entity).ok()?;
         let layers = layers.copied().unwrap_or_default();
@@ -82,7 +83,7 @@ impl<'a> AvianTerrain<'a> {
         Some((collider, pose))
     }
 
-    /// Calls `visit` with what may lie in a box.
+    /// Calls `visit` with the colliders that may lie in a box.
     fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
         self.near_still(bounds, visit);
         for moving in self.world.moving.iter() {
@@ -92,7 +93,7 @@ impl<'a> AvianTerrain<'a> {
         }
     }
 
-    /// Calls `visit` with what may lie in a box and stands still.
+    /// Calls `visit` with the colliders that stand still and may lie in a box.
     fn near_still(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
         let trees = &self.world.trees;
         let still = ColliderAabb::from_min_max(bounds.mins, bounds.maxs);
@@ -106,7 +107,7 @@ impl<'a> AvianTerrain<'a> {
         }
     }
 
-    /// Tries what stands still, and what moves as `moving` says: by which box, and over which tick.
+    /// Tries the colliders that stand still, and the moving ones with the box and the motion that `moving` returns.
     fn first_contact(
         &self,
         capsule: &WorldCapsule,
@@ -131,7 +132,8 @@ impl<'a> AvianTerrain<'a> {
         first.contact(self.origin)
     }
 
-    /// Casts a ray at one collider; keeps the nearest hit, of equals that of the smaller entity.
+    /// Casts a ray at one collider and keeps the nearest hit; ties go to the smaller entity. Returns this collider's
+    /// distance, `f32::MAX` for a miss.
     fn meet(&self, entity: Entity, ray: &Ray, limit: f32, best: &mut Option<RayHit>) -> f32 {
         let met = self.solid(entity).and_then(|(collider, pose)| {
             let shape = collider.shape_scaled();
@@ -175,7 +177,7 @@ impl<'a> AvianTerrain<'a> {
         }
     }
 
-    /// A radius about `point` that reaches everything.
+    /// A radius around `point` that reaches all colliders.
     fn reach_of_all(&self, point: Vec3) -> f64 {
         let trees = &self.world.trees;
         let trees = [&trees.static_tree, &trees.standalone_tree].into_iter();
@@ -293,7 +295,7 @@ impl Obstacle for AvianTerrain<'_> {
     }
 }
 
-/// Where a moving body is during a cast, and a box around that.
+/// Returns the bounds of a moving body during a cast, and its motion.
 fn ticks(target: TargetMotion) -> fn(&MovingBody) -> (Aabb, Tick) {
     match target {
         TargetMotion::Still => |moving| (moving.bounds, Tick::still(moving.pose)),
