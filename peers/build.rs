@@ -1,4 +1,4 @@
-//! Compiles `cpp`, a file for each library whose feature is on.
+//! Compiles one file of `cpp` for each library whose feature is on.
 
 fn main() {
     println!("cargo::rerun-if-changed=cpp");
@@ -19,14 +19,14 @@ mod native {
     pub(super) fn bullet() {
         let found = probe("bullet", "libbullet-dev");
         compile("bullet", &found.include_paths);
-        // The two of its libraries that are called.
+        // Only these two of Bullet's libraries are called.
         println!("cargo::rustc-link-lib=BulletCollision");
         println!("cargo::rustc-link-lib=LinearMath");
     }
 
     #[cfg(feature = "embree")]
     pub(super) fn embree() {
-        // It has no file for pkg-config.
+        // Embree has no file for pkg-config.
         if !Path::new("/usr/include/embree3/rtcore.h").exists() {
             missing(
                 "embree",
@@ -46,7 +46,7 @@ mod native {
         println!("cargo::rustc-link-lib=ccd");
     }
 
-    /// Where the library is. What to link is left to the callers: they are linked after our own archive.
+    /// Finds a library. The callers tell what to link, since that must come after our own archive.
     #[cfg(any(feature = "bullet", feature = "fcl"))]
     fn probe(library: &str, package: &str) -> pkg_config::Library {
         let found = pkg_config::Config::new()
@@ -59,23 +59,24 @@ mod native {
     }
 
     fn missing(library: &str, package: &str, why: &str) -> ! {
-        panic!("feature `{library}` needs a library of Debian's: apt-get install {package}\n{why}");
+        panic!("the feature `{library}` needs a Debian package: apt-get install {package}\n{why}");
     }
 
-    /// Optimised in every profile: what a debug build measures of a library should be the library.
+    /// Compiles a library's file, optimised in every profile, so that a debug build measures the library itself.
     fn compile(library: &str, headers: &[PathBuf]) {
         let mut build = cc::Build::new();
         build
             .cpp(true)
             .std("c++17")
             .opt_level(2)
-            // Of FCL's contacts, which it inlines.
+            // The warning is about FCL's contacts, which the compiler inlines.
             .flag_if_supported("-Wno-maybe-uninitialized")
             .file(format!("cpp/{library}.cpp"));
-        // Searched in any case, and as `-isystem` before the compiler's own headers, which look for it after them.
+        // This folder is searched anyway, and must not come by `-isystem`: that would put it before the compiler's own
+        // headers, which expect it after them.
         let searched = Path::new("/usr/include");
         for folder in headers.iter().filter(|folder| *folder != searched) {
-            // As the system's, whose warnings are not ours.
+            // As system headers, whose warnings are not shown.
             build.flag("-isystem").flag(folder.display().to_string());
         }
         build.compile(&format!("clamber_peers_{library}"));

@@ -1,7 +1,7 @@
-// Bullet 3: a btBvhTriangleMeshShape, refitted.
+// Bullet 3: a btBvhTriangleMeshShape, refitted each frame.
 //
-// Its tree is quantised, because Bullet refits no other: btOptimizedBvh::refit does nothing where it is not, and
-// queries are then those of the mesh as it was built.
+// Its tree is quantised, because Bullet refits no other: on a tree that is not, btOptimizedBvh::refit does nothing, and
+// queries see the mesh as it was built.
 #include "peer.h"
 #include "triangle.h"
 
@@ -26,7 +26,7 @@ struct Bullet
 {
     std::vector<float> positions;
     std::vector<int> triangles;
-    // Of the positions; the tree is quantised between them.
+    // Bounds of the positions. The tree is quantised between them.
     btVector3 low, high;
     btTriangleIndexVertexArray array;
     std::unique_ptr<btBvhTriangleMeshShape> shape;
@@ -58,13 +58,13 @@ struct Bullet
         mesh.m_vertexType = PHY_FLOAT;
         array.addIndexedMesh(mesh, PHY_INTEGER);
         shape = std::make_unique<btBvhTriangleMeshShape>(&array, true, low, high);
-        // Else every triangle is 4 cm thick for a convex cast.
+        // Otherwise every triangle is 4 cm thick for a convex cast.
         shape->setMargin(0);
         object.setCollisionShape(shape.get());
     }
 };
 
-// A distance that reaches all of the mesh.
+// A distance from a point that reaches all of the mesh.
 float reach(const Bullet &bullet, const btVector3 &from)
 {
     btVector3 farthest = (from - bullet.low).absolute();
@@ -139,8 +139,8 @@ void bullet_update(void *peer, const float *positions)
 {
     Bullet &bullet = *static_cast<Bullet *>(peer);
     bullet.take(positions);
-    // What the shape's refitTree does, but for finding its own bounds by six passes over all triangles, which take
-    // several times the refit and which no query here reads.
+    // As the shape's refitTree, without its own bounds: these take six passes over all triangles, several times the
+    // refit, and no query here reads them.
     bullet.shape->getOptimizedBvh()->refit(&bullet.array, bullet.low, bullet.high);
 }
 
@@ -149,7 +149,7 @@ int bullet_cast_ray(void *peer, const float *origin, const float *direction, flo
 {
     Bullet &bullet = *static_cast<Bullet *>(peer);
     const btVector3 from = vector(origin);
-    // Bullet casts along segments: one no longer than it needs to be keeps the precision.
+    // Bullet casts along segments. A segment no longer than needed keeps the precision.
     const float length = std::min(max_distance, reach(bullet, from));
     const btVector3 to = from + vector(direction) * length;
     Ray ray(from, to);
@@ -177,8 +177,8 @@ int bullet_closest_point(void *peer, const float *at, float max_distance, float 
     const Bullet &bullet = *static_cast<Bullet *>(peer);
     const btVector3 center = vector(at);
     const float most = std::min(max_distance, reach(bullet, center));
-    // Bullet has no query for this, and a box that shrinks on the way neither: boxes that grow until the sphere in one
-    // holds a point of the mesh. The last costs most, so where they start matters little.
+    // Bullet has no query for this, and none with a box that shrinks on the way. So boxes grow until the sphere inside
+    // one holds a point of the mesh. The last box costs most, so the size of the first matters little.
     float radius = std::min(most, (bullet.high - bullet.low).length() / 256);
     for (;;)
     {

@@ -1,4 +1,4 @@
-// Embree 3: a scene of one mesh, refitted by its vertex buffer.
+// Embree 3: a scene of one mesh, refitted each frame through its vertex buffer.
 #include "peer.h"
 #include "triangle.h"
 
@@ -24,8 +24,8 @@ struct Embree
     Point *vertices = nullptr;
     uint32_t (*triangles)[3] = nullptr;
     size_t vertex_count = 0;
-    // What Embree holds just now, by its own account, and how much of it was malloc's once the tree was built: that of
-    // a large mesh is mapped by Embree itself.
+    // Bytes that Embree holds now, by its own count, and how many malloc counted after the tree was built. Embree maps
+    // the tree of a large mesh itself, without malloc.
     std::atomic<int64_t> bytes{0};
     int64_t known_to_malloc = 0;
 
@@ -35,7 +35,7 @@ struct Embree
             rtcReleaseGeometry(mesh);
         if (scene)
             rtcReleaseScene(scene);
-        // The device tells the monitor of what it frees at the end, so it goes before `bytes`.
+        // The device reports what it frees at the end to the monitor, so it is released while `bytes` lives.
         if (device)
             rtcReleaseDevice(device);
     }
@@ -81,8 +81,8 @@ Embree *make(const float *positions, uint32_t vertices, const uint32_t *triangle
     peer->vertex_count = vertices;
     std::memcpy(peer->vertices, positions, vertices * sizeof(Point));
     std::memcpy(peer->triangles, triangles, triangle_count * sizeof *peer->triangles);
-    // Embree refits only where the scene is both of LOW quality, which puts the mesh's tree under one of its own,
-    // and DYNAMIC; short of either it builds anew, at some twenty times the cost.
+    // Embree refits only in a scene that is both of LOW quality, which puts the mesh's tree under a tree of the scene,
+    // and DYNAMIC. Otherwise it builds anew, at about twenty times the cost.
     rtcSetGeometryBuildQuality(peer->mesh, RTC_BUILD_QUALITY_REFIT);
     rtcSetSceneBuildQuality(peer->scene, RTC_BUILD_QUALITY_LOW);
     rtcSetSceneFlags(peer->scene, flags);
@@ -129,7 +129,7 @@ int cast_ray(const Embree &peer, const float *origin, const float *direction, fl
     return 1;
 }
 
-// Embree walks the tree within a radius, and leaves the triangle to a callback.
+// Embree walks the tree within a radius, and leaves the triangles to a callback.
 struct PointQuery
 {
     const Embree *peer;
@@ -165,7 +165,7 @@ bool keep_nearest(RTCPointQueryFunctionArguments *args)
     query.radius_sq = distance_sq;
     query.nearest = nearest;
     query.count = 1;
-    // The radius shrinks, and true tells Embree so.
+    // The radius shrinks; returning true tells Embree.
     args->query->radius = std::sqrt(distance_sq);
     return true;
 }
@@ -222,7 +222,7 @@ const Embree &embree(const void *peer) { return *static_cast<const Embree *>(pee
     {                                                                                                                 \
         return closest(embree(peer), point, max_distance, nearest);                                                   \
     }                                                                                                                 \
-    /* Embree casts rays only; its user geometry can be other shapes, but not what is cast. */                        \
+    /* Embree casts rays only: a user geometry can be hit by a ray, but cannot be cast. */                            \
     int P##_cast_sphere(void *, const float *, float, const float *, float *) { return UNSUPPORTED; }                 \
     uint64_t P##_hidden_bytes(void *peer) { return hidden(embree(peer)); }
 

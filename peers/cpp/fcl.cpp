@@ -1,11 +1,12 @@
 // FCL 0.7: a BVHModel of boxes, refitted from the leaves up.
 //
-// Boxes along the axes, because its oriented volumes take tens of times as long to refit, and two of them come out
-// wrong: FCL unites rectangle swept spheres with the third axis of one of them instead of the union's own, so that the
-// union does not hold them. After a refit from the leaves up RSS misses what it touches, and RSS and OBBRSS miss the
-// closest point.
-// For boxes `fcl::collide` copies the whole model at every call, and `fcl::distance` has nothing; so the traversals
-// below these two are called, as these call them.
+// The boxes are axis-aligned. FCL's oriented volumes take tens of times as long to refit, and two of them come out
+// wrong: FCL unites rectangle swept spheres with the third axis of one of them instead of the union's own axis, so that
+// the union does not hold them. After a refit from the leaves up RSS misses triangles that it touches, and RSS and
+// OBBRSS miss the closest point.
+//
+// For boxes `fcl::collide` copies the whole model at every call, and `fcl::distance` has no implementation. So the
+// traversals below these two functions are called directly, in the same way.
 #include "peer.h"
 
 #include <limits>
@@ -34,7 +35,7 @@ using Solver = fcl::detail::GJKSolver_libccd<float>;
 struct Fcl
 {
     fcl::BVHModel<Box> model;
-    // Has closed forms for a sphere and a triangle.
+    // The solver has closed forms for a sphere and a triangle.
     Solver solver;
     fcl::CollisionResultf touched;
 };
@@ -75,7 +76,7 @@ int64_t overlap(Fcl &peer, const float *center, float radius)
     if (!fcl::detail::initialize(node, peer.model, model_at, sphere, at(center), &peer.solver, request, peer.touched))
         return 0;
     fcl::detail::collide(&node);
-    // One contact for each triangle, as each is in one leaf.
+    // There is one contact per triangle, since each triangle is in one leaf.
     return static_cast<int64_t>(peer.touched.numContacts());
 }
 
@@ -85,7 +86,7 @@ int closest(Fcl &peer, const float *point, float max_distance, float *nearest)
     const fcl::DistanceRequestf request(true);
     fcl::DistanceResultf result(max_distance);
     fcl::detail::MeshShapeDistanceTraversalNode<Box, fcl::Spheref, Solver> node;
-    // What its `initialize` does: that is declared with one signature and defined with another, so it does not link.
+    // As FCL's `initialize`, which does not link: it is declared with one signature and defined with another.
     node.request = request;
     node.result = &result;
     node.model1 = &peer.model;
@@ -99,7 +100,7 @@ int closest(Fcl &peer, const float *point, float max_distance, float *nearest)
     fcl::detail::distance(&node);
     if (!result.o1)
         return 0;
-    // A point on the triangle itself counts as inside the sphere, for which no nearest point is told.
+    // A point on the triangle itself counts as inside the sphere, and then FCL gives no nearest point.
     const fcl::Vector3f on = result.min_distance > 0 ? result.nearest_points[0] : vector(point);
     for (int k = 0; k < 3; k++)
         nearest[k] = on[k];
@@ -124,7 +125,7 @@ void fcl_free(void *peer) { delete static_cast<Fcl *>(peer); }
 
 void fcl_update(void *peer, const float *positions)
 {
-    // Not beginUpdateModel, which keeps the positions before and fits every leaf to both.
+    // Not beginUpdateModel, which keeps the old positions and fits every leaf to old and new ones.
     fcl::BVHModel<Box> &model = static_cast<Fcl *>(peer)->model;
     model.beginReplaceModel();
     for (int k = 0; k < model.num_vertices; k++)
@@ -159,10 +160,11 @@ int fcl_closest_point(void *peer, const float *point, float max_distance, float 
     }
 }
 
-// FCL's continuous collision has nothing for a sphere against a mesh. CCDC_CONSERVATIVE_ADVANCEMENT, the one that is
-// meant for it, flies through a mesh that it starts off: for RSS and OBBRSS it measures from where the sphere is not,
-// for boxes it takes their motion for zero; with the sphere named first it crashes. CCDC_NAIVE samples times and
-// tunnels, CCDC_POLYNOMIAL_SOLVER is for two meshes, which it changes, and CCDC_RAY_SHOOTING is empty.
+// FCL's continuous collision cannot cast a sphere against a mesh. CCDC_CONSERVATIVE_ADVANCEMENT, which is meant for it,
+// goes through a mesh that it does not touch at the start: for RSS and OBBRSS it measures from a wrong position of the
+// sphere, for boxes it takes their motion for zero, and with the sphere as the first argument it crashes. CCDC_NAIVE
+// samples times and tunnels, CCDC_POLYNOMIAL_SOLVER is for two meshes, which it changes, and CCDC_RAY_SHOOTING is
+// empty.
 int fcl_cast_sphere(void *, const float *, float, const float *, float *) { return UNSUPPORTED; }
 
 uint64_t fcl_hidden_bytes(void *) { return 0; }

@@ -1,7 +1,8 @@
-// What a peer in C++ offers to Rust, under a prefix of its own: PEER(name) stands for embree_name, and so on.
+// The functions that a peer in C++ offers to Rust. Each peer has its own prefix P, such as embree.
 //
-// Positions are x, y, z of each vertex, triangles three indices each, all in one space. A query gives 1 if it found
-// something, 0 if not, and UNSUPPORTED if the library has no such query. No function throws.
+// Positions are x, y, z of each vertex; triangles are three indices each. All is in one space. Where no other result is
+// described, a query returns 1 if it found something, 0 if not, and UNSUPPORTED if the library has no such query. No
+// function throws.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +13,17 @@ constexpr int UNSUPPORTED = -1;
     extern "C" {                                                                                                      \
     void *P##_new(const float *positions, uint32_t vertices, const uint32_t *triangles, uint32_t triangle_count);     \
     void P##_free(void *peer);                                                                                        \
-    /* Takes other positions of the same vertices, and refits. */                                                     \
+    /* Sets new positions of the same vertices, and refits. */                                                        \
     void P##_update(void *peer, const float *positions);                                                              \
     /* The first triangle along a ray of unit direction, from either side. */                                         \
     int P##_cast_ray(void *peer, const float *origin, const float *direction, float max_distance, float *distance,    \
                      uint32_t *triangle);                                                                             \
-    /* How many triangles are within a sphere. */                                                                     \
+    /* Number of triangles that touch a sphere, or UNSUPPORTED. */                                                    \
     int64_t P##_overlap_sphere(void *peer, const float *center, float radius);                                        \
-    /* The point nearest to one, if within a distance. */                                                             \
+    /* The point of the mesh closest to a point, if within a distance. */                                             \
     int P##_closest_point(void *peer, const float *point, float max_distance, float *nearest);                        \
-    /* The share of its motion that a sphere makes before it touches. */                                              \
+    /* The share of its motion, 0 to 1, that a sphere makes before it touches. */                                     \
     int P##_cast_sphere(void *peer, const float *center, float radius, const float *motion, float *time);             \
-    /* Bytes that the library holds and malloc does not know of; 0 if there are none. */                               \
+    /* Bytes that the library holds and malloc does not count. */                                                     \
     uint64_t P##_hidden_bytes(void *peer);                                                                            \
     }

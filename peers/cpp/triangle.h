@@ -1,4 +1,4 @@
-// One triangle in float, for libraries that leave it to their caller.
+// The closest point on a triangle in float, for libraries that leave it to their caller.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ inline Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b
 inline Point operator*(Point a, float s) { return {a.x * s, a.y * s, a.z * s}; }
 inline float dot(Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// The point of a triangle nearest to one (Ericson 2004, "Real-Time Collision Detection", 5.1.5).
+// The point of a triangle closest to p (Ericson 2004, "Real-Time Collision Detection", 5.1.5).
 inline Point closest_point(Point p, Point a, Point b, Point c)
 {
     const Point ab = b - a, ac = c - a, ap = p - a;

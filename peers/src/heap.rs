@@ -1,5 +1,5 @@
-/// What `make` makes, and how many more bytes the heap holds since: Rust's and C++'s are one. 0 bytes where the C library
-/// is not glibc, which alone tells.
+/// The result of `make`, and by how many bytes the heap has grown meanwhile. Rust and C++ share one heap. The number is
+/// 0 if the C library is not glibc, since only glibc reports it.
 pub fn taken_from_heap<T>(make: impl FnOnce() -> T) -> (T, usize) {
     let before = held();
     let made = make();
@@ -9,7 +9,7 @@ pub fn taken_from_heap<T>(make: impl FnOnce() -> T) -> (T, usize) {
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn held() -> usize {
     #[expect(unsafe_code, reason = "a call into the C library")]
-    // SAFETY: it takes no argument, and may be called at any time.
+    // SAFETY: the function takes no argument, and may be called at any time.
     let heap = unsafe { libc::mallinfo2() };
     heap.uordblks + heap.hblkhd
 }
@@ -25,8 +25,8 @@ mod tests {
 
     #[test]
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    fn a_megabyte_is_seen() {
-        // What nobody looks at is never allocated in a release build.
+    fn a_megabyte_is_counted() {
+        // Without `black_box` a release build would not allocate.
         let (made, bytes) = taken_from_heap(|| std::hint::black_box(vec![1u8; 1 << 20]));
         assert!(bytes >= made.len(), "{bytes}");
     }

@@ -1,8 +1,11 @@
-//! Other ways of answering queries on an animated skin, beside clamber's: the same creature, the same poses, the same
-//! queries, and for all that skin the whole mesh the same positions, from our fastest kernel. Not published.
+//! clamber and other ways of answering queries on an animated skin, behind one trait, for benches. Not published.
 //!
-//! [`all`] lists what is compiled in; the features `bullet`, `embree`, `fcl` and `physx` add libraries in C++. Benches
-//! `peers` and `accuracy` hold them against each other; README.md says how to run them and what each peer is asked.
+//! All peers get the same creature, poses and queries. Those that skin the whole mesh get the same positions, from
+//! clamber's fastest kernel.
+//!
+//! [`all`] lists the peers that are compiled in; the features `bullet`, `embree`, `fcl` and `physx` add libraries in
+//! C++. The benches `peers` and `accuracy` compare them. README.md says how to run the benches, and which calls of each
+//! library are used.
 
 mod heap;
 #[cfg(any(feature = "bullet", feature = "embree", feature = "fcl"))]
@@ -22,7 +25,7 @@ pub use heap::taken_from_heap;
 pub use peer::{Answer, Entry, Make, Nearest, Peer, RayHit, Unsupported};
 pub use push_out::mean_push_out;
 
-/// All peers that are compiled in; ours first.
+/// All peers that are compiled in; clamber's come first.
 pub fn all() -> Vec<Entry> {
     [
         ours::ENTRIES,

@@ -1,4 +1,4 @@
-//! Peers in C++ (`cpp`), behind one table of functions each.
+//! Peers in C++ (`cpp`), each behind a table of functions.
 
 #![allow(unsafe_code, reason = "calls the C++ of this crate")]
 
@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 use crate::peer::{Answer, Entry, Nearest, Peer, RayHit, Unsupported};
 use crate::skin::Skin;
 
-/// Those that this crate was built with, by its features.
+/// The peers that this crate was built with, by its features.
 pub(crate) const ENTRIES: &[Entry] = &[
     #[cfg(feature = "embree")]
     Entry {
@@ -39,7 +39,7 @@ pub(crate) const ENTRIES: &[Entry] = &[
     },
 ];
 
-/// What `cpp/peer.h` declares: its comments say what each function does.
+/// The functions of a peer, as declared and described in `cpp/peer.h`.
 struct Functions {
     new: unsafe extern "C" fn(*const f32, u32, *const u32, u32) -> *mut c_void,
     free: unsafe extern "C" fn(*mut c_void),
@@ -116,10 +116,10 @@ functions!(BULLET: bullet_new bullet_free bullet_update bullet_cast_ray bullet_o
 functions!(FCL: fcl_new fcl_free fcl_update fcl_cast_ray fcl_overlap_sphere fcl_closest_point
            fcl_cast_sphere fcl_hidden_bytes);
 
-/// A peer in C++, and the skin whose positions it is given.
+/// A peer in C++, and the skin whose positions it gets.
 struct Native {
     functions: &'static Functions,
-    /// From `functions.new`, and nobody else's.
+    /// Made by `functions.new`, and owned by this value alone.
     peer: NonNull<c_void>,
     skin: Skin,
 }
@@ -140,9 +140,9 @@ impl Native {
         let triangles = skin.triangles();
         let vertices = u32::try_from(skin.positions.len())?;
         let triangle_count = u32::try_from(triangles.len())?;
-        // SAFETY: both slices hold three of their elements for each vertex and triangle that the
-        // counts tell of, `Vec3` being three f32 in a row, and every index is of a vertex, as
-        // `ColliderMesh` checks. C++ copies them.
+        // SAFETY: both slices hold three numbers for each of the counted vertices and triangles,
+        // since a `Vec3` is three f32 in a row. Every index is the index of a vertex, as
+        // `ColliderMesh` checks. C++ copies both.
         let peer = unsafe {
             (functions.new)(
                 skin.positions.as_ptr().cast(),
@@ -151,7 +151,7 @@ impl Native {
                 triangle_count,
             )
         };
-        let peer = NonNull::new(peer).ok_or("the library could not take the mesh")?;
+        let peer = NonNull::new(peer).ok_or("the library rejected the mesh")?;
         Ok(Self {
             functions,
             peer,
@@ -167,7 +167,7 @@ impl Drop for Native {
     }
 }
 
-/// What C++ says of a query: found, not found or no such query.
+/// The return value of a query in C++ as an answer: found, not found, or no such query.
 fn found(answer: c_int) -> Answer<bool> {
     match answer {
         1 => Ok(true),
@@ -179,8 +179,8 @@ fn found(answer: c_int) -> Answer<bool> {
 impl Peer for Native {
     fn update(&mut self, palette: &Palette, place: DVec3) -> Result<(), Box<dyn Error>> {
         self.skin.update(palette, place)?;
-        // SAFETY: `peer` lives until drop, here and below; there are as many positions as it was
-        // made of. C++ copies them.
+        // SAFETY: `peer` lives until drop, here and below; there are as many positions as when it
+        // was made. C++ copies them.
         unsafe { (self.functions.update)(self.peer.as_ptr(), self.skin.positions.as_ptr().cast()) };
         Ok(())
     }
@@ -188,8 +188,8 @@ impl Peer for Native {
     fn cast_ray(&mut self, ray: &Ray, max_distance: f32) -> Answer<Option<RayHit>> {
         let (origin, direction) = (ray.origin().to_array(), ray.direction().to_array());
         let (mut distance, mut triangle) = (0.0, 0);
-        // SAFETY: the arrays have the three elements that are read, and the two references are
-        // written to before the call returns, if at all.
+        // SAFETY: the arrays have the three elements that are read. The two pointers are written to
+        // during the call only.
         let answer = unsafe {
             (self.functions.cast_ray)(
                 self.peer.as_ptr(),
@@ -234,8 +234,8 @@ impl Peer for Native {
     fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
         let (center, motion) = (sphere.center.to_array(), motion.to_array());
         let mut time = 0.0;
-        // SAFETY: three elements each are read, and the reference is written to before the call
-        // returns, if at all.
+        // SAFETY: three elements of each array are read. The pointer is written to during the call
+        // only.
         let answer = unsafe {
             (self.functions.cast_sphere)(
                 self.peer.as_ptr(),
@@ -249,7 +249,7 @@ impl Peer for Native {
     }
 
     fn bytes(&self, from_heap: usize) -> usize {
-        // SAFETY: it only reads what the library told.
+        // SAFETY: the function only reads a number that the peer holds.
         let hidden = unsafe { (self.functions.hidden_bytes)(self.peer.as_ptr()) };
         from_heap + hidden as usize + self.skin.bytes_at_rest()
     }

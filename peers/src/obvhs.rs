@@ -1,8 +1,9 @@
-//! obvhs: a bounding volume hierarchy that is refitted each frame. It brings rays and boxes; what is nearest is
-//! searched over its nodes here.
+//! obvhs: a bounding volume hierarchy that is refitted each frame.
+//!
+//! obvhs has queries for rays and boxes. The search for the closest point over its nodes is ours.
 #![allow(
     clippy::disallowed_types,
-    reason = "obvhs speaks of Vec3A; its bits are nobody's contract here"
+    reason = "obvhs uses Vec3A; a peer need not give the same bits everywhere"
 )]
 
 use std::error::Error;
@@ -32,7 +33,7 @@ pub(crate) const ENTRIES: &[Entry] = &[Entry {
 struct Obvhs {
     skin: Skin,
     bvh: Bvh2,
-    /// Nodes to visit.
+    /// Nodes to visit, with their distances.
     stack: Vec<(f32, u32)>,
 }
 
@@ -42,14 +43,14 @@ impl Obvhs {
         let triangles: Vec<Triangle> = (0..mesh.triangles().len())
             .map(|index| triangle_of(skin.corners(index)))
             .collect();
-        // A leaf for each triangle, as refitting by leaves wants.
+        // A leaf for each triangle, as refitting by leaves requires.
         let params = BvhBuildParams {
             max_prims_per_leaf: 1,
             pre_split: false,
             ..BvhBuildParams::medium_build()
         };
         let mut bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
-        // Refits in one sweep then.
+        // In this order a refit is one pass over the nodes.
         bvh.reorder_in_stack_traversal_order();
         bvh.update_primitives_to_nodes();
         Self {
@@ -79,7 +80,7 @@ impl Peer for Obvhs {
         self.bvh.ray_traverse(ray, &mut hit, |ray, slot| {
             triangle_of(self.skin.corners(of[slot] as usize)).intersect(ray)
         });
-        // The triangle's slot stays out of range where none is met; the distance does not tell.
+        // Without a hit the triangle's slot stays out of range. The distance does not tell.
         let met = of.get(hit.primitive_id as usize);
         Ok(met.map(|triangle| RayHit {
             distance: hit.t,
@@ -123,7 +124,7 @@ impl Peer for Obvhs {
                 let apart = |child: u32| distance(nodes[child as usize].aabb(), point);
                 let (left, right) = (node.first_index, node.first_index + 1);
                 let (left, right) = ((apart(left), left), (apart(right), right));
-                // The nearer one is looked at first.
+                // The nearer child is visited first.
                 let [first, second] = if left.0 <= right.0 {
                     [left, right]
                 } else {
@@ -148,7 +149,7 @@ impl Peer for Obvhs {
         Ok(nearest)
     }
 
-    /// It knows rays and boxes only.
+    /// obvhs has queries for rays and boxes only.
     fn cast_sphere(&mut self, _: &Sphere, _: Vec3) -> Answer<Option<f32>> {
         Err(Unsupported)
     }
@@ -167,7 +168,7 @@ fn triangle_of(corners: [Vec3; 3]) -> Triangle {
     Triangle { v0, v1, v2 }
 }
 
-/// From a point to a box.
+/// Distance from a point to a box.
 fn distance(bounds: &Aabb, point: Vec3) -> f32 {
     let point = Vec3A::from(point);
     point.distance(point.clamp(bounds.min, bounds.max))

@@ -1,4 +1,4 @@
-//! Ours: lazily, and all at once.
+//! clamber's own surface as a peer: lazily skinned, and all skinned at once.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ pub(crate) const ENTRIES: &[Entry] = &[
     },
 ];
 
-/// A tenth of a millimetre from touching is a contact, for spheres of any size.
+/// Options of sphere casts: a tolerance of 0.1 mm for spheres of any size.
 const CAST: CastOptions = CastOptions::STILL.with_tolerance(1e-4);
 
-/// Its creature's place is kept in f64 and queries are brought there, as clamber's users do.
+/// The creature's place is kept in f64, and queries are brought into its frame, as users of clamber do.
 struct Ours {
     surface: SkinnedSurface,
     ahead: bool,
@@ -46,7 +46,7 @@ impl Ours {
         placed.inverse_transform_point_f32(point.as_dvec3())
     }
 
-    /// `None` if it is not finite: nothing is within such a sphere, and it meets nothing.
+    /// A sphere in model space; `None` if it is not finite. Such a sphere holds nothing and hits nothing.
     fn local_ball(&self, sphere: &Sphere) -> Option<Capsule> {
         Capsule::ball(self.local(sphere.center), sphere.radius)
     }

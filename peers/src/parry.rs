@@ -1,4 +1,4 @@
-//! parry's triangle mesh: made anew each frame, or with its vertices set, which refits its hierarchy.
+//! parry's triangle mesh: built anew each frame, or with new vertices set, which refits its hierarchy.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -63,12 +63,13 @@ impl Peer for Parry {
         let triangles = self.shape.indices().len() as u32;
         Ok(hit.map(|hit| RayHit {
             distance: hit.time_of_impact,
-            // Back faces are counted on from the front ones.
+            // parry numbers the back faces after all front faces.
             triangle: TriangleId(hit.feature.unwrap_face() % triangles),
         }))
     }
 
-    /// parry tells whether a ball meets the mesh; which triangles do is asked of each whose box is near.
+    /// parry has a query for whether a ball touches the mesh, but not for which triangles. So each triangle whose box
+    /// is near is tested.
     fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
         let reach = Vec3::splat(sphere.radius);
         let near = Aabb::new(sphere.center - reach, sphere.center + reach);

@@ -6,38 +6,38 @@ use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 
-/// The peer has no such query.
+/// Error: the peer has no such query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsupported;
 
-/// What a peer answers, if it can.
+/// The answer of a peer to a query that it may not support.
 pub type Answer<T> = Result<T, Unsupported>;
 
-/// Where a ray meets the skin first.
+/// The first hit of a ray on the skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// From the ray's origin.
+    /// Distance from the ray's origin.
     pub distance: f32,
-    /// Which triangle of the collider it meets.
+    /// The triangle of the collider that the ray hits.
     pub triangle: TriangleId,
 }
 
-/// The point of the skin nearest to a point.
+/// The point of the skin closest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// In world space.
+    /// The closest point, in world space.
     pub point: Vec3,
-    /// As the peer has it, or from `point`.
+    /// Its distance, as the peer returns it or computed from `point`.
     pub distance: f32,
 }
 
-/// One way of answering queries on an animated skin. All is in world space, whose origin is the model's moved by
-/// the place of [`Peer::update`].
+/// One way of answering queries on an animated skin. All arguments and answers are in world space, which is model space
+/// moved by the `place` of [`Peer::update`].
 pub trait Peer {
-    /// Takes a pose, and moves the model's origin to `place`: skins and refits, for most peers.
+    /// Takes a pose, and moves the model's origin to `place`. Most peers skin all vertices and refit.
     ///
     /// # Errors
-    /// If the palette is of another skeleton, or nothing that the peer can take.
+    /// If the palette does not fit the collider, or the peer cannot take the positions.
     fn update(&mut self, palette: &Palette, place: DVec3) -> Result<(), Box<dyn Error>>;
 
     /// The first triangle along a ray, from either side.
@@ -46,39 +46,41 @@ pub trait Peer {
     /// [`Unsupported`], as for the other queries.
     fn cast_ray(&mut self, ray: &Ray, max_distance: f32) -> Answer<Option<RayHit>>;
 
-    /// How many triangles are within a sphere.
+    /// Number of triangles that touch a sphere.
     ///
     /// # Errors
     /// As [`Peer::cast_ray`].
     fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize>;
 
-    /// The point nearest to one, if it is within a distance.
+    /// The point of the skin closest to a point, if it is within a distance.
     ///
     /// # Errors
     /// As [`Peer::cast_ray`].
     fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>>;
 
-    /// The share of its motion that a sphere makes before it touches the skin, which stands still.
+    /// The share of its motion, 0 to 1, that a sphere makes before it touches the skin, which does not move. `None` if
+    /// it does not touch.
     ///
     /// # Errors
     /// As [`Peer::cast_ray`].
     fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>>;
 
-    /// Where a point of the skin is, and how far it has come since the pose before.
+    /// Position of a point of the skin, and its displacement since the last pose.
     fn motion(&mut self, triangle: TriangleId, barycentric: [f32; 3]) -> (Vec3, Vec3);
 
-    /// All bytes that it needs, what it skins from included, where making it took `from_heap` from the heap.
+    /// Memory of the peer in bytes, including the data that it skins from. `from_heap` is what making it took from
+    /// the heap.
     fn bytes(&self, from_heap: usize) -> usize;
 }
 
-/// How a peer is made.
+/// A function that makes a peer.
 pub type Make = fn(&Arc<ColliderMesh>) -> Result<Box<dyn Peer>, Box<dyn Error>>;
 
-/// A peer's name in tables, and how to make it.
+/// A peer's name in tables, and the function that makes it.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// In tables.
+    /// The name in tables.
     pub name: &'static str,
-    /// Of a collider, at rest.
+    /// Makes the peer from a collider, at rest.
     pub make: Make,
 }

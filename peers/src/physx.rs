@@ -1,4 +1,4 @@
-//! PhysX 5.1: a triangle mesh without scene or actor, refitted.
+//! PhysX 5.1: a triangle mesh without scene or actor, refitted each frame.
 
 #![allow(unsafe_code, reason = "calls PhysX")]
 
@@ -36,15 +36,15 @@ const NO_ROTATION: PxQuat = PxQuat {
     w: 1.0,
 };
 
-/// The guard would save, set and restore the processor's rounding and flushing at every query: Rust leaves them as
-/// PhysX wants them but for denormal numbers, which are then exact.
+/// No guard: it would save, set and restore the processor's rounding and flushing modes at every query. Rust's modes
+/// are those that PhysX wants, except that subnormal numbers are not flushed.
 const NO_GUARD: PxGeometryQueryFlags = PxGeometryQueryFlags::empty();
 
 struct PhysX {
     mesh: Mesh,
-    /// Of `mesh`.
+    /// The geometry of `mesh`.
     geometry: PxTriangleMeshGeometry,
-    /// What an overlap found: grows to what was needed most.
+    /// Buffer for the triangles of an overlap; grows to the largest size needed.
     found: Vec<u32>,
     skin: Skin,
 }
@@ -57,7 +57,7 @@ impl PhysX {
             scale: vector(Vec3::ONE),
             rotation: NO_ROTATION,
         };
-        // SAFETY: all it does is set the fields: the pointer, and a copy of the scale.
+        // SAFETY: the function only sets the fields: the pointer, and a copy of the scale.
         let geometry = unsafe {
             PxTriangleMeshGeometry_new(
                 mesh.as_ptr(),
@@ -103,8 +103,8 @@ impl Peer for PhysX {
         let (origin, direction) = (vector(ray.origin()), vector(ray.direction()));
         let mesh = at(Vec3::ZERO);
         let mut hit = MaybeUninit::<PxGeomRaycastHit>::zeroed();
-        // SAFETY: all pointers are of values that live, the mesh until drop, and only `hit` is written to, which is
-        // room for the one hit that is asked for.
+        // SAFETY: all pointers are to live values; the mesh lives until drop. Only `hit` is written to, which has room
+        // for the one hit that is requested.
         let hits = unsafe {
             PxGeometryQuery_raycast(
                 &raw const origin,
@@ -123,7 +123,7 @@ impl Peer for PhysX {
         if hits == 0 {
             return Ok(None);
         }
-        // SAFETY: numbers and flags, zero or written by PhysX.
+        // SAFETY: the hit holds numbers and flags only, which are zero or written by PhysX.
         let hit = unsafe { hit.assume_init() };
         Ok(Some(RayHit {
             distance: hit.distance,
@@ -132,13 +132,13 @@ impl Peer for PhysX {
     }
 
     fn overlap_sphere(&mut self, sphere: &Sphere) -> Answer<usize> {
-        // SAFETY: all it does is set the fields.
+        // SAFETY: the function only sets the fields.
         let ball = unsafe { PxSphereGeometry_new(sphere.radius) };
         let (center, mesh) = (at(sphere.center), at(Vec3::ZERO));
         loop {
             let mut overflow = false;
-            // SAFETY: all pointers are of values that live, the mesh until drop; written to are `overflow` and `found`,
-            // whose length is told.
+            // SAFETY: all pointers are to live values; the mesh lives until drop. Only `overflow` and `found` are
+            // written to, and the length of `found` is passed.
             let count = unsafe {
                 PxMeshQuery_findOverlapTriangleMesh(
                     (&raw const ball).cast(),
@@ -159,12 +159,12 @@ impl Peer for PhysX {
         }
     }
 
-    /// PhysX takes no distance to look within: it finds the nearest point of all.
+    /// PhysX takes no maximum distance: it finds the closest point at any distance.
     fn closest_point(&mut self, point: Vec3, max_distance: f32) -> Answer<Option<Nearest>> {
         let (from, mesh) = (vector(point), at(Vec3::ZERO));
         let mut nearest = vector(Vec3::NAN);
-        // SAFETY: all pointers are of values that live, the mesh until drop, and only `nearest` is written to; nobody
-        // asks for the triangle.
+        // SAFETY: all pointers are to live values; the mesh lives until drop. Only `nearest` is written to; the
+        // triangle is not requested.
         unsafe {
             PxGeometryQuery_pointDistance(
                 &raw const from,
@@ -185,18 +185,18 @@ impl Peer for PhysX {
 
     fn cast_sphere(&mut self, sphere: &Sphere, motion: Vec3) -> Answer<Option<f32>> {
         let length = motion.length();
-        // One that stands still needs a direction, too.
+        // A sphere that does not move needs a direction as well.
         let direction = if length > 0.0 {
             motion / length
         } else {
             Vec3::X
         };
         let direction = vector(direction);
-        // SAFETY: all it does is set the fields.
+        // SAFETY: the function only sets the fields.
         let ball = unsafe { PxSphereGeometry_new(sphere.radius) };
         let (center, mesh) = (at(sphere.center), at(Vec3::ZERO));
         let mut hit = MaybeUninit::<PxGeomSweepHit>::zeroed();
-        // SAFETY: all pointers are of values that live, the mesh until drop, and only `hit` is written to.
+        // SAFETY: all pointers are to live values; the mesh lives until drop. Only `hit` is written to.
         let found = unsafe {
             PxGeometryQuery_sweep(
                 &raw const direction,
@@ -215,7 +215,7 @@ impl Peer for PhysX {
         if !found {
             return Ok(None);
         }
-        // SAFETY: numbers and flags, zero or written by PhysX.
+        // SAFETY: the hit holds numbers and flags only, which are zero or written by PhysX.
         let hit = unsafe { hit.assume_init() };
         Ok(Some(if length > 0.0 {
             hit.distance / length
@@ -228,7 +228,7 @@ impl Peer for PhysX {
         self.skin.motion(triangle, barycentric)
     }
 
-    /// PhysX allocates by the C library, so the heap knows of all.
+    /// PhysX allocates with the C library, so `from_heap` includes all of it.
     fn bytes(&self, from_heap: usize) -> usize {
         from_heap + self.skin.bytes_at_rest()
     }

@@ -1,16 +1,18 @@
-//! The thesis's collision resolution (5.5.2, "Collision detection and resolution"): every touching triangle pushes the
-//! sphere out by itself, the climber moves by the mean of the pushes, once a tick, and the rest is left to the next.
+//! The thesis's collision resolution (5.5.2, "Collision detection and resolution"): every touching triangle gives a
+//! push that takes the sphere out of it, and the climber moves by the mean of the pushes, once a tick. The rest is left
+//! to the next tick.
 
 use glam::DVec3;
 
-/// Penetrations below this share of the radius are rounding of coordinates up to some hundred metres: a contact that
-/// just touches must not dilute the mean of the others.
+/// Penetrations below this share of the radius are ignored. They come from the rounding of coordinates up to a few
+/// hundred metres, and a contact that just touches must not dilute the mean of the others.
 const TOUCH: f64 = 1e-4;
 
 /// The mean of the push-outs of all contacts that penetrate a sphere by more than 1e-4 of its radius.
 ///
-/// A contact is the unit vector out of the obstacle, and the distance of the sphere's centre from it. They are summed in
-/// the order given. Contacts that are not finite push nothing.
+/// A contact is the unit vector out of the obstacle, and the distance of the sphere's centre from the obstacle, which
+/// is negative inside. Contacts are summed in the given order; those that are not finite are ignored. Zero without
+/// contacts.
 pub fn mean_push_out(contacts: impl IntoIterator<Item = (DVec3, f64)>, radius: f64) -> DVec3 {
     let (mut sum, mut count) = (DVec3::ZERO, 0);
     for (away, distance) in contacts {
@@ -40,13 +42,13 @@ mod tests {
     }
 
     #[test]
-    fn inside_a_solid_the_way_out_is_the_normal() {
+    fn a_centre_inside_a_solid_is_pushed_out_along_the_normal() {
         let push = mean_push_out([(DVec3::Y, -0.2)], 1.0);
         assert!((push - DVec3::Y * 1.2).length() < 1e-12, "{push}");
     }
 
     #[test]
-    fn nonsense_pushes_nothing() {
+    fn contacts_that_are_not_finite_are_ignored() {
         let contacts = [(DVec3::NAN, 0.5), (DVec3::Y, f64::NAN)];
         assert_eq!(mean_push_out(contacts, 1.0), DVec3::ZERO);
     }

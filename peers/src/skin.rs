@@ -7,7 +7,8 @@ use clamber_surface::rig::Palette;
 use clamber_surface::skin::skin_into;
 use glam::{DVec3, Vec3};
 
-/// All positions of a pose, and of the one before: what every peer is given, from our kernel.
+/// All positions of a pose and of the pose before it, skinned by clamber's kernel: the input of every peer that skins
+/// the whole mesh.
 pub(crate) struct Skin {
     mesh: Arc<ColliderMesh>,
     pub(crate) positions: Vec<Vec3>,
@@ -15,7 +16,7 @@ pub(crate) struct Skin {
 }
 
 impl Skin {
-    /// At rest.
+    /// The positions at rest.
     pub(crate) fn new(mesh: &Arc<ColliderMesh>) -> Self {
         Self {
             mesh: Arc::clone(mesh),
@@ -35,7 +36,7 @@ impl Skin {
         Ok(())
     }
 
-    /// By triangle, its vertices' indices.
+    /// The vertex indices of every triangle.
     pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         let triangles = self.mesh.triangles().iter();
         triangles.map(|corners| corners.map(|v| v.0)).collect()
@@ -45,7 +46,7 @@ impl Skin {
         self.mesh.triangles()[triangle].map(|v| self.positions[v.index()])
     }
 
-    /// What skinning reads beside: of each vertex the position at rest, and four joints with weights.
+    /// Bytes that skinning reads: the rest position of each vertex, and four joints with weights.
     pub(crate) fn bytes_at_rest(&self) -> usize {
         const VERTEX: usize = 12 + 4 * (2 + 4);
         self.positions.len() * VERTEX

@@ -1,5 +1,5 @@
-//! The thesis's way: everything is skinned, a sphere about each joint's part is found in linear time, and the
-//! triangles of parts whose sphere is reached are tested one by one.
+//! The thesis's method: all vertices are skinned, a sphere around each joint's part is found in linear time, and the
+//! triangles of the parts whose sphere is reached are tested one by one.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ impl Thesis {
         }
     }
 
-    /// Triangles of parts that come within `reach` of a point.
+    /// Triangles of the parts whose sphere comes within `reach` of a point.
     fn near(&self, point: Vec3, reach: f32) -> impl Iterator<Item = [Vec3; 3]> {
         let near = self.parts.iter().filter(move |part| {
             let apart = part.sphere.center.distance(point);
@@ -75,7 +75,7 @@ impl Default for Part {
 }
 
 impl Part {
-    /// Two loops: the mean of the vertices, and the farthest from it.
+    /// Fits the sphere in two loops: the mean of the vertices, and the vertex farthest from it.
     fn bound(&mut self, positions: &[Vec3]) {
         let vertices = || self.vertices.iter().map(|v| positions[*v as usize]);
         let sum: Vec3 = vertices().sum();
@@ -152,7 +152,7 @@ impl Peer for Thesis {
         Ok(nearest)
     }
 
-    /// It has discrete tests only.
+    /// The thesis has discrete tests only.
     fn cast_sphere(&mut self, _: &Sphere, _: Vec3) -> Answer<Option<f32>> {
         Err(Unsupported)
     }

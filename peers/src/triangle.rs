@@ -1,8 +1,8 @@
-//! One triangle in f32, for peers that bring none of their own.
+//! Tests of one triangle in f32, for peers that have none of their own.
 
 use glam::Vec3;
 
-/// The point of a triangle nearest to one (Ericson 2004, "Real-Time Collision Detection", 5.1.5).
+/// The point of a triangle closest to `p` (Ericson 2004, "Real-Time Collision Detection", 5.1.5).
 pub(crate) fn closest_point(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -35,7 +35,7 @@ pub(crate) fn closest_point(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     a + ab * (vb / sum) + ac * (vc / sum)
 }
 
-/// How far along a ray a triangle is met, from either side (Möller and Trumbore 1997).
+/// Distance along a ray at which it hits a triangle, from either side (Möller and Trumbore 1997).
 pub(crate) fn cast_ray(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);

@@ -1,4 +1,4 @@
-//! The libraries in C++ against all triangles in f64, posed several ways.
+//! Compares the libraries in C++ with all triangles in f64, in several poses.
 
 #![cfg(any(
     feature = "bullet",
@@ -22,7 +22,7 @@ const RINGS: u32 = 24;
 const SEGMENTS: u32 = 32;
 const QUERIES: usize = 300;
 
-/// A closed ball with bumps of about 10 m across, half of it on another joint.
+/// A closed, bumpy ball of about 10 m across on two joints, one for each half, blended between.
 fn bumpy_ball() -> ColliderMesh {
     let bumps = |a: f64, b: f64| libm::sin(3.0 * b) * libm::sin(4.0 * a) * libm::sin(a);
     let (positions, triangles) = ball(RINGS, SEGMENTS, |a, b| 5.0 + 0.8 * bumps(a, b));
@@ -48,7 +48,7 @@ fn bumpy_ball() -> ColliderMesh {
         .0
 }
 
-/// The lower half still, the upper one turned and moved.
+/// A palette that leaves the lower half in place, and turns and moves the upper half.
 fn palette(angle: f64, by: DVec3) -> Palette {
     let upper = DAffine3::from_rotation_translation(
         rotation_from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle),
@@ -60,7 +60,7 @@ fn palette(angle: f64, by: DVec3) -> Palette {
 /// All triangles of a pose.
 struct Truth {
     corners: Vec<[DVec3; 3]>,
-    /// What f32 may be off by, some ten units of the largest coordinate's last place.
+    /// The error that f32 may have: about ten units in the last place of the largest coordinate.
     slack: f64,
 }
 
@@ -82,7 +82,8 @@ impl Truth {
         }
     }
 
-    /// Where a ray meets a triangle grown by a share of its size, or shrunk where that is negative.
+    /// Distance along a ray at which it hits a triangle, grown by a share of the triangle's size, or shrunk if `grown`
+    /// is negative.
     fn cast(&self, ray: &Ray, triangle: usize, grown: f64) -> Option<f64> {
         let [a, b, c] = self.corners[triangle];
         let direction = ray.direction().as_dvec3();
@@ -107,7 +108,8 @@ impl Truth {
         self.distances(point).fold(f64::INFINITY, f64::min)
     }
 
-    /// The share of its motion that a sphere makes, by going as far as is free over and over.
+    /// The share of its motion that a sphere makes before it touches, by moving it repeatedly by its free distance.
+    /// `None` if it does not touch.
     fn cast_sphere(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
         let mut time = 0.0;
         while time <= 1.0 {
@@ -121,7 +123,7 @@ impl Truth {
     }
 }
 
-/// Of a point from a triangle: from its plane if it stands over it, else from the nearest edge.
+/// Distance of a point from a triangle: from its plane if the point is above the triangle, else from the nearest edge.
 fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let inside = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) >= 0.0;
@@ -153,7 +155,7 @@ impl Queries {
 }
 
 fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
-    /// Bullet takes a triangle for larger by a ten-thousandth.
+    /// Bullet enlarges a triangle by a ten-thousandth.
     const GROWN: f64 = 3e-4;
     let mut hits = 0;
     for _ in 0..QUERIES {
@@ -185,7 +187,7 @@ fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Quer
         assert!(found < most + slack, "{context}: {hit:?} beyond the end");
         hits += 1;
     }
-    assert!(hits > QUERIES / 4, "{name}: the rays hit something: {hits}");
+    assert!(hits > QUERIES / 4, "{name}: too few rays hit: {hits}");
 }
 
 fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
@@ -211,7 +213,7 @@ fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut 
     }
     assert!(
         touched > QUERIES,
-        "{name}: the spheres touch something: {touched}"
+        "{name}: the spheres touch too few triangles: {touched}"
     );
     let around_all = Sphere {
         center: queries.around,
@@ -257,7 +259,7 @@ fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries:
 }
 
 fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
-    /// Bullet ends at a gap of a millimetre, whatever the size.
+    /// Bullet's casts end at a gap of a millimetre, for spheres of any size.
     const GAP: f64 = 2e-3;
     let (mut hits, mut in_touch) = (0, 0);
     for _ in 0..QUERIES {
@@ -269,7 +271,7 @@ fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &
         let cast = |radius| truth.cast_sphere(sphere.center.as_dvec3(), radius, motion.as_dvec3());
         let radius = f64::from(sphere.radius);
         let (earliest, latest) = (cast(radius + GAP), cast(radius - GAP));
-        // For Bullet one that starts in touch and moves away is no hit.
+        // In Bullet a sphere that starts in contact and moves away has no hit.
         if earliest == Some(0.0) && (latest != earliest || name.starts_with("Bullet")) {
             continue;
         }
@@ -291,18 +293,15 @@ fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &
         );
         hits += 1;
     }
-    assert!(
-        hits > QUERIES / 10,
-        "{name}: the spheres hit something: {hits}"
-    );
+    assert!(hits > QUERIES / 10, "{name}: too few spheres hit: {hits}");
     assert!(
         in_touch > 10 || name.starts_with("Bullet"),
-        "{name}: some start in touch: {in_touch}"
+        "{name}: too few spheres start in contact: {in_touch}"
     );
 }
 
 #[test]
-fn libraries_answer_as_all_triangles_do_after_each_update() {
+fn libraries_agree_with_all_triangles_after_each_update() {
     let mesh = Arc::new(bumpy_ball());
     let poses = [
         (palette(0.0, DVec3::ZERO), DVec3::ZERO),
@@ -341,7 +340,7 @@ fn libraries_answer_as_all_triangles_do_after_each_update() {
 }
 
 #[test]
-fn what_a_library_lacks_it_says() {
+fn missing_queries_are_reported_as_unsupported() {
     let mesh = Arc::new(bumpy_ball());
     let ray = Ray::new(Vec3::ZERO, Vec3::X).unwrap();
     let sphere = Sphere {

@@ -1,10 +1,10 @@
-//! What does it cost to record a battle, and how large does the file get?
+//! What does recording a battle cost, and how large does the file get?
 //!
-//! Two battles of the same options take turns, tick by tick: one is recorded to a file, one not. A tick is pose,
-//! climber and rocks, without what the scene checks. Prints a table and writes it to
-//! `target/measure/record.csv`: name, value, bound, holds.
+//! Two battles with the same options take turns, tick by tick: one is recorded to a file, the other is not. A tick is
+//! pose, climber and rocks, without the scene's checks. Prints a table and writes it to `target/measure/record.csv`:
+//! name, value, bound, holds. Fails if the two battles differ.
 //!
-//! `cargo bench -p clamber_benches --features record --bench record`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --features record --bench record`; briefly with `-- --test`.
 
 use std::error::Error;
 use std::fs::File;
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
 
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut cells = Cells::default();
-    // A machine's first megabytes of file cache may cost ten times what later ones do.
+    // A machine's first megabytes of file cache may cost ten times as much as later ones.
     let warm = std::env::temp_dir().join(format!("clamber-warm-{}", std::process::id()));
     std::fs::write(&warm, vec![1; 40_000_000])?;
     std::fs::remove_file(&warm)?;
@@ -41,7 +41,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     for rocks in [24, 0] {
         let name = format!("{rocks} rocks");
         measure(&name, rocks, RecordOptions::default(), brief, &mut cells)?;
-        let name = format!("{rocks} rocks, only what a replay needs");
+        let name = format!("{rocks} rocks, only the data for a replay");
         measure(&name, rocks, no_views, brief, &mut cells)?;
     }
     cells.finish("record", brief)
@@ -66,7 +66,7 @@ fn measure(
     recorder.tick(&recorded)?;
     for tick in 0..ticks {
         let intent = options.input_at(tick);
-        // By turns, since the second finds warm caches.
+        // In alternating order, since the second battle finds warm caches.
         if tick.is_multiple_of(2) {
             plain.step(intent)?;
             recorded.step(intent)?;
@@ -82,17 +82,17 @@ fn measure(
     let bytes = std::fs::metadata(&path)?.len() as f64;
     std::fs::remove_file(&path)?;
     if plain.recording().hash() != recorded.recording().hash() {
-        return Err("the battle that was recorded is not the one that was not".into());
+        return Err("the recorded battle differs from the one that was not recorded".into());
     }
     let (without, beside) = (tick_us(&plain), tick_us(&recorded));
     let recording = mean(&costs);
     cells.value(&format!("{name}: a tick, us, mean"), without);
     cells.value(
-        &format!("{name}: a tick that is recorded, us, mean"),
+        &format!("{name}: a recorded tick, us, mean"),
         beside + recording,
     );
     cells.value(&format!("{name}: of that, recording"), recording);
-    // By what is due: the rarer one is, the more goes with it.
+    // By what is due in a tick: whatever is due less often includes what is due more often.
     let kinds = [
         ("state and input only", 1, 4),
         ("with transforms", 4, 30),
@@ -109,7 +109,7 @@ fn measure(
         cells.value(&format!("{name}: recording, us, median, {what}"), median);
     }
     let written = writer_us(&recorded, &options, how, ticks)?;
-    let what = format!("{name}: to write one tick again and again, us a tick");
+    let what = format!("{name}: writing the same tick repeatedly, us a tick");
     cells.value(&what, written);
     let share = Bound::Most(0.05);
     cells.push(
@@ -122,7 +122,8 @@ fn measure(
     Ok(())
 }
 
-/// What the thread that writes takes for a tick, the last one again and again: the game copies it and waits.
+/// Microseconds that the writing thread takes for a tick: the battle's last tick, recorded repeatedly, so that the game
+/// only copies it and waits.
 fn writer_us(
     battle: &Battle<'_>,
     options: &BattleOptions,
@@ -162,7 +163,7 @@ fn writer_us(
     Ok(all * 1e6 / ticks as f64)
 }
 
-/// Pose, climber and rocks, without what the scene checks.
+/// Mean microseconds of a tick: pose, climber and rocks, without the scene's checks.
 fn tick_us(battle: &Battle<'_>) -> f64 {
     let own: Vec<f64> = battle
         .recording()

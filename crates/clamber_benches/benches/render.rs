@@ -1,12 +1,13 @@
-//! What do pictures cost: frames a second of the battle, what goes to the device for each, and skinning there
-//! beside ours?
+//! What do pictures cost? Frames a second of the battle, bytes uploaded for each frame, and skinning on the device
+//! beside skinning on the processor.
 //!
-//! Here `skin_all` skins positions, on one thread; the device poses normals as well, and its time begins with the
-//! palette's upload. Prints a table and writes it to `target/measure/render.csv`: name, value, bound, holds. On
-//! Mesa's software Vulkan, where the processor does the work of a GPU, times say little of one. Without any
-//! graphics adapter it says so and measures nothing.
+//! On the processor `skin_all` skins positions, on one thread. The device poses normals as well, and its time includes
+//! the palette's upload. Prints a table and writes it to `target/measure/render.csv`: name, value, bound, holds. With
+//! Mesa's software Vulkan the processor does the work of a GPU, so the times say little about a real one. Without a
+//! graphics adapter the bench prints so and measures nothing. Fails if a frame's upload grows with the number of
+//! vertices.
 //!
-//! `cargo bench -p clamber_benches --features render --bench render`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --features render --bench render`; briefly with `-- --test`.
 
 #[path = "../../clamber_render/tests/common/mod.rs"]
 #[expect(clippy::panic, reason = "a test's helpers may fail like the test")]
@@ -24,13 +25,13 @@ use clamber_scenes::giant::{self, giant, giant_of};
 use clamber_scenes::measure::{Bound, Cells, is_brief, median_us, quantile};
 use clamber_scenes::picture::{Stage, add_collider, add_visual, light, orbit};
 
-/// Pixels along a row, and rows.
+/// Width and height of a frame, pixels.
 const SIZE: [u32; 2] = [1280, 720];
 
-/// Grey stone, which no number depends on.
+/// Colour of the colliders. No number depends on it.
 const COLOR: [f32; 3] = [0.3; 3];
 
-/// How much is measured.
+/// Sizes and times of a run.
 struct Effort {
     brief: bool,
     frames: u32,
@@ -80,7 +81,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     cells.finish("render", effort.brief)
 }
 
-/// Giant, ground and climber, from tick to tick; the tick itself is not counted.
+/// Measures frames of giant, ground and climber, from tick to tick. The tick itself is not counted.
 fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let creature = giant()?;
     let options = BattleOptions::ride(0, 1);
@@ -90,7 +91,7 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     let mut renderer = Renderer::new(gpu, width, rows)?;
     let seen = add_visual(&mut renderer, &giant::rig()?)?;
     let stage = Stage::new(&mut renderer, seen)?;
-    // What a frame costs for the first time is not counted.
+    // The first frame is not counted.
     let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {
         let mut battle = Battle::new(&creature, &options)?;
         let mut times = Vec::new();
@@ -114,13 +115,14 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
         renderer.gpu().wait()
     })?;
     let (read, _) = measure(&|renderer, frame| renderer.draw(frame).map(drop))?;
-    cells.value(&format!("{what}: frames a second, left there"), left);
+    cells.value(&format!("{what}: frames a second, not read back"), left);
     cells.value(&format!("{what}: frames a second, read back"), read);
-    cells.value("bytes to the device for each of these frames", uploaded);
+    cells.value("bytes uploaded for each of these frames", uploaded);
     Ok(())
 }
 
-/// What one frame of a creature takes to the device: no more than that of the creature with the fewest vertices.
+/// Measures the bytes uploaded for one frame of a creature. They must be at most `most`, those of the creature with the
+/// fewest vertices.
 fn measure_bytes(
     creature: &Creature,
     most: Option<f64>,
@@ -141,10 +143,10 @@ fn measure_bytes(
     let uploaded = renderer.uploaded() as f64;
     let vertices = creature.collider.positions().len();
     let bound = most.map_or(Bound::None, Bound::Most);
-    let name = format!("bytes to the device for a frame, {vertices} vertices");
+    let name = format!("bytes uploaded for a frame, {vertices} vertices");
     cells.push(&name, uploaded, bound);
     if most.is_some_and(|most| uploaded > most) {
-        return Err("a frame takes more to the device the more vertices there are".into());
+        return Err("the upload of a frame grows with the number of vertices".into());
     }
     Ok(uploaded)
 }
@@ -196,7 +198,7 @@ fn measure_skinning(
     Ok(())
 }
 
-/// A walk, tick by tick.
+/// The palettes of a walk, tick by tick.
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     let walk = creature.clip_like(&["walk"]);
     let walk = walk.ok_or("the giant cannot walk")?;

@@ -1,7 +1,7 @@
-//! What single operations on the lazy surface cost: first in a tick, when they find nothing skinned,
-//! and again, when they find what they need in the cache.
+//! What do single operations on the lazy surface cost? First in a tick, when nothing is skinned, and again, when the
+//! surface's cache has all they need.
 //!
-//! `cargo bench -p clamber_benches --bench surface`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench surface`; briefly with `-- --test`.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -17,7 +17,7 @@ use clamber_scenes::measure::is_brief;
 use criterion::Criterion;
 use glam::Vec3;
 
-/// Vertices of the larger giant.
+/// About the number of vertices of the larger giant.
 const LARGE: usize = 100_000;
 
 fn main() -> ExitCode {
@@ -45,7 +45,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One operation.
+/// An operation with its name.
 type Operation<'a> = (&'a str, Box<dyn FnMut(&SkinnedSurface) + 'a>);
 
 fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn Error>> {
@@ -88,7 +88,7 @@ fn measure(criterion: &mut Criterion, creature: &Creature) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// A walk, tick by tick.
+/// The palettes of a walk, tick by tick.
 fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     let walk = creature.clips.iter().find(|clip| clip.name == "walk");
     let walk = walk.ok_or("the giant cannot walk")?;
@@ -100,7 +100,7 @@ fn poses(creature: &Creature) -> Result<Vec<Palette>, Box<dyn Error>> {
     (0..60).map(pose).collect()
 }
 
-/// All queries, at the head.
+/// All operations, with the queries at the head.
 fn operations(surface: &SkinnedSurface) -> Result<Vec<Operation<'static>>, Box<dyn Error>> {
     let mesh = surface.mesh();
     let place = |v: VertexId| mesh.positions()[v.index()];

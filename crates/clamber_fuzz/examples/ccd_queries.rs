@@ -1,7 +1,6 @@
-//! The sweeps against files of continuous collision queries whose exact answers are known.
+//! Tests the sweeps with files of continuous collision queries whose exact answers are known.
 //!
-//! `ccd_queries FILE.csv...`; `--help` describes the files. How answers are judged is in
-//! `clamber_fuzz::ccd`.
+//! Usage: `ccd_queries FILE.csv...`. `--help` describes the files, `clamber_fuzz::ccd` how the answers are judged.
 
 use std::process::ExitCode;
 
@@ -24,7 +23,7 @@ fn main() -> ExitCode {
     if report.holds() {
         ExitCode::SUCCESS
     } else {
-        eprintln!("ccd_queries: an answer is false");
+        eprintln!("ccd_queries: an answer is wrong or unproved");
         ExitCode::FAILURE
     }
 }

@@ -1,4 +1,5 @@
-//! Any source: refused with a reason, or a mesh that keeps what [`ColliderMesh::build`] promises.
+//! The fuzz target of mesh building: any source is rejected with a reason, or gives a mesh that keeps the promises of
+//! [`ColliderMesh::build`].
 
 use std::collections::BTreeSet;
 
@@ -12,7 +13,10 @@ use crate::bytes::Bytes;
 use crate::mesh::{Source, options};
 use crate::same::bits;
 
-/// Builds a mesh of any bytes; true if it was accepted.
+/// Builds a mesh from any bytes; returns true if it was accepted.
+///
+/// # Panics
+/// If the mesh breaks a promise, or a valid source is rejected.
 pub fn builder(data: &[u8]) -> bool {
     let mut bytes = Bytes::new(data);
     let (source, spoilt) = Source::any(&mut bytes);
@@ -28,13 +32,14 @@ pub fn builder(data: &[u8]) -> bool {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             let expected = spoilt || matches!(error, MeshError::NoTriangles { .. });
-            assert!(expected, "a valid mesh was refused: {error}");
+            assert!(expected, "a valid mesh was rejected: {error}");
             false
         }
     }
 }
 
-/// Weights are positive multiples of 2^-24 that add up to 1, by ascending joint.
+/// Checks that weights are positive multiples of 2^-24 that add up to 1, by ascending joint, and that no position is
+/// outside the mesh's radius.
 fn check_weights(mesh: &ColliderMesh) {
     for v in 0..mesh.positions().len() as u32 {
         let given: Vec<_> = mesh.influences(VertexId(v)).collect();
@@ -50,7 +55,8 @@ fn check_weights(mesh: &ColliderMesh) {
     }
 }
 
-/// Every triangle is in one part, of a joint that moves it, and a part has its triangles' corners.
+/// Checks that every triangle is in exactly one part, that a part's joint moves its triangles, and that a part's
+/// vertices are its triangles' corners.
 fn check_parts(mesh: &ColliderMesh) {
     let mut seen = 0;
     for (index, part) in mesh.parts().iter().enumerate() {
@@ -71,8 +77,8 @@ fn check_parts(mesh: &ColliderMesh) {
     assert_eq!(mesh.part_of(beyond), None);
 }
 
-/// What is left of the triangles stands where it stood, in the order given, with its tag; what is not
-/// left was counted.
+/// Checks that the remaining triangles keep their corners, their order and their tags, and that the report counts the
+/// dropped ones.
 fn check_triangles(
     mesh: &ColliderMesh,
     report: &BuildReport,
@@ -97,16 +103,16 @@ fn check_triangles(
             let tagged = source.tags.get(index).copied().unwrap_or_default();
             corners.map(at) == found && tagged == *tag
         });
-        assert!(stays, "{triangle:?} was not given so");
+        assert!(stays, "{triangle:?} is not in the source");
     }
 }
 
-/// A second build gives the same mesh, and so does a build of what came out.
+/// Checks that a second build gives the same mesh, and so does a build from the mesh itself.
 fn check_again(mesh: &ColliderMesh, source: &Source, options: &BuildOptions) {
     let again = ColliderMesh::build(&source.source(), options);
     assert!(again.is_ok_and(|(again, _)| again == *mesh));
     if !source.rest_spaces.is_empty() {
-        // What is in two spaces would be welded without them.
+        // Without the rest spaces, equal vertices of different spaces would be welded.
         return;
     }
     let mut influences = Vec::new();

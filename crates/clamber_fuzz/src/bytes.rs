@@ -1,9 +1,9 @@
-//! Choices and numbers out of bytes.
+//! Choices and numbers made from bytes.
 
 use glam::Vec3;
 
-/// Bytes that choose. The first four seed a generator that goes on where the bytes end: few bytes make
-/// a whole case, and a fuzzer that changes one byte changes one choice.
+/// A source of choices and numbers. The first four bytes seed a random generator, which takes over where the
+/// bytes end: a few bytes make a whole case, and a fuzzer that changes one byte changes one choice.
 pub(crate) struct Bytes<'a> {
     rest: &'a [u8],
     beyond: fastrand::Rng,
@@ -34,12 +34,12 @@ impl<'a> Bytes<'a> {
         u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])
     }
 
-    /// True once in `n` times, `n` at most 256.
+    /// True in about one of `n` cases, `n` from 1 to 256.
     pub(crate) fn one_in(&mut self, n: u32) -> bool {
         u32::from(self.byte()) * n < 256
     }
 
-    /// From 0 to `n - 1`, `n` from 1 to 2^16.
+    /// A number from 0 to `n - 1`, `n` from 1 to 2^16.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         if n <= 256 {
             usize::from(self.byte()) % n
@@ -52,13 +52,13 @@ impl<'a> Bytes<'a> {
         choices[self.below(choices.len())]
     }
 
-    /// From 0 to 1, both included, in 255 steps.
+    /// A number from 0 to 1, both included, in 255 steps.
     pub(crate) fn share(&mut self) -> f32 {
         f32::from(self.byte()) / 255.0
     }
 
-    /// A multiple of 1/16 from -6 to 6, so that points coincide and stand in lines and planes; or
-    /// something unusual, but finite.
+    /// A multiple of 1/16 from -6 to 6, so that points coincide or lie on common lines and planes; or an
+    /// unusual number, which is finite.
     pub(crate) fn number(&mut self) -> f32 {
         let byte = self.byte() as i8;
         if (-96..=96).contains(&byte) {
@@ -84,7 +84,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Any number: infinities, NaN, the largest.
+    /// Any number, including infinities, NaN and the largest numbers.
     pub(crate) fn hostile(&mut self) -> f32 {
         match self.byte() % 8 {
             0 => f32::NAN,
@@ -101,7 +101,7 @@ impl<'a> Bytes<'a> {
         Vec3::new(self.number(), self.number(), self.number())
     }
 
-    /// [`Bytes::point`] of [`Bytes::hostile`] numbers.
+    /// As [`Bytes::point`], with [`Bytes::hostile`] numbers.
     pub(crate) fn hostile_point(&mut self) -> Vec3 {
         Vec3::new(self.hostile(), self.hostile(), self.hostile())
     }

@@ -1,4 +1,4 @@
-//! Any file: refused with a reason, or a rig that can be used.
+//! The fuzz target of imports: any file is rejected with a reason, or gives a rig that can be used.
 
 use clamber_gltf::{LoadOptions, Rig, load_slice};
 use clamber_surface::geometry::{Capsule, Similarity};
@@ -10,8 +10,13 @@ use glam::Vec3;
 use crate::same::same_hits;
 use crate::seed::glb;
 
-/// Loads any bytes as a file; true if it loads. What is neither glTF nor GLB is taken for the two chunks
-/// of a GLB, JSON up to the first zero and binary from there, so that no length needs to be right.
+/// Loads any bytes as a file, and uses the rig; returns true if the file loads.
+///
+/// Bytes with a zero in them that do not begin as a GLB are taken for the two chunks of a GLB: JSON up to the
+/// first zero, and binary after it. So a fuzzer need not get any length right.
+///
+/// # Panics
+/// If the rig breaks a promise of the library.
 pub fn import(data: &[u8]) -> bool {
     let end = data.iter().position(|byte| *byte == 0);
     let wrapped = match end {
@@ -30,7 +35,7 @@ pub fn import(data: &[u8]) -> bool {
     }
 }
 
-/// Poses and queries a rig, as a user would.
+/// Poses and queries a rig as a user would.
 fn use_rig(rig: &Rig) {
     let mut surface = SkinnedSurface::new(rig.collider.clone());
     let rest = rig.skeleton.rest_pose();
@@ -42,7 +47,7 @@ fn use_rig(rig: &Rig) {
     }
     let mut positions = Vec::new();
     for pose in &poses {
-        // Legal files may pose beyond all bounds; that is said here.
+        // Valid files may have poses beyond the library's limits: those are errors here.
         let Ok(palette) = rig.skeleton.palette(pose) else {
             continue;
         };
@@ -52,7 +57,7 @@ fn use_rig(rig: &Rig) {
         surface.skin_all(&mut positions);
         assert!(positions.iter().all(|p| p.is_finite()), "{positions:?}");
     }
-    // Brute force takes long where a file is large.
+    // Brute force takes long on a large file.
     if rig.collider.triangles().len() < 1_000 {
         compare(&surface);
     }
@@ -62,13 +67,13 @@ fn use_rig(rig: &Rig) {
     let _ = rig.visual_collider();
 }
 
-/// What lies about a vertex, against brute force.
+/// Compares an overlap query around a vertex with brute force.
 fn compare(surface: &SkinnedSurface) {
     let mesh = surface.mesh();
     let center = mesh.positions().first().copied().unwrap_or(Vec3::ZERO);
     let radius = mesh.radius() * 0.5;
     let Some(ball) = Capsule::ball(center, radius) else {
-        panic!("no ball of {radius} about {center}");
+        panic!("no ball of radius {radius} around {center}");
     };
     let space = surface.in_model();
     let (mut found, mut wanted) = (Vec::new(), Vec::new());

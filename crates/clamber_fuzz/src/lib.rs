@@ -1,14 +1,12 @@
-//! What clamber's fuzz targets do with their bytes. Not published.
+//! Fuzz targets, stress cases and exact collision tests for clamber. Not published.
 //!
-//! Each of [`import()`], [`builder()`], [`palettes()`] and [`queries()`] makes a case of any bytes,
-//! has the library deal with it, checks what must hold, and says how much there was to check. **A
-//! panic is a finding.** `fuzz/` hands them to libFuzzer; `tests/seeded.rs` runs them on seeded
-//! random bytes, with the other tests.
+//! - [`import()`], [`builder()`], [`palettes()`] and [`queries()`] are the fuzz targets. Each makes a case from any
+//!   bytes, runs the library on it, checks what must hold, and returns how much it checked. **A panic is a finding.**
+//!   `fuzz/` passes them to libFuzzer; `tests/seeded.rs` runs them on seeded random bytes, with the other tests.
+//! - [`ccd`] compares sweeps with exact answers, from files and from the cases that `clamber_oracle` constructs.
+//! - [`stress`] makes cases that are hard in known ways, at the sizes of real creatures.
 //!
-//! [`ccd`] holds sweeps against exact answers, of files and of what `clamber_oracle` constructs.
-//!
-//! [`stress`] makes cases that are hard in known ways, at sizes as creatures have them. `cargo xtask soak` runs all of it
-//! for as long as it is told.
+//! `cargo xtask soak` runs fuzz targets, stress cases and battles for a given time.
 
 #![expect(clippy::panic, reason = "a finding is a panic")]
 

@@ -1,4 +1,4 @@
-//! Meshes out of bytes: small ones, as unlike a limb as the contract allows.
+//! Meshes made from bytes: small ones, as unlike a limb as the contract allows.
 
 use clamber_surface::mesh::{
     BuildOptions, ColliderMesh, Cracks, Influence, MeshSource, SurfaceKind, SurfaceTag, Winding,
@@ -8,13 +8,13 @@ use glam::Vec3;
 
 use crate::bytes::Bytes;
 
-/// Farther out than this no coordinate of a valid mesh is, 2^98: three of them stay within 2^99.
+/// Largest coordinate of a valid mesh, 2^98: a vector of three stays within 2^99.
 const FARTHEST: f32 = (1u128 << 98) as f32;
 
-/// Units of a mesh's coordinates.
+/// Scales of a mesh's coordinates.
 const SCALES: [f32; 8] = [1.0, 1.0, 1.0, 1e-3, 1e3, 1e-20, 1e20, FARTHEST / 8.0];
 
-/// A [`MeshSource`] that owns what it is made of.
+/// A [`MeshSource`] that owns its data.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub(crate) positions: Vec<Vec3>,
@@ -27,7 +27,7 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Without a fault, though perhaps without a triangle that has area.
+    /// A source without faults. It may lack a triangle with area.
     pub(crate) fn valid(bytes: &mut Bytes<'_>) -> Self {
         let scale = bytes.pick(&SCALES);
         let (mut positions, triangles) = if bytes.one_in(4) {
@@ -52,7 +52,7 @@ impl Source {
         }
     }
 
-    /// [`Source::valid`], with rest spaces at times, and some faults at others; true with those.
+    /// [`Source::valid`], sometimes with rest spaces, sometimes with faults. The flag is true if faults were put in.
     pub(crate) fn any(bytes: &mut Bytes<'_>) -> (Self, bool) {
         let mut source = Self::valid(bytes);
         if bytes.one_in(4) {
@@ -67,7 +67,7 @@ impl Source {
         (source, faults > 0)
     }
 
-    /// Puts something in that may be wrong.
+    /// Changes something, which may make the source invalid.
     fn spoil(&mut self, bytes: &mut Bytes<'_>) {
         let vertex = bytes.below(self.positions.len().max(1));
         let index = bytes.pick(&[0, self.positions.len() as u32, u32::MAX]);
@@ -118,7 +118,7 @@ impl Source {
     }
 }
 
-/// A mesh with a triangle at least; `None` where all given ones have no area.
+/// A mesh from a valid source; `None` if no triangle of the source has area.
 pub(crate) fn built(bytes: &mut Bytes<'_>) -> Option<ColliderMesh> {
     let source = Source::valid(bytes);
     let built = ColliderMesh::build(&source.source(), &options(bytes));
@@ -142,7 +142,7 @@ pub(crate) fn tag(bytes: &mut Bytes<'_>) -> SurfaceTag {
 
 type Shape = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// Triangles of any vertices: shared, doubled, crossing, without area.
+/// Triangles of any vertices: they may share vertices, be doubled, cross, or have no area.
 fn soup(bytes: &mut Bytes<'_>) -> Shape {
     let many = bytes.one_in(4);
     let vertices = 3 + bytes.below(if many { 198 } else { 12 });
@@ -163,7 +163,7 @@ fn soup(bytes: &mut Bytes<'_>) -> Shape {
     (positions, triangles)
 }
 
-/// A sheet of squares, flat, bent, or crumpled: enough for several clusters.
+/// A sheet of squares, flat, bent or crumpled; a large one has several clusters.
 fn grid(bytes: &mut Bytes<'_>) -> Shape {
     let (width, height) = (1 + bytes.below(16), 1 + bytes.below(16));
     let crumple = bytes.pick(&[0.0, 0.0, 1e-6, 0.1, 2.0]);
@@ -188,7 +188,8 @@ fn grid(bytes: &mut Bytes<'_>) -> Shape {
     (positions, triangles)
 }
 
-/// Influences of every vertex, the first of them with a weight, and where those of each end.
+/// Influences of every vertex, of which the first has a positive weight, and the end of each vertex's influences. No
+/// ends are given if all vertices have equally many.
 fn influences(bytes: &mut Bytes<'_>, vertices: usize, joints: usize) -> (Vec<Influence>, Vec<u32>) {
     let most = bytes.pick(&[1, 2, 4, 16]);
     let uneven = bytes.one_in(2);

@@ -1,5 +1,5 @@
-//! Any palette, anywhere: refused, and nothing has changed; or every position is what the skinning
-//! contract says, and finite.
+//! The fuzz target of poses: any palette at any place is rejected without a change, or every position is finite
+//! and what the skinning contract says.
 
 use std::sync::Arc;
 
@@ -15,18 +15,21 @@ use crate::mesh::built;
 use crate::poses::{is_absurd, is_tame, palette, similarity};
 use crate::same::bits;
 
-/// What there was to check.
+/// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Palettes {
-    /// Poses taken.
+    /// Poses that were accepted.
     pub accepted: usize,
-    /// Poses refused.
+    /// Poses that were rejected.
     pub refused: usize,
-    /// Motions of anchors.
+    /// Motions of anchors that were checked.
     pub motions: usize,
 }
 
-/// Poses a mesh of any bytes in palettes of any bytes.
+/// Poses a mesh made from any bytes with palettes made from any bytes.
+///
+/// # Panics
+/// If a check fails.
 pub fn palettes(data: &[u8]) -> Palettes {
     let mut bytes = Bytes::new(data);
     let mut seen = Palettes::default();
@@ -59,7 +62,7 @@ pub fn palettes(data: &[u8]) -> Palettes {
             seen.refused += 1;
             continue;
         }
-        assert!(!is_absurd(&palette, &place), "taken: {}", case());
+        assert!(!is_absurd(&palette, &place), "accepted: {}", case());
         let previous = previous_palette(&surface, jump, &palette, &taken);
         check_positions(&surface, &palette, &previous);
         taken = (palette, *surface.world_from_model());
@@ -69,7 +72,7 @@ pub fn palettes(data: &[u8]) -> Palettes {
     seen
 }
 
-/// What a refusal must leave as it is.
+/// The state of a surface that a rejected pose must not change.
 #[derive(PartialEq)]
 struct State {
     current: Vec<[u32; 3]>,
@@ -93,8 +96,7 @@ impl State {
     }
 }
 
-/// The matrices that the previous positions must come from: the last ones, seen from where the
-/// creature stands now.
+/// The matrices that the previous positions must come from: those of the last pose, in the current model frame.
 fn previous_palette(
     surface: &SkinnedSurface,
     jump: bool,
@@ -114,7 +116,7 @@ fn previous_palette(
     last.iter().map(moved).collect()
 }
 
-/// Every vertex as the contract has it, by all ways to ask.
+/// Checks every vertex against the skinning contract, by every query for positions.
 fn check_positions(surface: &SkinnedSurface, palette: &Palette, previous: &[Affine]) {
     let (mesh, space) = (surface.mesh(), surface.in_model());
     let mut all = Vec::new();
@@ -141,7 +143,7 @@ fn check_positions(surface: &SkinnedSurface, palette: &Palette, previous: &[Affi
     assert_eq!(space.previous_position(beyond), None);
 }
 
-/// The skinning contract, in its own words.
+/// The skinning contract, written out.
 fn skinned(mesh: &ColliderMesh, palette: &[Affine], v: VertexId) -> Vec3 {
     let p = mesh.positions()[v.index()];
     mesh.influences(v).fold(Vec3::ZERO, |sum, (joint, weight)| {
@@ -149,7 +151,7 @@ fn skinned(mesh: &ColliderMesh, palette: &[Affine], v: VertexId) -> Vec3 {
     })
 }
 
-/// Moves some anchors along; gives how many said how they move.
+/// Checks the motions of some anchors; returns how many had one.
 fn check_motions(surface: &SkinnedSurface, bytes: &mut Bytes<'_>) -> usize {
     let triangles = surface.mesh().triangles().len();
     let mut moved = 0;
@@ -199,7 +201,7 @@ fn check_motion(motion: &Motion) {
     assert!(motion.angular_velocity.is_finite(), "{motion:?}");
     assert!(unit(motion.frame.as_dquat().length()), "{motion:?}");
     assert!(unit(motion.normal.as_dvec3().length()), "{motion:?}");
-    // Of two areas, one of which may be 2^200 times the other: infinite then, never NaN.
+    // A ratio of two areas, of which one may be 2^200 times the other: it may be infinite, never NaN.
     assert!(motion.area_ratio >= 0.0, "{motion:?}");
     let [larger, smaller] = motion.stretches;
     assert!(smaller >= 0.0 && larger >= smaller, "{motion:?}");

@@ -1,4 +1,4 @@
-//! Palettes and places in the world out of bytes.
+//! Palettes and places in the world made from bytes.
 
 use clamber_surface::geometry::{Affine, Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::Palette;
@@ -6,19 +6,19 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use crate::bytes::Bytes;
 
-/// Below this, 2^40, no number of a tame pose and no coordinate of a tame mesh is: nothing that is made
-/// of them comes near 2^100.
+/// All numbers of a tame pose and all coordinates of a tame mesh are below this, 2^40: nothing computed from them
+/// comes near 2^100.
 const TAME: f32 = (1u64 << 40) as f32;
 
-/// A palette for `joints` joints of a mesh of the given radius; at times, with `faults`, one that must
-/// be refused.
+/// A palette for `joints` joints of a mesh with the given radius. With `faults` it is sometimes one that must be
+/// rejected.
 pub(crate) fn palette(bytes: &mut Bytes<'_>, joints: usize, radius: f32, faults: bool) -> Palette {
     let kind = bytes.byte() % 16;
     let unit = radius.clamp(f32::MIN_POSITIVE, TAME);
     let mut matrices: Vec<Affine> = Vec::with_capacity(joints);
     for joint in 0..joints {
         let mut one = match kind {
-            // As one.
+            // All joints move as one.
             0 | 1 if joint > 0 => matrices[0],
             _ => matrix(bytes, kind, unit),
         };
@@ -49,7 +49,7 @@ fn matrix(bytes: &mut Bytes<'_>, kind: u8, unit: f32) -> Affine {
             f64::from(bytes.share()),
             1.0,
         ),
-        // Singular: into a plane, onto a line, or all into one point.
+        // Singular: into a plane, onto a line (10), or to a point (11).
         10 => diagonal(1.0, bytes.pick(&[0.0, 1.0]), 0.0),
         11 => DMat3::ZERO,
         12 => turn * 1e-43,
@@ -77,7 +77,7 @@ fn rotation(bytes: &mut Bytes<'_>, angle: f64) -> DQuat {
     })
 }
 
-/// Where a creature stands; at times, with `faults`, nowhere.
+/// A creature's place in the world. With `faults` it is sometimes invalid.
 pub(crate) fn similarity(bytes: &mut Bytes<'_>, faults: bool) -> Similarity {
     if bytes.one_in(3) {
         return Similarity::IDENTITY;
@@ -100,7 +100,7 @@ pub(crate) fn similarity(bytes: &mut Bytes<'_>, faults: bool) -> Similarity {
     place
 }
 
-/// True for a palette and a place that any surface of a tame mesh must take.
+/// True for a palette and a place that any surface of a tame mesh must accept.
 pub(crate) fn is_tame(palette: &Palette, place: &Similarity, radius: f32) -> bool {
     let elements = palette.matrices().iter().flat_map(|m| m.rows);
     elements.flatten().all(|x| x.abs() < TAME) && radius < TAME && is_tame_place(place)
@@ -109,12 +109,12 @@ pub(crate) fn is_tame(palette: &Palette, place: &Similarity, radius: f32) -> boo
 fn is_tame_place(place: &Similarity) -> bool {
     let far = place.translation.abs().max_element();
     let turn = (place.rotation.length() - 1.0).abs();
-    // The largest of three ignores NaN.
+    // `max_element` ignores NaN.
     let finite = place.translation.is_finite();
     finite && (0.1..10.0).contains(&place.scale) && far < f64::from(TAME) && turn < 1e-6
 }
 
-/// True for what every surface must refuse.
+/// True for a palette or a place that every surface must reject.
 pub(crate) fn is_absurd(palette: &Palette, place: &Similarity) -> bool {
     let usable = place.translation.is_finite() && place.rotation.is_finite() && place.scale > 0.0;
     !usable || !place.scale.is_finite() || !palette.matrices().iter().all(Affine::is_finite)

@@ -1,5 +1,5 @@
-//! Any query of any surface, edited at will: the answer of brute force, bit for bit; a length that is NaN
-//! or negative finds nothing.
+//! The fuzz target of queries: any query of any surface, with any edits, gives brute force's answer bit for bit.
+//! A length that is NaN or negative finds nothing.
 
 use std::sync::Arc;
 
@@ -17,20 +17,23 @@ use crate::poses::{palette, similarity};
 use crate::same::{bits, same_hits};
 use crate::sweeps::{self, Moves};
 
-/// What there was to check.
+/// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Queries {
-    /// Hits, by both ways.
+    /// Hits, which brute force found as well.
     pub hits: usize,
-    /// Queries answered, with or without hits.
+    /// Queries with valid arguments, with or without hits.
     pub answered: usize,
-    /// Queries of lengths, points or shapes that are none, which found nothing.
+    /// Queries with invalid lengths, points or shapes, which found nothing.
     pub refused: usize,
-    /// Edits made.
+    /// Edits that were accepted.
     pub edits: usize,
 }
 
-/// Asks a surface of any bytes for whatever the bytes say, and brute force for the same.
+/// Runs queries that are made from any bytes on a surface made from them, and compares with brute force.
+///
+/// # Panics
+/// If a check fails.
 pub fn queries(data: &[u8]) -> Queries {
     let mut bytes = Bytes::new(data);
     let mut seen = Queries::default();
@@ -43,7 +46,7 @@ pub fn queries(data: &[u8]) -> Queries {
         let mesh = surface.mesh();
         let faults = bytes.one_in(8);
         let palette = palette(&mut bytes, mesh.joint_count(), mesh.radius(), faults);
-        // What is refused leaves a surface that is asked all the same.
+        // If the pose is rejected, the surface is queried in its old one.
         let _ = surface.advance(&palette, similarity(&mut bytes, faults));
         for _ in 0..bytes.below(4) {
             seen.edits += usize::from(edit(&mut surface, &mut bytes));
@@ -56,10 +59,10 @@ pub fn queries(data: &[u8]) -> Queries {
     seen
 }
 
-/// Changes something; false if that was refused, and then nothing has changed.
+/// Makes an edit; returns false if it was rejected, and checks that nothing has changed then.
 fn edit(surface: &mut SkinnedSurface, bytes: &mut Bytes<'_>) -> bool {
     let mesh = surface.mesh().clone();
-    // One more than there are, at times.
+    // An id may be one past the end.
     let triangle = TriangleId(bytes.below(mesh.triangles().len() + 1) as u32);
     let part = PartId(bytes.below(mesh.parts().len() + 1) as u32);
     let mut vertex = || VertexId(bytes.below(mesh.positions().len() + 1) as u32);
@@ -98,7 +101,7 @@ fn add_triangle(
     Ok(())
 }
 
-/// Adds a vertex and, if it has area, a triangle with it in place of the first corner.
+/// Adds a vertex, and if it has area, a triangle with the vertex in place of the first corner.
 fn add_vertex(
     edit: &mut SurfaceEdit<'_>,
     mesh: &ColliderMesh,
@@ -108,12 +111,12 @@ fn add_vertex(
     let (position, influences) = vertex_of(bytes, mesh);
     let added = edit.add_vertex(position, &influences)?;
     assert_eq!(added.index(), mesh.positions().len());
-    // The vertex stays, with or without it.
+    // If the triangle is rejected, the vertex stays.
     let _ = add_triangle(edit, mesh, [added, b, c], bytes);
     Ok(())
 }
 
-/// A vertex between two of the mesh, or anywhere; often one that is refused.
+/// A vertex between two vertices of the mesh, or anywhere; sometimes one that is rejected.
 fn vertex_of(bytes: &mut Bytes<'_>, mesh: &ColliderMesh) -> (Vec3, Vec<Influence>) {
     let mut known = || mesh.positions()[bytes.below(mesh.positions().len())] * 0.5;
     let between = known() + known();
@@ -134,13 +137,13 @@ fn vertex_of(bytes: &mut Bytes<'_>, mesh: &ColliderMesh) -> (Vec3, Vec<Influence
     (position, influences.collect())
 }
 
-/// Which triangles queries see.
+/// For each triangle, whether it is enabled.
 fn shown(surface: &SkinnedSurface) -> Vec<bool> {
     let ids = 0..surface.mesh().triangles().len() as u32;
     ids.map(|id| surface.is_enabled(TriangleId(id))).collect()
 }
 
-/// A surface as it is posed, and what its answers are compared with.
+/// A posed surface, and brute force to compare it with.
 pub(crate) struct Both<'a> {
     pub(crate) space: ModelSpace<'a>,
     pub(crate) brute_force: BruteForce<'a>,
@@ -170,7 +173,7 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
             seen.ask_along(&both, &ray, reach);
         }
         seen.ask_nearest(&both, origin, reach);
-        // An infinite radius is no shape.
+        // A shape's radius must be finite.
         let radius = if reach == f32::INFINITY {
             f32::MAX
         } else {
@@ -191,7 +194,7 @@ fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) 
     }
 }
 
-/// A capsule of anything that may be one; `None`, rightly, of anything else.
+/// A capsule, or `None`; checks that it is `None` exactly for invalid arguments.
 fn capsule(a: Vec3, b: Vec3, radius: f32) -> Option<Capsule> {
     let capsule = Capsule::new(a, b, radius);
     let usable = a.is_finite() && b.is_finite() && radius >= 0.0 && radius.is_finite();
@@ -199,7 +202,7 @@ fn capsule(a: Vec3, b: Vec3, radius: f32) -> Option<Capsule> {
     capsule
 }
 
-/// A ray of anything that may be one; `None`, rightly, of anything else.
+/// A ray, or `None`; checks that it is `None` exactly for invalid arguments.
 fn ray(origin: Vec3, aim: Vec3) -> Option<Ray> {
     let ray = Ray::new(origin, aim);
     let usable = origin.is_finite() && aim.is_finite() && aim != Vec3::ZERO;
@@ -211,7 +214,7 @@ fn ray(origin: Vec3, aim: Vec3) -> Option<Ray> {
     ray
 }
 
-/// On the surface, near it, or anywhere.
+/// A point on the surface, near it, or anywhere.
 fn place(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32) -> Vec3 {
     let vertex = positions[bytes.below(positions.len())];
     let other = positions[bytes.below(positions.len())];
@@ -274,7 +277,7 @@ impl Queries {
         self.same(reach >= 0.0, one.as_slice(), wanted.as_slice(), question);
     }
 
-    /// Compares two answers to one question, and sees that they are sound; nothing, unless it `may_find` something.
+    /// Checks that two answers to one question are equal and valid, and empty unless the question `may_find` something.
     fn same(
         &mut self,
         may_find: bool,

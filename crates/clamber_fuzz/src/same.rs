@@ -1,4 +1,4 @@
-//! Equal in every bit: where `==` would take -0 for 0, and NaN for nothing.
+//! Comparison of hits bit for bit: unlike `==`, it tells -0 from 0, and NaN equals itself.
 
 use clamber_surface::surface::{SurfaceHit, SweepHit};
 use glam::Vec3;
@@ -28,12 +28,12 @@ fn sweep_bits(hit: &SweepHit) -> impl PartialEq + use<> {
     )
 }
 
-/// True for hits of equal bits in equal order.
+/// True if both have the same hits in the same order, bit for bit.
 pub(crate) fn same_hits(a: &[SurfaceHit], b: &[SurfaceHit]) -> bool {
     a.iter().map(hit_bits).eq(b.iter().map(hit_bits))
 }
 
-/// True for contacts of equal bits in equal order.
+/// True if both have the same contacts in the same order, bit for bit.
 pub(crate) fn same_sweeps(a: &[SweepHit], b: &[SweepHit]) -> bool {
     a.iter().map(sweep_bits).eq(b.iter().map(sweep_bits))
 }

@@ -1,10 +1,12 @@
-//! A small valid file, for fuzzing to start from.
+//! A small valid file as a start for fuzzing.
 
 use serde_json::{Value, json};
 
-/// A square of two triangles on two joints, with most of what an import reads: a skin, a clip of three
-/// kinds of interpolation, extras, a rigid mesh without indices, a sparse accessor. As the two chunks of
-/// a GLB, JSON and binary; [`crate::import()`] takes them with a zero between.
+/// A square of two triangles on two joints, as the two chunks of a GLB, JSON and binary. [`crate::import()`]
+/// takes them with a zero between.
+///
+/// It has most of what an import reads: a skin, a clip with three kinds of interpolation, extras, a rigid mesh
+/// without indices, a sparse accessor.
 pub fn square() -> (Vec<u8>, Vec<u8>) {
     let mut chunks = Chunks::default();
     let square = [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.];
@@ -80,7 +82,7 @@ pub fn square() -> (Vec<u8>, Vec<u8>) {
     (json.to_string().into_bytes(), chunks.bytes)
 }
 
-/// A GLB of two chunks.
+/// A GLB file of two chunks.
 pub(crate) fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
     let mut glb = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (name, chunk, filling) in [(b"JSON", json, b' '), (b"BIN\0", binary, 0)] {
@@ -115,7 +117,7 @@ impl Chunks {
         self.accessor(kind, 5126, values.len() / width, &bytes)
     }
 
-    /// Appends an accessor with a view of its own; gives the index of both.
+    /// Appends an accessor with a view of its own; returns the index of both.
     fn accessor(&mut self, kind: &str, component: u32, count: usize, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         self.views.push(json!({

@@ -1,4 +1,4 @@
-//! Casts and sweeps of hostile shapes against brute force.
+//! Compares casts and sweeps of hostile shapes with brute force.
 
 use clamber_surface::geometry::Capsule;
 use clamber_surface::surface::{CastOptions, SweepHit};
@@ -8,26 +8,26 @@ use crate::bytes::Bytes;
 use crate::queries::Both;
 use crate::same::same_sweeps;
 
-/// What came of the questions.
+/// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Swept {
     pub(crate) answered: usize,
-    /// Of displacements and tolerances that are none, which found nothing.
+    /// Questions with invalid displacements or tolerances, which found nothing.
     pub(crate) refused: usize,
     pub(crate) hits: usize,
 }
 
-/// Where shapes go, and how near counts.
+/// Displacements of shapes, and the tolerance of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moves {
     motion: Vec3,
-    /// Of a capsule's second end.
+    /// Displacement of a capsule's second end.
     other: Vec3,
     pub(crate) tolerance: f32,
 }
 
 impl Moves {
-    /// For a capsule from whose first end to its second the way is `way`.
+    /// Moves for a capsule whose second end is at `way` from its first.
     pub(crate) fn any(bytes: &mut Bytes<'_>, way: Vec3, radius: f32) -> Self {
         let motion = match bytes.byte() % 4 {
             0 => Vec3::ZERO,
@@ -59,7 +59,7 @@ impl Moves {
     }
 }
 
-/// One capsule on its way, at skin that moves and at skin that stands still.
+/// Compares the casts of one capsule, against moving skin and against still skin.
 pub(crate) fn compare(
     both: &Both<'_>,
     capsule: &Capsule,
@@ -83,10 +83,11 @@ pub(crate) fn compare(
 }
 
 impl Swept {
-    /// The first contact and all contacts; gives how many there were.
+    /// Compares the first contact and all contacts with brute force; returns how many were found.
     ///
-    /// Where coordinates differ by some 2^50 in size, bounds may rule out what the exact test cannot decide: then only
-    /// a first contact is compared that both ways have decided.
+    /// If coordinates differ in size by about 2^50, bounds may rule out contacts that the exact test cannot decide. So
+    /// if brute force leaves a contact undecided, only the first contact is compared, and only if both sides have
+    /// decided it.
     fn cast(
         &mut self,
         both: &Both<'_>,

@@ -1,4 +1,4 @@
-//! The sweeps on third-party queries whose exact answers are known.
+//! Tests the sweeps with third-party queries whose exact answers are known.
 
 #![expect(
     clippy::unwrap_used,
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clamber_fuzz::ccd::{CcdOptions, run};
 use clamber_scenes::test_data;
 
-/// How many files and queries the test data has.
+/// Number of files and of queries in the test data.
 const FILES: usize = 13;
 const QUERIES: usize = 1_909;
 
@@ -35,7 +35,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_query_of_any_file_is_answered_falsely() {
+fn no_answer_to_a_third_party_query_is_wrong() {
     let files = files();
     if files.is_empty() {
         return;

@@ -1,14 +1,14 @@
-//! Every fuzz target on seeded random bytes: what libFuzzer does for hours, for a few seconds.
+//! Runs every fuzz target on seeded random bytes for a few seconds, as libFuzzer does for hours.
 
 use clamber_fuzz::{Palettes, Queries, builder, import, palettes, queries, square};
 
-/// Bytes for a target; what they do not say, their first four seed.
+/// Random bytes for a target. Their first four seed all choices beyond their end.
 fn random_bytes(rng: &mut fastrand::Rng) -> Vec<u8> {
     let length = rng.usize(4..200);
     (0..length).map(|_| rng.u8(..)).collect()
 }
 
-/// A token of the JSON replaced, bytes changed, or both chunks cut: a file that may still be one.
+/// A file with some tokens of the JSON replaced, bytes changed, or the binary chunk cut. It may still be valid.
 fn mutated(json: &[u8], binary: &[u8], rng: &mut fastrand::Rng) -> Vec<u8> {
     const TOKENS: [&str; 12] = [
         "0",
@@ -103,8 +103,8 @@ fn questions() {
 }
 
 #[test]
-fn questions_that_were_answered_otherwise_once() {
-    // Coordinates beyond 1e18, whose squares overflow f32.
+fn queries_at_coordinates_whose_squares_overflow() {
+    // Inputs that once differed from brute force: coordinates beyond 1e18, whose squares overflow f32.
     for input in [
         "6f1cbfb1199a41eb13463526af80f3bbc38c2e6d7a7fe52464",
         "1579a8ad4e138dcf2c4450e601179303831f2b344d13d9ec73603efc6751d10810ab4c0c1ac73020759deffdf97f\

@@ -1,9 +1,11 @@
-//! Every family of meshes in every family of poses at every place: small and few here, large and many with
-//! `--ignored`, as long as one likes with `cargo xtask soak`.
+//! Stress cases: every family of meshes in every family of poses, at every place in turn.
+//!
+//! The tests run a few small cases, and with `--ignored` many and large ones. `cargo xtask soak` runs cases for any
+//! time.
 
 use clamber_fuzz::stress::{Case, MeshFamily, Place, PoseFamily, Seen, run};
 
-/// Runs a mesh in every pose, at places by turns; `seeds` cases each.
+/// Runs a mesh in every pose, at the places in turn, with `seeds` cases for each pose.
 fn stress(mesh: MeshFamily, triangles: usize, ticks: usize, seeds: u64) -> Seen {
     let mut all = Seen::default();
     for seed in 0..seeds {
@@ -24,7 +26,7 @@ fn stress(mesh: MeshFamily, triangles: usize, ticks: usize, seeds: u64) -> Seen 
     all
 }
 
-/// [`stress`] as one test runs it, briefly; what it must have come to.
+/// Runs [`stress`] briefly, and checks that enough was checked.
 fn briefly(mesh: MeshFamily) {
     let seen = stress(mesh, 600, 3, 2);
     let cases = 2 * PoseFamily::ALL.len();
@@ -71,7 +73,7 @@ families! {
 }
 
 #[test]
-fn a_case_by_its_name() {
+fn a_case_is_parsed_from_its_name_and_runs_the_same_again() {
     let case = Case {
         mesh: MeshFamily::SliverTube,
         pose: PoseFamily::InsideOut,
@@ -91,7 +93,7 @@ fn a_case_by_its_name() {
     ] {
         assert!(wrong.parse::<Case>().is_err(), "{wrong}");
     }
-    // The same case is the same case.
+    // A case runs the same way every time.
     assert_eq!(run(&case, None), run(&case, None));
 }
 
@@ -110,7 +112,7 @@ fn ten_million_triangles() {
     let seen = run(&case, None);
     println!("{case}: {seen:?}");
     println!("{:.0} s", start.elapsed().as_secs_f64());
-    // Where the system tells.
+    // Only Linux reports its peak memory there.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find(|line| line.starts_with("VmHWM"));
     println!("{}", peak.unwrap_or("peak memory unknown"));

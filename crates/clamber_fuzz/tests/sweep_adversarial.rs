@@ -1,4 +1,4 @@
-//! The sweeps on motions that are hard, sphere and capsule: every answer proved.
+//! Tests the sweeps with adversarial motions of spheres and capsules. Every answer is proved.
 
 #![expect(
     clippy::unwrap_used,
@@ -19,7 +19,7 @@ fn each(kind: Kind, cases: u32, seed: u64, mut visit: impl FnMut(&Case, &Answer)
     }
 }
 
-/// Of every kind so many.
+/// Checks so many cases of every kind.
 fn check(cases: u32, seed: u64) {
     let mut capped = 0;
     for kind in KINDS {
@@ -32,7 +32,7 @@ fn check(cases: u32, seed: u64) {
         assert!(tally.holds(), "{kind:?}: {tally:?}");
     }
     let all = cases as usize * KINDS.len();
-    println!("{capped} of {all} took all steps");
+    println!("{capped} of {all} reached the step limit");
     assert!(capped * 500 <= all, "{capped} of {all}");
 }
 
@@ -48,7 +48,7 @@ fn no_answer_of_a_million_is_late_or_too_far() {
 }
 
 #[test]
-fn what_slides_by_is_no_contact_and_what_begins_inside_is_one_at_once() {
+fn sliding_past_is_no_contact_and_starting_inside_is_one_at_time_zero() {
     each(Kind::Slide, 500, 82, |case, answer| {
         assert!(
             answer.hit.is_none_or(|hit| hit.undecided),

@@ -1,5 +1,5 @@
-//! The sweeps on edges and on vertices and faces in exact numbers: contacts and near misses that are
-//! known by how they are made, and proofs of what is claimed of the others.
+//! Tests the sweeps with edge-edge and vertex-face motions in exact numbers: with contacts and near misses that are
+//! known by construction, and with proofs of the claims about all others.
 
 #![expect(
     clippy::unwrap_used,
@@ -30,7 +30,7 @@ fn no_contact_of_a_hundred_thousand_is_missed_or_late_and_none_is_invented() {
     assert!(tally.hits > 40_000 && tally.hits < 90_000, "{tally:?}");
 }
 
-/// What is counted if all answers are changed.
+/// The tally if all answers are changed by `change`.
 fn changed(change: impl Fn(f64) -> Option<f64>) -> Tally {
     let mut rng = fastrand::Rng::with_seed(72);
     let mut stage = Stage::new().unwrap();
@@ -48,7 +48,7 @@ fn changed(change: impl Fn(f64) -> Option<f64>) -> Tally {
 }
 
 #[test]
-fn sweeps_that_are_late_or_miss_are_found_out() {
+fn late_and_missing_answers_are_detected() {
     let late = changed(|time| Some((time + 1e-3).min(1.0)));
     assert!(late.late > 300, "{late:?}");
     let missing = changed(|_| None);
@@ -58,7 +58,7 @@ fn sweeps_that_are_late_or_miss_are_found_out() {
 }
 
 #[test]
-fn a_sweep_with_three_times_the_tolerance_is_found_out() {
+fn a_sweep_with_three_times_the_tolerance_is_detected() {
     let mut rng = fastrand::Rng::with_seed(73);
     let mut stage = Stage::new().unwrap();
     let (mut tally, mut invented) = (Tally::default(), 0);

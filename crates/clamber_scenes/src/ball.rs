@@ -1,9 +1,10 @@
-//! Closed balls of rings and segments, as plain triangles, smooth or bumpy.
+//! Closed balls made of rings and segments, as plain triangles, smooth or bumpy.
 
 use glam::{DVec3, Vec3};
 
-/// Positions and triangles, of so many rings from pole to pole and segments around; `radius` by the angles from +Y and
-/// around it, radians.
+/// Positions and triangles of a ball with `rings` rings from pole to pole and `segments` segments around +Y.
+///
+/// `radius` gives the distance from the origin by two angles, radians: from +Y, and around +Y.
 pub fn ball(
     rings: u32,
     segments: u32,

@@ -1,10 +1,10 @@
-//! Is a mesh closed, and which side of it is inside?
+//! Whether a mesh is closed, and the volume that it encloses.
 
 use std::collections::HashMap;
 
 use clamber_surface::mesh::{ColliderMesh, VertexId};
 
-/// What keeps a mesh from being a surface all around.
+/// Defects that keep a mesh from being a closed manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flaws {
     /// Edges whose triangles do not pair off in opposite directions: 0 for a closed mesh.
@@ -30,7 +30,8 @@ pub fn flaws(mesh: &ColliderMesh) -> Flaws {
     }
 }
 
-/// What a closed mesh holds at rest, in cubic units of mesh space; negative if it faces inwards.
+/// The volume that a closed mesh encloses at rest, in cubic units of mesh space. Negative if its triangles face
+/// inwards.
 pub fn volume(mesh: &ColliderMesh) -> f64 {
     let corner = |v: VertexId| mesh.positions()[v.index()].as_dvec3();
     let six_volumes = mesh.triangles().iter().map(|t| {

@@ -9,44 +9,44 @@ use clamber_surface::surface::SurfaceError;
 use glam::Vec3;
 use thiserror::Error;
 
-/// What a scene needs of a creature, from code or from a file.
+/// A creature as scenes use it, built in code or loaded from a file.
 #[derive(Clone, Debug)]
 pub struct Creature {
-    /// For reports.
+    /// The name that reports print.
     pub name: String,
-    /// Its joints.
+    /// The skeleton.
     pub skeleton: Skeleton,
-    /// Its motions.
+    /// The animation clips.
     pub clips: Vec<Clip>,
-    /// Its skin.
+    /// The collision mesh.
     pub collider: Arc<ColliderMesh>,
-    /// Model units that its walk covers in a second, where that is known.
+    /// Speed of the walk clip, model units a second; `None` if unknown.
     pub walk_speed: Option<f64>,
 }
 
-/// Why a creature cannot play in a scene.
+/// Why a creature cannot be loaded, built or posed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CreatureError {
-    /// Its file cannot be loaded.
+    /// The file cannot be loaded.
     #[error(transparent)]
     Load(#[from] GltfError),
-    /// Its skeleton cannot be posed.
+    /// The skeleton cannot be built or posed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// Its mesh cannot be built.
+    /// The mesh cannot be built.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Its skin cannot be posed.
+    /// The surface cannot be posed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// Its palette does not fit its mesh.
+    /// The palette does not fit the mesh.
     #[error(transparent)]
     Palette(#[from] PaletteError),
 }
 
 impl Creature {
-    /// From its pieces.
+    /// A creature from its parts, with an unknown walk speed.
     pub fn new(
         name: impl Into<String>,
         skeleton: Skeleton,
@@ -62,7 +62,7 @@ impl Creature {
         }
     }
 
-    /// From a `.glb` or `.gltf` file.
+    /// Loads a creature from a `.glb` or `.gltf` file, and names it after the file. The walk speed is unknown.
     ///
     /// # Errors
     /// [`CreatureError::Load`].
@@ -72,7 +72,8 @@ impl Creature {
         Ok(Self::new(name, rig.skeleton, rig.clips, rig.collider))
     }
 
-    /// The clip whose name contains one of `words`, in any case; the earlier word wins.
+    /// The first clip whose name contains one of `words`. Words must be in lower case, names match in any case,
+    /// and an earlier word wins.
     pub fn clip_like(&self, words: &[&str]) -> Option<&Clip> {
         words.iter().find_map(|word| {
             let matches = |clip: &&Clip| clip.name.to_lowercase().contains(word);
@@ -80,7 +81,7 @@ impl Creature {
         })
     }
 
-    /// Lowest and highest corner of a box around the skin in a pose, in model space.
+    /// Lowest and highest corner of the skin's bounding box in a pose, in model space.
     ///
     /// # Errors
     /// [`CreatureError`] if the pose does not fit the skeleton.

@@ -1,4 +1,4 @@
-//! The project's own giant, `assets/colossus.glb`, at any number of vertices.
+//! The project's own giant, `assets/colossus.glb`, with any number of vertices.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,10 +8,10 @@ use clamber_gltf::Rig;
 use crate::resample::resample;
 use crate::{Creature, CreatureError};
 
-/// Metres a second that the giant's walk covers; `assets/giant/clips.py` makes it so.
+/// Speed of the giant's walk, metres a second. `assets/giant/clips.py` sets it.
 const WALK_SPEED: f64 = 5.0;
 
-/// Where the giant's file is.
+/// Path of the giant's file.
 pub fn path() -> PathBuf {
     PathBuf::from(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -19,7 +19,7 @@ pub fn path() -> PathBuf {
     ))
 }
 
-/// The giant as its file has it.
+/// The giant, with the collider that its file has.
 ///
 /// # Errors
 /// [`CreatureError`] if its file is missing or broken.
@@ -27,7 +27,7 @@ pub fn giant() -> Result<Creature, CreatureError> {
     Ok(creature(&rig()?))
 }
 
-/// All of its file, with what is to be seen.
+/// The whole content of the giant's file, visual meshes included.
 ///
 /// # Errors
 /// As [`giant`].
@@ -35,8 +35,8 @@ pub fn rig() -> Result<Rig, CreatureError> {
     Ok(clamber_gltf::load(path())?)
 }
 
-/// The giant with so many vertices, or nearly: its collision mesh with longest edges halved or
-/// shortest ones drawn together, closed as that is.
+/// The giant with about so many vertices: its collider, closed as it is, with the longest edges halved or
+/// the shortest ones collapsed. See [`resample`].
 ///
 /// # Errors
 /// As [`giant`].

@@ -1,8 +1,8 @@
-//! Numbers in JSON, which has none that are infinite.
+//! Numbers in JSON that may be infinite or NaN.
 
 use serde::Serializer;
 
-/// A number; as text, `inf` or `NaN`, where JSON would have `null`.
+/// Serialises a finite number as a number, any other as text (`inf`, `-inf`, `NaN`), where JSON would have `null`.
 ///
 /// # Errors
 /// Those of the serializer.
@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_number_is_null() {
+    fn infinity_and_nan_are_written_as_text() {
         #[derive(serde::Serialize)]
         struct One(#[serde(serialize_with = "number")] f64);
         let written = |number| serde_json::to_string(&One(number)).unwrap();

@@ -1,22 +1,22 @@
 //! Creatures and scenes that clamber's tests, benches and examples share. Not published.
 //!
-//! - [`ball`]: closed balls of plain triangles.
-//! - [`beast`]: a quadruped built in code, of any number of vertices.
-//! - [`giant`]: the project's own giant, from its file, at any number of vertices.
-//! - [`resample`]: any mesh at any number of vertices.
-//! - [`Creature`]: what a scene needs of a creature, from code or from a file.
-//! - [`riders`]: what riders on a walking giant ask in a tick.
+//! - [`ball`]: closed balls as plain triangles.
+//! - [`beast`]: a quadruped built in code, with any number of vertices.
+//! - [`giant`]: the project's own giant, from its file, with any number of vertices.
+//! - [`resample`]: any mesh with more or fewer vertices.
+//! - [`Creature`]: a creature as scenes use it, from code or from a file.
+//! - [`riders`]: the queries of riders on a walking giant, tick by tick.
 //! - [`controllers`]: thirty scenes on moving ground, for any character controller.
-//! - [`rocks`]: rocks on a shaking giant.
-//! - [`valley`]: terrain to walk in.
-//! - [`battle`]: the main scene: a climber rides a walking, shaking creature.
-//! - `picture`, with the feature `render`: what of a battle is to be seen.
-//! - [`inspect`]: what an import found, and how the creature fares in motion.
-//! - [`measure`]: tables, quantiles and yardsticks for benches.
-//! - [`part_bounds`]: spheres and capsules about parts in any pose, in f64.
+//! - [`rocks`]: rocks that fall on a shaking giant.
+//! - [`valley`]: the terrain of the scenes.
+//! - [`battle`]: the main scene: a climber climbs or rides a walking, shaking creature.
+//! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
+//! - [`inspect`]: a report on a creature's file: its import, and measurements in every clip.
+//! - [`measure`]: tables, plots, quantiles and reference values for benches.
+//! - [`part_bounds`]: spheres and capsules around parts in any pose, in f64.
 //! - [`tour`]: a bot climbs from a creature's foot to its head.
-//! - [`closed`]: is a mesh closed, and which side of it is inside?
-//! - [`solid_angle`]: is a point inside a mesh? An answer that owes nothing to the queries.
+//! - [`closed`]: whether a mesh is closed, and the volume that it encloses.
+//! - [`solid_angle`]: whether a point is inside a mesh, without the library's queries.
 //! - [`test_data`]: third-party files for tests.
 
 pub mod ball;

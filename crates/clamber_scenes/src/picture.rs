@@ -1,4 +1,4 @@
-//! What of a battle is to be seen: its creature, its climber and the ground, as meshes of a renderer.
+//! A battle for the renderer: meshes of its creature, its climber and the ground, light and cameras.
 
 use clamber_climber::{Climber, ClimberMode};
 use clamber_gltf::Rig;
@@ -15,10 +15,10 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::battle::Battle;
 use crate::valley;
 
-/// Metres between two vertices of the ground that is drawn.
+/// Distance between neighbouring vertices of the drawn ground, metres.
 const GROUND_CELL: f64 = 2.0;
 
-/// The meshes of a battle.
+/// The meshes of a battle, as added to a renderer.
 #[derive(Clone, Debug)]
 pub struct Stage {
     creature: Vec<RenderMeshId>,
@@ -28,18 +28,21 @@ pub struct Stage {
     climber: [RenderMeshId; 3],
 }
 
-/// Radii of body, head and arms, metres, and half the lengths of the first and last without their ends.
+/// The drawn climber, metres. Body and arms are capsules: half the length of the segment, and the radius. The head
+/// is a ball: its radius.
 const BODY: [f32; 2] = [0.42, 0.24];
 const HEAD: f32 = 0.17;
 const ARM: [f32; 2] = [0.24, 0.075];
 
-/// From the middle of the body to the shoulders, and to the middle of the head, along it; from there to a shoulder, across.
+/// Metres from the body's centre along its axis to the shoulders and to the head's centre, and from the axis to a
+/// shoulder.
 const SHOULDER: f64 = 0.45;
 const CROWN: f64 = 0.84;
 const ACROSS: f64 = 0.3;
 
 impl Stage {
-    /// Takes the ground, the climber and a creature, [`add_visual`] or [`add_collider`], to a renderer.
+    /// Adds the meshes of the ground, the outcrop and the climber to a renderer. `creature` has the ids of the
+    /// creature's meshes in the same renderer, from [`add_visual`] or [`add_collider`].
     ///
     /// # Errors
     /// [`RenderError`].
@@ -62,7 +65,8 @@ impl Stage {
         })
     }
 
-    /// All of it as it stands now, the creature in a pose: [`Battle::palette`], or another one.
+    /// Everything to draw for the battle's current tick, with the creature in the pose `palette`:
+    /// [`Battle::palette`] or another one.
     pub fn drawn<'a>(&self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
         let posture = Posture::of(battle.climber());
         let along = DQuat::from_rotation_arc(DVec3::Y, posture.along);
@@ -105,11 +109,11 @@ impl Stage {
     }
 }
 
-/// How a climber is drawn: a figure where its ball is, which shows what it does.
+/// The posture of the drawn figure, by the climber's mode. It stands at the climber's ball.
 struct Posture {
-    /// Middle of the body.
+    /// Centre of the body.
     middle: DVec3,
-    /// Unit vectors to the head and to the right.
+    /// Unit vectors towards the head, and to the figure's right.
     along: DVec3,
     across: DVec3,
     hands: DVec3,
@@ -176,14 +180,15 @@ impl Posture {
     }
 }
 
-/// The sun over a battle with a creature of a height.
+/// Sunlight for a battle with a creature `height` metres tall.
 pub fn light(battle: &Battle<'_>, height: f64) -> Light {
     let root = battle.surface().world_from_model();
     let center = root.translation + DVec3::Y * (0.45 * height);
     Light::over(center, height * 0.85)
 }
 
-/// All of the creature, of a height, from `heading` radians around it, above the ground.
+/// A camera that shows all of a creature `height` metres tall, from `heading` radians around Y from +Z. It stays above
+/// the ground.
 pub fn orbit(battle: &Battle<'_>, height: f64, heading: f64) -> Camera {
     let middle = battle.surface().world_from_model().translation + DVec3::Y * (0.42 * height);
     let mut camera = Camera::orbit(middle, 1.45 * height, heading, -0.12);
@@ -192,13 +197,13 @@ pub fn orbit(battle: &Battle<'_>, height: f64, heading: f64) -> Camera {
     camera
 }
 
-/// The climber, from `away` of it.
+/// A camera that looks at the climber from its position plus `away`, metres.
 pub fn beside(battle: &Battle<'_>, away: DVec3) -> Camera {
     let place = battle.climber().state().position;
     Camera::new(place + away, place)
 }
 
-/// What is to be seen of a creature's file: fur and stone where it has them.
+/// Adds the visual meshes of a creature's file to a renderer, with fur and stone where the file has them.
 ///
 /// # Errors
 /// [`RenderError`].
@@ -208,7 +213,7 @@ pub fn add_visual(renderer: &mut Renderer, rig: &Rig) -> Result<Vec<RenderMeshId
         .collect()
 }
 
-/// A collider itself, in one colour.
+/// Adds a collider to a renderer, in one colour.
 ///
 /// # Errors
 /// [`RenderError`].
@@ -261,7 +266,7 @@ fn add_ground(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
     })
 }
 
-/// Corners of their own for each triangle, so that edges stay sharp.
+/// The triangles with three corners of their own each, so that edges are shaded sharp.
 pub fn sharp(corners: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let own = triangles.iter().flatten();
     let own = own.map(|corner| corners[*corner as usize]).collect();

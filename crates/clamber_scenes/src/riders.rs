@@ -1,4 +1,4 @@
-//! What a tick has to answer: riders standing on a walking giant.
+//! The queries of riders who stand on a walking giant, tick by tick: a workload for benches.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -13,54 +13,54 @@ use crate::Creature;
 /// Ticks a second.
 const RATE: f64 = 60.0;
 
-/// How deep a rider's spheres stand in the skin, as a share of the radius: a skin width of 10 mm for a
-/// sphere of 0.5 m.
+/// How deep a rider's spheres reach into the skin, as a share of the radius: 10 mm for a sphere of 0.5 m.
 const DEPTH: f32 = 0.02;
 
-/// Seats that a single rider chooses from, how many triangles it wants to touch there, and at how many
-/// ticks of the walk it looks.
+/// A single rider takes the best of so many seats: the one where its body touches nearest to `TOUCHED`
+/// triangles, averaged over `LOOKS` ticks of the walk.
 const CHOICES: usize = 64;
 const TOUCHED: usize = 30;
 const LOOKS: usize = 8;
 
 /// One rider's queries of one tick, in model space.
 pub struct Rider {
-    /// Ten mean edge lengths in radius.
+    /// The rider's body, with a radius of ten mean edge lengths.
     pub body: Sphere,
-    /// One mean edge length in radius.
+    /// The rider's foot, with a radius of one mean edge length.
     pub foot: Sphere,
-    /// From the middle of the body to the skin.
+    /// The ray from the centre of the body towards the skin.
     pub ray: Ray,
-    /// How far it looks: twice the body's radius.
+    /// How far to cast the ray: twice the body's radius.
     pub reach: f32,
-    /// What the rider stands on.
+    /// The point of the skin that the rider stands on.
     pub anchor: Anchor,
 }
 
-/// One tick: the pose, and all riders' queries.
+/// One tick: the pose, and the queries of all riders.
 pub struct Tick {
-    /// In model space, which is the world's.
+    /// The pose. Model space is world space.
     pub palette: Palette,
-    /// In one order in all ticks.
+    /// The riders, in the same order in every tick.
     pub riders: Vec<Rider>,
 }
 
 /// A giant with its ticks.
 pub struct Workload {
-    /// What is ridden.
+    /// The giant's collider.
     pub mesh: Arc<ColliderMesh>,
-    /// Of the walk, from its beginning.
+    /// The ticks of the walk, from its beginning.
     pub ticks: Vec<Tick>,
 }
 
 impl Workload {
-    /// The giant walks for so many ticks, ridden by so many riders, who stand on seeded random points
-    /// of the skin where their spheres fit at rest. A single rider takes the one of 64 points
-    /// where it touches nearest to 30 triangles in the mean over the walk, so that riders on
-    /// giants of different resolution have as much to answer.
+    /// A giant that walks for `ticks` ticks, with `riders` riders on it.
+    ///
+    /// The riders stand on seeded random points of the skin where their body fits at rest. A single
+    /// rider takes the one of 64 such points where its body touches nearest to 30 triangles on average
+    /// over the walk, so that riders on giants of different resolution do as much work.
     ///
     /// # Errors
-    /// If the creature has no clip `walk`, or one that does not fit it.
+    /// If the creature has no clip `walk`, or the clip does not fit it.
     pub fn new(creature: &Creature, riders: usize, ticks: usize) -> Result<Self, Box<dyn Error>> {
         let mesh = creature.collider.clone();
         let mut surface = SkinnedSurface::new(mesh.clone());
@@ -113,7 +113,7 @@ impl Workload {
     }
 }
 
-/// True if a rider's sphere is nowhere deeper in the skin than it stands in it: not in a crease.
+/// True if no skin is much deeper in a rider's body than the point it stands on: the seat is not in a crease.
 fn fits(surface: &SkinnedSurface, body: &Sphere) -> bool {
     let nearest = surface.in_model().closest_point(body.center, body.radius);
     nearest.is_none_or(|hit| hit.distance as f32 > body.radius * (1.0 - 1.5 * DEPTH))
@@ -135,7 +135,7 @@ fn rider(surface: &SkinnedSurface, seat: &Anchor, edge: f32) -> Result<Rider, Bo
     })
 }
 
-/// Mean length of the edges at rest.
+/// Mean edge length of a mesh at rest, over the three edges of every triangle.
 pub fn mean_edge(mesh: &ColliderMesh) -> f32 {
     let place = |v: VertexId| mesh.positions()[v.index()];
     let lengths = mesh.triangles().iter().flat_map(|&[a, b, c]| {

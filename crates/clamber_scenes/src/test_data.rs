@@ -1,5 +1,5 @@
-//! Third-party models for tests and measurements. They are no part of this project: their folder
-//! is named by `CLAMBER_TEST_DATA`.
+//! Third-party models for tests and measurements. They are not part of this project: the environment variable
+//! `CLAMBER_TEST_DATA` names their folder.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -9,14 +9,14 @@ use crate::{Creature, CreatureError};
 /// The environment variable that names the folder.
 pub const VARIABLE: &str = "CLAMBER_TEST_DATA";
 
-/// A file of the test data. Without [`VARIABLE`], says on standard error that `test` was skipped,
-/// and gives `None`.
+/// The path of a file of the test data. If [`VARIABLE`] is not set, prints to standard error that `test` was
+/// skipped, and returns `None`.
 ///
 /// # Panics
-/// If the variable is set and the file is missing: a test that was to run must not pass unseen.
+/// If the variable is set and the file is missing, so that the test is not skipped silently.
 pub fn file(test: &str, name: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os(VARIABLE) else {
-        // Not by `eprintln`, whose output passing tests swallow.
+        // Not by `eprintln`: the test harness hides its output when the test passes.
         let line = format!("SKIPPED {test}: set {VARIABLE} to the folder that holds {name}\n");
         let _ = std::io::stderr().write_all(line.as_bytes());
         return None;
@@ -30,8 +30,8 @@ pub fn file(test: &str, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// All glTF files of the test data, models and fixtures, by path within the folder, sorted; none,
-/// said on standard error, without [`VARIABLE`].
+/// All glTF files of the test data, models and fixtures, sorted: path within the folder, and full path. If
+/// [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Errors
 /// If a folder cannot be read.
@@ -60,7 +60,7 @@ pub fn gltf_files(test: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
     Ok(files)
 }
 
-/// Models of several makers, with 19 to 48 joints and 1 to 20 clips, to measure on.
+/// Models for measurements, by several makers, with 19 to 48 joints and 1 to 20 clips.
 const FIVE_MODELS: [&str; 5] = [
     "Trex.glb",
     "Fox.glb",
@@ -69,7 +69,7 @@ const FIVE_MODELS: [&str; 5] = [
     "George.glb",
 ];
 
-/// Five models to measure on; none, said on standard error, without [`VARIABLE`].
+/// Five creatures for measurements. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Errors
 /// [`CreatureError`] if one cannot be loaded.
@@ -81,7 +81,7 @@ pub fn five_creatures(test: &str) -> Result<Vec<Creature>, CreatureError> {
     paths.map(|path| Creature::load(&path)).collect()
 }
 
-/// The files of [`five_creatures`].
+/// The files of [`five_creatures`]. If [`VARIABLE`] is not set, prints that `test` was skipped, and returns none.
 ///
 /// # Panics
 /// As [`file()`].

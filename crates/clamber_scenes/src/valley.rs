@@ -3,13 +3,13 @@
 use clamber_world::rapier3d::parry::utils::Array2;
 use clamber_world::rapier3d::prelude::*;
 
-/// Metres along each side.
+/// Length of each side, metres. The valley is centred on the origin.
 pub const SIZE: f64 = 320.0;
 
-/// Cells along each side.
+/// Number of cells along each side.
 const CELLS: usize = 160;
 
-/// Height of the ground, metres, at a place.
+/// Height of the ground at (x, z), metres.
 pub fn height(x: f64, z: f64) -> f64 {
     let rolling = 0.6 * libm::sin(x * 0.05) * libm::cos(z * 0.043)
         + 0.25 * libm::sin(x * 0.13 + 1.0) * libm::sin(z * 0.11);
@@ -17,7 +17,7 @@ pub fn height(x: f64, z: f64) -> f64 {
     rolling + beyond * beyond * 0.008
 }
 
-/// True above or below the valley's ground: outside of it there is none, and whatever gets there falls for ever.
+/// True if (x, z) is within the valley. Outside it there is no ground, and bodies fall for ever.
 pub fn contains(x: f64, z: f64) -> bool {
     x.abs() <= 0.5 * SIZE && z.abs() <= 0.5 * SIZE
 }
@@ -45,15 +45,15 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn the_height_field_is_the_height_function() {
+    fn the_height_field_follows_the_height_function() {
         let world = world();
         let before = BodyPoses::default();
         let terrain = RapierTerrain::of_world(&world, &before);
-        // Off the grid's lines: rays that meet an edge exactly can slip through rapier's triangles.
+        // Off the grid's lines: a ray that meets an edge exactly can slip between rapier's triangles.
         for (x, z) in [(0.3, 0.4), (37.1, -12.3), (-80.5, 60.25), (120.0, 100.0)] {
             let from = DVec3::new(x, 500.0, z);
             let hit = terrain.cast_ray(from, -DVec3::Y, 1000.0).unwrap();
-            // Cells of 2 m on a curved ground.
+            // The height field has cells of 2 m, the function is curved.
             assert!(
                 (hit.point.y - height(x, z)).abs() < 0.05,
                 "at {x} {z}: {hit:?}"

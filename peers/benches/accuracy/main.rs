@@ -1,24 +1,27 @@
-//! How wrong is what one gets of an animated skin, and how long does it take? Ours and other ways side by side.
+//! How large is the error of answers on an animated skin, and how long do they take? clamber and other methods side by
+//! side.
 //!
-//! `queries`: seeded sets of rays, spheres and points, at the walking giant, from the front, grazing, aimed at edges and at
-//! vertices, 1.4 km from the origin, and at a ball of slivers. Each answer is held against all triangles in f64, of the
-//! positions that f32 skinning gives in model space, moved to where the creature stands: so what a peer loses by world
-//! coordinates in f32 counts, and what all lose by skinning does not. Leaks, which pass through the skin or stop short of
-//! it by more than a hundredth of the distance, are counted apart, and are no part of the errors. Times are of warm
-//! queries, medians of rounds. Fails if ours leaks.
+//! `queries`: seeded sets of rays, spheres and points at the walking giant: from the front, grazing, aimed at edges and
+//! at vertices, and 1.4 km from the origin; and at a ball of slivers. Each answer is compared with all triangles in
+//! f64. Their positions come from f32 skinning in model space, moved to the creature's place in f64: so the error
+//! includes what a peer loses by world coordinates in f32, and not what all lose by skinning. Answers that pass through
+//! the skin or stop short of it by more than a hundredth of the query's reach are counted apart, as leaks and false
+//! hits, and are not part of the errors. Times are of warm queries, medians of rounds. Fails if clamber has a leak or a
+//! false hit.
 //!
-//! `motion`: a sphere that a limb swings into, or that rides on one, kept out of it by the thesis's averaged push-out,
-//! sub-steps of it, speculative contacts, and sweeps: how deep it is in the limb at the end of ticks, how often the limb
-//! passes through it, how far it drifts from its place on the skin, and what a tick costs, in the mean. The same of
-//! whole climbers, which float, stand on ground, or stand on the limb or hold it: how deep the limb is in their core.
+//! `motion`: a sphere that a limb swings into, or that rides on one. It is kept out by the thesis's averaged push-out,
+//! by sub-steps of it, by speculative contacts, and by sweeps. Measured are its depth in the limb at the end of ticks,
+//! how often the limb passes through it, its drift from its place on the skin, and the mean time of a tick. The same is
+//! measured for whole climbers, which float, stand on ground, stand on the limb or hold it: the depth of the limb in
+//! their core.
 //!
-//! `skinning`: influences cut to 4, 2 and 1, weights of 16 and 8 bits, positions of 16 bits: the error of a vertex, the
-//! time and the bytes.
+//! `skinning`: influences cut to 4, 2 and 1, weights of 16 and 8 bits, positions of 16 bits. Measured are the error of
+//! a vertex, the time and the bytes.
 //!
 //! Prints tables and writes them to `target/measure/accuracy_*.csv`, with plots beside them.
 //!
-//! `cargo bench --manifest-path peers/Cargo.toml --bench accuracy`, with `--features bullet,embree,fcl,physx` for those that are installed;
-//! one part with `-- motion`, brief with `-- --test`.
+//! Run it with `cargo bench --manifest-path peers/Cargo.toml --bench accuracy`, and `--features
+//! bullet,embree,fcl,physx` for the installed libraries; one part with `-- motion`, briefly with `-- --test`.
 
 mod motion;
 mod queries;

@@ -1,8 +1,9 @@
-//! Skinning with less: fewer influences, weights and positions of fewer bits. What each loses, and what it saves.
+//! Skinning with less data: fewer influences, and weights and positions of fewer bits. What each loses, and what it
+//! saves.
 //!
-//! One plain kernel for all, which differs in the types that it reads alone: clusters of 64 vertices that share a list of
-//! joints, a row of weights for each, as our own has them, but without its dispatch to wider instructions. The error is
-//! that of a vertex against f64 with all influences, over the walk.
+//! All variants use one plain kernel, which differs only in the types that it reads. Like clamber's kernel it has
+//! clusters of 64 vertices that share a list of joints, with a row of weights for each joint, but no dispatch to wider
+//! instructions. The error is the distance of a vertex from its position in f64 with all influences, over the walk.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -15,10 +16,10 @@ use clamber_surface::mesh::{ColliderMesh, VertexId};
 use clamber_surface::rig::{Palette, Playback};
 use glam::{DVec3, Vec3};
 
-/// Vertices of a cluster.
+/// Number of vertices in a cluster.
 const SLOTS: usize = 64;
 
-/// Poses of the walk that errors are of.
+/// Number of poses of the walk in which errors are measured.
 const POSES: usize = 8;
 
 const COLUMNS: [&str; 8] = [
@@ -32,13 +33,13 @@ const COLUMNS: [&str; 8] = [
     "worst error, m",
 ];
 
-/// How a number of a vertex is kept.
+/// A type in which a number of a vertex is stored.
 trait Stored: Copy + Default {
     const NAME: &'static str;
-    /// What stands for 1.
+    /// The stored value of 1.
     const ONE: f32;
 
-    /// From -1 to 1, or 0 to 1 for weights.
+    /// Stores a number from -1 to 1, or from 0 to 1 for weights.
     fn store(value: f32) -> Self;
 
     fn load(self) -> f32;
@@ -78,26 +79,26 @@ stored!(u8, "8 bits");
 stored!(u16, "16 bits");
 stored!(i16, "16 bits");
 
-/// A mesh to be skinned, of weights `W` and positions `P`.
+/// A mesh to be skinned, with weights of type `W` and positions of type `P`.
 struct Mesh<W, P> {
     clusters: Vec<Cluster>,
     positions: Vec<[P; 3 * SLOTS]>,
     weights: Vec<[W; SLOTS]>,
-    /// By slot; the last cluster repeats its last vertex.
+    /// The vertex of each slot. The last cluster repeats its last vertex.
     vertices: Vec<u32>,
 }
 
 struct Cluster {
-    /// With a row of weights each.
+    /// The joints, with a row of weights each.
     joints: Vec<u32>,
-    /// Where its rows begin.
+    /// Index of its first row.
     row: usize,
     center: [f32; 3],
-    /// Of a step of a stored position.
+    /// Size of one step of a stored position.
     step: f32,
 }
 
-/// Of each vertex, its joints and weights, the heaviest first, cut to so many and made to sum to 1.
+/// The joints and weights of each vertex, the heaviest first, cut to at most `most` and normalised.
 fn influences(mesh: &ColliderMesh, most: usize) -> Vec<Vec<(u32, f32)>> {
     let of = |v: usize| {
         let all = mesh.influences(VertexId(v as u32));
@@ -115,7 +116,7 @@ fn influences(mesh: &ColliderMesh, most: usize) -> Vec<Vec<(u32, f32)>> {
 impl<W: Stored, P: Stored> Mesh<W, P> {
     fn new(mesh: &ColliderMesh, influences: &[Vec<(u32, f32)>]) -> Self {
         let mut order: Vec<u32> = (0..mesh.positions().len() as u32).collect();
-        // Neighbours in the file that have the same joints are near each other.
+        // Vertices with the same joints come together, in the order of the file, so that neighbours are close.
         let joints = |v: u32| -> Vec<u32> {
             let mut joints: Vec<u32> = influences[v as usize].iter().map(|(j, _)| *j).collect();
             joints.sort_unstable();
@@ -171,7 +172,7 @@ impl<W: Stored, P: Stored> Mesh<W, P> {
             for axis in 0..3 {
                 positions[axis * SLOTS + slot] = P::store(at[axis]);
             }
-            // What rounding took, the heaviest gets, so that weights sum to 1.
+            // The heaviest weight gets the rounding of the others, so that the weights sum to 1.
             let mut left = W::ONE;
             for (joint, weight) in influences[v as usize].iter().skip(1) {
                 let stored = W::store(*weight);
@@ -237,7 +238,7 @@ impl<W: Stored, P: Stored> Mesh<W, P> {
         size_of_val(&self.positions[..]) + size_of_val(&self.weights[..]) + joints.sum::<usize>()
     }
 
-    /// Errors of all vertices against true positions.
+    /// Distances of all vertices from their true positions.
     fn errors(&self, palette: &[Affine], truth: &[DVec3], into: &mut Vec<f64>) {
         let mut out = Vec::new();
         self.skin(palette, &mut out);
@@ -249,7 +250,7 @@ impl<W: Stored, P: Stored> Mesh<W, P> {
     }
 }
 
-/// All influences, in f64.
+/// The true positions: skinned with all influences, in f64.
 fn truth(mesh: &ColliderMesh, palette: &Palette) -> Vec<DVec3> {
     let matrices: Vec<_> = palette.matrices().iter().map(Affine::to_f64).collect();
     let vertex = |v: usize| {
@@ -262,7 +263,7 @@ fn truth(mesh: &ColliderMesh, palette: &Palette) -> Vec<DVec3> {
     (0..mesh.positions().len()).map(vertex).collect()
 }
 
-/// Measures all ways.
+/// Measures all variants.
 pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut table = Table::new(&COLUMNS);
     let sizes: &[usize] = if brief { &[2_000] } else { &[10_000, 500_000] };

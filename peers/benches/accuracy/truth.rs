@@ -1,4 +1,4 @@
-//! What a query's answer is: all triangles, one by one, in f64, of the positions that f32 skinning gives.
+//! The true answers of queries: all triangles, one by one, in f64, at the positions that f32 skinning gives.
 
 use glam::DVec3;
 
@@ -8,20 +8,21 @@ pub(crate) type Corners = [DVec3; 3];
 pub(crate) struct Truth(pub(crate) Vec<Corners>);
 
 impl Truth {
-    /// How far along a ray the first triangle is, from either side.
+    /// Distance along a ray to the first triangle, from either side.
     pub(crate) fn ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<f64> {
         let met = self.0.iter().filter_map(|t| ray(origin, direction, t));
         let nearest = met.fold(f64::INFINITY, f64::min);
         (nearest <= max_distance).then_some(nearest)
     }
 
-    /// How far the nearest point is.
+    /// Distance of the nearest point.
     pub(crate) fn distance(&self, point: DVec3) -> f64 {
         let distances = self.0.iter().map(|t| closest(point, t).distance(point));
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// How many triangles are within a sphere, and how many are so near its border that f32 may not tell.
+    /// Number of triangles that surely touch a sphere, and of those so near its border, within `unsure`, that f32 may
+    /// not tell.
     pub(crate) fn within(&self, center: DVec3, radius: f64, unsure: f64) -> [usize; 2] {
         let mut counts = [0; 2];
         for triangle in &self.0 {
@@ -35,7 +36,7 @@ impl Truth {
         counts
     }
 
-    /// The share of its motion that a sphere makes until it touches.
+    /// The share of its motion that a sphere makes until it touches; `None` if it does not touch.
     pub(crate) fn cast(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
         let low = center.min(center + motion) - DVec3::splat(radius);
         let high = center.max(center + motion) + DVec3::splat(radius);
@@ -49,7 +50,7 @@ impl Truth {
     }
 }
 
-/// Möller and Trumbore 1997.
+/// Distance along a ray to a triangle (Möller and Trumbore 1997).
 fn ray(origin: DVec3, direction: DVec3, &[a, b, c]: &Corners) -> Option<f64> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
@@ -62,12 +63,12 @@ fn ray(origin: DVec3, direction: DVec3, &[a, b, c]: &Corners) -> Option<f64> {
     let along = from.cross(ab);
     let v = direction.dot(along) / determinant;
     let t = ac.dot(along) / determinant;
-    // As much wider as f64 rounds, so that none slips through an edge.
+    // Wider by more than f64 rounds, so that no ray slips through an edge.
     const EDGE: f64 = 1e-12;
     (u >= -EDGE && v >= -EDGE && u + v <= 1.0 + EDGE && t >= 0.0).then_some(t)
 }
 
-/// The point of a triangle nearest to one: inside, or on the nearest edge.
+/// The point of a triangle closest to `p`: inside, or on the nearest edge.
 fn closest(p: DVec3, &[a, b, c]: &Corners) -> DVec3 {
     let normal = (b - a).cross(c - a);
     let area = normal.length_squared();
@@ -98,7 +99,7 @@ fn on_segment(p: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     from + along * ((p - from).dot(along) / length).clamp(0.0, 1.0)
 }
 
-/// When a sphere that moves touches a triangle: its face, an edge or a corner, each in closed form.
+/// The time at which a moving sphere touches a triangle: its face, an edge or a corner, each in closed form.
 fn touch(center: DVec3, radius: f64, motion: DVec3, triangle: &Corners) -> Option<f64> {
     if closest(center, triangle).distance(center) <= radius {
         return Some(0.0);
@@ -130,7 +131,7 @@ fn touch(center: DVec3, radius: f64, motion: DVec3, triangle: &Corners) -> Optio
     first.is_finite().then_some(first)
 }
 
-/// When it touches the line of an edge between the edge's ends.
+/// The time at which a moving sphere touches an edge between the edge's ends; infinite if never.
 fn touch_edge(center: DVec3, radius: f64, motion: DVec3, from: DVec3, to: DVec3) -> f64 {
     let Some(along) = (to - from).try_normalize() else {
         return f64::INFINITY;
@@ -147,7 +148,7 @@ fn touch_edge(center: DVec3, radius: f64, motion: DVec3, from: DVec3, to: DVec3)
     }
 }
 
-/// The first time at which `a t^2 + 2 b t + c` is 0, if it falls; infinite if never.
+/// The first time at which `a t^2 + 2 b t + c` falls to 0; infinite if never.
 fn root(a: f64, b: f64, c: f64) -> f64 {
     let discriminant = b * b - a * c;
     if b >= 0.0 || discriminant < 0.0 || c < 0.0 {

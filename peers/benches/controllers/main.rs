@@ -1,30 +1,35 @@
-//! How do character controllers fare on ground that moves? clamber's climber, on bodies and on skin, beside rapier's
+//! How do character controllers behave on moving ground? clamber's climber, on bodies and on skin, beside rapier's
 //! `KinematicCharacterController` and, with the feature `jolt`, Jolt's `CharacterVirtual`.
 //!
-//! The thirty scenes are those of `clamber_scenes::controllers`. All of the controllers
-//! get the same solids, boxes as boxes and the rest as triangles, the same ticks, a capsule of radius 0.3 m with 2 cm about
-//! it, gravity of 9.81 m/s2, slopes to 50 degrees, a reach of 0.5 m down and steps of 0.4 m. Each comes to rest for a
-//! second; then everything moves, and what is asked of it is measured after each tick, against where things are then.
+//! The thirty scenes are those of `clamber_scenes::controllers`. All controllers get the same solids (boxes as boxes,
+//! the rest as triangles), the same ticks, a capsule of radius 0.3 m with a padding of 2 cm, gravity of 9.81 m/s2,
+//! slopes up to 50 degrees, ground up to 0.5 m below, and steps of 0.4 m. A character comes to rest for a second. Then
+//! everything moves, and its error is measured after each tick, against where things are then.
 //!
-//! Asked is what the scenario asks, or its source where that is looser, or a millimetre where either is finer: nobody
-//! sees one. The depth in a wall is counted from 0.3 m, so that the 2 cm are everybody's to give way. "In the air" is what a
-//! controller says of itself; who loses its footing fails where the scenario asks to stand.
+//! The bound of the error is the scenario's, or its source's where that is looser, or a millimetre where either is
+//! finer: nobody sees a millimetre. The depth in a wall is counted from 0.3 m, so that every controller may use up its
+//! 2 cm of padding. "In the air" is what a controller reports; a character that loses its footing fails if the scene
+//! asks it to stand.
 //!
-//! What the numbers are not: the climber was made with these scenarios at hand, the others were not; of the scenarios that
-//! it does not hold yet (`OPEN` in that table) none is here. The others compute in f32, and the climber's own state is f64;
-//! scenes are small, so that this matters little. Times are of the character's part of a tick alone, without the world's
-//! step, which is other work in each; each controller runs by itself, warm. On skin every solid is a surface of its own,
-//! which costs where there are thirty. Nothing here deforms, which the others have no way to be told.
+//! Limits of the comparison:
 //!
-//! `controller/rapier.rs` and `controller/jolt` say how theirs are used. Each is given what helped it most of what was
-//! tried: the world stepped before or after, bodies moved by position or by velocity, what presses it down, what it is
-//! nudged off by, how far it looks.
+//! - The climber was developed against these scenarios, the others were not. Scenarios that the climber does not pass
+//!   yet (`OPEN` in that table) are not among the scenes.
+//! - The others compute in f32, and the climber's own state is f64. The scenes are small, so this matters little.
+//! - Times are of the character's part of a tick only, without the world's step, which is different work for each. Each
+//!   controller runs alone and warm.
+//! - On skin every solid is a surface of its own, which is expensive with thirty solids.
+//! - Nothing deforms, since the others have no means to follow it.
 //!
-//! Prints a table, and writes one with a row for each scene and controller to `target/measure/controllers.csv`. Fails if
-//! one of ours fails in a scene, or a number is none.
+//! `controller/rapier.rs` and `controller/jolt` describe how those controllers are used. Each gets the settings that
+//! helped it most, of those tried: the world stepped before or after, bodies moved by position or by velocity, the
+//! press down, the nudge, the distance that it looks ahead.
 //!
-//! `cargo bench --manifest-path peers/Cargo.toml --bench controllers`, with `--features jolt` once there is CMake; brief, with 600 ticks a
-//! scene at most, with `-- --test`.
+//! Prints a table, and writes one with a row for each scene and controller to `target/measure/controllers.csv`. Fails
+//! if the climber fails in a scene, or an error of any controller is not finite.
+//!
+//! Run it with `cargo bench --manifest-path peers/Cargo.toml --bench controllers`, and `--features jolt` if CMake is
+//! installed. With `-- --test` it runs briefly, with at most 600 ticks a scene.
 
 mod controller;
 mod report;
@@ -36,7 +41,7 @@ use clamber_scenes::controllers::{Outcome, all, play};
 use clamber_scenes::measure::is_brief;
 use report::Report;
 
-/// Ticks of a scene in a brief run, at most.
+/// Largest number of ticks of a scene in a brief run.
 const BRIEF: u32 = 600;
 
 fn main() -> ExitCode {
@@ -72,5 +77,5 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     if wrong.is_empty() {
         return Ok(());
     }
-    Err(format!("not as it has to be: {}", wrong.join("; ")).into())
+    Err(format!("failed, or not finite: {}", wrong.join("; ")).into())
 }

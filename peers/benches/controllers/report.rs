@@ -1,4 +1,5 @@
-//! Tables: one to read, a row for each scene, and one to compute with, a row for each scene and controller.
+//! Two tables: one to read, with a row for each scene, and one for further computing, with a row for each scene and
+//! controller.
 
 use std::error::Error;
 
@@ -18,11 +19,11 @@ const COLUMNS: [&str; 8] = [
     "us a tick",
 ];
 
-/// What all controllers did in all scenes.
+/// The results of all controllers in all scenes.
 pub(crate) struct Report {
     read: Table,
     computed: Table,
-    /// By controller: scenes passed, and microseconds of each.
+    /// For each controller, the number of scenes passed, and the microseconds of a tick in each scene.
     sums: Vec<(usize, Vec<f64>)>,
 }
 
@@ -40,7 +41,7 @@ impl Report {
         }
     }
 
-    /// A scene, with an outcome for each controller.
+    /// Adds a scene, with an outcome for each controller.
     pub(crate) fn add(&mut self, scene: &Scene, entries: &[Entry], outcomes: &[Outcome]) {
         let mut row = vec![
             format!("{:02}", scene.number),
@@ -68,7 +69,7 @@ impl Report {
         }
     }
 
-    /// Prints the one, writes the other.
+    /// Prints the table to read, and writes the other one to a file.
     pub(crate) fn finish(mut self, brief: bool) -> Result<(), Box<dyn Error>> {
         let scenes = self.sums.first().map_or(0, |(_, times)| times.len());
         let row = |name: &str, cells: Vec<String>| {
@@ -103,7 +104,7 @@ fn cell(scene: &Scene, outcome: &Outcome) -> String {
     format!("NO, {error}")
 }
 
-/// Two digits.
+/// A length in a suitable unit, with one decimal below 10.
 fn length(metres: f64) -> String {
     let (scaled, unit) = match metres {
         m if m < 1e-6 => return "< 1 um".to_owned(),

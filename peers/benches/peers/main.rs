@@ -1,14 +1,14 @@
-//! What does a tick on an animated skin cost, ours and other ways side by side?
+//! What does a tick on an animated skin cost? clamber and other methods side by side.
 //!
-//! A giant of 3,000 to 500,000 vertices walks; 1 to 1,000 riders on its skin each ask for two overlaps, a ray and how
-//! their footing moves: a whole tick, with skinning and refitting. Closest points and sphere casts are timed by
-//! themselves, as are the kinds of a tick's queries, each the first of its tick. All ways answer the same ticks in turn,
-//! in one process, on one thread, so that each finds its caches full of the others' data. Times are medians, and of whole
-//! ticks quartiles too. Prints a table and writes it to `target/measure/peers.csv`, with plots beside it. Fails if ours
-//! differs between lazy and eager.
+//! A giant of 3,000 to 500,000 vertices walks. 1 to 1,000 riders on its skin each ask for two overlaps, a ray and the
+//! motion of their footing. A whole tick includes skinning and refitting. Each kind of query, and closest points and
+//! sphere casts, are also timed alone, as the first queries of a tick. All methods answer the same ticks in turn, in
+//! one process, on one thread, so that each finds the caches full of the others' data. Times are medians, for whole
+//! ticks also quartiles. Prints a table and writes it to `target/measure/peers.csv`, with plots beside it. Fails if
+//! clamber's numbers of hits differ between lazy and eager skinning.
 //!
-//! `cargo bench --manifest-path peers/Cargo.toml --bench peers`, with `--features bullet,embree,fcl,physx` for those that are installed;
-//! brief with `-- --test`.
+//! Run it with `cargo bench --manifest-path peers/Cargo.toml --bench peers`, and `--features bullet,embree,fcl,physx`
+//! for the installed libraries; briefly with `-- --test`.
 
 mod race;
 mod report;
@@ -23,11 +23,11 @@ use clamber_scenes::riders::Workload;
 use race::{Entrant, race};
 use report::Report;
 
-/// How long the bench may take.
+/// Sizes and times of a run.
 struct Effort {
     vertices: &'static [usize],
     riders: &'static [usize],
-    /// Ticks of the walk; fewer are run where they would take longer than `each`.
+    /// Ticks of the walk. Fewer are run, but at least `least_ticks`, if they take longer than `each`.
     ticks: usize,
     least_ticks: usize,
     each: Duration,

@@ -1,4 +1,4 @@
-//! Ticks, timed in turns so that all see the same machine.
+//! Times the ticks of all peers in turn, so that all see the machine in the same state.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -12,7 +12,7 @@ use clamber_surface::geometry::Sphere;
 use clamber_surface::mesh::ColliderMesh;
 use glam::{DVec3, Vec3};
 
-/// Who takes part.
+/// A peer that takes part.
 pub(crate) struct Entrant {
     pub(crate) name: &'static str,
     pub(crate) bytes: usize,
@@ -31,7 +31,7 @@ impl Entrant {
     }
 }
 
-/// A query of every rider, timed by itself.
+/// A kind of query, timed alone for all riders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Ray,
@@ -42,20 +42,20 @@ pub(crate) enum Kind {
 
 pub(crate) const KINDS: [Kind; 4] = [Kind::Ray, Kind::Overlap, Kind::Closest, Kind::Cast];
 
-/// One entrant's part of a race; microseconds.
+/// An entrant's median times, microseconds.
 pub(crate) struct Lap {
     pub(crate) update: f64,
-    /// Of one query, by kind; `None` for what the peer cannot do.
+    /// Time of one query, by kind; `None` if the peer has no such query.
     pub(crate) queries: [Option<f64>; 4],
-    /// `None` where it lacks one of a tick's queries.
+    /// Times of whole ticks; `None` if the peer lacks one of a tick's queries.
     pub(crate) tick: Option<Whole>,
 }
 
-/// Whole ticks; microseconds.
+/// Times of whole ticks, microseconds.
 pub(crate) struct Whole {
     pub(crate) median: f64,
     pub(crate) quartiles: [f64; 2],
-    /// Answers per tick.
+    /// Mean number of hits in a tick.
     pub(crate) hits: f64,
 }
 
@@ -68,7 +68,7 @@ struct Times {
     hits: usize,
 }
 
-/// At least so many ticks, and as many as fit into `budget`.
+/// Times all entrants on at least `least` ticks, and on as many as fit into `budget`.
 pub(crate) fn race(
     entrants: &mut [Entrant],
     ticks: &[Tick],
@@ -105,7 +105,7 @@ pub(crate) fn race(
     Ok(times.iter_mut().map(lap).collect())
 }
 
-/// A tick as a game has it.
+/// Times a whole tick, as in a game: the update and all riders' queries.
 fn whole(peer: &mut dyn Peer, tick: &Tick, times: &mut Times) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     peer.update(&tick.palette, DVec3::ZERO)?;
@@ -128,7 +128,7 @@ fn whole(peer: &mut dyn Peer, tick: &Tick, times: &mut Times) -> Result<(), Box<
     Ok(())
 }
 
-/// One kind of query, the first of its tick, for all riders.
+/// Times one kind of query for all riders, as the first queries of a tick.
 fn alone(
     peer: &mut dyn Peer,
     tick: &Tick,
@@ -166,7 +166,7 @@ fn ask(peer: &mut dyn Peer, kind: Kind, rider: &Rider) -> Answer<usize> {
     }
 }
 
-/// A body that comes down from three radii above its place, and would go one deeper.
+/// A sphere cast for a rider: the body starts three radii above its place, and moves down to one radius below it.
 fn fall(rider: &Rider) -> (Sphere, Vec3) {
     let (radius, down) = (rider.body.radius, rider.ray.direction());
     let from = Sphere {

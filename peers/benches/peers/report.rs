@@ -1,4 +1,4 @@
-//! Table and plots.
+//! The table and the plots.
 
 use std::error::Error;
 
@@ -24,10 +24,10 @@ const COLUMNS: [&str; 14] = [
     "memory, MB",
 ];
 
-/// What a peer has no query for.
+/// Cell for a query that a peer does not have.
 const CANNOT: &str = "cannot";
 
-/// What was measured, a row for each method, size and number of riders.
+/// The results, one row for each method, size and number of riders.
 pub(crate) struct Report {
     table: Table,
     rows: Vec<Row>,
@@ -50,7 +50,7 @@ impl Default for Report {
 }
 
 impl Report {
-    /// Adds a race. Ours comes first in it, and skinned ahead second.
+    /// Adds the results of a race. clamber must be its first entrant, and clamber skinned ahead its second.
     pub(crate) fn add(
         &mut self,
         mesh: &ColliderMesh,
@@ -59,7 +59,7 @@ impl Report {
         laps: Vec<Lap>,
     ) -> Result<(), Box<dyn Error>> {
         let [Some(ours), Some(eager)] = [0, 1].map(|index: usize| laps[index].tick.as_ref()) else {
-            return Err("ours has not answered".into());
+            return Err("clamber has no times of whole ticks".into());
         };
         if ours.hits != eager.hits {
             return Err(format!("{} lazy hits a tick, {} eager", ours.hits, eager.hits).into());
@@ -160,7 +160,7 @@ impl Report {
     }
 }
 
-/// Three significant digits.
+/// A number with at least three significant digits; below 1 with three decimals.
 fn digits(value: f64) -> String {
     let decimals = match value.abs() {
         size if size >= 100.0 => 0,

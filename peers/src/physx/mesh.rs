@@ -1,7 +1,7 @@
 //! PhysX's triangle mesh.
 //!
-//! Its tree is not quantised, because PhysX refits no other: `refitBVH` would print an error at each call, and leave
-//! the tree as it was cooked. Cleaning is off, and with it welding, so that vertices keep their indices.
+//! Its tree is not quantised, because PhysX cannot refit a quantised one: `refitBVH` would print an error at each call,
+//! and leave the tree as it was cooked. Cleaning, and with it welding, is off, so that vertices keep their indices.
 
 use std::error::Error;
 use std::ptr::{NonNull, null_mut};
@@ -18,11 +18,11 @@ use physx_sys::{
     phys_PxGetStandaloneInsertionCallback, physx_create_foundation,
 };
 
-/// One that was cooked, and is released when dropped.
+/// A cooked mesh, which is released when dropped.
 pub(super) struct Mesh(NonNull<PxTriangleMesh>);
 
 impl Mesh {
-    /// Of triangles whose indices are all of a position.
+    /// Cooks a mesh. Every index of a triangle must be the index of a position.
     pub(super) fn new(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, Box<dyn Error>> {
         start()?;
         let mesh = Self(cook(positions, triangles)?);
@@ -34,7 +34,7 @@ impl Mesh {
             )
         };
         if (vertices as usize, faces as usize) != (positions.len(), triangles.len()) {
-            return Err("PhysX left out some of the mesh".into());
+            return Err("PhysX dropped vertices or triangles of the mesh".into());
         }
         Ok(mesh)
     }
@@ -43,24 +43,24 @@ impl Mesh {
         self.0.as_ptr()
     }
 
-    /// Takes other positions of the same vertices.
+    /// Sets new positions of the same vertices, and refits the tree.
     pub(super) fn refit(&mut self, positions: &[Vec3]) -> Result<(), Box<dyn Error>> {
         // SAFETY: the mesh lives until drop, here and below. Its vertices are PhysX's own, three f32 each like ours.
         let vertices = unsafe {
             let first = PxTriangleMesh_getVerticesForModification_mut(self.as_ptr()).cast::<Vec3>();
             let count = PxTriangleMesh_getNbVertices(self.as_ptr());
             if first.is_null() || count as usize != positions.len() {
-                return Err("not the vertices that PhysX has".into());
+                return Err("the number of positions is not that of PhysX's vertices".into());
             }
             std::slice::from_raw_parts_mut(first, positions.len())
         };
         vertices.copy_from_slice(positions);
-        // SAFETY: by `&mut self` no query runs meanwhile.
+        // SAFETY: because of `&mut self` no query runs at the same time.
         unsafe { PxTriangleMesh_refitBVH_mut(self.as_ptr()) };
         Ok(())
     }
 
-    /// Which triangle it was made of is the one that queries call `face`: cooking sorts them by the tree.
+    /// The original triangle of the one that queries call `face`: cooking sorts the triangles by the tree.
     pub(super) fn triangle(&self, face: u32) -> TriangleId {
         // SAFETY: the table has an entry for each triangle, and lives as long as the mesh.
         let table = unsafe {
@@ -79,14 +79,14 @@ impl Drop for Mesh {
     }
 }
 
-/// PhysX's foundation, one to a process: allocation by the C library, errors to stdout.
+/// Starts PhysX's foundation, once in a process. It allocates with the C library, and prints errors to stdout.
 fn start() -> Result<(), Box<dyn Error>> {
     static STARTED: OnceLock<bool> = OnceLock::new();
     // SAFETY: called once, and nothing else here makes a foundation.
     let started = STARTED.get_or_init(|| unsafe { !physx_create_foundation().is_null() });
     started
         .then_some(())
-        .ok_or_else(|| "PhysX does not start".into())
+        .ok_or_else(|| "PhysX failed to start".into())
 }
 
 /// A mesh with a tree that can be refitted.
@@ -95,7 +95,7 @@ fn cook(
     triangles: &[[u32; 3]],
 ) -> Result<NonNull<PxTriangleMesh>, Box<dyn Error>> {
     let params = cooking()?;
-    // SAFETY: all it does is set the fields.
+    // SAFETY: the function only sets the fields.
     let mut desc = unsafe { PxTriangleMeshDesc_new() };
     desc.points.stride = size_of::<Vec3>() as u32;
     desc.points.count = u32::try_from(positions.len())?;
@@ -103,8 +103,8 @@ fn cook(
     desc.triangles.stride = size_of::<[u32; 3]>() as u32;
     desc.triangles.count = u32::try_from(triangles.len())?;
     desc.triangles.data = triangles.as_ptr().cast();
-    // SAFETY: both slices are read by the counts and strides above, and copied; every index is of a vertex, as
-    // `ColliderMesh` checks. The callback is PhysX's own. Nobody asks for the condition.
+    // SAFETY: both slices are read by the counts and strides above, and copied. Every index is the index of a vertex,
+    // as `ColliderMesh` checks. The callback is PhysX's own. The result code is not requested.
     let mesh = unsafe {
         phys_PxCreateTriangleMesh(
             &raw const params,
@@ -113,7 +113,7 @@ fn cook(
             null_mut(),
         )
     };
-    NonNull::new(mesh).ok_or_else(|| "PhysX could not take the mesh".into())
+    NonNull::new(mesh).ok_or_else(|| "PhysX rejected the mesh".into())
 }
 
 fn cooking() -> Result<PxCookingParams, Box<dyn Error>> {
@@ -122,14 +122,14 @@ fn cooking() -> Result<PxCookingParams, Box<dyn Error>> {
         length: 1.0,
         speed: 10.0,
     };
-    // SAFETY: all it does is set the fields, from the scale.
+    // SAFETY: the function only sets the fields, from the scale.
     let mut params = unsafe { PxCookingParams_new(&raw const scale) };
-    // The edges that it precomputes are for contacts.
+    // Active edges are for contacts, which are not used here.
     params.meshPreprocessParams = PxMeshPreprocessingFlags::DisableCleanMesh
         | PxMeshPreprocessingFlags::DisableActiveEdgesPrecompute;
     let midphase = &raw mut params.midphaseDesc;
-    // SAFETY: the kind of tree is written by PhysX's own function. What the kinds say is a union, which stands first,
-    // and of which that function has just filled the part that is written to here.
+    // SAFETY: PhysX's own function sets the kind of tree. The settings of the kinds are a union, which is the first
+    // field, and that function has just filled the variant that is written to here.
     unsafe {
         PxMidphaseDesc_setToDefault_mut(midphase, PxMeshMidPhase::Bvh34);
         (*midphase.cast::<PxBVH34MidphaseDesc>()).quantized = false;

@@ -1,4 +1,4 @@
-//! A thousand climbers on ten walking giants: what of two cores does a tick at 60 Hz take?
+//! A thousand climbers on ten walking giants: which share of two cores does a tick at 60 Hz take?
 
 use std::error::Error;
 use std::sync::Arc;
@@ -15,26 +15,26 @@ use rayon::prelude::*;
 
 const DT: f64 = 1.0 / RATE;
 
-/// Metres between giants, ten in a row of five.
+/// Distance between giants, metres, and the number of giants in a row.
 const APART: f64 = 60.0;
 const ROW: usize = 5;
 
-/// Least part along Y of the normal of a seat to stand on.
+/// Smallest Y of the unit normal of a seat to stand on.
 const LEVEL: f64 = 0.85;
 
-/// Who is this far from its seat, metres, is put back: it fell, or has gone far enough.
+/// Distance from its seat at which a climber is put back, metres: it fell, or has gone far enough.
 const AWAY: f64 = 6.0;
 
-/// Ticks before any is timed.
+/// Ticks that are not timed, at the start.
 const SETTLE: usize = 30;
 
-/// Least share of all climbers' ticks that is spent on the giants, not falling from them.
+/// Smallest share of all climbers' ticks that they must spend on the giants, not falling.
 const LEAST_BUSY: f64 = 0.7;
 
-/// Climbers at most that a thread takes at a time.
+/// Largest number of climbers that a thread takes at a time.
 const GRAIN: usize = 16;
 
-/// What a climber does all the time.
+/// The activity of a climber in all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Stands,
@@ -42,7 +42,7 @@ enum Part {
     Climbs,
 }
 
-/// Of five two stand, one walks, two climb.
+/// Of five climbers two stand, one walks, two climb.
 const PARTS: [Part; 5] = [
     Part::Stands,
     Part::Climbs,
@@ -56,7 +56,7 @@ struct Rider {
     part: Part,
     giant: usize,
     seat: Anchor,
-    /// Where it wants to go, in world space.
+    /// Direction in which it walks or climbs, in world space.
     direction: DVec3,
 }
 
@@ -68,14 +68,16 @@ struct Giant {
     palette: Palette,
 }
 
-/// Adds rows for so many climbers on so many giants of so many vertices.
+/// Adds rows for `riders` climbers on `giants` giants of about `vertices` vertices.
 pub(crate) fn measure(
     (giants, vertices, riders): (usize, usize, usize),
     ticks: usize,
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
     let creature = giant_of(vertices)?;
-    let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
+    let walk = creature
+        .clip_like(&["walk"])
+        .ok_or("the giant has no walk clip")?;
     let mut giants = herd(&creature, giants, walk.duration());
     pose(&mut giants, &creature, walk, 0)?;
     let mut riders = seated(&giants, riders)?;
@@ -108,7 +110,7 @@ pub(crate) fn measure(
     }
     let all = (riders.len() * ticks) as f64;
     if ((holding + standing + hanging) as f64) < LEAST_BUSY * all {
-        return Err("too many of the climbers fall".into());
+        return Err("too many climbers fall".into());
     }
     let name = |what: &str| {
         format!(
@@ -118,14 +120,14 @@ pub(crate) fn measure(
         )
     };
     cells.value(
-        &name("that stand or walk, %"),
+        &name("standing or walking, %"),
         100.0 * standing as f64 / all,
     );
     cells.value(
-        &name("that hold on and climb, %"),
+        &name("holding on and climbing, %"),
         100.0 * holding as f64 / all,
     );
-    cells.value(&name("that hang, %"), 100.0 * hanging as f64 / all);
+    cells.value(&name("hanging, %"), 100.0 * hanging as f64 / all);
     let [mut posed, mut stepped] = times;
     let mut whole: Vec<f64> = posed.iter().zip(&stepped).map(|(a, b)| a + b).collect();
     cells.value(&name("poses on two cores, ms"), quantile(&mut posed, 0.5));
@@ -181,7 +183,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
     let mut rng = fastrand::Rng::with_seed(9);
     let mut riders = Vec::with_capacity(count);
     while riders.len() < count {
-        // Those of one giant side by side, so that threads share few.
+        // The riders of a giant are side by side in the list, so that threads share few giants.
         let giant = riders.len() * giants.len() / count;
         let part = PARTS[riders.len() % PARTS.len()];
         let surface = &giants[giant].surface;
@@ -202,7 +204,7 @@ fn seated(giants: &[Giant], count: usize) -> Result<Vec<Rider>, Box<dyn Error>> 
     Ok(riders)
 }
 
-/// Puts those back that fell or went far: just above their seats.
+/// Puts climbers that fell or went far back, just above their seats.
 fn sit(riders: &mut [Rider], giants: &[Giant]) -> Result<(), Box<dyn Error>> {
     for rider in riders {
         let surface = &giants[rider.giant].surface;

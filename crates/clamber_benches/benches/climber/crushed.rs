@@ -1,7 +1,7 @@
-//! What does a tick cost in which a climber is crushed, beside one in which it has room?
+//! What does a tick cost that crushes a climber, beside a tick in which it has room?
 //!
-//! Boxes of skin close in on a climber from two, five and all 26 directions, leave it two thirds of the room that it
-//! needs, and draw back. Medians over the ticks that crush it and over those that do not.
+//! Boxes of skin close in on a climber from two, five and all 26 directions, until it has three quarters of the room
+//! that it needs, and move back. Times are medians over the ticks that crush it and over the others.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -14,19 +14,19 @@ use glam::{DQuat, DVec3, Vec3};
 
 const DT: f64 = 1.0 / RATE;
 
-/// Half of a wall's sides, and of its thickness, metres.
+/// Half the size of a wall along its sides and its thickness (Y), metres.
 const HALF: Vec3 = Vec3::new(1.0, 0.5, 1.0);
 
-/// Farthest and nearest that walls are from the middle, metres: the climber's radius is 0.4.
+/// Largest and smallest distance of the walls from the climber's start, metres. The climber's radius is 0.4.
 const GAP: [f64; 2] = [0.45, 0.3];
 
-/// Seconds in which the walls close in, and draw back.
+/// Seconds in which the walls close in, and in which they move back.
 const CLOSE: f64 = 2.0;
 
-/// Most that a crushed tick may cost, in free ticks.
+/// A tick that crushes may cost so many times a tick with room.
 const MOST: f64 = 5.0;
 
-/// Adds rows for crowds of two, five and 26 walls.
+/// Adds rows for two, five and 26 walls.
 pub(crate) fn measure(times: u32, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let axes = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::NEG_Y];
     let all = (0..27).filter(|index| *index != 13).map(|index| {
@@ -84,7 +84,7 @@ fn row(
         }
     }
     if crushed.is_empty() || free.is_empty() {
-        return Err(format!("{name}: walls that always crush, or never").into());
+        return Err(format!("{name}: the walls crush in every tick, or in none").into());
     }
     let [free, most] = [(&mut free, 0.5), (&mut crushed, 0.9)].map(|(t, part)| quantile(t, part));
     let median = quantile(&mut crushed, 0.5);
@@ -96,7 +96,7 @@ fn row(
     Ok(())
 }
 
-/// A box whose faces are squares of a metre.
+/// A wall: a box whose faces are made of squares of a metre.
 fn wall() -> Result<ColliderMesh, Box<dyn Error>> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for axis in 0..3 {

@@ -1,17 +1,16 @@
-//! What does a climber's tick cost, beside rapier's character controller that stands on a mesh held still?
+//! What does a climber's tick cost, beside rapier's character controller on a mesh that does not move?
 //!
-//! The giant of 6,054 vertices walks; one climber stands on it, another climbs from its foot to its head. rapier's
-//! `KinematicCharacterController` stands on the same mesh in the giant's first pose, which is never posed again: it is told
-//! of no motion, and nothing is skinned for it. Ours skins what it touches. All take turns, tick by tick; one thread, medians.
-//!
-//! And what a thousand climbers on ten giants of 10,000 vertices in a valley take of two cores: of five two stand, one walks,
-//! two climb.
-//!
-//! And what a tick costs in which walls close in on a climber and crush it, beside one in which it has room.
+//! - A giant of 6,054 vertices walks. One climber stands on it, another climbs from its foot to its head. They skin
+//!   what they touch. rapier's `KinematicCharacterController` stands on the same mesh in the giant's first pose. That
+//!   mesh is never posed again, so rapier sees no motion, and nothing is skinned for it. All take turns, tick by tick,
+//!   on one thread. Times are medians.
+//! - A thousand climbers are on ten giants of 10,000 vertices in a valley: of five climbers two stand, one walks, two
+//!   climb. Measured is the share of two cores that they take.
+//! - Walls close in on a climber and crush it. Measured is a tick that crushes, beside a tick in which it has room.
 //!
 //! Prints a table and writes it to `target/measure/climber.csv`: name, value, bound, holds.
 //!
-//! `cargo bench -p clamber_benches --bench climber`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench climber`; briefly with `-- --test`.
 
 mod crowd;
 mod crushed;
@@ -34,12 +33,12 @@ use glam::DVec3;
 
 const DT: f64 = 1.0 / RATE;
 
-/// Metres, and its clips as they are: as the climbing tours have it.
+/// Height of the giant in metres, and the tempo of its clips, as in the climbing tours.
 const HEIGHT: (f64, f64) = (20.0, 1.0);
 
 const GIANT: ObstacleId = ObstacleId(1);
 
-/// Ticks that a climber has to land, and that rapier's controller has.
+/// Ticks in which a climber, and rapier's controller, must land.
 const SETTLE: u32 = 600;
 
 fn main() -> ExitCode {
@@ -68,10 +67,10 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         times[1].push(still.step());
     }
     if stands.state().mode != ClimberMode::Standing {
-        return Err("the climber stands no more".into());
+        return Err("the climber does not stand at the end".into());
     }
     let ways = Ways::new(&creature)?;
-    let route = ways.climb(16).ok_or("no way up the giant")?;
+    let route = ways.climb(16).ok_or("found no way up the giant")?;
     stage.place(0.0)?;
     let (foot, normal) = stage.vertex(route.waypoints[0]);
     let mut climbs = Climber::new(tour::config(), foot + normal * 0.45)?;
@@ -101,13 +100,13 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         return Err("rapier's character does not stand".into());
     }
     let share = 100.0 * times[2].len() as f64 / f64::from(climbed);
-    cells.value("climbing: ticks that it holds on and climbs, %", share);
-    cells.value("climbing: way made, with what carries it, m", made);
+    cells.value("climbing: ticks of holding on and climbing, %", share);
+    cells.value("climbing: distance moved, carrying included, m", made);
     let [standing, controller, climbing] = times.map(|mut times| quantile(&mut times, 0.5));
     cells.value("standing on the walking giant, us", standing);
     cells.value("climbing on it, us", climbing);
     cells.value(
-        "rapier's controller standing on it held still, us",
+        "rapier's controller standing on the giant's first pose, us",
         controller,
     );
     let name = "standing / rapier's controller";
@@ -123,7 +122,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("climber", brief)
 }
 
-/// Microseconds of a climber's tick.
+/// Runs a climber's tick; returns the microseconds.
 fn timed(
     stage: &mut Stage<'_>,
     tick: u32,
@@ -137,7 +136,7 @@ fn timed(
     Ok(start.elapsed().as_secs_f64() * 1e6)
 }
 
-/// A climber on the giant's top.
+/// A climber that has landed on the giant's top.
 fn landed(stage: &mut Stage<'_>) -> Result<Climber, Box<dyn Error>> {
     let mut climber = Climber::new(ClimberConfig::walker(), above(stage)?)?;
     for _ in 0..SETTLE {
@@ -151,18 +150,18 @@ fn landed(stage: &mut Stage<'_>) -> Result<Climber, Box<dyn Error>> {
     Err("the climber does not land on the giant".into())
 }
 
-/// Over the giant's highest point.
+/// A point half a metre above the giant's skin, below the top of its bounding ball.
 fn above(stage: &Stage<'_>) -> Result<DVec3, Box<dyn Error>> {
     let (middle, radius) = stage
         .surface()
         .bounding_ball()
-        .ok_or("a giant without skin")?;
+        .ok_or("the giant has no bounding ball")?;
     let top = middle + DVec3::Y * radius;
     let ray = stage.surface().cast_ray(top, -DVec3::Y, 2.0 * radius);
-    Ok(ray.ok_or("nothing below")?.point + DVec3::Y * 0.5)
+    Ok(ray.ok_or("no skin below the giant's top")?.point + DVec3::Y * 0.5)
 }
 
-/// rapier's controller on the giant as it was.
+/// rapier's controller on the giant's first pose.
 struct Still {
     world: PhysicsWorld,
     controller: KinematicCharacterController,
@@ -207,7 +206,7 @@ impl Still {
         Ok(still)
     }
 
-    /// A tick of falling by what gravity adds in it, microseconds.
+    /// Runs a tick in which the character falls by what gravity adds in a tick; returns the microseconds.
     fn step(&mut self) -> f64 {
         let queries = self.world.broad_phase.as_query_pipeline(
             &DefaultQueryDispatcher,

@@ -1,14 +1,13 @@
-//! What does it cost that 200 rocks collide with the skin of a giant, beside the whole skin as one
-//! deformable mesh in rapier?
+//! What do collisions of 200 rocks with a giant's skin cost, beside the whole skin as one deformable mesh in rapier?
 //!
-//! Two worlds with the same rocks on the same giant, which shakes; they take turns. One has the debris's
-//! pieces of skin, the other one kinematic body with all triangles, skinned by the same kernel and set
-//! each tick. A tick is posing the skin, whatever takes it to rapier, the step, and what comes after.
-//! A third world has the rocks without a giant: what is rapier's own in the other two, but for where
-//! the rocks lie.
+//! Two worlds have the same rocks on the same shaking giant, and take turns. One has debris with its pieces of skin.
+//! The other has one kinematic body with all triangles, skinned by the same kernel and set each tick. A tick is posing
+//! the skin, adding it to rapier, the step, and the work after the step. A third world has the rocks without a giant:
+//! about the share of rapier's own step in the other two, although the rocks lie elsewhere.
+//!
 //! Prints a table and writes it to `target/measure/debris.csv`: name, value, bound, holds.
 //!
-//! `cargo bench -p clamber_benches --bench debris`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench debris`; briefly with `-- --test`.
 
 mod whole;
 
@@ -24,7 +23,7 @@ use whole::Whole;
 
 const ROCKS: usize = 200;
 
-/// Ticks before counting, in which rocks fall on the giant, and counted ones.
+/// Number of ticks that are not counted, in which the rocks fall on the giant, and of counted ones.
 const FALL: u32 = 200;
 const COUNTED: u32 = 200;
 
@@ -52,7 +51,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     cells.finish("debris", brief)
 }
 
-/// With the giant as its file has it, or of so many vertices.
+/// Measures with the giant from its file, or with one of about `size` vertices.
 fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let creature = size.map_or_else(giant, giant_of)?;
     let name = format!("{} vertices", creature.collider.positions().len());
@@ -99,11 +98,11 @@ fn measure(size: Option<usize>, brief: bool, cells: &mut Cells) -> Result<(), Bo
         &format!("{name}: debris, us a tick of {TICK:.4} s"),
         by_patches,
     );
-    cells.value(&format!("{name}: of that, taking skin to rapier"), brought);
+    cells.value(&format!("{name}: of that, adding skin to rapier"), brought);
     cells.value(&format!("{name}: of that, rapier's step"), stepped);
-    cells.value(&format!("{name}: of that, keeping skin out"), kept);
+    cells.value(&format!("{name}: of that, putting rocks back"), kept);
     cells.value(&format!("{name}: whole mesh, us a tick"), by_whole);
-    cells.value(&format!("{name}: of that, taking the mesh to rapier"), skin);
+    cells.value(&format!("{name}: of that, setting the mesh"), skin);
     cells.value(&format!("{name}: rocks without a giant, us a tick"), alone);
     cells.push(
         &format!("{name}: debris / whole mesh"),

@@ -1,4 +1,4 @@
-//! The same rocks against the whole skin as one deformable mesh of rapier's.
+//! The same rocks against the whole skin as one deformable rapier mesh.
 
 use std::error::Error;
 use std::time::Instant;
@@ -35,14 +35,14 @@ impl<'a> Whole<'a> {
         self.scene.play(clip);
     }
 
-    /// One tick; gives the microseconds that it took to skin the mesh and set it.
+    /// Runs one tick; returns the time to skin the mesh and set it, microseconds.
     pub(crate) fn step(&mut self) -> Result<f64, Box<dyn Error>> {
         self.scene.pose()?;
         let start = Instant::now();
         self.scene.surface.skin_all(&mut self.positions);
         let collider = self.scene.world.colliders.get_mut(self.skin);
         let mesh = collider.and_then(|collider| collider.shape_mut().as_trimesh_mut());
-        mesh.ok_or("the skin is a mesh")?
+        mesh.ok_or("the skin's collider is not a mesh")?
             .set_vertices(&self.positions);
         let set = start.elapsed().as_secs_f64() * 1e6;
         self.scene.world.step();

@@ -1,12 +1,11 @@
-//! What does it cost to bound each joint's part each tick, and how tight is it?
+//! What does it cost to bound each joint's part in each tick, and how tight are the bounds?
 //!
-//! Spheres and capsules, got in three ways: precomputed over all clips, refitted to skinned
-//! vertices, derived from the palette alone. Prints a table and writes it to
-//! `target/measure/part_bounds.csv`, then lets criterion measure each way. Fails if a vertex lies
-//! outside a refitted or derived bound.
+//! Spheres and capsules are made in three ways: precomputed over all clips, refitted to skinned vertices, and derived
+//! from the palette alone. Criterion measures each method. Then prints a table and writes it to
+//! `target/measure/part_bounds.csv`. Fails if a vertex lies outside a refitted or derived bound.
 //!
-//! `cargo bench -p clamber_benches --bench part_bounds`; brief with `-- --test`. With `CLAMBER_TEST_DATA` also on five
-//! third-party models.
+//! Run it with `cargo bench -p clamber_benches --bench part_bounds`; briefly with `-- --test`. If `CLAMBER_TEST_DATA`
+//! is set, it also measures five third-party models.
 
 mod method;
 mod poses;
@@ -25,16 +24,16 @@ use method::{METHODS, Workspace};
 use poses::Subject;
 use report::Report;
 
-/// How long the bench may take.
+/// Sizes and times of a run.
 struct Effort {
     brief: bool,
-    /// Vertices of the beasts.
+    /// Numbers of vertices of the beasts.
     beasts: &'static [usize],
-    /// Vertices of giants beside the one from the file.
+    /// Numbers of vertices of the giants besides the one from the file.
     giants: &'static [usize],
-    /// Poses of each clip that precomputed bounds are made from.
+    /// Number of poses of each clip from which bounds are precomputed.
     samples: u32,
-    /// For the median of one method on one creature.
+    /// Time for the median of one method on one creature.
     budget: Duration,
 }
 
@@ -69,7 +68,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Gives how many vertices lay outside refitted and derived bounds.
+/// Measures all creatures; returns how many vertices were outside refitted and derived bounds.
 fn run(effort: &Effort) -> Result<usize, Box<dyn Error>> {
     let mut report = Report::default();
     let mut criterion = Criterion::default()
@@ -105,7 +104,7 @@ fn creatures(effort: &Effort) -> Result<Vec<Creature>, Box<dyn Error>> {
     Ok(creatures)
 }
 
-/// Criterion's part: one tick of each method, over the poses in turn.
+/// Lets criterion measure one tick of each method, over the poses in turn.
 fn measure(criterion: &mut Criterion, subject: &Subject) -> Result<(), Box<dyn Error>> {
     let mut group = criterion.benchmark_group(subject.label());
     let mut workspace = Workspace::new(subject);
@@ -122,4 +121,13 @@ fn measure(criterion: &mut Criterion, subject: &Subject) -> Result<(), Box<dyn E
     }
     group.finish();
     Ok(())
+}
+
+/// The folder for the results: `measure` in cargo's target folder.
+fn measure_folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("target"),
+        PathBuf::from,
+    );
+    target.join("measure")
 }

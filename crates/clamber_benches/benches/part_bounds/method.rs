@@ -1,4 +1,4 @@
-//! The ways to bound all parts of a creature in one pose.
+//! The methods of bounding all parts of a creature in one pose.
 
 use std::fmt;
 
@@ -13,16 +13,16 @@ use glam::Vec3;
 use crate::poses::Subject;
 use crate::precomputed::model_from_joint;
 
-/// Where bounds come from.
+/// The source of bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     Precomputed,
     Refitted,
     PaletteHull,
     PaletteInterval,
-    /// As the library bounds parts itself: spheres, eight at a time in f32.
+    /// The library's own bounds of parts: spheres, eight at a time in f32.
     Surface,
-    /// Capsules by hull or weight interval, whichever is smaller.
+    /// From the palette: capsules by hull or weight interval, whichever is smaller.
     Palette,
 }
 
@@ -53,12 +53,12 @@ pub(crate) const METHODS: [Method; 8] = [
     method(Source::Palette, Shape::Capsule),
 ];
 
-/// Memory that ticks use again.
+/// Memory that is reused from tick to tick.
 pub(crate) struct Workspace {
     surface: SkinnedSurface,
     maps: JointMaps,
     positions: Vec<Vec3>,
-    /// The result, by part.
+    /// The bounds of each part; `None` for a part without.
     pub(crate) volumes: Vec<Option<BoundingVolume>>,
 }
 
@@ -72,7 +72,7 @@ impl Workspace {
         }
     }
 
-    /// A tick of the surface, and its spheres.
+    /// Advances the surface by a tick, and reads its spheres.
     fn ask(&mut self, palette: &Palette) {
         let advanced = self.surface.advance(palette, Similarity::IDENTITY);
         assert_eq!(advanced, Ok(()));
@@ -87,7 +87,7 @@ impl Method {
     /// Bounds every part in the pose of a palette: one tick's work.
     ///
     /// # Panics
-    /// If the palette is not the subject's.
+    /// If the palette does not fit the subject.
     pub(crate) fn bound(self, subject: &Subject, palette: &Palette, workspace: &mut Workspace) {
         workspace.volumes.clear();
         match self.source {
@@ -115,7 +115,7 @@ impl Method {
         assert_eq!(skinned, Ok(()), "{}", subject.label());
         let positions = &workspace.positions;
         if self.shape == Shape::Sphere {
-            // The thesis's way (5.2.4).
+            // The thesis's method (5.2.4).
             workspace.volumes.extend(mesh.parts().iter().map(|part| {
                 let vertices = part.vertices.iter().map(|v| positions[v.index()]);
                 Sphere::around_mean(vertices).map(BoundingVolume::Sphere)

@@ -1,4 +1,4 @@
-//! A creature with the poses that it is measured in.
+//! A creature with the poses in which it is measured.
 
 use clamber::rig::{Clip, Palette, Playback, Pose, RigError};
 use clamber_scenes::Creature;
@@ -6,16 +6,16 @@ use clamber_scenes::part_bounds::PartBounds;
 
 use crate::precomputed::Precomputed;
 
-/// A creature with its bounds' rest data.
+/// A creature with the rest data of its bounds.
 pub(crate) struct Subject {
     pub(crate) creature: Creature,
     pub(crate) bounds: PartBounds,
     pub(crate) precomputed: Precomputed,
-    /// Poses of each clip that `precomputed` was made from.
+    /// Number of poses of each clip that `precomputed` was made from.
     samples: u32,
 }
 
-/// Where in an interval between two samples the poses of [`Subject::between`] lie.
+/// Place of the poses of [`Subject::between`] in the interval between two samples.
 const BETWEEN: f64 = 0.5;
 
 impl Subject {
@@ -37,17 +37,17 @@ impl Subject {
         format!("{} {vertices}", self.creature.name)
     }
 
-    /// The poses that precomputed bounds know.
+    /// The poses from which the bounds were precomputed.
     pub(crate) fn sampled(&self) -> Result<Vec<Palette>, RigError> {
         self.of_all_clips(0.0, 1)
     }
 
-    /// Poses half-way between some of them.
+    /// Poses half-way between some of the sampled poses.
     pub(crate) fn between(&self) -> Result<Vec<Palette>, RigError> {
         self.of_all_clips(BETWEEN, 2)
     }
 
-    /// Even blends of every clip with the next one, and with rest, at times that differ.
+    /// Even blends of every clip with the next clip, at another time, and with the rest pose.
     pub(crate) fn blended(&self) -> Result<Vec<Palette>, RigError> {
         let rest = self.creature.skeleton.rest_pose();
         let clips = &self.creature.clips;
@@ -63,7 +63,7 @@ impl Subject {
         Ok(palettes)
     }
 
-    /// Every `step`-th sample of each clip, `offset` samples late.
+    /// Every `step`-th sample of each clip, shifted by `offset` of a sample.
     fn of_all_clips(&self, offset: f64, step: usize) -> Result<Vec<Palette>, RigError> {
         let rest = self.creature.skeleton.rest_pose();
         let mut palettes = Vec::new();
@@ -81,7 +81,7 @@ impl Subject {
     }
 }
 
-/// The pose at a share of the clip.
+/// The pose at a share of the clip's length.
 fn sample(clip: &Clip, rest: &Pose, part: f64) -> Result<Pose, RigError> {
     clip.sample(rest, clip.duration() * part, Playback::Loop)
 }

@@ -1,6 +1,6 @@
-//! The rival: for each part a sphere and a capsule in the space of its joint, made once, that hold
-//! its vertices in every sampled pose. A tick only moves them with the joint. Nothing holds the
-//! vertices in poses that were not sampled.
+//! Precomputed bounds, the method to compare with: for each part a sphere and a capsule in the space of its joint, made
+//! once, that hold its vertices in every sampled pose. A tick only moves them with the joint. In poses that were not
+//! sampled, vertices may be outside.
 
 use clamber::geometry::Sphere;
 use clamber::mesh::{ColliderMesh, Part};
@@ -9,8 +9,7 @@ use clamber::skin::skin;
 use clamber_scenes::part_bounds::{BoundingCapsule, BoundingVolume};
 use glam::{DAffine3, Vec3};
 
-/// Relative; what rounding may move a vertex of a sampled pose on its way into the joint's space
-/// and back.
+/// Relative margin for the rounding of a vertex of a sampled pose on its way into the joint's space and back.
 const MARGIN: f32 = 1e-4;
 
 /// One sphere and capsule per part, in joint space.
@@ -28,7 +27,7 @@ impl Precomputed {
             };
             for (part, points) in mesh.parts().iter().zip(&mut points) {
                 let joint_from_model = model_from_joint(palette, part).inverse();
-                // A joint scaled to nothing has no space of its own.
+                // A joint that is scaled to 0 has no inverse.
                 if joint_from_model.is_finite() {
                     let positions = part.vertices.iter().map(|v| skinned[v.index()].as_dvec3());
                     let local = positions.map(|p| joint_from_model.transform_point3(p).as_vec3());
@@ -66,7 +65,7 @@ impl Precomputed {
     }
 }
 
-/// Where the part's joint stands.
+/// The transform of the part's joint.
 pub(crate) fn model_from_joint(palette: &Palette, part: &Part) -> DAffine3 {
     let found = palette.model_from_joint(part.joint);
     *found.unwrap_or(&DAffine3::IDENTITY)

@@ -1,4 +1,4 @@
-//! The table: cost, tightness and escapes of each method.
+//! The table: time, tightness and escaped vertices of each method.
 
 use std::error::Error;
 use std::time::Duration;
@@ -12,10 +12,10 @@ use glam::Vec3;
 use crate::method::{METHODS, Method, Source, Workspace};
 use crate::poses::Subject;
 
-/// Rows of all creatures so far.
+/// The results of all creatures so far.
 pub(crate) struct Report {
     pub(crate) table: Table,
-    /// Vertices outside refitted and derived bounds: bugs.
+    /// Number of vertices outside refitted and derived bounds, which are bugs.
     pub(crate) escapes: usize,
 }
 
@@ -42,11 +42,11 @@ impl Default for Report {
     }
 }
 
-/// A pose with what is true of it.
+/// A pose with its skinned vertices and exact bounds.
 struct Truth {
     palette: Palette,
     skinned: Vec<Vec3>,
-    /// Of the smallest ball around each part's vertices; 0 for a part without.
+    /// Volume of the smallest ball around each part's vertices; 0 for a part without vertices.
     volumes: Vec<f64>,
 }
 
@@ -66,7 +66,7 @@ impl Truth {
 }
 
 impl Report {
-    /// Measures every method on a creature; each median within `budget`.
+    /// Measures every method on a creature, with the time `budget` for each median.
     pub(crate) fn add(
         &mut self,
         subject: &Subject,

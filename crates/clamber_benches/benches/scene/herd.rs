@@ -1,4 +1,4 @@
-//! Giants that walk in a valley, each in a phase of its own.
+//! Giants that walk in a valley, each in its own phase.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -9,18 +9,18 @@ use clamber_scenes::{Creature, valley};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Ticks a second.
+/// Ticks per second.
 pub(crate) const RATE: f64 = 60.0;
 
-/// Metres between giants.
+/// Distance between giants, metres.
 const APART: f64 = 31.0;
 
-/// How giants are posed.
+/// The vertices that are skinned in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Skinning {
-    /// What queries touch.
+    /// Only those that queries touch.
     Lazy,
-    /// All, each tick.
+    /// All vertices.
     Everything,
 }
 
@@ -46,7 +46,9 @@ impl Herd {
         count: usize,
         skinning: Skinning,
     ) -> Result<Self, Box<dyn Error>> {
-        let walk = creature.clip_like(&["walk"]).ok_or("it cannot walk")?;
+        let walk = creature
+            .clip_like(&["walk"])
+            .ok_or("the creature has no walk clip")?;
         let mut rng = fastrand::Rng::with_seed(8);
         let side = (count as f64).sqrt().ceil() as usize;
         let giant = |index: usize| {
@@ -73,7 +75,7 @@ impl Herd {
         Ok(herd)
     }
 
-    /// Poses some of them for a tick; the others sleep.
+    /// Poses some of the giants for a tick; the others are not touched.
     pub(crate) fn pose(
         &mut self,
         tick: usize,
@@ -91,7 +93,7 @@ impl Herd {
         Ok(())
     }
 
-    /// Poses all, on rayon's threads.
+    /// Poses all giants, on rayon's threads.
     pub(crate) fn pose_in_parallel(&mut self, tick: usize) -> Result<(), Box<dyn Error>> {
         let Self {
             giants,

@@ -1,19 +1,19 @@
-//! What does a scene pay for what it does not need?
+//! How much does a scene pay for giants and skin that no query touches?
 //!
-//! Valleys with 1, 10 and 100 walking giants of 10,000 vertices, each posed by a clip of its own phase, and 0 to 1,000
-//! climbers on up to three of them, who stand or walk, with the valley and all giants as obstacles. A tick of it, beside
-//! the same with everything skinned; how much of the skin a tick touches; a hundred giants with riders on one beside
-//! that one alone; a thousand riders on two cores beside one. Ways take turns, tick by tick, in one process; times are
-//! medians.
+//! Valleys have 1, 10 and 100 walking giants of 10,000 vertices, each in its own phase of the walk, and 0 to 1,000
+//! climbers on up to three of them. The climbers stand or walk, with the valley and all giants as obstacles. Measured
+//! are a tick, the same tick with everything skinned, and the share of the skin that a tick touches; a hundred giants
+//! with riders on one, and that one giant alone; a thousand riders on two cores, and on one. The variants take turns,
+//! tick by tick, in one process. Times are medians.
 //!
-//! Of two cores there are the fastest tenths of ticks too: where the host gives its cores to other machines as well, a
-//! tick on both waits for the slower one, and its median is the host's. What that median can be at best stands beside
-//! it: two scenes with nothing in common that is written to, one after the other and at once.
+//! For two cores the fastest tenths of ticks are given as well. If the host shares its cores with other machines, a
+//! tick on both cores waits for the slower one, and its median depends on the host. The best possible ratio is
+//! therefore measured too: two scenes that share no written data, run one after the other and at once.
 //!
-//! Prints a table and writes it to `target/measure/scene.csv`: name, value, bound, holds. Fails if riders end anywhere
-//! else when everything is skinned, or on two cores.
+//! Prints a table and writes it to `target/measure/scene.csv`: name, value, bound, holds. Fails if the riders' states
+//! differ when everything is skinned, or on two cores.
 //!
-//! `cargo bench -p clamber_benches --bench scene`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench scene`; briefly with `-- --test`.
 
 mod herd;
 mod riders;
@@ -30,10 +30,10 @@ use clamber_scenes::{Creature, valley};
 use herd::{Herd, Skinning};
 use riders::Riders;
 
-/// Giants that are ridden, at most.
+/// Largest number of giants that are ridden.
 const FEW: usize = 3;
 
-/// Ticks before any is timed: climbers land.
+/// Ticks that are not timed, in which climbers land.
 const SETTLE: usize = 20;
 
 struct Effort {
@@ -88,7 +88,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     cells.finish("scene", effort.brief)
 }
 
-/// The valley, then the giants.
+/// The obstacles: the valley, then the giants.
 fn obstacles<'a>(
     terrain: &'a RapierTerrain<'a>,
     herd: &'a Herd,
@@ -101,12 +101,12 @@ fn obstacles<'a>(
     std::iter::once(ground).chain(giants).collect()
 }
 
-/// A herd, its riders, and what a tick of both took.
+/// A herd and its riders, with the times of their ticks.
 struct Scene<'a> {
     herd: Herd,
     riders: Riders,
     world: &'a PhysicsWorld,
-    /// Microseconds of the giants' poses: of the first ones, of the others, and of the riders.
+    /// Microseconds of the poses of the first giants, of the poses of the other giants, and of the riders.
     times: [Vec<f64>; 3],
 }
 
@@ -128,7 +128,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// One tick, with so many giants awake, `first` of them timed by themselves.
+    /// Runs one tick with `awake` giants posed. The poses of the `first` ones are timed apart.
     fn tick(&mut self, tick: usize, first: usize, awake: usize) -> Result<(), Box<dyn Error>> {
         self.riders.sit(&self.herd)?;
         let before = BodyPoses::default();
@@ -155,7 +155,7 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// The median of whole ticks.
+    /// The median time of whole ticks.
     fn whole(&self) -> f64 {
         let [ridden, others, riders] = &self.times;
         let whole = ridden.iter().zip(others).zip(riders);
@@ -165,7 +165,7 @@ impl<'a> Scene<'a> {
         )
     }
 
-    /// The median of one part of a tick.
+    /// The median time of one part of a tick.
     fn part(&self, part: usize) -> f64 {
         quantile(&mut self.times[part].clone(), 0.5)
     }
@@ -221,7 +221,7 @@ fn valley_of(
     Ok(())
 }
 
-/// Riders on one of many, beside the same on that one alone.
+/// Measures riders on one of many giants, beside the same riders on that giant alone.
 fn on_one(
     creature: &Creature,
     world: &PhysicsWorld,
@@ -232,7 +232,7 @@ fn on_one(
 ) -> Result<(), Box<dyn Error>> {
     let scene = |giants| Scene::new(creature, world, giants, riders, 1, Skinning::Lazy);
     let (mut many, mut asleep, mut alone) = (scene(giants)?, scene(giants)?, scene(giants)?);
-    // The one stands where it stands among the others, which are no obstacles.
+    // The giant stands at the same place as among the others, which are no obstacles here.
     alone.herd.giants.truncate(1);
     for tick in 0..SETTLE + ticks {
         many.tick(tick, 1, giants)?;
@@ -259,8 +259,8 @@ fn on_one(
     Ok(())
 }
 
-/// Riders on all giants, on rayon's threads; and what this machine's second core is worth at best: two such scenes
-/// with nothing in common that is written to, at once beside one after the other.
+/// Measures riders on all giants, on rayon's threads, with one core and with two. Also measures the best possible gain
+/// of this machine's second core: two such scenes that share no written data, at once and one after the other.
 fn on_two_cores(
     creature: &Creature,
     world: &PhysicsWorld,
@@ -285,7 +285,7 @@ fn on_two_cores(
         }
         let [one, two] = &scenes;
         same(&one.riders, &two.riders, tick)?;
-        // In turn and at once, by turns.
+        // Alternately one after the other and at once.
         let us = both(&mut apart, tick, &alone, tick % 2 == 0)?;
         if tick >= SETTLE {
             if tick % 2 == 0 {
@@ -314,7 +314,7 @@ fn on_two_cores(
     Ok(())
 }
 
-/// A tick of both, each on a pool of its own, in turn or at once; gives its microseconds.
+/// Runs a tick of both scenes, each on its own pool, in turn or at once; returns the microseconds.
 fn both(
     scenes: &mut [Scene<'_>; 2],
     tick: usize,
@@ -329,13 +329,13 @@ fn both(
         let text = |error: Box<dyn Error>| error.to_string();
         let other = scope.spawn(move || in_parallel(second, tick, &pools[1]).map_err(text));
         let one = in_parallel(first, tick, &pools[0]).map_err(text);
-        let other = other.join().map_err(|_| "a thread ended".to_owned());
+        let other = other.join().map_err(|_| "a thread panicked".to_owned());
         Ok::<_, String>([one?, other??])
     });
     Ok(times?.into_iter().fold(0.0, f64::max))
 }
 
-/// A tick on the threads of a pool; gives its microseconds.
+/// Runs a tick on the threads of a pool; returns the microseconds.
 fn in_parallel(
     scene: &mut Scene<'_>,
     tick: usize,
@@ -357,12 +357,12 @@ fn in_parallel(
     Ok(timed?)
 }
 
-/// Fails if riders differ by a bit.
+/// Fails if the states of the riders are not equal.
 fn same(one: &Riders, other: &Riders, tick: usize) -> Result<(), Box<dyn Error>> {
     if one.states() == other.states() {
         Ok(())
     } else {
-        Err(format!("tick {tick}: riders are elsewhere").into())
+        Err(format!("tick {tick}: the riders' states differ").into())
     }
 }
 

@@ -10,14 +10,14 @@ use rayon::prelude::*;
 
 use crate::herd::{Herd, RATE};
 
-/// Least part along Y of the normal that a seat may have, so that one stands there while the giant walks.
+/// Smallest Y of a seat's unit normal, so that a climber can stand there while the giant walks.
 const LEVEL: f32 = 0.85;
 
-/// Riders at most that a thread takes at a time: rayon by itself halves a list two or three times, and its last piece,
-/// a tenth of a millisecond for each dozen, is what one thread waits for.
+/// Largest number of riders that a thread takes at a time. By default rayon halves a list only two or three times, and
+/// a thread waits for the last piece, a tenth of a millisecond for each dozen riders.
 const GRAIN: usize = 16;
 
-/// How far a climber may get from its seat before it is put back, metres.
+/// Distance from its seat at which a climber is put back, metres.
 const AWAY: f64 = 4.0;
 
 pub(crate) struct Riders {
@@ -31,12 +31,12 @@ struct Seat {
 }
 
 impl Riders {
-    /// Seats on level skin of the first `mounts` giants.
+    /// `count` climbers with seats on level skin of the first `mounts` giants.
     pub(crate) fn new(herd: &Herd, count: usize, mounts: usize) -> Result<Self, Box<dyn Error>> {
         let mut rng = fastrand::Rng::with_seed(9);
         let mut seats = Vec::with_capacity(count);
         while seats.len() < count {
-            // Those of one giant side by side, so that threads share few.
+            // The riders of a giant are side by side in the list, so that threads share few giants.
             let giant = seats.len() * mounts / count;
             let surface = &herd.giants[giant].surface;
             let triangle = TriangleId(rng.u32(0..surface.mesh().triangles().len() as u32));
@@ -50,7 +50,7 @@ impl Riders {
         Ok(Self { climbers, seats })
     }
 
-    /// Puts those back that fell or walked off: just above their seats.
+    /// Puts climbers that fell or walked off back, just above their seats.
     pub(crate) fn sit(&mut self, herd: &Herd) -> Result<(), Box<dyn Error>> {
         for (climber, seat) in self.climbers.iter_mut().zip(&self.seats) {
             let surface = &herd.giants[seat.giant].surface;
@@ -73,7 +73,7 @@ impl Riders {
         Ok(())
     }
 
-    /// One tick of all of them.
+    /// Runs one tick of all climbers.
     pub(crate) fn step(
         &mut self,
         obstacles: &[(ObstacleId, &dyn Obstacle)],
@@ -110,7 +110,7 @@ impl Riders {
             .collect()
     }
 
-    /// Share of them that stands.
+    /// Share of the climbers that stand.
     pub(crate) fn standing(&self) -> f64 {
         let modes = self.climbers.iter().map(|climber| climber.state().mode);
         let standing = modes.filter(|mode| *mode == ClimberMode::Standing).count();
@@ -118,7 +118,7 @@ impl Riders {
     }
 }
 
-/// Every other one walks, in one of eight directions.
+/// The input of a climber. Every other climber walks, in one of eight directions.
 fn input(index: usize) -> ClimberInput {
     let direction = [
         (1, 0),

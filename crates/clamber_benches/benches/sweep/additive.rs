@@ -1,34 +1,34 @@
-//! Additive CCD of a point and a triangle, the peer for single triangles (Li, Kaufman, Jiang 2021,
-//! "Codimensional Incremental Potential Contact", ACM Transactions on Graphics 40(4), section 5.3), with
-//! a minimum separation: the sphere's radius.
+//! Additive CCD of a point and a triangle, the method to compare with on single triangles (Li, Kaufman, Jiang 2021,
+//! "Codimensional Incremental Potential Contact", ACM Transactions on Graphics 40(4), section 5.3). Its minimum
+//! separation is the sphere's radius.
 
 use glam::DVec3;
 
-/// Share of the first gap that is left at the end, and of each gap that a step leaves: what the authors
+/// The search ends at this share of the first gap, and each step leaves this share of its gap, as the authors
 /// recommend.
 pub(crate) const LEFT: f64 = 0.1;
 
-/// The authors know no such limit; without it, what slides along would run for ever.
+/// Largest number of steps. The method as published has no limit; without one, sliding motions would run for ever.
 pub(crate) const MOST_STEPS: u32 = 10_000;
 
-/// The distance that counts as a contact, beyond the separation.
+/// The gap that counts as a contact, beyond the separation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum End {
-    /// [`LEFT`] of that at the start, as published.
+    /// [`LEFT`] times the gap at the start, as published.
     Share,
-    /// In metres, as ours.
+    /// A distance in metres, as in clamber's sweeps.
     Tolerance(f64),
 }
 
-/// When a point comes near to a triangle, and the steps taken; `positions` are the point, a, b and c at
-/// the start.
+/// The time at which a point comes near a triangle, `None` if never, and the number of steps. `positions` are the point
+/// and the corners a, b and c at the start. At the limit of steps the current time is returned.
 pub(crate) fn additive(
     mut positions: [DVec3; 4],
     motions: [DVec3; 4],
     separation: f64,
     end: End,
 ) -> (Option<f64>, u32) {
-    // Only relative motion counts.
+    // Only relative motion matters.
     let mean = motions.iter().sum::<DVec3>() * 0.25;
     let motions = motions.map(|motion| motion - mean);
     let corners = motions[1..].iter().map(|motion| motion.length());
@@ -62,7 +62,8 @@ pub(crate) fn additive(
     (Some(time), steps)
 }
 
-/// By Voronoi regions (Ericson 2004, *Real-Time Collision Detection*, 5.1.5), as collision libraries do.
+/// Distance of a point from a triangle, by Voronoi regions (Ericson 2004, *Real-Time Collision Detection*, 5.1.5), as
+/// in collision libraries.
 fn distance([p, a, b, c]: [DVec3; 4]) -> f64 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));

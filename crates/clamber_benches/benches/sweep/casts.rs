@@ -23,13 +23,13 @@ pub(crate) struct Cast {
 /// A walking giant at two ticks.
 pub(crate) struct Field {
     surface: SkinnedSurface,
-    /// The two palettes between which the sweeps are.
+    /// Palettes at the start and at the end of the swept tick.
     palettes: [Palette; 2],
     parry: Parry,
     edge: f32,
 }
 
-/// How many radii a sphere moves, and how many it starts above the skin.
+/// Length of a sphere's motion, and its start above the skin, in radii.
 const WAY: f32 = 10.0;
 const ABOVE: f32 = 3.0;
 
@@ -55,7 +55,7 @@ impl Field {
         })
     }
 
-    /// Casts of spheres so many edges in radius.
+    /// Measures casts of spheres with a radius of `edges` mean edge lengths.
     pub(crate) fn measure(
         &mut self,
         edges: f32,
@@ -68,7 +68,7 @@ impl Field {
         self.compare(&casts, &name, cells)?;
         let mut times: [Vec<f64>; 5] = Default::default();
         for cast in &casts {
-            // Each after one of its own kind that does not count, so that what it needs is there.
+            // Each runs once before it is timed, so that its data is in the caches.
             times[0].push(time(|| self.cast(cast)));
             times[1].push(time(|| self.sweep(cast)));
             times[2].push(time(|| self.parry.cast(cast)));
@@ -103,7 +103,7 @@ impl Field {
         Ok(())
     }
 
-    /// A new tick, of which nothing is skinned or bounded.
+    /// Starts a new tick, with nothing skinned or bounded yet.
     fn renew(&mut self) -> Result<(), Box<dyn Error>> {
         self.surface
             .place(&self.palettes[0], Similarity::IDENTITY)?;
@@ -127,8 +127,8 @@ impl Field {
         space.cast_capsule(&ball, [cast.motion; 2], &options)
     }
 
-    /// Seeded: from above random points of the skin, where nothing is in the way yet, down to it at
-    /// random.
+    /// Seeded random casts. They start above random points of the skin, without contact, and move down to the skin in a
+    /// random direction.
     fn casts(&self, radius: f32, count: usize) -> Result<Vec<Cast>, Box<dyn Error>> {
         let mut rng = fastrand::Rng::with_seed(5);
         let mut casts = Vec::with_capacity(count);
@@ -152,14 +152,15 @@ impl Field {
         Ok(casts)
     }
 
-    /// Counts what ours and parry find; where both do, the times are to be alike.
+    /// Counts the hits of clamber and parry, and prints the largest difference where both hit. Fails if clamber misses
+    /// a hit of parry's.
     fn compare(&self, casts: &[Cast], name: &str, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
         let (mut hits, mut only_ours, mut only_theirs, mut worst) = (0, 0, 0, 0.0f64);
         for cast in casts {
             match (self.cast(cast), self.parry.cast(cast)) {
                 (Some(ours), Some(theirs)) => {
                     hits += 1;
-                    // Along the way: where the skin is grazed, a little depth is a long way.
+                    // Measured along the motion. Where the skin is grazed, a small depth is a long way.
                     let off = (ours.time - theirs).abs() * f64::from(cast.motion.length());
                     worst = worst.max(off / f64::from(cast.sphere.radius));
                 }
@@ -177,7 +178,7 @@ impl Field {
             f64::from(only_ours),
         );
         if only_theirs > 0 {
-            return Err(format!("{name}: {only_theirs} hits of parry's that ours missed").into());
+            return Err(format!("{name}: clamber misses {only_theirs} hits of parry's").into());
         }
         Ok(())
     }

@@ -1,19 +1,18 @@
 //! What do casts and sweeps cost, beside parry's ball cast and beside additive CCD?
 //!
-//! Spheres of one and of ten mean edge lengths start near the skin of a walking giant of a million
-//! triangles and move on by ten times their radius. parry casts the same balls against a mesh that
-//! holds the same positions; what it takes to put them there is left out. Single triangles are held
-//! against additive CCD. Prints a table and writes it to `target/measure/sweep.csv`: name, value,
-//! bound, holds. Fails if parry and ours disagree about what is hit by more than rounding.
+//! Spheres with radii of one and of ten mean edge lengths start near the skin of a walking giant of a million
+//! triangles, and move by ten times their radius. parry casts the same balls against a mesh with the same positions;
+//! the time to set these is left out. On single triangles the sweeps are compared with additive CCD. Prints a table and
+//! writes it to `target/measure/sweep.csv`: name, value, bound, holds. Fails if clamber misses a hit of parry's.
 //!
-//! `cargo bench -p clamber_benches --bench sweep`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench sweep`; briefly with `-- --test`.
 
 mod additive;
 mod casts;
 mod pairs;
 mod parry;
 
-/// How near a cast comes before it counts as a contact, metres.
+/// Tolerance of casts and sweeps, metres.
 pub(crate) const TOLERANCE: f64 = 1e-4;
 
 use std::error::Error;
@@ -23,7 +22,7 @@ use clamber_scenes::measure::{Bound, Cells, is_brief};
 
 use casts::Field;
 
-/// How long the bench may take.
+/// Sizes of a run.
 struct Effort {
     brief: bool,
     vertices: usize,

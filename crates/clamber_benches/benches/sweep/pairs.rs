@@ -1,4 +1,4 @@
-//! Single triangles: ours, eight at a time, beside additive CCD.
+//! Single triangles: clamber's sweeps, eight triangles at a time, beside additive CCD.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use glam::{DVec3, Vec3};
 use crate::TOLERANCE;
 use crate::additive::{End, MOST_STEPS, additive};
 
-/// Of the sphere, which stands still at the origin while sheets pass by that it would hide.
+/// Radius of the sphere, metres. It stays at the origin, and is larger than the sheets that move into it or past it.
 const RADIUS: f32 = 1.0;
 
-/// A sheet has so many by so many vertices: a cluster.
+/// A sheet has so many by so many vertices: one cluster.
 const ROWS: usize = 7;
 
-/// Half its width, metres.
+/// Half the width of a sheet, metres.
 const HALF: f32 = 0.4;
 
 /// The vertices of a sheet, row by row, at both ends of its motion.
@@ -32,7 +32,7 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
             "sheets that turn and fly into the sphere",
             (0..count).map(|_| nearing(&mut rng)).collect(),
         ),
-        // What the other way is slowest at.
+        // The case at which additive CCD is slowest.
         (
             "sheets that slide by",
             (0..count / 10).map(|_| sliding(&mut rng)).collect(),
@@ -58,7 +58,7 @@ pub(crate) fn measure(count: usize, cells: &mut Cells) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-/// Microseconds for all sheets, each a surface of its own.
+/// Microseconds of clamber's sweeps for all sheets, each on its own surface.
 fn ours(name: &str, sheets: &[Sheet]) -> Result<f64, Box<dyn Error>> {
     let surfaces = sheets.iter().map(posed).collect::<Result<Vec<_>, _>>()?;
     let ball = Capsule::ball(Vec3::ZERO, RADIUS).ok_or("no ball")?;
@@ -81,7 +81,7 @@ fn ours(name: &str, sheets: &[Sheet]) -> Result<f64, Box<dyn Error>> {
     Ok(time)
 }
 
-/// Microseconds for all triangles, and the share of them that reached the limit of steps.
+/// Microseconds of additive CCD for all triangles, and the share of them that reach the limit of steps.
 fn additive_of(name: &str, triangles: &[[[Vec3; 3]; 2]], end: End) -> (f64, f64) {
     let (mut found, mut capped, mut most) = (0, 0, 0);
     let time = median_us(Duration::from_millis(300), || {
@@ -104,7 +104,7 @@ fn additive_of(name: &str, triangles: &[[[Vec3; 3]; 2]], end: End) -> (f64, f64)
     (time, capped as f64 / triangles.len() as f64)
 }
 
-/// From two metres beside the sphere's skin through its centre, turning on the way.
+/// A sheet that starts two metres off the sphere, and moves to its centre while it turns.
 fn nearing(rng: &mut fastrand::Rng) -> Sheet {
     let from = vector(rng).normalize_or(Vec3::X) * (RADIUS + 2.0);
     let (across, up) = from.normalize().any_orthonormal_pair();
@@ -116,7 +116,7 @@ fn nearing(rng: &mut fastrand::Rng) -> Sheet {
     [start, end]
 }
 
-/// Along its own plane, two tolerances away from the sphere.
+/// A sheet that moves along its own plane, two tolerances away from the sphere.
 fn sliding(rng: &mut fastrand::Rng) -> Sheet {
     let height = RADIUS + 2.0 * TOLERANCE as f32;
     let way = vector(rng) * 0.5;
@@ -131,7 +131,7 @@ fn grid() -> impl Iterator<Item = [f32; 2]> {
     (0..ROWS * ROWS).map(move |k| [place(k / ROWS), place(k % ROWS)])
 }
 
-/// Corners of a sheet's triangles.
+/// Vertex indices of a sheet's triangles.
 fn corners() -> impl Iterator<Item = [usize; 3]> {
     let squares = (0..ROWS * ROWS).filter(|k| k % ROWS < ROWS - 1 && k / ROWS < ROWS - 1);
     squares.flat_map(|k| [[k, k + 1, k + ROWS], [k + 1, k + ROWS + 1, k + ROWS]])
@@ -146,7 +146,8 @@ fn vector(rng: &mut fastrand::Rng) -> Vec3 {
     Vec3::new(coordinate(), coordinate(), coordinate())
 }
 
-/// A surface of a sheet: every vertex has a joint of its own, whose matrix has no linear part.
+/// The surface of a sheet. Every vertex has a joint of its own, whose matrix has no linear part: its translation is the
+/// vertex's exact position.
 fn posed(sheet: &Sheet) -> Result<SkinnedSurface, Box<dyn Error>> {
     let vertices = (ROWS * ROWS) as u32;
     let influence = |v: u32| Influence {

@@ -1,4 +1,4 @@
-//! parry's triangle mesh, with the positions of the surface.
+//! parry's triangle mesh with the surface's positions.
 
 use std::error::Error;
 
@@ -12,7 +12,7 @@ use crate::casts::Cast;
 pub(crate) struct Parry(TriMesh);
 
 impl Parry {
-    /// Of the surface as it is posed now.
+    /// A mesh with the surface's current pose.
     pub(crate) fn new(surface: &SkinnedSurface) -> Result<Self, Box<dyn Error>> {
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
@@ -21,7 +21,7 @@ impl Parry {
         Ok(Self(TriMesh::new(positions, triangles)?))
     }
 
-    /// The share of the motion at which the ball touches.
+    /// The share of the motion at which the ball touches; `None` if it does not touch.
     pub(crate) fn cast(&self, cast: &Cast) -> Option<f64> {
         let options = ShapeCastOptions {
             max_time_of_impact: 1.0,

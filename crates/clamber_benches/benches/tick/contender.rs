@@ -1,4 +1,4 @@
-//! Who answers: ours lazily, ours eagerly, and parry with our kernel in front.
+//! The contenders: clamber lazily, clamber eagerly, and parry with clamber's skinning kernel.
 
 use std::sync::Arc;
 
@@ -12,21 +12,21 @@ use glam::Vec3;
 
 use clamber_scenes::riders::Tick;
 
-/// Answers all queries of a tick; gives how many triangles they hit.
+/// Answers all queries of a tick; returns the number of hits.
 pub(crate) trait Contender {
     fn tick(&mut self, tick: &Tick) -> usize;
 }
 
-/// Ours: skins what is touched.
+/// clamber's surface, which skins only what queries touch.
 pub(crate) struct Lazy {
     pub(crate) surface: SkinnedSurface,
     hits: Vec<SurfaceHit>,
 }
 
-/// Ours: skins everything, and refits all bounds, before it answers in the same way.
+/// clamber's surface, which skins everything and refits all bounds before it answers.
 pub(crate) struct Eager(pub(crate) Lazy);
 
-/// parry's triangle mesh, its vertices set each tick.
+/// parry's triangle mesh, with its vertices set each tick.
 pub(crate) struct Parry {
     mesh: Arc<ColliderMesh>,
     positions: Vec<Vec3>,
@@ -125,7 +125,7 @@ impl Contender for Parry {
                 .shape
                 .cast_local_ray_and_get_normal(&ray, rider.reach, false);
             found += usize::from(hit.is_some());
-            // Its anchor's point and velocity, without frame and stretch.
+            // The anchor's position and velocity, without frame and stretch.
             let corners = self.mesh.triangles()[rider.anchor.triangle.index()];
             let at = |positions: &[Vec3]| {
                 let weighted = corners.iter().zip(rider.anchor.barycentric);

@@ -1,4 +1,4 @@
-//! The skinning kernel against scalar loops, four joints a cluster, and against memory.
+//! The skinning kernel beside scalar loops, with four joints a cluster, and beside copying memory.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use clamber_scenes::measure::{Bound, Cells};
 
-/// Joints that move every vertex.
+/// Number of joints that move every vertex.
 const JOINTS: usize = 4;
 
 /// Bytes that skinning one vertex reads and writes: position, weights, position.
@@ -26,7 +26,7 @@ pub(crate) fn measure(brief: bool, cells: &mut Cells) -> Result<(), Box<dyn Erro
     in_memory(&Sheet::new(large)?, budget, cells)
 }
 
-/// A square sheet of vertices that all follow four joints.
+/// A square sheet whose vertices all follow the same four joints.
 struct Sheet {
     mesh: Arc<ColliderMesh>,
     palette: Palette,
@@ -73,7 +73,7 @@ impl Sheet {
         })
     }
 
-    /// Million slots a second of our kernel, every copy of a vertex counted as one.
+    /// Speed of clamber's kernel in million slots a second. Each copy of a vertex in a cluster is a slot.
     fn ours(&self, level: SimdLevel, budget: Duration) -> Result<f64, Box<dyn Error>> {
         let mut numbers = Vec::new();
         let matrices = self.palette.matrices();
@@ -107,7 +107,7 @@ fn in_cache(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Bo
     Ok(())
 }
 
-/// The better of two usual loops over an array of structures.
+/// Speed of the faster of two usual loops over an array of structures, in million vertices a second.
 fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
     #[derive(Clone, Copy)]
     struct Vertex {
@@ -132,7 +132,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
         .collect();
     let palette: Vec<[[f32; 4]; 3]> = sheet.palette.matrices().iter().map(|m| m.rows).collect();
     let mut out = vec![[0.0f32; 3]; vertices.len()];
-    // Each matrix moves the point, weighted sums of points.
+    // Each matrix transforms the point; the results are added with their weights.
     let points = median_us(budget, || {
         for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
             let [x, y, z] = v.position;
@@ -147,7 +147,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
         }
         black_box(&out);
     });
-    // A weighted sum of matrices moves the point.
+    // A weighted sum of the matrices transforms the point.
     let matrices = median_us(budget, || {
         for (out, v) in out.iter_mut().zip(black_box(&vertices)) {
             let mut blend = [[0.0; 4]; 3];
@@ -168,7 +168,7 @@ fn fastest_scalar(sheet: &Sheet, budget: Duration) -> f64 {
 }
 
 fn in_memory(sheet: &Sheet, budget: Duration, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
-    // Copying moves every byte twice, in and out; so much that no cache holds it.
+    // Copying moves every byte twice, in and out. It is more than any cache holds.
     let bytes = 256e6;
     let from = vec![1u64; (bytes / 16.0) as usize];
     let mut to = vec![0u64; from.len()];

@@ -1,11 +1,11 @@
-//! What does a whole tick cost: ours lazily, ours eagerly, and parry's refitted mesh?
+//! What does a whole tick cost with clamber lazily, clamber eagerly, and parry's refitted mesh?
 //!
-//! A giant of 3,000 to 500,000 vertices walks; riders on its skin ask for two overlaps, a ray and an
-//! anchor each. All ways answer the same ticks in turn, on one thread. Prints a table of ratios and
-//! writes it to `target/measure/tick.csv`, a row per cell: name, value, bound, holds. Fails if ours
-//! lazily and eagerly differ in what they hit.
+//! A giant of 3,000 to 500,000 vertices walks. Riders on its skin each ask for two overlaps, a ray and an anchor's
+//! motion. All contenders answer the same ticks in turn, on one thread. Prints a table and writes it to
+//! `target/measure/tick.csv`: name, value, bound, holds. Fails if clamber's numbers of hits differ between lazy and
+//! eager.
 //!
-//! `cargo bench -p clamber_benches --bench tick`; brief with `-- --test`.
+//! Run it with `cargo bench -p clamber_benches --bench tick`; briefly with `-- --test`.
 
 mod contender;
 mod kernel;
@@ -24,7 +24,7 @@ use contender::{Contender, Eager, Lazy, Parry};
 use glam::Vec3;
 use timing::{Lap, race};
 
-/// How long the bench may take.
+/// Sizes of a run.
 struct Effort {
     brief: bool,
     small: usize,
@@ -118,7 +118,7 @@ fn run(effort: &Effort) -> Result<(), Box<dyn Error>> {
     cells.finish("tick", effort.brief)
 }
 
-/// All ways to answer.
+/// All contenders.
 struct Field {
     lazy: Lazy,
     eager: Eager,
@@ -134,7 +134,7 @@ impl Field {
         })
     }
 
-    /// Laps of ours lazily, ours eagerly, and parry.
+    /// The laps of clamber lazily, clamber eagerly, and parry.
     fn race(
         &mut self,
         workload: &Workload,
@@ -170,7 +170,7 @@ fn many_riders(
     Ok(())
 }
 
-/// So many riders that hardly a cluster is left alone.
+/// Measures with so many riders that they touch almost every cluster.
 fn everything(
     creature: &clamber_scenes::Creature,
     ticks: usize,
@@ -191,7 +191,7 @@ fn everything(
     Ok(())
 }
 
-/// What a query costs that is nowhere near.
+/// Measures queries far from the skin.
 fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Error>> {
     let mut surface = SkinnedSurface::new(workload.mesh.clone());
     surface.advance(&workload.ticks[0].palette, Similarity::IDENTITY)?;
@@ -222,7 +222,7 @@ fn nothing_near(workload: &Workload, cells: &mut Cells) -> Result<(), Box<dyn Er
     Ok(())
 }
 
-/// Medians of a race.
+/// Adds the medians of a race.
 fn laps_of(cells: &mut Cells, name: &str, laps: &[Lap]) {
     for (lap, who) in laps.iter().zip(["lazy", "eager", "parry"]) {
         let [low, high] = lap.quartiles_us;

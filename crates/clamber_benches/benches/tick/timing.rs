@@ -1,4 +1,4 @@
-//! Whole ticks, timed in turns so that all contenders see the same machine.
+//! Times whole ticks of all contenders in turn, so that all see the machine in the same state.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use clamber_scenes::riders::Tick;
 
 use crate::contender::Contender;
 
-/// Median microseconds a tick of each contender, and how many hits each had in all.
+/// Times all contenders on all ticks, with warm or cold caches.
 pub(crate) fn race(
     contenders: &mut [&mut dyn Contender],
     ticks: &[Tick],
@@ -17,14 +17,14 @@ pub(crate) fn race(
 ) -> Vec<Lap> {
     let mut times = vec![Vec::with_capacity(ticks.len()); contenders.len()];
     let mut hits = vec![0; contenders.len()];
-    // The first ticks warm up.
+    // The first three ticks warm up and are not counted.
     for (turn, tick) in ticks.iter().take(3).chain(ticks).enumerate() {
         for (k, contender) in contenders.iter_mut().enumerate() {
             if caches == Caches::Cold {
                 stream.run();
             } else {
-                // What others evicted comes back with ticks that do not count: two, since every other
-                // tick has a cache of its own.
+                // Two ticks that are not counted bring back what the others evicted. Two, since every other tick has a
+                // cache of its own.
                 black_box(contender.tick(tick));
                 black_box(contender.tick(tick));
             }
@@ -46,7 +46,7 @@ pub(crate) fn race(
     .collect()
 }
 
-/// One contender's part of a race.
+/// A contender's result: times of a tick, and its hits in all ticks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lap {
     pub(crate) median_us: f64,
@@ -55,7 +55,7 @@ pub(crate) struct Lap {
 }
 
 impl Lap {
-    /// How many times as long as another one.
+    /// This median divided by another's.
     pub(crate) fn over(&self, other: &Self) -> f64 {
         self.median_us / other.median_us
     }

@@ -1,15 +1,15 @@
-//! Whole battles, watched for numbers that are none.
+//! Whole battles, with a check in every tick that all numbers are finite.
 
 use clamber_scenes::Creature;
 use clamber_scenes::battle::{Battle, BattleOptions, Story, Summary};
 
-/// Seconds that a battle takes.
+/// Length of a battle, seconds.
 const SECONDS: f64 = 15.0;
 
-/// Fights a battle; gives how many ticks and checks there were. Panics where a check fails, a number is not finite, or
-/// the battle ends with an error.
+/// Runs a battle; returns the number of checks. Panics if a check fails, a number is not finite, or the battle ends
+/// with an error.
 pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
-    // Half of them climb, half ride.
+    // Half of the battles are climbs, half are rides.
     let story = if seed.is_multiple_of(2) {
         Story::Climb
     } else {
@@ -23,7 +23,7 @@ pub(crate) fn fight(giant: &Creature, seed: u64) -> usize {
     };
     let mut battle = match Battle::new(giant, &options) {
         Ok(battle) => battle,
-        Err(error) => panic!("no battle: {error}"),
+        Err(error) => panic!("the battle cannot be made: {error}"),
     };
     for tick in 0..options.ticks() {
         if let Err(error) = battle.step(options.input_at(tick)) {

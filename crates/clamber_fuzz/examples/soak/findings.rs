@@ -1,4 +1,4 @@
-//! Panics, caught and kept.
+//! Catches panics and keeps their messages.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,7 +9,7 @@ use crate::task::Task;
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
     pub(crate) task: Task,
-    /// What the panic said, and where.
+    /// The panic's message and place in the source.
     pub(crate) message: String,
 }
 
@@ -17,14 +17,14 @@ thread_local! {
     static SAID: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// From now on panics are kept for [`caught`], and not printed.
+/// Installs a hook that keeps panics for [`caught`] instead of printing them.
 pub(crate) fn keep_panics() {
     std::panic::set_hook(Box::new(|panic| {
         SAID.with_borrow_mut(|said| *said = panic.to_string());
     }));
 }
 
-/// Does something; what the panic said, if there was one.
+/// Calls `work`; returns the message of its panic as an error.
 pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|_| SAID.with_borrow_mut(std::mem::take))
 }

@@ -1,5 +1,5 @@
-//! Does everything that could go wrong, over and over with fresh seeds, until the time is up: stress cases of every
-//! family, every fuzz target on random bytes, whole battles. `cargo xtask soak` builds and runs it.
+//! Runs stress cases of every family, every fuzz target on random bytes, and whole battles with fresh seeds, until the
+//! time is up. `cargo xtask soak` builds and runs it.
 
 #![expect(clippy::panic, reason = "a finding is a panic, caught and reported")]
 
@@ -20,24 +20,24 @@ use indicatif::{ProgressBar, ProgressStyle};
 use report::Report;
 use task::Task;
 
-/// Stress cases, fuzz targets and battles with fresh seeds until the time is up.
+/// Runs stress cases, fuzz targets and battles with fresh seeds until the time is up.
 ///
-/// Ends with a report, which report.md has, too, and exits with 1 if there is a finding, or if the slowest thousandth of
-/// a class of queries takes more than 20 times its median. The same seed gives the same tasks in the same order.
+/// Prints a report and writes it to report.md. Exits with 1 if there is a finding, or if the slowest thousandth of a
+/// class of queries takes more than 20 times the class's median. The same seed gives the same tasks in the same order.
 #[derive(Debug, Parser)]
 #[command(name = "soak", version)]
 struct Options {
-    /// How long.
+    /// Time to run.
     #[arg(long, value_name = "MINUTES", default_value_t = 0.1)]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     minutes: f64,
 
-    /// Of everything random.
+    /// Seed for everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
-    /// Runs this alone, as a report names it, and lets it panic: stress/CASE, battle/SEED, queries/SEED, palettes/SEED,
-    /// builder/SEED or import/SEED.
+    /// Run only this task, by its name in a report, and let it panic: stress/CASE, battle/SEED, queries/SEED,
+    /// palettes/SEED, builder/SEED or import/SEED.
     #[arg(long, value_name = "TASK")]
     case: Option<Task>,
 
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     let giant = match giant() {
         Ok(giant) => giant,
         Err(error) => {
-            eprintln!("the giant cannot play: {error}");
+            eprintln!("the giant cannot be loaded: {error}");
             return ExitCode::FAILURE;
         }
     };
@@ -97,7 +97,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Seconds gone and to go, and what is being done; nothing where nobody watches.
+/// A bar with the elapsed and the total time, and the current task; hidden if standard error is not a terminal.
 fn bar(length: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

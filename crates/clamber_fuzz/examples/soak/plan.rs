@@ -1,10 +1,10 @@
-//! Which tasks, in which order: the same for the same seed, however long there is.
+//! The order of the tasks: the same for the same seed, whatever the time.
 
 use clamber_fuzz::stress::{Case, MeshFamily, Place, PoseFamily};
 
 use crate::task::{Target, Task};
 
-/// Sizes of stress cases, triangles. One in [`LARGE_EVERY`] rounds is the last.
+/// Sizes of stress cases, triangles. Every [`LARGE_EVERY`]th round has the last size.
 const SIZES: [usize; 3] = [600, 6_000, 60_000];
 const LARGE_EVERY: u64 = 16;
 
@@ -14,10 +14,10 @@ const TICKS: usize = 3;
 /// Inputs of each fuzz target after each stress case.
 const INPUTS: u64 = 20;
 
-/// Stress cases for a battle.
+/// Number of stress cases for each battle.
 const BATTLE_EVERY: usize = 18;
 
-/// All tasks, without end. Rounds go over every mesh in every pose; each task has a seed of its own.
+/// An endless sequence of tasks. Each round goes over every mesh in every pose; each task has a seed of its own.
 pub(crate) fn tasks(seed: u64) -> impl Iterator<Item = Task> {
     let mut seeds = fastrand::Rng::with_seed(seed);
     (0u64..).flat_map(move |round| {
@@ -32,7 +32,7 @@ pub(crate) fn tasks(seed: u64) -> impl Iterator<Item = Task> {
             poses.map(move |pose| (*mesh, *pose))
         });
         for (index, (mesh, pose)) in pairs.enumerate() {
-            // Another place for each, and another one in each round of a size.
+            // The place changes from case to case, and from round to round of the same size.
             let place = (index as u64 + round / 2) % Place::ALL.len() as u64;
             tasks.push(Task::Stress(Case {
                 mesh,

@@ -1,4 +1,4 @@
-//! What came of a soak, as Markdown.
+//! The report of a soak, as Markdown.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,19 +11,19 @@ use clamber_scenes::measure::Table;
 use crate::findings::Finding;
 use crate::task::Task;
 
-/// Queries that a class has at least to be judged: of fewer no thousandth can be told.
+/// A class is judged from so many queries up: with fewer the slowest thousandth is not defined.
 const LEAST: usize = 1_000;
 
-/// Classes listed, the worst ones.
+/// Number of the worst classes that are listed.
 const LISTED: usize = 20;
 
-/// Letters of a finding's message that are kept: some hold whole answers.
+/// Length to which a finding's message is cut: some messages hold whole answers.
 const LETTERS: usize = 1_000;
 
-/// Everything that a soak found.
+/// The results of a soak.
 #[derive(Default)]
 pub(crate) struct Report {
-    /// Cases and checks by kind of task.
+    /// Numbers of cases, checks and findings by kind of task.
     kinds: BTreeMap<&'static str, [usize; 3]>,
     findings: Vec<Finding>,
     pub(crate) times: Times,
@@ -32,7 +32,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Of nothing yet.
+    /// An empty report.
     pub(crate) fn new(seed: u64) -> Self {
         Self {
             seed,
@@ -40,7 +40,7 @@ impl Report {
         }
     }
 
-    /// Notes what a task came to: its checks, or what it found.
+    /// Adds the result of a task: its number of checks, or the message of its finding.
     pub(crate) fn note(&mut self, task: Task, came: Result<usize, String>) {
         let [cases, checks, findings] = self.kinds.entry(task.kind()).or_default();
         *cases += 1;
@@ -54,12 +54,12 @@ impl Report {
         }
     }
 
-    /// How many findings there are.
+    /// Number of findings.
     pub(crate) fn findings(&self) -> usize {
         self.findings.len()
     }
 
-    /// Classes that are judged, the slowest for their median first.
+    /// The classes that are judged, by descending ratio of the slowest thousandth to the median.
     fn judged(&self) -> Vec<(Class, Summary)> {
         let all = self.times.summaries();
         let mut judged: Vec<_> = all.filter(|(_, s)| s.count >= LEAST).collect();
@@ -67,7 +67,7 @@ impl Report {
         judged
     }
 
-    /// True without findings, and without a class beyond the limit.
+    /// True if there is no finding, and no class misses the limit.
     pub(crate) fn holds(&self) -> bool {
         let slow = self
             .judged()
@@ -154,9 +154,9 @@ impl fmt::Display for Report {
 /// All classes of a query.
 #[derive(Default)]
 struct OfQuery {
-    /// Judged, the slowest first.
+    /// The judged classes, the worst first.
     judged: Vec<(Class, Summary)>,
-    /// Classes whatever their work: how many, and how many of them miss the limit.
+    /// Mixed classes, which merge those that differ only in work: their number, and how many miss the limit.
     mixed: [usize; 2],
 }
 
@@ -181,14 +181,16 @@ impl Report {
         let slow = judged.iter().filter(|(_, s)| s.ratio() > LIMIT).count();
         writeln!(
             f,
-            "## Times\n\nA class is a query, aimed in one way at one family of meshes of one size, in any pose, with as much\n\
-             to do, to a factor of four: nodes, clusters and triangles. The slowest thousandth of each may take\n\
-             {LIMIT} medians, of a microsecond at least: {slow} of {} classes miss that; {few} have less than {LEAST}\n\
-             queries, and are not judged. Each query was asked once before it was timed, so that what it touches\n\
-             is skinned. The first of each class, and what took more than {DOUBTFUL} medians, were repeated three times\n\
-             at once, and the shortest time counts, since other processes take the core away at times.\n\n\
-             Mixed classes are those thrown together that differ in work alone: how much skin is where a query\n\
-             looks, thousands of triangles of a limb that has collapsed to a point or none. They are not judged.\n",
+            "## Times\n\nA class is a query with one kind of aim, at one family of meshes of one size, in any pose,\n\
+             with the same amount of work to a factor of four: nodes, clusters and triangles. The slowest\n\
+             thousandth of a class may take {LIMIT} times its median, or {LIMIT} us if the median is below 1 us.\n\
+             {slow} of {} classes miss this limit. {few} classes have fewer than {LEAST} queries and are not\n\
+             judged. Each query ran once before it was timed, so the time does not include skinning. The first\n\
+             queries of each class, and those that took more than {DOUBTFUL} times the median, were timed three\n\
+             times more at once, and the shortest time counts, since other processes sometimes take the core.\n\n\
+             A mixed class merges the classes that differ only in work. Their work differs by the amount of\n\
+             skin at the query: no triangle, or thousands of a limb that has collapsed to a point. Mixed classes\n\
+             are not judged.\n",
             judged.len()
         )?;
         let mut queries = Table::new(&[
@@ -198,7 +200,7 @@ impl Report {
             "p50, us",
             "worst ratio",
             "at most 20",
-            "of",
+            "worst class",
             "mixed classes, over 20",
         ]);
         for (query, OfQuery { judged, mixed }) in self.by_query() {
@@ -220,7 +222,10 @@ impl Report {
                 format!("{mixed}, {over}"),
             ]);
         }
-        writeln!(f, "{queries}\nThe worst classes; all are in `times.csv`.\n")?;
+        writeln!(
+            f,
+            "{queries}\nThe worst classes. `times.csv` has all of them.\n"
+        )?;
         let mut worst = classes();
         for (class, summary) in judged.iter().take(LISTED.max(slow)) {
             worst.push(row(class, summary));

@@ -1,4 +1,4 @@
-//! What a soak does over and over, by names that repeat it.
+//! The tasks of a soak, with names by which they can be repeated.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,18 +9,18 @@ use clamber_scenes::Creature;
 
 use crate::fight::fight;
 
-/// One thing to do. The same one does the same every time.
+/// A task of a soak. It does the same every time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Task {
     /// A stress case.
     Stress(Case),
-    /// A fuzz target on random bytes of a seed.
+    /// A fuzz target on random bytes from a seed.
     Fuzz(Target, u64),
-    /// A whole battle of a seed.
+    /// A whole battle with a seed.
     Battle(u64),
 }
 
-/// Of `clamber_fuzz`.
+/// A fuzz target of `clamber_fuzz`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     Queries,
@@ -43,7 +43,7 @@ impl Target {
 }
 
 impl Task {
-    /// Of its kind, in a report.
+    /// Name of the task's kind in a report.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Stress(_) => "stress",
@@ -52,7 +52,7 @@ impl Task {
         }
     }
 
-    /// Does it; gives how much was checked. Panics where something is wrong.
+    /// Runs the task; returns the number of checks. Panics if a check fails.
     pub(crate) fn run(&self, giant: &Creature, times: &mut Times) -> usize {
         match self {
             Self::Stress(case) => run(case, Some(times)).checks(),
@@ -82,7 +82,7 @@ impl Task {
     }
 }
 
-/// For imports a file that loads, with some bytes changed; else any bytes.
+/// Random bytes for a target: for imports a valid file with some bytes changed, else any bytes.
 fn random_bytes(target: Target, seed: u64) -> Vec<u8> {
     let mut rng = fastrand::Rng::with_seed(seed);
     if target != Target::Import {
@@ -92,7 +92,7 @@ fn random_bytes(target: Target, seed: u64) -> Vec<u8> {
     let mut file = [&json[..], &[0], &binary].concat();
     for _ in 0..rng.usize(1..4) {
         let at = rng.usize(0..file.len());
-        // In text a digit is likelier to be taken than any byte.
+        // In the text, characters that JSON uses load more often than any byte would.
         file[at] = if at < json.len() {
             b"0123456789-.eE[]{}\","[rng.usize(0..20)]
         } else {
@@ -123,7 +123,9 @@ impl FromStr for Task {
         if kind == "stress" {
             return Ok(Self::Stress(rest.parse()?));
         }
-        let seed = rest.parse().map_err(|_| format!("{rest:?} is no seed"))?;
+        let seed = rest
+            .parse()
+            .map_err(|_| format!("{rest:?} is not a seed"))?;
         if kind == "battle" {
             return Ok(Self::Battle(seed));
         }

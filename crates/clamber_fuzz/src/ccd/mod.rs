@@ -1,6 +1,7 @@
-//! Continuous collision queries with exact answers, put to the library's sweeps: from files, or one by one ([`Stage`]).
+//! Tests the library's sweeps with continuous collision queries whose exact answers are known: from files ([`run`]), or
+//! one by one ([`Stage`]).
 //!
-//! Answers to a file's queries are judged in rational numbers, by the points as the file has them.
+//! The answers to a file's queries are judged in rational numbers, from the exact points of the file.
 
 mod error;
 mod options;
@@ -18,10 +19,10 @@ pub use options::CcdOptions;
 pub use report::CcdReport;
 pub use stage::{Answer, CAP, Stage};
 
-/// Asks all queries of all files.
+/// Runs all queries of all files. Shows a progress bar on standard error.
 ///
 /// # Errors
-/// [`CcdError`] if a file cannot be read, or the library refuses a query.
+/// [`CcdError`] if a file cannot be read, or the library rejects a query.
 pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
     let mut files = Vec::new();
     for file in &options.files {
@@ -56,10 +57,10 @@ pub fn run(options: &CcdOptions) -> Result<CcdReport, CcdError> {
 }
 
 impl CcdReport {
-    /// Counts what is claimed of a query, and whether it is true.
+    /// Counts a claim about a query, and whether it is true.
     ///
     /// # Panics
-    /// If the time is not in 0..=1.
+    /// If the claimed time is not in 0..=1.
     pub fn count(&mut self, query: &FileQuery, claim: &Claim) {
         let verdict = claim.check(&query.rounded(), query.tolerance());
         self.queries += 1;

@@ -2,41 +2,41 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// What the sweeps answered, and whether that is right.
+/// Counts of the sweeps' answers, and of the wrong ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CcdReport {
-    /// Queries asked.
+    /// Queries that were run.
     pub queries: usize,
-    /// Those with a contact.
+    /// Queries answered with a contact.
     pub hits: usize,
-    /// Those without.
+    /// Queries answered without a contact.
     pub misses: usize,
-    /// Hits where the files say that nothing touches: radius and tolerance bring them near.
+    /// Hits although the file says that nothing touches; correct if the motion comes within radius and tolerance.
     pub near_misses_hit: usize,
-    /// Misses where the file says that the motion touches.
+    /// Misses although the file says that the motion touches.
     pub false_negatives: usize,
-    /// Hits of what never comes within radius and tolerance.
+    /// Hits although the motion never comes within radius and tolerance.
     pub false_positives: usize,
-    /// Contacts, or their absence, claimed of a time before which the points as rounded are within the
-    /// radius.
+    /// Late answers: the rounded points come within the radius before the claimed time of contact, or at all if no
+    /// contact is claimed.
     pub late: usize,
     /// Answers that could neither be proved nor refuted.
     pub unproved: usize,
-    /// Hits that say themselves that they may be too far away.
+    /// Hits that the sweep flagged as undecided: they may be too far away.
     pub undecided: usize,
-    /// Most steps of any query.
+    /// Largest number of steps of a query.
     pub worst_steps: u32,
-    /// Mean time that a query took, with nothing in the caches.
+    /// Mean time of a query with empty skin caches, nanoseconds.
     pub ns_per_query: f64,
 }
 
 impl CcdReport {
-    /// True if no answer is false.
+    /// True if no answer is wrong or unproved.
     pub fn holds(&self) -> bool {
         self.false_negatives + self.false_positives + self.late + self.unproved == 0
     }
 
-    /// As one JSON object.
+    /// The report as one JSON object.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_else(|error| error.to_string())
     }
@@ -48,13 +48,13 @@ impl fmt::Display for CcdReport {
             ("queries", self.queries),
             ("hits", self.hits),
             ("misses", self.misses),
-            ("near misses hit", self.near_misses_hit),
+            ("hits of near misses", self.near_misses_hit),
             ("false negatives", self.false_negatives),
             ("false positives", self.false_positives),
             ("late", self.late),
             ("unproved", self.unproved),
             ("undecided", self.undecided),
-            ("worst iterations", self.worst_steps as usize),
+            ("most steps", self.worst_steps as usize),
         ];
         for (name, count) in counts {
             writeln!(f, "  {name:<20}{count:>8}")?;

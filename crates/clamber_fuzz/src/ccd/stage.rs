@@ -9,29 +9,30 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::{CastOptions, SkinnedSurface, SurfaceError, SweepHit};
 use glam::Vec3;
 
-/// Most steps that the library takes for a triangle; what has none to show by then is to be flagged.
+/// Largest number of steps that the library takes for a triangle. If a query is not decided by then, its hit is
+/// flagged.
 pub const CAP: u32 = 256;
 
-/// A surface of one triangle, each corner on a joint of its own whose matrix puts it anywhere: so the
-/// library's sweeps meet any moving triangle, its corners exactly as given.
+/// A surface of one triangle, for sweeps against any moving triangle. Each corner has a joint of its own, whose
+/// matrix puts the corner exactly at a given position.
 #[derive(Clone, Debug)]
 pub struct Stage {
     surface: SkinnedSurface,
 }
 
-/// What a sweep answered.
+/// The answer of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// The contact, if it found one.
+    /// The contact; `None` if the sweep found none.
     pub hit: Option<SweepHit>,
-    /// Steps of the exact test.
+    /// Number of steps of the exact test.
     pub steps: u32,
-    /// How long the query took, with all caches empty.
+    /// Time of the query, with empty skin caches.
     pub took: Duration,
 }
 
 impl Answer {
-    /// What it says.
+    /// The claim that the answer makes.
     pub fn claim(&self) -> Claim {
         Claim {
             time: self.hit.map(|hit| hit.time),
@@ -41,10 +42,10 @@ impl Answer {
 }
 
 impl Stage {
-    /// With the triangle at rest.
+    /// A stage with the triangle at rest.
     ///
     /// # Errors
-    /// None that are known of.
+    /// None are known.
     pub fn new() -> Result<Self, MeshError> {
         let whole = |joint| Influence {
             joint: JointId(joint),
@@ -63,10 +64,11 @@ impl Stage {
         })
     }
 
-    /// Moves the triangle as the pair's does, and sweeps the pair's core against it.
+    /// Moves the triangle like the pair's triangle, and sweeps the pair's core against it. `tolerance` is a distance. A
+    /// core that is not finite hits nothing.
     ///
     /// # Errors
-    /// [`SurfaceError`] if the pair is not finite, or larger than a surface may be.
+    /// [`SurfaceError`] if the triangle is not finite, or larger than a surface may be.
     pub fn sweep(&mut self, pair: &MovingPair, tolerance: f32) -> Result<Answer, SurfaceError> {
         let [start, end] = pair.corners;
         self.surface.place(&palette(start), Similarity::IDENTITY)?;
@@ -87,7 +89,7 @@ impl Stage {
     }
 }
 
-/// Takes every vertex to its joint's place, wherever it is at rest: `0 x + t` is exact.
+/// A palette that takes every vertex to its joint's position, wherever the vertex is at rest: `0 x + t` is exact.
 fn palette(corners: [Vec3; 3]) -> Palette {
     Palette::from_matrices(corners.map(|corner| Affine {
         rows: corner.to_array().map(|t| [0.0, 0.0, 0.0, t]),

@@ -1,4 +1,4 @@
-//! Queries in the files' form, and answers that are false.
+//! Queries in the files' format, and wrong answers to them.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ const VERTICES: &str = "\
     1,4,-1,1,1,4,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,0,1,1,1,1\n\
     1,4,1,1,1,4,0\n0,1,0,1,0,1,0\n1,1,0,1,0,1,0\n0,1,0,1,1,1,0\n\
     1,4,1,9,1,4,0\n0,1,0,1,0,1,0\n1,1,0,1,0,1,0\n0,1,0,1,1,1,0\n";
-/// The same of an edge above another.
+/// The same two motions of an edge above another edge.
 const EDGES: &str = "\
     -1,2,1,1,0,1,1\n1,2,1,1,0,1,1\n0,1,0,1,-1,2,1\n0,1,0,1,1,2,1\n\
     -1,2,-1,1,0,1,1\n1,2,-1,1,0,1,1\n0,1,0,1,-1,2,1\n0,1,0,1,1,2,1\n\
@@ -37,7 +37,7 @@ fn count(query: &FileQuery, time: Option<f64>) -> CcdReport {
 }
 
 #[test]
-fn the_library_answers_rightly() {
+fn the_library_answers_correctly() {
     let mut stage = Stage::new().unwrap();
     for [falls, stops] in queries() {
         let [hit, miss] = [&falls, &stops].map(|query| {
@@ -46,7 +46,7 @@ fn the_library_answers_rightly() {
             assert!(report.holds(), "{report}");
             answer.claim().time
         });
-        // Of an extent of 2, at a height of 2e-5 after half of the way.
+        // The extent is 2, so the radius is 2e-5: contact is at that height, just before half of the way.
         let time = hit.unwrap();
         assert!((0.5 - 2e-5..=0.5 - 0.9e-5).contains(&time), "{time}");
         assert_eq!(miss, None);
@@ -54,14 +54,14 @@ fn the_library_answers_rightly() {
 }
 
 #[test]
-fn false_answers_are_counted_as_what_they_are() {
+fn each_kind_of_wrong_answer_has_its_count() {
     for [falls, stops] in queries() {
         let missed = count(&falls, None);
         assert_eq!((missed.false_negatives, missed.late), (1, 1), "{missed}");
         let late = count(&falls, Some(0.5));
         assert_eq!((late.false_negatives, late.late), (0, 1), "{late}");
         assert!(!missed.holds() && !late.holds());
-        // Early, but of what touches: no false contact.
+        // Early, but the motion does touch: not a false contact.
         assert!(count(&falls, Some(0.4)).holds());
         let invented = count(&stops, Some(1.0));
         assert_eq!(
@@ -75,7 +75,7 @@ fn false_answers_are_counted_as_what_they_are() {
 }
 
 #[test]
-fn queries_of_one_point_touch_and_are_found() {
+fn queries_with_all_vertices_at_one_point_are_hits() {
     let rows = ["1,3,1,7,1,9,1\n"; 8].concat();
     let mut stage = Stage::new().unwrap();
     for kind in ["vertex-face", "edge-edge"] {

@@ -1,4 +1,4 @@
-//! What is asked: one question of every kind and aim, about random places of the skin.
+//! Aims of the questions: one question of every kind and aim, at random places of the skin.
 
 use clamber_surface::geometry::{Capsule, Ray};
 use clamber_surface::surface::CastOptions;
@@ -8,10 +8,10 @@ use super::posed::{Posed, point_of, random_weights};
 use super::questions::{Question, ball, capsule};
 use super::soups::random_direction;
 
-/// A question, and what it is called; those of one name are alike.
+/// A question with its name. Questions with the same name are alike.
 pub(super) type Named = (&'static str, Question);
 
-/// Places about a creature.
+/// Random points, shapes and questions around a creature.
 pub(super) struct Aims<'a> {
     posed: &'a Posed<'a>,
     rng: &'a mut fastrand::Rng,
@@ -111,25 +111,25 @@ impl<'a> Aims<'a> {
         ]);
     }
 
-    /// A ball off the skin, and a way that leads it through.
+    /// A ball off the skin, and a displacement that moves it through the skin.
     fn towards_skin(&mut self) -> (Capsule, Vec3) {
         let (p, away) = (self.skin(), random_direction(self.rng).as_vec3());
         let off = ball(p + away * (0.2 * self.unit), 0.02 * self.unit);
         (off, away * (-0.4 * self.unit))
     }
 
-    /// A twenty-thousandth of the creature: 0.1 mm for a human.
+    /// The tolerance of casts: a twenty-thousandth of the creature's extent, 0.1 mm for a human.
     pub(super) fn tolerance(&self) -> f32 {
         5e-5 * self.unit
     }
 
-    /// A point of the skin.
+    /// A random point of the skin.
     pub(super) fn skin(&mut self) -> Vec3 {
         let triangle = self.posed.any_triangle(self.rng);
         point_of(self.posed.corners(triangle), random_weights(self.rng))
     }
 
-    /// A point of an edge.
+    /// A random point of an edge.
     pub(super) fn edge(&mut self) -> Vec3 {
         let triangle = self.posed.any_triangle(self.rng);
         let mut corners = self.posed.corners(triangle);
@@ -138,13 +138,13 @@ impl<'a> Aims<'a> {
         point_of(corners, [along, 1.0 - along, 0.0])
     }
 
-    /// A vertex that some triangle has.
+    /// A random vertex of a triangle.
     pub(super) fn vertex(&mut self) -> Vec3 {
         let triangle = self.posed.any_triangle(self.rng);
         self.posed.corners(triangle)[self.rng.usize(0..3)]
     }
 
-    /// So many extents from a point.
+    /// A point in a random direction, so many extents from `p`.
     pub(super) fn off(&mut self, p: Vec3, extents: f32) -> Vec3 {
         p + random_direction(self.rng).as_vec3() * (extents * self.unit)
     }
@@ -161,7 +161,7 @@ impl<'a> Aims<'a> {
     }
 }
 
-/// None where the two are one.
+/// A ray from one point towards another; `None` if they are equal.
 fn ray(from: Vec3, to: Vec3) -> Option<Ray> {
     Ray::new(from, to - from)
 }

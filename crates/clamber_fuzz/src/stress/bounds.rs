@@ -1,4 +1,4 @@
-//! Every bound holds every vertex as it is skinned.
+//! Checks that every bound holds its skinned vertices.
 
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::surface::CastOptions;
@@ -7,9 +7,9 @@ use glam::Vec3;
 use super::posed::Posed;
 use super::questions::ball;
 
-/// Vertices that are looked at closely in every pose, chosen once.
+/// Random vertices, chosen once, at which queries are checked in every pose.
 pub(super) struct Bounds {
-    /// Each with the triangles around it.
+    /// Each vertex with the triangles around it.
     around: Vec<(usize, Vec<u32>)>,
 }
 
@@ -31,12 +31,12 @@ impl Bounds {
         Self { around }
     }
 
-    /// Gives how often a vertex was held against a bound.
+    /// Checks all bounds; returns how often a vertex was compared with a bound.
     pub(super) fn check(&self, posed: &Posed<'_>) -> usize {
         check_parts(posed) + check_ball(posed) + self.check_tree(posed)
     }
 
-    /// The hierarchy lets a query through that asks at a vertex.
+    /// Checks that the hierarchy does not rule out a query at a vertex.
     fn check_tree(&self, posed: &Posed<'_>) -> usize {
         let space = posed.surface.in_model();
         let touching = CastOptions::STILL.with_tolerance(0.0);
@@ -47,18 +47,21 @@ impl Bounds {
             space.overlap_capsule(&point, &mut hits);
             for triangle in triangles {
                 let found = hits.iter().any(|hit| hit.triangle.0 == *triangle);
-                assert!(found, "triangle {triangle} does not touch its corner {p}");
+                assert!(
+                    found,
+                    "the overlap at corner {p} misses triangle {triangle}"
+                );
             }
             let nearest = space.closest_point(p, 0.0);
-            assert!(nearest.is_some(), "nothing is at vertex {p}");
+            assert!(nearest.is_some(), "no closest point at vertex {p}");
             let cast = space.cast_capsule(&point, [Vec3::ZERO; 2], &touching);
-            assert!(cast.is_some(), "no cast starts at vertex {p}");
+            assert!(cast.is_some(), "no contact of a cast at vertex {p}");
         }
         self.around.len() * 3
     }
 }
 
-/// The sphere of every part.
+/// Checks the sphere of every part.
 fn check_parts(posed: &Posed<'_>) -> usize {
     let parts = posed.surface.mesh().parts();
     let mut bounded = vec![false; parts.len()];
@@ -70,7 +73,7 @@ fn check_parts(posed: &Posed<'_>) -> usize {
             let held = sphere.contains(p);
             assert!(
                 held,
-                "vertex {vertex} at {p} escapes {sphere:?} of part {id}"
+                "vertex {vertex} at {p} is outside {sphere:?} of part {id}"
             );
         }
         let twice = std::mem::replace(&mut bounded[id.index()], true);
@@ -84,16 +87,19 @@ fn check_parts(posed: &Posed<'_>) -> usize {
     checked
 }
 
-/// The ball about all skin over the tick, in the world.
+/// Checks the ball around all skin over the tick, in the world.
 fn check_ball(posed: &Posed<'_>) -> usize {
     let Some((center, radius)) = posed.surface.bounding_ball() else {
-        panic!("skin without bounds");
+        panic!("the surface has no bounding ball");
     };
     let place = posed.surface.world_from_model();
     let both = posed.positions.iter().chain(&posed.previous);
     for p in both {
         let away = place.transform_point_f32(*p).distance(center);
-        assert!(away <= radius, "{p} is {away} from {center}, not {radius}");
+        assert!(
+            away <= radius,
+            "{p} is {away} from {center}, more than {radius}"
+        );
     }
     posed.positions.len() * 2
 }

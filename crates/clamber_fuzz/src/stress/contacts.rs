@@ -1,5 +1,5 @@
-//! No contact is missed, reported late, or reported where nothing is: casts and sweeps against skin whose way is known,
-//! in f64.
+//! Checks that no contact is missed, reported late, or reported where there is none: casts and sweeps against skin
+//! whose motion is known, in f64.
 
 use clamber_surface::surface::{CastOptions, SweepHit};
 use glam::DVec3;
@@ -9,13 +9,13 @@ use super::posed::{Posed, nearest_in, point_of, random_weights};
 use super::questions::{Answer, Question, ball, capsule};
 use super::soups::random_direction;
 
-/// Times at which all triangles are looked at.
+/// Number of times within a tick at which all triangles are checked.
 const TIMES: usize = 6;
 
-/// Points of a capsule's segment that are looked at.
+/// Number of points of a capsule's segment that are checked.
 const ALONG: usize = 5;
 
-/// What moves, in f64: both ends of a segment, one and the same for a sphere.
+/// A moving sphere or capsule in f64, by both ends of its segment, which are equal for a sphere.
 #[derive(Clone, Copy, Debug)]
 struct Mover {
     start: [DVec3; 2],
@@ -27,12 +27,12 @@ struct Mover {
 }
 
 impl Mover {
-    /// Its segment at a time.
+    /// The segment at a time.
     fn at(&self, time: f64) -> [DVec3; 2] {
         [0, 1].map(|k| self.start[k] + self.ways[k] * time)
     }
 
-    /// A point of the segment about nearest to `p`.
+    /// The point of the segment nearest to `p`, but for rounding.
     fn facing(&self, time: f64, p: DVec3) -> DVec3 {
         let [a, b] = self.at(time);
         let along = (p - a).dot(b - a) / (b - a).length_squared();
@@ -40,14 +40,14 @@ impl Mover {
         a + (b - a) * along
     }
 
-    /// What f64 may lose of a distance, with room to spare.
+    /// Upper bound of the rounding of a distance in f64, with a margin.
     fn lost(&self, posed: &Posed<'_>) -> f64 {
         let size = self.start[0].length() + self.ways[0].length() + f64::from(posed.farthest);
         1e-12 * (size + self.radius)
     }
 }
 
-/// Casts and sweeps at known points; gives how many had to touch.
+/// Checks casts and sweeps at known points; returns how many had to touch.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -> usize {
     let mut checked = 0;
     let mut answer = Answer::default();
@@ -57,7 +57,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         let weights = random_weights(rng);
         let unit = posed.extent;
         let radius = unit * libm::exp10f(-3.0 + 2.0 * rng.f32());
-        // Ends within reach of a point of the skin where that is then, after a way from anywhere near.
+        // The motion starts anywhere near, and ends within the radius of a point of the skin.
         let end = point_of(posed.corners(triangle), weights);
         let within = random_direction(rng).as_vec3() * (radius * 0.9 * rng.f32());
         let way = random_direction(rng).as_vec3() * (unit * rng.f32());
@@ -93,7 +93,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
     checked
 }
 
-/// Asks, and holds the answer against what is known; gives 1 if there had to be a contact.
+/// Asks a question and checks its answer against the known motion; returns 1 if there had to be a contact.
 fn compare(
     posed: &Posed<'_>,
     question: &Question,
@@ -121,7 +121,7 @@ fn compare(
             );
         }
     };
-    // The point aimed at, all along.
+    // The point aimed at, over the whole tick.
     let weights = weights.map(f64::from);
     for step in 0..=64 {
         let at = f64::from(step) / 64.0;
@@ -130,7 +130,7 @@ fn compare(
         let p = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
         at_latest(at, (mover.facing(at, p) - p).length(), triangle);
     }
-    // All triangles, at times.
+    // All triangles, at some times.
     for step in 0..TIMES {
         let at = (step as f64 + 0.5) / TIMES as f64;
         if at >= time {
@@ -153,7 +153,7 @@ fn corners(posed: &Posed<'_>, mover: &Mover, triangle: usize, at: f64) -> [DVec3
     posed.corners_at(triangle, if mover.sweeps { at } else { 1.0 })
 }
 
-/// What is reported touches, but for the tolerance.
+/// Checks that a reported contact touches, within the tolerance.
 fn assert_near(posed: &Posed<'_>, question: &Question, mover: &Mover, hit: &SweepHit) {
     let [a, b, c] = corners(posed, mover, hit.triangle.index(), hit.time);
     let [u, v, w] = hit.barycentric.map(f64::from);
@@ -167,5 +167,8 @@ fn assert_near(posed: &Posed<'_>, question: &Question, mover: &Mover, hit: &Swee
     let near = hit.undecided || distance <= limit;
     assert!(near, "{question:?}: {hit:?} is {distance} away");
     let told = (hit.distance - distance).abs() <= rounded + mover.lost(posed);
-    assert!(told, "{question:?}: {hit:?} is {distance} away");
+    assert!(
+        told,
+        "{question:?}: the distance of {hit:?} is wrong, it is {distance}"
+    );
 }

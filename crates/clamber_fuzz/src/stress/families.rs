@@ -1,4 +1,4 @@
-//! The names of what a case is made of.
+//! The families that a case is made of, with their names.
 
 use core::fmt;
 use core::str::FromStr;
@@ -11,10 +11,10 @@ macro_rules! named {
         pub enum $name { $($(#[$what])* $value),* }
 
         impl $name {
-            /// All of them.
+            /// All values.
             pub const ALL: &'static [Self] = &[$(Self::$value),*];
 
-            /// As on command lines and in reports.
+            /// The name on command lines and in reports.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$value => $text),* }
             }
@@ -42,74 +42,75 @@ macro_rules! named {
 }
 
 named! {
-    /// What is skinned.
+    /// The mesh of a case.
     MeshFamily {
         /// A closed ball, every vertex moved by up to six joints.
         Ball = "ball",
         /// A closed tube along a chain of twelve joints.
         Limb = "limb",
-        /// A closed ball of a single joint.
+        /// A closed ball on a single joint.
         OneJoint = "one-joint",
         /// A closed tube along a chain of a thousand joints.
         Chain = "chain",
-        /// A limb of which one joint has all weights.
+        /// A closed tube along twelve joints, of which one has all weights.
         AllOnOne = "all-on-one",
-        /// A closed tube whose rings stand by turns far apart and next to each other: edges in a ratio of up to a
-        /// million.
+        /// A closed tube whose rings come in close pairs, with edge lengths in a ratio of up to a million.
         SliverTube = "sliver-tube",
         /// Loose triangles, each up to a million times as long as it is wide.
         Slivers = "slivers",
-        /// A ball with triangles doubled, flipped, moved by other joints than their doubles, and without area.
+        /// A ball with additional triangles: doubled ones, flipped ones, doubles that other joints move, and triangles
+        /// without area.
         Copies = "copies",
-        /// A closed ball of which some vertices stand a hundred to ten thousand radii out.
+        /// A closed ball with some vertices at a hundred to ten thousand radii.
         Spikes = "spikes",
-        /// A ball with vertices in the middle of edges that only one of the edge's two triangles knows.
+        /// A ball with vertices in the middle of edges that only one of the edge's two triangles uses.
         TJunctions = "t-junctions",
     }
 }
 
 named! {
-    /// What the joints do.
+    /// The poses of a case. In all but `Rest` the joints turn as well; on a chain the turns add up.
     PoseFamily {
-        /// Nothing.
+        /// No joint moves.
         Rest = "rest",
-        /// They turn, each a little more than the one before.
+        /// The joints only turn.
         Bent = "bent",
-        /// Some of them take all that they move to one point.
+        /// Some joints collapse all that they move to one point.
         Collapsed = "collapsed",
-        /// Some or all mirror.
+        /// Some or all joints mirror.
         Mirrored = "mirrored",
-        /// Some reflect in a point: what they move is turned inside out, and pinched at the ends.
+        /// Some joints reflect in a point: their skin is turned inside out, and pinched at the ends.
         InsideOut = "inside-out",
-        /// Some take all that they move into a plane or onto a line.
+        /// Some or all joints flatten all that they move into a plane or onto a line.
         Flat = "flat",
-        /// Some scale by 1e-4 to 1e4, beside others that do not.
+        /// Some joints scale by 1e-4 to 1e4, next to joints that do not.
         Scaled = "scaled",
-        /// Some of their elements are too small for normal numbers.
+        /// Some joints' matrices have subnormal elements.
         Denormal = "denormal",
-        /// They jump by many lengths of the creature from tick to tick.
+        /// Some joints jump by many lengths of the creature from tick to tick.
         Flung = "flung",
     }
 }
 
 named! {
-    /// Where in the world the creature stands, and how large it is there.
+    /// The creature's place in the world, and its size. In all but `Home` the creature moves and turns from tick to
+    /// tick.
     Place {
-        /// At the origin, and stays; 1 to 50 m.
+        /// A creature of 1 to 50 m that stays at the origin.
         Home = "home",
-        /// On its way, up to a hundred metres from the origin; 1 to 50 m.
+        /// A creature of 1 to 50 m that starts up to 100 m from the origin.
         Near = "near",
-        /// On its way, 100 km from the origin; 1 to 50 m.
+        /// A creature of 1 to 50 m that starts 100 km from the origin.
         Far = "far",
-        /// A creature of 1 cm, anywhere up to 100 km.
+        /// A creature of 1 cm that starts 1 m to 100 km from the origin.
         Tiny = "tiny",
-        /// A creature of 1 km, anywhere up to 100 km.
+        /// A creature of 1 km that starts 1 m to 100 km from the origin.
         Vast = "vast",
     }
 }
 
 impl MeshFamily {
-    /// True for meshes without a border: no ray leaves them.
+    /// True for meshes without a border: no ray passes through their skin without a hit.
     pub fn is_closed(self) -> bool {
         !matches!(self, Self::Slivers | Self::Copies | Self::TJunctions)
     }

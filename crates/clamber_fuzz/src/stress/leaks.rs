@@ -1,9 +1,9 @@
-//! No ray gets through closed skin.
+//! Checks that no ray gets through closed skin.
 //!
-//! A path from where the skin winds around so many times to where it winds around another number of times crosses the
-//! skin, however the skin is bent, mirrored or pinched: that is topology, and owes nothing to the queries. How often it
-//! winds around a point is the sum of the solid angles of its triangles over 4 pi (van Oosterom and Strackee 1983, "The
-//! Solid Angle of a Plane Triangle"), here in f64.
+//! A path between two points with different winding numbers crosses the skin, however the skin is bent, mirrored or
+//! pinched. This follows from topology alone, without any query. The winding number of a point is the sum of the solid
+//! angles of the triangles over 4 pi (van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle"), here in
+//! f64.
 
 use clamber_surface::geometry::Ray;
 use glam::{DVec3, Vec3};
@@ -12,14 +12,14 @@ use super::aims::Aims;
 use super::posed::{Posed, nearest_in};
 use super::questions::{Answer, Question};
 
-/// How far from a whole number a sum may be that counts as one.
+/// Largest distance of a computed winding number from a whole number.
 const ROUNDED: f64 = 1e-3;
 
-/// What a ray's f32 arithmetic may move a vertex by, as a share of the lengths involved, with room to spare.
+/// A ray's f32 arithmetic acts like moving the vertices by at most this share of the lengths involved; it has a margin.
 const MOVED: f64 = 1e-6;
 
-/// How often closed skin winds around a point; `None` where that cannot be told for skin moved as rounding may: at the
-/// skin itself. Elsewhere a ray from or to the point has to cross the skin so moved as often as the skin.
+/// The winding number of closed skin around a point. `None` near the skin, where rounding could move the skin across
+/// the point. Elsewhere moving the skin by the rounding does not change the winding number.
 fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     let clear = MOVED * (f64::from(posed.farthest) + point.length());
     let mut sum = 0.0;
@@ -38,7 +38,7 @@ fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     ((turns - whole).abs() < ROUNDED).then_some(whole as i64)
 }
 
-/// Aims rays at edges, vertices and triangles from either side; gives how many of them had to hit.
+/// Aims rays at edges, vertices and triangles from either side; returns how many rays had to hit.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) -> usize {
     let mut checked = 0;
     let mut answer = Answer::default();
@@ -61,7 +61,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
                 must_hit(posed, &ray, f32::INFINITY, &mut answer);
                 checked += 1;
             }
-            // Just beyond the skin aimed at.
+            // A ray that ends just beyond the skin aimed at.
             let beyond = libm::exp10(-4.0 + 3.0 * rng.f64()) * f64::from(posed.extent);
             let reach = (target - origin).as_dvec3().length() + beyond;
             let end = origin.as_dvec3() + ray.direction().as_dvec3() * reach;
@@ -74,7 +74,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
     checked
 }
 
-/// Close to the skin, on either side.
+/// A point close to the skin, on either side.
 fn origin(posed: &Posed<'_>, rng: &mut fastrand::Rng) -> Vec3 {
     let triangle = posed.any_triangle(rng);
     let [a, b, c] = posed.corners(triangle).map(|p| p.as_dvec3());

@@ -1,16 +1,18 @@
-//! Cases made to be hard in ways that are known: every family of meshes in every family of poses at every place, at
-//! sizes as creatures have them.
+//! Stress cases that are hard in known ways: every family of meshes in every family of poses at every place, at the
+//! sizes of real creatures.
 //!
-//! [`run`] poses a case for some ticks and asks every kind of query about random places of its skin. What must hold:
+//! [`run`] poses a case for some ticks and asks every kind of query at random places of its skin. It checks that
 //!
 //! - every number is finite, and nothing panics;
-//! - lazily skinned, skinned ahead, on another instruction set and by brute force, answers are equal in every bit;
-//! - every bound holds every vertex;
-//! - no ray gets through closed skin: proved by how often the skin winds around both its ends;
-//! - what is said to be nearest is, against f64;
-//! - no contact is missed or late: casts and sweeps meet skin whose way is known in f64;
-//! - a palette with NaN or infinity is refused by the joint, and neither that tick nor the next shows it;
-//! - 100 km out, answers in the world are as exact as at the origin.
+//! - answers are equal in every bit with lazy skinning, with everything skinned ahead, on another instruction set and
+//!   by brute force;
+//! - every bound holds all its vertices;
+//! - no ray gets through closed skin, judged by the winding numbers at both its ends;
+//! - closest points are the closest, compared with f64;
+//! - no contact is missed or late: casts and sweeps meet skin whose motion is known in f64;
+//! - a palette with NaN, infinity or a number beyond the limit is rejected with an error that names the joint, and
+//!   leaves no trace in that tick or the next;
+//! - answers in the world are as exact 100 km from the origin as at the origin.
 
 mod aims;
 mod bounds;
@@ -39,20 +41,20 @@ pub use times::{Class, DOUBTFUL, FLOOR, LIMIT, Summary, Times};
 use core::fmt;
 use core::str::FromStr;
 
-/// What is posed, how, where, and how often. The same one runs the same way every time.
+/// A stress case. It runs the same way every time. As text it is `mesh/pose/place/triangles/ticks/seed`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
-    /// What is skinned.
+    /// The mesh.
     pub mesh: MeshFamily,
-    /// What its joints do.
+    /// The poses of its joints.
     pub pose: PoseFamily,
-    /// Where it stands.
+    /// Its place in the world.
     pub place: Place,
-    /// About how many triangles it has.
+    /// About the number of its triangles.
     pub triangles: usize,
-    /// For how many ticks.
+    /// Number of ticks to run.
     pub ticks: usize,
-    /// Of all that is random.
+    /// Seed for everything random.
     pub seed: u64,
 }
 
@@ -80,7 +82,10 @@ impl FromStr for Case {
                 "{text:?} is not mesh/pose/place/triangles/ticks/seed"
             ));
         };
-        let number = |text: &str| text.parse().map_err(|_| format!("{text:?} is no number"));
+        let number = |text: &str| {
+            text.parse()
+                .map_err(|_| format!("{text:?} is not a number"))
+        };
         Ok(Self {
             mesh: mesh.parse()?,
             pose: pose.parse()?,

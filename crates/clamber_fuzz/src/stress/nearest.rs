@@ -1,9 +1,9 @@
-//! What is said to be nearest is: against all triangles in f64, by arithmetic of its own.
+//! Checks closest points against all triangles in f64, by independent arithmetic.
 
 use super::aims::Aims;
 use super::posed::{Posed, nearest_in};
 
-/// Asks at some distances from the skin; gives how often.
+/// Checks `count` closest points, at several distances from the skin; returns `count`.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) -> usize {
     for _ in 0..count {
         let off = [0.0, 0.001, 0.05, 3.0][rng.usize(0..4)];
@@ -12,7 +12,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
         let point = aims.off(skin, off);
         let space = posed.surface.in_model();
         let Some(found) = space.closest_point(point, f32::INFINITY) else {
-            panic!("nothing is nearest to {point}");
+            panic!("no closest point to {point}");
         };
         let p = point.as_dvec3();
         let triangles = 0..posed.surface.mesh().triangles().len();
@@ -21,13 +21,13 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
             (nearest_in(corners, p) - p).length()
         });
         let nearest = distances.fold(f64::INFINITY, f64::min);
-        // The lengths involved are of this size.
+        // The size of the lengths involved.
         let size = f64::from(posed.farthest) + p.length();
         let lost = size * 1e-11;
         let off = (found.distance - nearest).abs();
         assert!(
             off <= lost,
-            "nearest to {point}: {found:?}, but {nearest} away"
+            "closest to {point}: {found:?}, but the distance is {nearest}"
         );
     }
     count

@@ -1,4 +1,4 @@
-//! Where creatures stand in the world.
+//! Places of creatures in the world.
 
 use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use glam::{DQuat, DVec3};
@@ -6,18 +6,18 @@ use glam::{DQuat, DVec3};
 use super::Place;
 use super::soups::{random_direction, random_turn};
 
-/// Farthest from the world's origin, metres.
+/// Largest distance of a start from the world's origin, metres.
 const FARTHEST: f64 = 1e5;
 
-/// How a creature goes through the world.
+/// The motion of a creature through the world.
 #[derive(Debug)]
 pub(super) struct Journey {
-    /// Its size in units of its own space.
+    /// The creature's size in units of its own space.
     pub(super) extent: f64,
     scale: f64,
     start: DVec3,
     turn: DQuat,
-    /// Made in a tick.
+    /// Displacement in a tick, metres.
     way: DVec3,
     spin: (DVec3, f64),
 }
@@ -29,7 +29,7 @@ impl Journey {
             Place::Tiny => 0.01,
             Place::Vast => 1_000.0,
         };
-        // Small by its own coordinates, by its place, or by both.
+        // The size comes from the creature's own coordinates, from its scale in the world, or from both.
         let extent = [metres, 1.0, metres * 0.3][rng.usize(0..3)];
         let anywhere = libm::exp10(5.0 * rng.f64());
         let away = match place {
@@ -55,7 +55,7 @@ impl Journey {
         }
     }
 
-    /// Where the creature stands at a tick.
+    /// The creature's place in the world at a tick.
     pub(super) fn at(&self, tick: usize) -> Similarity {
         let (axis, angle) = self.spin;
         Similarity {

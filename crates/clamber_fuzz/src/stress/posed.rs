@@ -1,4 +1,4 @@
-//! What checks need to know of a posed surface, found by means that owe nothing to its queries.
+//! The positions of a posed surface, which checks use without its queries.
 
 use clamber_surface::mesh::{TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
@@ -7,13 +7,13 @@ use glam::{DVec3, Vec3};
 /// A surface with all its vertices skinned.
 pub(super) struct Posed<'a> {
     pub(super) surface: &'a SkinnedSurface,
-    /// Now.
+    /// Current positions, in model space.
     pub(super) positions: Vec<Vec3>,
-    /// A tick ago, in the current model frame.
+    /// Positions a tick ago, in the current model frame.
     pub(super) previous: Vec<Vec3>,
-    /// About how large the creature is at rest, in model units.
+    /// Approximate size of the creature at rest, in model units.
     pub(super) extent: f32,
-    /// Largest coordinate, now or a tick ago.
+    /// Largest absolute coordinate, now or a tick ago.
     pub(super) farthest: f32,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Posed<'a> {
         }
     }
 
-    /// The corners of a triangle now.
+    /// The current corners of a triangle.
     pub(super) fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.corner_ids(triangle).map(|v| self.positions[v])
     }
@@ -47,7 +47,7 @@ impl<'a> Posed<'a> {
         self.surface.mesh().triangles()[triangle].map(|v| v.index())
     }
 
-    /// The corners of a triangle at a time of the tick, 0 to 1, moving on straight lines.
+    /// The corners of a triangle at a time of the tick, 0 to 1. They move on straight lines.
     pub(super) fn corners_at(&self, triangle: usize, time: f64) -> [DVec3; 3] {
         self.corner_ids(triangle).map(|v| {
             let (from, to) = (self.previous[v].as_dvec3(), self.positions[v].as_dvec3());
@@ -59,7 +59,7 @@ impl<'a> Posed<'a> {
         rng.usize(0..self.surface.mesh().triangles().len())
     }
 
-    /// What a report calls a triangle.
+    /// Description of a triangle for messages.
     pub(super) fn name(&self, triangle: usize) -> String {
         let corners = self.corners(triangle);
         format!("triangle {} at {corners:?}", TriangleId(triangle as u32))
@@ -70,7 +70,7 @@ fn both_finite(a: &[Vec3], b: &[Vec3]) -> bool {
     a.iter().chain(b).all(|p| p.is_finite())
 }
 
-/// Weights of a random point of a triangle.
+/// Barycentric weights of a random point of a triangle.
 pub(super) fn random_weights(rng: &mut fastrand::Rng) -> [f32; 3] {
     let (u, v) = (rng.f32(), rng.f32());
     let (u, v) = if u + v > 1.0 {
@@ -81,20 +81,20 @@ pub(super) fn random_weights(rng: &mut fastrand::Rng) -> [f32; 3] {
     [u, v, 1.0 - u - v]
 }
 
-/// The point of a triangle with such weights, rounded.
+/// The point of a triangle with the given weights, computed in f64 and rounded.
 pub(super) fn point_of([a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]) -> Vec3 {
     let sum =
         a.as_dvec3() * f64::from(u) + b.as_dvec3() * f64::from(v) + c.as_dvec3() * f64::from(w);
     sum.as_vec3()
 }
 
-/// A point of the triangle about the nearest to `p`, in f64: the distance to it is at least the true one, and hardly
-/// more.
+/// A point of the triangle that is nearest to `p` but for rounding, in f64: its distance is at least the true one, and
+/// hardly more.
 pub(super) fn nearest_in([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
     let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| {
         let way = to - from;
         let along = (p - from).dot(way) / way.length_squared();
-        // Of a side without length, its beginning.
+        // For a side without length, its beginning: `along` is NaN then.
         let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
         from + way * along
     });

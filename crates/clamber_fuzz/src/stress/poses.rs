@@ -1,4 +1,4 @@
-//! Palettes of every family.
+//! Palettes of every family of poses.
 
 use core::ops::Range;
 
@@ -9,23 +9,23 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::soups::{random_direction, random_turn};
 use super::{PoseFamily, Subject};
 
-/// What a creature does from tick to tick.
+/// The motion of a creature's joints from tick to tick.
 pub(super) struct Motion {
     family: PoseFamily,
-    /// About which every joint turns, and how far at most.
+    /// The axis of every joint, and the largest angle of its turn, radians.
     axes: Vec<(DVec3, f64)>,
-    /// The joints that do what the family is named after.
+    /// The joints that are deformed as the family says.
     chosen: Range<usize>,
-    /// What they do, before they turn.
+    /// Their deformation, before they turn.
     deformation: DMat3,
-    /// Where each joint scales by its own factor.
+    /// Scale of each joint in [`PoseFamily::Scaled`].
     factors: Vec<f64>,
 }
 
 impl Motion {
     pub(super) fn new(subject: &Subject, family: PoseFamily, rng: &mut fastrand::Rng) -> Self {
         let joints = subject.origins.len();
-        // A chain turns by as much however many joints it has.
+        // A chain turns by about as much with any number of joints.
         let most = 4.0 / (joints as f64).max(4.0);
         let axes = (0..joints).map(|_| (random_direction(rng), most * rng.f64()));
         let axes = axes.collect();
@@ -109,7 +109,7 @@ impl Motion {
     }
 }
 
-/// What a palette must not hold.
+/// Numbers that a palette must not hold.
 const FAULTS: [f32; 6] = [
     f32::NAN,
     f32::INFINITY,
@@ -124,7 +124,7 @@ const FAULTS: [f32; 6] = [
 pub(super) fn spoilt(palette: &Palette, rng: &mut fastrand::Rng) -> (Palette, usize) {
     let mut matrices = palette.matrices().to_vec();
     let joint = rng.usize(0..matrices.len());
-    // A translation, which no small mesh makes harmless.
+    // In the translation: there it counts in full, however small the mesh is.
     let element = &mut matrices[joint].rows[rng.usize(0..3)][3];
     *element = FAULTS[rng.usize(0..FAULTS.len())];
     (Palette::from_matrices(matrices), joint)

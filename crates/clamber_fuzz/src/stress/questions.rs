@@ -20,20 +20,20 @@ pub(super) enum Question {
     CastAll(Capsule, [Vec3; 2], CastOptions),
 }
 
-/// A ball of numbers that make one.
+/// A ball from valid numbers.
 pub(super) fn ball(center: Vec3, radius: f32) -> Capsule {
     capsule([center; 2], radius)
 }
 
-/// A capsule of numbers that make one.
+/// A capsule from valid numbers.
 pub(super) fn capsule([a, b]: [Vec3; 2], radius: f32) -> Capsule {
     match Capsule::new(a, b, radius) {
         Some(capsule) => capsule,
-        None => panic!("no capsule of {radius} from {a} to {b}"),
+        None => panic!("no capsule of radius {radius} from {a} to {b}"),
     }
 }
 
-/// What came of it. Keeps its memory.
+/// The answer to a question. Its memory is reused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Answer {
     pub(super) hits: Vec<SurfaceHit>,
@@ -41,7 +41,7 @@ pub(super) struct Answer {
     pub(super) met: bool,
 }
 
-/// Runs the same call on a surface or on brute force, which say in their own ways whether a ray meets anything.
+/// Asks a question of a surface or of brute force, which differ only in the call for whether a ray hits anything.
 macro_rules! ask {
     ($question:expr, $of:expr, $answer:expr, $meets:expr) => {{
         let (of, answer) = ($of, $answer);
@@ -87,19 +87,19 @@ impl Answer {
         self.met = false;
     }
 
-    /// How much was found.
+    /// Number of hits, or 1 if a ray hits anything.
     pub(super) fn count(&self) -> usize {
         self.hits.len() + self.sweeps.len() + usize::from(self.met)
     }
 
-    /// Equal in every bit.
+    /// True if both answers are equal in every bit.
     pub(super) fn same(&self, other: &Self) -> bool {
         same_hits(&self.hits, &other.hits)
             && same_sweeps(&self.sweeps, &other.sweeps)
             && self.met == other.met
     }
 
-    /// Panics unless every number is what the documentation says.
+    /// Panics if a number of the answer is not within its documented range.
     pub(super) fn check(&self, question: &Question) {
         for hit in &self.hits {
             let [u, v, w] = hit.barycentric;

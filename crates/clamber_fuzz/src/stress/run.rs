@@ -1,4 +1,4 @@
-//! One case from beginning to end.
+//! Runs one case from beginning to end.
 
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::Similarity;
@@ -23,23 +23,28 @@ const ROUNDS: usize = 2;
 /// Origins of rays at closed skin in a tick, six rays each.
 const ORIGINS: usize = 4;
 
-/// Nearest points sought in a tick.
+/// Closest points that are checked in a tick.
 const NEAREST: usize = 4;
 
-/// Contacts sought in a tick, two movers each.
+/// Rounds of contacts that are checked in a tick, with two movers each.
 const CONTACTS: usize = 6;
 
-/// Places asked about in the world in a tick.
+/// Places in the world that are checked in a tick.
 const WORLD: usize = 6;
 
-/// Questions that are timed in a tick, of every name.
+/// Questions of every name that are timed in a tick.
 const TIMED: usize = 64;
 
-/// Most steps of a cast's exact test, as documented.
+/// Largest number of steps of a cast's exact test, as documented.
 const STEPS: u32 = 256;
 
-/// Runs a case. Panics at the first thing that is wrong. With `times`, queries are timed, each after it was asked once:
-/// what it costs to skin what they touch is no part of it.
+/// Runs a case, and returns how much was checked.
+///
+/// With `times`, queries are timed as well. Each query runs once before it is timed, so that the time does not include
+/// skinning.
+///
+/// # Panics
+/// If a check fails.
 pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     let mut rng = fastrand::Rng::with_seed(case.seed);
     let journey = Journey::new(case.place, &mut rng);
@@ -50,7 +55,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     let mut any_level = || levels[rng.usize(0..levels.len())];
     let [level, other] = [any_level(), any_level()];
     let mut surface = SkinnedSurface::with_simd_level(subject.mesh.clone(), level);
-    // Never sees a fault, and skins ahead.
+    // The twin is never given a faulty palette, and skins ahead.
     let mut twin = SkinnedSurface::with_simd_level(subject.mesh.clone(), other);
     let fault = rng.usize(0..case.ticks.max(1));
     let mut before: Option<Before> = None;
@@ -95,7 +100,7 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
     seen
 }
 
-/// All questions, asked in every way.
+/// Asks all questions in every way, and compares the answers.
 fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) -> Seen {
     let mut seen = Seen::default();
     let brute_force = BruteForce::new(posed.surface.in_model());
@@ -129,7 +134,7 @@ fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) ->
     seen
 }
 
-/// Gives a surface what it must refuse; nothing may have changed then.
+/// Checks that a surface rejects a faulty palette and an invalid place, and does not change.
 fn refuse(
     surface: &mut SkinnedSurface,
     palette: &Palette,
@@ -164,7 +169,7 @@ fn refuse(
     );
     assert!(
         state(surface) == before,
-        "a palette was refused, and changed something"
+        "a rejected palette changed the surface"
     );
 }
 
@@ -190,15 +195,15 @@ fn time(
                 query,
                 work: 0,
             };
-            // Asked once, so that what it touches is skinned. Of the same surface: one that is skinned ahead has other
-            // bounds, and so other work.
+            // Asked once before it is timed, so that all it touches is skinned, and on the same surface: a surface that
+            // is skinned ahead has other bounds, so the work differs.
             let class = class.with_work(work(&mut fresh, poses, question, &mut answer));
             times.add(class, case, || question.ask(&fresh, &mut answer));
         }
     }
 }
 
-/// What a question alone makes of a tick: nodes, clusters and triangles, about in proportion to what they cost.
+/// The work of a question that is the first of its tick: nodes, clusters and triangles, weighted about by their cost.
 fn work(
     fresh: &mut SkinnedSurface,
     [before, now]: Poses<'_>,
@@ -211,7 +216,7 @@ fn work(
     assert_eq!(done, Ok(()));
     question.ask(fresh, answer);
     let touched = fresh.diagnostics();
-    // Eight bounds are a node.
+    // A node has eight bounds.
     let nodes = touched.bounds_evaluated / 8;
     nodes + 4 * touched.clusters_touched + 8 * touched.triangles_tested as usize
 }

@@ -1,29 +1,29 @@
 use core::ops::AddAssign;
 
-/// What there was to check.
+/// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
-    /// Poses taken.
+    /// Poses that were accepted.
     pub ticks: usize,
-    /// Palettes refused, and forgotten.
+    /// Ticks in which a faulty palette was rejected, and left no trace.
     pub refused: usize,
     /// Questions whose answers were compared.
     pub questions: usize,
     /// Hits among the answers.
     pub hits: usize,
-    /// Times that a vertex was held against a bound.
+    /// How often a vertex was compared with a bound.
     pub bounds: usize,
-    /// Rays that closed skin had to stop.
+    /// Rays that had to hit closed skin.
     pub rays: usize,
-    /// Nearest points compared with f64.
+    /// Closest points that were compared with f64.
     pub nearest: usize,
     /// Casts and sweeps that had to touch.
     pub contacts: usize,
-    /// Questions in the world.
+    /// Questions and motions in world space.
     pub world: usize,
-    /// Casts and sweeps that were flagged undecided.
+    /// Contacts that were flagged as undecided.
     pub undecided: usize,
-    /// Most steps that any of them took for a triangle.
+    /// Largest number of steps that a cast or sweep took for a triangle.
     pub steps: usize,
 }
 
@@ -44,7 +44,7 @@ impl AddAssign for Seen {
 }
 
 impl Seen {
-    /// All checks.
+    /// Number of all checks.
     pub fn checks(&self) -> usize {
         self.refused
             + self.questions

@@ -1,10 +1,10 @@
-//! What nobody should model and somebody will.
+//! Bad meshes, such as users will have all the same: slivers, doubled triangles, spikes, T-junctions.
 
 use glam::{DQuat, DVec3};
 
 use super::shapes::Shape;
 
-/// Loose triangles within a ball of diameter 1, a twentieth of that long and a million times less wide at the least.
+/// Loose triangles in and near a ball of diameter 1. Each is 0.05 long, and 1 to 1e-6 times as wide.
 pub(super) fn slivers(triangles: usize, rng: &mut fastrand::Rng) -> Shape {
     let mut shape = Shape {
         positions: Vec::new(),
@@ -15,7 +15,7 @@ pub(super) fn slivers(triangles: usize, rng: &mut fastrand::Rng) -> Shape {
         let (long, across) = (turn * DVec3::X * 0.05, turn * DVec3::Y * 0.05);
         let width = libm::exp10(-6.0 * rng.f64());
         let place = random_direction(rng) * (0.5 * libm::cbrt(rng.f64()));
-        // Needles, with the third corner beside one end, and caps, with it beside the middle.
+        // Needles have the third corner beside one end, caps have it beside the long edge.
         let foot = if rng.bool() { 0.0 } else { rng.f64() };
         let third = place + long * foot + across * width;
         shape.positions.extend([place, place + long, third]);
@@ -24,8 +24,8 @@ pub(super) fn slivers(triangles: usize, rng: &mut fastrand::Rng) -> Shape {
     shape
 }
 
-/// A shape with some of its triangles once more: as they are, flipped, with corners of their own (which may follow other
-/// joints), and with two corners in one.
+/// A shape with two additional copies of each triangle: equal, flipped, with corners of its own (which may follow other
+/// joints), or with two equal corners.
 pub(super) fn copied(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     for index in 0..shape.triangles.len() {
         let [a, b, c] = shape.triangles[index];
@@ -48,7 +48,7 @@ pub(super) fn copied(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     shape
 }
 
-/// A shape of which about every fiftieth vertex is pulled out, a hundred to ten thousand times as far.
+/// A shape with about every fiftieth vertex pulled out to a hundred to ten thousand times its distance.
 pub(super) fn spiked(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     for position in &mut shape.positions {
         if rng.u32(0..50) == 0 {
@@ -58,7 +58,8 @@ pub(super) fn spiked(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     shape
 }
 
-/// A shape of which every third triangle or so is cut in two through the middle of an edge, which its neighbour is not.
+/// A shape with about every third triangle cut in two at the middle of an edge, while the neighbour at that edge is not
+/// cut.
 pub(super) fn with_t_junctions(mut shape: Shape, rng: &mut fastrand::Rng) -> Shape {
     for index in 0..shape.triangles.len() {
         if rng.u32(0..3) > 0 {
@@ -74,7 +75,7 @@ pub(super) fn with_t_junctions(mut shape: Shape, rng: &mut fastrand::Rng) -> Sha
     shape
 }
 
-/// Evenly from all directions.
+/// A random unit vector, evenly distributed.
 pub(super) fn random_direction(rng: &mut fastrand::Rng) -> DVec3 {
     loop {
         let p = DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - DVec3::ONE;
@@ -85,7 +86,7 @@ pub(super) fn random_direction(rng: &mut fastrand::Rng) -> DVec3 {
     }
 }
 
-/// Any rotation.
+/// A random rotation.
 pub(super) fn random_turn(rng: &mut fastrand::Rng) -> DQuat {
     let angle = core::f64::consts::TAU * rng.f64();
     clamber_surface::geometry::rotation_from_axis_angle(random_direction(rng), angle)

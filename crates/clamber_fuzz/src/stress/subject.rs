@@ -1,4 +1,4 @@
-//! Meshes of every family, with what poses need to know of them.
+//! Meshes of every family, with the joints that poses need.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,27 +16,27 @@ use super::soups::{copied, slivers, spiked, with_t_junctions};
 pub struct Subject {
     /// The mesh.
     pub mesh: Arc<ColliderMesh>,
-    /// Where its joints are at rest.
+    /// Positions of the joints at rest.
     pub(super) origins: Vec<DVec3>,
-    /// True if each joint hangs from the one before; else all from the ground.
+    /// True if each joint is the child of the one before; false if no joint has a parent.
     pub(super) is_chain: bool,
-    /// About how large it is at rest, without spikes, in units of its own space.
+    /// Approximate size at rest, without spikes, in units of its own space.
     pub extent: f64,
 }
 
-/// How joints share the vertices.
+/// The joints, and how they share the vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Joints {
-    /// Six, along the axes of a ball.
+    /// Six joints, along the axes of a ball.
     Star,
-    /// So many along a tube.
+    /// So many joints along a tube.
     Chain(usize),
-    /// So many along a tube, of which the middle one has everything.
+    /// So many joints along a tube, of which the middle one has all weights.
     Middle(usize),
 }
 
 impl Subject {
-    /// A mesh of about so many triangles and of the given extent.
+    /// A mesh with about so many triangles and the given extent.
     pub fn new(family: MeshFamily, triangles: usize, extent: f64, seed: u64) -> Self {
         let mut rng = fastrand::Rng::with_seed(seed);
         let (shape, joints) = match family {
@@ -81,7 +81,7 @@ impl Subject {
                 Joints::Middle(count) => influences.push(influence(count / 2, 1.0)),
             }
             if family == MeshFamily::Copies && rng.u32(0..8) == 0 {
-                // Cracks open along it.
+                // Cracks open along the vertices with other joints.
                 let start = influence_ends.last().map_or(0, |end| *end as usize);
                 influences.truncate(start);
                 influences.push(influence(rng.usize(0..6), 1.0));
@@ -132,7 +132,7 @@ fn influence(joint: usize, weight: f64) -> Influence {
     }
 }
 
-/// The joints whose axes it is not behind.
+/// Influences of the joints of [`Joints::Star`] whose axes are not on the far side of `position`.
 fn star(position: DVec3, all: &mut Vec<Influence>) {
     let direction = position.normalize_or(DVec3::Y);
     let near = STAR.iter().map(|axis| axis.dot(direction) + 0.3);
@@ -140,7 +140,7 @@ fn star(position: DVec3, all: &mut Vec<Influence>) {
     all.extend(near.map(|(joint, near)| influence(joint, near * near)));
 }
 
-/// The four nearest joints, or those there are.
+/// Influences of the four nearest joints of a chain, or of all if there are fewer.
 fn chain(height: f64, count: usize, all: &mut Vec<Influence>) {
     let along = height * count as f64 - 0.5;
     let first = (along.floor() as isize - 1).clamp(0, count.saturating_sub(4) as isize) as usize;

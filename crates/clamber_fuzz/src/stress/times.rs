@@ -1,26 +1,26 @@
-//! How long queries take, by what they are.
+//! Times of queries, by class.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::MeshFamily;
 
-/// Queries that are alike, in whatever pose: where poses make a difference, it is in the work.
+/// A class of similar queries, in any pose: a pose makes a difference only through the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Class {
-    /// On what.
+    /// The mesh.
     pub mesh: MeshFamily,
-    /// Of about how many triangles.
+    /// About the number of its triangles.
     pub triangles: usize,
-    /// Which query, aimed how.
+    /// Name of the query and its aim.
     pub query: &'static str,
-    /// How much it had to do: nodes of the hierarchy, four times the clusters and eight times the triangles, which is
-    /// about what they cost; rounded up to a power of four less one.
+    /// Work of the query: nodes of the hierarchy, plus four times the clusters, plus eight times the triangles, about
+    /// in proportion to their cost; rounded up to a power of four less one.
     pub work: usize,
 }
 
 impl Class {
-    /// The class with so much work.
+    /// The class for so much work.
     pub(super) fn with_work(self, done: usize) -> Self {
         let mut work = 0;
         while work < done {
@@ -30,23 +30,23 @@ impl Class {
     }
 }
 
-/// Medians below this count as this, nanoseconds: what the first box rules out takes a twentieth of it, and is no measure
-/// for what goes a little farther.
+/// A median below this counts as this, nanoseconds. A query that the root's box rules out takes a twentieth of it, and
+/// is no measure for queries that get a little farther.
 pub const FLOOR: f64 = 1_000.0;
 
-/// So many medians the slowest queries of a class may take.
+/// The slowest queries of a class may take so many times the class's median.
 pub const LIMIT: f64 = 20.0;
 
-/// Times beyond so many medians are taken again, and the shortest counts.
+/// A query that takes more than so many times the median is timed again, and its shortest time counts.
 pub const DOUBTFUL: f64 = 4.0;
 
-/// How often.
+/// How often a query is timed again.
 const AGAIN: usize = 3;
 
-/// So many of a class are taken again in any case: there is no median to speak of yet.
+/// The first so many queries of a class are always timed again, since their median is not yet reliable.
 const FEW: usize = 16;
 
-/// Times of classes.
+/// Times of queries by class.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
     classes: BTreeMap<Class, Samples>,
@@ -55,36 +55,36 @@ pub struct Times {
 #[derive(Clone, Debug, Default)]
 struct Samples {
     nanoseconds: Vec<f32>,
-    /// About; found anew whenever their number has doubled.
+    /// Approximate median, computed again whenever the number of samples has doubled.
     median: f32,
     worst: f32,
-    /// The case that took longest.
+    /// The case of the longest time.
     of: String,
 }
 
-/// What a class took.
+/// Summary of a class's times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Queries.
+    /// Number of queries.
     pub count: usize,
-    /// Half of them took at most this, nanoseconds.
+    /// Median time, nanoseconds.
     pub median: f64,
-    /// And 999 of 1,000 this; of fewer than 1,000 it is the slowest one's.
+    /// The 99.9th percentile of the times, nanoseconds. With fewer than 1,000 queries it is the longest time.
     pub p999: f64,
-    /// The case that took longest.
+    /// The case of the longest time.
     pub longest: String,
 }
 
 impl Summary {
-    /// How many medians, of [`FLOOR`] at least, the slowest took.
+    /// `p999` divided by the median, or by [`FLOOR`] if the median is smaller.
     pub fn ratio(&self) -> f64 {
         self.p999 / self.median.max(FLOOR)
     }
 }
 
 impl Times {
-    /// Times a query. One that takes more than [`DOUBTFUL`] times the median so far is asked three times more at once, and
-    /// its shortest time counts: another process that had the core says nothing about the query.
+    /// Times a query. The first queries of a class, and those that take more than [`DOUBTFUL`] times the median so far,
+    /// are timed three times more at once, and the shortest time counts: another process may have had the core.
     pub(super) fn add(&mut self, class: Class, case: &impl ToString, mut ask: impl FnMut()) {
         let mut time = || {
             let start = Instant::now();
@@ -109,13 +109,13 @@ impl Times {
         }
     }
 
-    /// What every class took.
+    /// The summaries of all classes.
     pub fn summaries(&self) -> impl Iterator<Item = (Class, Summary)> {
         let all = self.classes.iter();
         all.map(|(class, samples)| (*class, samples.summary()))
     }
 
-    /// [`Times::summaries`] with classes of unlike work thrown together; that of those is told as 0.
+    /// [`Times::summaries`] with the classes merged that differ only in their work. A merged class has a work of 0.
     pub fn whatever_work(&self) -> Vec<(Class, Summary)> {
         let mut merged: BTreeMap<Class, Samples> = BTreeMap::new();
         for (class, samples) in &self.classes {

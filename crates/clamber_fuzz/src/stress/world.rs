@@ -1,4 +1,4 @@
-//! In the world, a hundred kilometres out is as exact as the origin.
+//! Checks that answers in the world are as exact 100 km from the origin as at the origin.
 
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Palette;
@@ -9,10 +9,10 @@ use glam::{DVec3, Vec3};
 use super::aims::Aims;
 use super::posed::{Posed, point_of, random_weights};
 
-/// Seconds of a tick.
+/// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
 
-/// What a tick ago is needed.
+/// The data of the last tick.
 pub(super) struct Before {
     pub(super) positions: Vec<Vec3>,
     pub(super) place: Similarity,
@@ -29,7 +29,7 @@ impl Before {
     }
 }
 
-/// Largest product that skinning adds up, in model units: what its rounding is a share of.
+/// Bound of the products that skinning adds up, in model units. The rounding of skinning is a share of it.
 fn reach(surface: &SkinnedSurface, palette: &Palette) -> f64 {
     let radius = f64::from(surface.mesh().radius());
     let of = |map: glam::DAffine3| {
@@ -41,7 +41,7 @@ fn reach(surface: &SkinnedSurface, palette: &Palette) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// The same questions here and at the origin, and the ways of points against f64; gives how many there were.
+/// Compares answers here with those at the origin, and motions of points with f64; returns the number of checks.
 pub(super) fn check(
     posed: &Posed<'_>,
     palette: &Palette,
@@ -57,11 +57,11 @@ pub(super) fn check(
         ..place
     };
     if let Err(error) = home.place(palette, at_home) {
-        panic!("refused at the origin: {error}");
+        panic!("rejected at the origin: {error}");
     }
     let away = place.translation;
-    // A point in model space is rounded to f32 once, wherever it comes from, and so is what is found; the world's
-    // coordinates are off by some 2^-52 of their own size.
+    // A point in model space is rounded to f32 once, wherever it comes from, and so is a point that is found. World
+    // coordinates are off by about 2^-52 of their own size.
     let world = 1e-15 * away.length();
     let mut checked = 0;
     for _ in 0..count {
@@ -75,12 +75,12 @@ pub(super) fn check(
         let here = home.closest_point(point, f64::INFINITY);
         let there = far.closest_point(point + away, f64::INFINITY);
         let (Some(here), Some(there)) = (here, there) else {
-            panic!("nothing is nearest to {point}, {away} out");
+            panic!("no closest point to {point}, with the creature at {away}");
         };
         let off = (here.distance - there.distance).abs();
         assert!(
             off <= exact,
-            "{off} m off, {exact} allowed, {away} out: {here:?} {there:?}"
+            "{off} m off, {exact} allowed, with the creature at {away}: {here:?} {there:?}"
         );
         check_contact(posed, &there, exact);
 
@@ -90,7 +90,7 @@ pub(super) fn check(
             check_contact(posed, &hit, exact);
             let from = hit.point - (point + away);
             let aside = from.cross(along.normalize_or(DVec3::X)).length();
-            // A direction is rounded, too.
+            // The direction is rounded as well.
             let turned = from.length() * 2e-7;
             assert!(
                 aside <= exact + turned,
@@ -106,20 +106,23 @@ pub(super) fn check(
     checked
 }
 
-/// A contact is where its material is.
+/// Checks that a contact is at its material point.
 fn check_contact(posed: &Posed<'_>, contact: &Contact, exact: f64) {
     let corners = posed.corners(contact.material.key as usize);
-    // In model space: weights in f32 do not add up to 1 exactly, and the world is large.
+    // Computed in model space: weights in f32 do not add up to exactly 1, which matters far from the origin.
     let weights = contact.material.coordinates.map(|weight| weight as f32);
     let place = posed.surface.world_from_model();
     let point = place.transform_point_f32(point_of(corners, weights));
     let off = contact.point.distance(point);
-    assert!(off <= exact, "{contact:?} is {off} m from its material");
+    assert!(
+        off <= exact,
+        "{contact:?} is {off} m from its material point"
+    );
     let unit = (contact.normal.length() - 1.0).abs() < 1e-6;
     assert!(unit && contact.distance.is_finite(), "{contact:?}");
 }
 
-/// A material point goes from where it was to where it is.
+/// Checks the motion of a material point against its positions at both ends of the tick.
 fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut fastrand::Rng) {
     let triangle = posed.any_triangle(rng);
     let weights = random_weights(rng);
@@ -128,7 +131,7 @@ fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut
         coordinates: weights.map(f64::from),
     };
     let Some(motion) = posed.surface.motion(&material, TICK) else {
-        panic!("{material:?} does not move");
+        panic!("{material:?} has no motion");
     };
     let place = *posed.surface.world_from_model();
     let now = place.transform_point_f32(point_of(posed.corners(triangle), weights));
@@ -136,13 +139,13 @@ fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut
     let then = before.place.transform_point_f32(point_of(corners, weights));
     let moved = now - then;
     let relative = place.relative(&before.place).translation.length();
-    // Two skinnings and a matrix are rounded, as the products that they add up.
+    // The rounding of two skinnings and a matrix is a share of the products that they add up.
     let size = reach(posed.surface, palette) + before.reach + relative;
     let exact = place.scale * size * 2e-6 + 1e-14 * place.translation.length();
     let off = (motion.velocity * TICK - moved).length();
     assert!(
         off <= exact,
-        "{motion:?} moves {off} m else than {moved}, {exact} allowed"
+        "{motion:?} differs by {off} m from {moved}, {exact} allowed"
     );
     assert!(
         motion.position.distance(now) <= exact,

@@ -5,72 +5,74 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
 
-/// What the script asks for at a tick.
+/// What the script asks of the climber in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Intent {
-    /// No input at all, as long as the skin is level enough to stand on.
+    /// Stand without input, as long as the skin is level enough.
     Stand,
-    /// Walk along the back, up and down around the perch.
+    /// Walk to and fro along the back, around the perch.
     Patrol,
     /// Patrol, and jump as soon as the skin is calm.
     Jump,
-    /// Come over the ground and climb to the top.
+    /// Approach over the ground and climb to the top.
     Climb,
 }
 
-/// Seconds in one direction.
+/// Seconds for which a patrol walks in one direction.
 const LEG: f64 = 2.5;
 
-/// How far from the perch a patrol turns round, as a share of the creature's height.
+/// Distance from the perch at which a patrol turns round, as a share of the creature's height.
 const REACH: f64 = 0.06;
 
-/// Where a patrol has arrived, metres from its target.
+/// Distance from its target at which a patrol has arrived, metres.
 const ARRIVED: f64 = 0.2;
 
-/// Slope from which a rider holds on, and below which it stands up again, radians: 40 and 30 degrees, well within the 50
-/// that it can stand on.
+/// Slope above which a rider holds on, and below which it stands up again, radians: 40 and 30 degrees, well below the
+/// 50 degrees that it can stand on.
 const HOLD_ON: f64 = 0.7;
 const STAND_UP: f64 = 0.52;
 
-/// How far ahead a patrol looks for skin to walk on, how far below or above it, metres, and how steep it may be, radians.
+/// A patrol looks for skin so far ahead, and so far above and below its feet, metres. It walks on if that skin is less
+/// steep than `WALKABLE`, radians.
 const AHEAD: f64 = 0.6;
 const STEP: f64 = 0.5;
 const WALKABLE: f64 = 0.6;
 
-/// A rider jumps from skin that moves no faster than this relative to the creature as a whole, metres a second, and that
-/// shakes no more than that, metres a second squared: it stays in the air for a second, and cannot steer there.
+/// A rider jumps only from skin that moves more slowly than this relative to the creature as a whole, metres a second,
+/// and that shakes less than `JUMP_SHAKE`, metres a second squared: the jump takes a second, in which it cannot steer.
 const JUMP_SPEED: f64 = 0.4;
 const JUMP_SHAKE: f64 = 3.0;
 
-/// Seconds that a jump lasts on level ground, and some more: a rider still in the air then has missed its landing. Sooner it
-/// would grip skin that it could have landed on.
+/// A little more than the seconds that a jump takes on level ground. A rider that is in the air for longer has missed
+/// its landing, and grips. With a smaller value it would grip skin that it could have landed on.
 const JUMP_SECONDS: f64 = 1.2;
 
-/// What a rider sees of the scene.
+/// The part of the scene that a rider sees.
 pub(super) struct RiderScene<'a> {
     pub(super) surface: &'a SkinnedSurface,
     /// The material point that a patrol keeps near.
     pub(super) perch: &'a MaterialPoint,
-    /// Of the creature as a whole, metres a second.
+    /// Velocity of the creature as a whole, metres a second.
     pub(super) velocity: DVec3,
-    /// Since the beginning.
+    /// Time since the beginning, seconds.
     pub(super) seconds: f64,
-    /// Of the creature, metres.
+    /// Height of the creature, metres.
     pub(super) height: f64,
 }
 
-/// Rides; where the skin gets too steep to stand on it holds on, and climbs up to where it can stand again.
+/// Drives a climber that rides: where the skin gets too steep to stand on, it holds on and climbs up to where it can
+/// stand again.
 #[derive(Clone, Debug)]
 pub(super) struct Rider {
     holds_on: bool,
-    /// It means to jump.
+    /// It jumps as soon as the skin is calm.
     wants_jump: bool,
-    /// When it jumped, or was first dropped, seconds; `None` once it has stood since.
+    /// When it jumped or was first dropped, seconds; `None` after it has stood again.
     flies_since: Option<f64>,
 }
 
 impl Rider {
-    /// In the air above the creature, at the beginning.
+    /// A rider at the beginning: in the air above the creature.
     pub(super) fn new() -> Self {
         Self {
             holds_on: false,
@@ -79,7 +81,7 @@ impl Rider {
         }
     }
 
-    /// It was dropped on the creature again, just above the skin: it grips what comes.
+    /// Tells the rider that it was dropped again, just above the skin: it grips whatever it meets.
     pub(super) fn dropped(&mut self) {
         *self = Self {
             holds_on: true,
@@ -124,7 +126,7 @@ impl Rider {
         }
     }
 
-    /// Decides whether it holds on.
+    /// Decides whether the rider holds on.
     fn look_at_its_footing(&mut self, climber: &Climber, seconds: f64) {
         let (state, up) = (climber.state(), climber.config().up());
         let slope = state.support.map(|support| {
@@ -141,7 +143,7 @@ impl Rider {
             }
             (ClimberMode::Sliding, _) => self.holds_on = true,
             (mode, Some(slope)) if mode.is_holding() => self.holds_on = slope > STAND_UP,
-            // In the air: of its own accord until it has missed its landing, or because the skin left it.
+            // In the air: by a jump, until the landing is missed, or because the skin moved away.
             _ => {
                 let flies = self.flies_since.map(|since| seconds - since);
                 self.holds_on |= flies.is_none_or(|flies| flies > JUMP_SECONDS);
@@ -150,7 +152,7 @@ impl Rider {
     }
 }
 
-/// Whether what it stands on moves along with the creature, and evenly.
+/// True if the climber stands on skin that moves evenly, along with the creature.
 fn is_calm(climber: &Climber, scene: &RiderScene<'_>) -> bool {
     let state = climber.state();
     let velocity = state.support_velocity.unwrap_or(state.velocity);
@@ -159,7 +161,7 @@ fn is_calm(climber: &Climber, scene: &RiderScene<'_>) -> bool {
         && state.shake.length() < JUMP_SHAKE
 }
 
-/// Where to walk: towards the end of the patrol, as long as there is skin ahead to walk on.
+/// The direction to walk in: towards the end of the patrol, or none if there is no walkable skin ahead.
 fn patrol(climber: &Climber, scene: &RiderScene<'_>) -> DVec3 {
     let Some(middle) = scene.surface.motion(scene.perch, 1.0) else {
         return DVec3::ZERO;

@@ -1,4 +1,4 @@
-//! What the scene holds against the climber, by means that owe nothing to it.
+//! Checks of the climber, computed independently of the climber and mostly of the surface's queries.
 
 use clamber_climber::{Climber, ClimberMode, StepReport};
 use clamber_surface::measure::skin_vertex_reference;
@@ -11,8 +11,8 @@ use super::faults::{Faults, Moment};
 use super::{CREATURE, TERRAIN};
 use crate::{solid_angle, valley};
 
-/// Ticks between two looks at whether the climber is inside the creature, which take longer than the
-/// tick itself: they go over all triangles.
+/// Ticks between two checks of whether the climber is inside the creature. Such a check goes over all
+/// triangles and takes longer than the tick itself.
 const INSIDE_EVERY: u64 = 10;
 
 /// Names of the checks.
@@ -26,42 +26,44 @@ pub(super) const NOT_RIDING: &str = "share of ticks not riding";
 pub(super) const ROCKS_INSIDE: &str = "rocks inside or below";
 pub(super) const FALLS: &str = "falls to the ground";
 
-/// Farthest that a standing climber's contact may be from its material point, metres.
+/// Largest distance of a standing climber's contact from its material point, metres.
 pub(super) const MAX_DRIFT: f64 = 1e-4;
 
 /// Longest push-out of a climber that stands without input, metres.
 pub(super) const MAX_PUSH_OUT: f64 = 0.01;
 
-/// Farthest that other skin may push a climber's body off the material point that it stands on, metres: a tenth of its
-/// radius, beyond which it has to look for new ground.
+/// Largest distance by which other skin may push a climber's body off the material point that it stands on, metres: a
+/// tenth of the body's radius. Beyond it the climber has to find new ground.
 pub(super) const MAX_PUSHED_OFF: f64 = 0.04;
 
-/// Farthest that a climber's body may stand off its material point with no skin in between, metres: its contact margin,
-/// within which skin is touched.
+/// Largest gap between a climber's body and its material point with no skin in between, metres: the contact margin,
+/// within which the body counts as touching.
 pub(super) const MAX_STANDS_OFF: f64 = 0.01;
 
-/// Watches a climber from tick to tick.
+/// Checks a climber from tick to tick.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
     /// The material point under the climber when it landed or its input ended.
     recorded: Option<MaterialPoint>,
-    /// It was on the creature a tick ago.
+    /// The climber was on the creature a tick ago.
     was_riding: bool,
-    /// How it last left the creature.
+    /// Description of how the climber last left the creature.
     left: Option<String>,
-    /// It is on the ground, or was until it was dropped on the creature again.
+    /// The climber came to the ground, and has not been on the creature since.
     is_down: bool,
-    /// How often it came to the ground, or out of the valley, once it had been on the creature or dropped there.
+    /// How often the climber came to the ground or out of the valley. A start on the ground counts as well.
     pub(super) falls: u32,
-    /// Ticks at which its centre was seen inside the creature or under the ground.
+    /// Ticks at which the climber's centre was found inside the creature or under the ground.
     pub(super) fell_through: u32,
-    /// Ticks at which who climbs was farther from its hold than its arms are long.
+    /// Ticks at which a climber that climbs or holds on was farther from its hold than it can reach.
     pub(super) out_of_reach: u32,
-    /// Deepest that the sphere reached into the skin while it stood without input, metres.
+    /// Largest depth of the climber's sphere in the skin while it stood without input, metres.
     pub(super) deepest: f64,
-    /// Farthest that other skin pushed its body off its material point while it stood without input, metres.
+    /// Largest distance by which other skin pushed the body off its material point while it stood without input,
+    /// metres.
     pub(super) pushed_off: f64,
-    /// Farthest that it stood off its material point with no skin in between, metres.
+    /// Largest gap between the body and its material point with no skin in between, while it stood without input,
+    /// metres.
     pub(super) stands_off: f64,
     /// The first fault of every check.
     pub(super) faults: Faults,
@@ -72,15 +74,18 @@ pub(super) struct Watch {
 pub(super) struct Watched<'a> {
     pub(super) climber: &'a Climber,
     pub(super) report: &'a StepReport,
-    /// It had no input.
+    /// The climber had no input, and did not slide.
     pub(super) idle: bool,
-    /// It climbs, rather than rides.
+    /// The climber climbs (the story `climb`) rather than rides.
     pub(super) climbs: bool,
 }
 
 impl Watch {
-    /// Looks at one tick. Gives the drift: of a rider that stood through all of the tick without input; of one who climbs
-    /// or holds on, and may be shoved where creases close, how far its contact is from its own material point.
+    /// Checks one tick, and returns the drift, metres, where it is defined.
+    ///
+    /// For a rider that stands without input: the distance of its contact from the recorded material point, or the
+    /// depth of its body in that point if larger. For a climber that climbs or holds on, and may be shoved where
+    /// creases close: the distance of its contact from its own material point.
     pub(super) fn tick(
         &mut self,
         moment: &Moment<'_>,
@@ -133,7 +138,7 @@ impl Watch {
                 off.sunk
             );
             self.faults.note(DRIFT, || moment.describe(&what, center));
-            // A point that is lost is lost once. A creep that is not yet a fault adds up.
+            // A lost point counts once. Drift below the limit accumulates against the recorded point.
             self.recorded = Some(support.attachment.material);
             return Some(drift);
         }
@@ -169,7 +174,7 @@ impl Watch {
         }
     }
 
-    /// Remembers how it left the creature, and what it fell for once it is on the ground.
+    /// Notes how the climber left the creature, and the fall when it comes to the ground.
     fn look_at_leaving(&mut self, moment: &Moment<'_>, watched: &Watched<'_>) {
         let state = watched.climber.state();
         let stands_on = state.support.map(|support| support.attachment.obstacle);
@@ -187,7 +192,7 @@ impl Watch {
         self.was_riding = rides;
     }
 
-    /// It is on the ground, or out of the valley.
+    /// The climber is on the ground or out of the valley: counts a fall, if it is a new one.
     pub(super) fn fell(&mut self, moment: &Moment<'_>, place: DVec3) {
         if std::mem::replace(&mut self.is_down, true) {
             return;
@@ -199,29 +204,29 @@ impl Watch {
         });
     }
 
-    /// It is dropped on the creature again.
+    /// The climber is dropped on the creature again.
     pub(super) fn dropped(&mut self) {
         (self.is_down, self.left) = (false, None);
     }
 }
 
-/// How far a rider's body is off its material point. Not a drift: the climber stays on its point and leans, as it is
-/// meant to, where folding skin leaves its ball no room there.
+/// How far a rider's body is off its material point. A distance is not a drift: where folding skin leaves its ball no
+/// room at the point, the climber stays attached to the point and leans away, by design.
 #[derive(Clone, Copy, Debug)]
 struct Off {
-    /// Where the point is, in the world.
+    /// Position of the point in the world.
     point: DVec3,
-    /// How deep the point is in the body, metres.
+    /// Depth of the point in the body, metres.
     sunk: f64,
-    /// By how much the body is away from it with nothing in between, metres.
+    /// Distance of the body from the point with no skin in between, metres.
     gap: f64,
-    /// By how much other skin keeps the body away from it, metres.
+    /// Distance of the body from the point because of other skin, metres.
     pushed: f64,
 }
 
 impl Off {
-    /// Skin pushes a body off its point if the ball touches skin now, and would overlap skin if it stood upright on its
-    /// point. A body that is off its point for any other reason does not.
+    /// Measures a body at `center`. It counts as pushed off its point if the ball touches skin now, and would overlap
+    /// skin if it stood upright on the point. Any other distance is a gap.
     fn measure(
         surface: &SkinnedSurface,
         palette: &Palette,
@@ -257,7 +262,7 @@ fn touches(surface: &SkinnedSurface, center: DVec3, radius: f64) -> bool {
     surface.closest_point(center, radius).is_some()
 }
 
-/// How far a climber's centre may be from what it stands on or holds, metres.
+/// Largest distance of a climber's centre from the point that it stands on or holds, metres, in its mode.
 fn reach(climber: &Climber) -> f64 {
     let config = climber.config();
     let body = config.body.radius + config.grip.map_or(0.0, |grip| grip.reach);
@@ -271,8 +276,8 @@ fn reach(climber: &Climber) -> f64 {
     }
 }
 
-/// Corners of a material point's triangle in the world, in f64 from the palette on: none of the surface's own skinning,
-/// interpolation or carrying.
+/// Corners of a material point's triangle in the world, computed in f64 from the palette, without the surface's own
+/// skinning, interpolation or carrying. `None` if there is no such triangle.
 fn reference_corners(
     surface: &SkinnedSurface,
     palette: &Palette,
@@ -287,7 +292,7 @@ fn reference_corners(
     Some(places)
 }
 
-/// Where a material point of the creature is.
+/// Position of a material point of the creature in the world, from [`reference_corners`].
 fn reference_position(
     surface: &SkinnedSurface,
     palette: &Palette,

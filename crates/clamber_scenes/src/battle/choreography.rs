@@ -1,5 +1,5 @@
-//! What the creature does: which clip plays when, and where it stands. A pure function of the
-//! ticks gone by.
+//! The creature's part of a battle: which clip plays when, and where the creature is. It depends only on the
+//! ticks that have passed.
 
 use std::collections::BTreeSet;
 
@@ -17,16 +17,16 @@ const FADE: f64 = 0.6;
 /// Radius of the circle that the creature walks on, metres.
 const PATH: f64 = 50.0;
 
-/// Metres a second for each metre of height, for creatures whose walk says no speed: a slow walk.
+/// Walking speed for creatures whose walk clip has no known speed, metres a second for each metre of height: slow.
 const SPEED_PER_HEIGHT: f64 = 0.2;
 
-/// When the foot comes down in a clip of a stomp, as a share of its length.
+/// When the foot comes down in a stomp clip, as a share of the clip's length.
 const FOOT_DOWN: f64 = 0.51;
 
-/// Seconds for which a creature that cannot stand idle holds still at first: more than a rider falls.
+/// Seconds for which a creature that lacks an idle or a walk clip holds still at first: longer than a rider falls.
 const LANDING: f64 = 2.0;
 
-/// A stretch of time with one clip.
+/// A period with one clip.
 struct Act {
     clip: Option<usize>,
     seconds: f64,
@@ -34,44 +34,45 @@ struct Act {
     repeat: Repeat,
 }
 
-/// What of an act matters to others.
+/// What the creature does in an act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// Stands where it is.
+    /// The creature stays where it is, and may be approached.
     Calm,
-    /// Goes on along its path.
+    /// The creature moves along its path.
     Walk,
-    /// Stands, but not still.
+    /// The creature stays where it is, but shakes.
     Wild,
-    /// Plays its clip once, from its own beginning, and a foot comes down in it.
+    /// The creature plays the clip once from the clip's beginning, and a foot comes down in it.
     Stomp,
 }
 
-/// The creature's part in the battle.
+/// The creature's part of a battle.
 pub struct Choreography<'a> {
     creature: &'a Creature,
     acts: Vec<Act>,
     rest: Pose,
-    /// World metres per model unit.
+    /// Metres per model unit.
     scale: f64,
-    /// Model height of the lowest point at the beginning.
+    /// Lowest y of the skin in the first pose, in model space.
     lowest: f64,
     speed: f64,
     time: f64,
     walked: f64,
-    /// Of the creature as a whole, without its clips, over the last tick.
+    /// Velocity of the creature as a whole over the last tick, without its clips.
     velocity: DVec3,
-    /// Of the current tick, and memory for the fade.
+    /// The pose of the current tick, and memory for the fade.
     pose: Pose,
     fading: Pose,
     palette: Palette,
 }
 
 impl<'a> Choreography<'a> {
-    /// A creature scaled so that it is `height` metres tall in its first pose.
+    /// A creature that is scaled to be `height` metres tall in its first pose.
     ///
     /// # Errors
-    /// [`BattleError::NoHeight`], [`BattleError::Creature`].
+    /// [`BattleError::NoHeight`] if the creature is flat in its first pose, [`BattleError::Creature`] if a clip does
+    /// not fit its skeleton.
     pub fn new(creature: &'a Creature, height: f64, story: Story) -> Result<Self, BattleError> {
         let mut acts = acts(creature, story);
         let rest = creature.skeleton.rest_pose();
@@ -114,10 +115,10 @@ impl<'a> Choreography<'a> {
         })
     }
 
-    /// Goes on by `dt` seconds.
+    /// Advances the time by `dt` seconds, and moves the creature along its path. Poses nothing.
     ///
     /// # Errors
-    /// [`BattleError::Creature`] if a clip does not fit the skeleton.
+    /// None at present.
     pub fn advance(&mut self, dt: f64) -> Result<(), BattleError> {
         self.time += dt;
         let (now, before, share) = self.moment();
@@ -129,7 +130,7 @@ impl<'a> Choreography<'a> {
         Ok(())
     }
 
-    /// The palette of the current tick and where the creature stands.
+    /// Poses the creature for the current tick: its palette, and its place in the world.
     ///
     /// # Errors
     /// [`BattleError::Creature`] if a clip does not fit the skeleton.
@@ -151,12 +152,12 @@ impl<'a> Choreography<'a> {
         Ok((&self.palette, self.world_from_model()))
     }
 
-    /// Seconds gone by and metres walked: all that changes.
+    /// Seconds passed and metres walked: the whole state.
     pub(super) fn progress(&self) -> (f64, f64) {
         (self.time, self.walked)
     }
 
-    /// Goes to where [`Choreography::progress`] was.
+    /// Restores a state from [`Choreography::progress`].
     pub(super) fn go_to(&mut self, (time, walked): (f64, f64)) {
         (self.time, self.walked) = (time, walked);
     }
@@ -166,18 +167,18 @@ impl<'a> Choreography<'a> {
         &self.palette
     }
 
-    /// Who plays.
+    /// The creature.
     pub fn creature(&self) -> &Creature {
         self.creature
     }
 
-    /// Whether one may go near its feet.
+    /// True if the creature stays where it is and neither shakes nor stomps: its feet may be approached.
     pub fn is_calm(&self) -> bool {
         let (now, ..) = self.moment();
         self.acts[now].kind == Kind::Calm
     }
 
-    /// Whether a foot came down in the last `dt` seconds to shake the ground.
+    /// True if a foot came down in a stomp within the last `dt` seconds.
     pub fn has_stomped(&self, dt: f64) -> bool {
         let (now, ..) = self.moment();
         let act = &self.acts[now];
@@ -189,12 +190,12 @@ impl<'a> Choreography<'a> {
         (within - dt..within).contains(&down)
     }
 
-    /// Velocity of the creature as a whole over the last tick, its clips left out, metres a second.
+    /// Velocity of the creature as a whole over the last tick, without its clips, metres a second.
     pub fn velocity(&self) -> DVec3 {
         self.velocity
     }
 
-    /// The clip that plays, and where in it, for messages.
+    /// The current clip and the time in it, as text for messages.
     pub fn playing(&self) -> String {
         let (now, before, share) = self.moment();
         let Some((clip, time)) = self.clip(now) else {
@@ -207,7 +208,7 @@ impl<'a> Choreography<'a> {
         format!("{} at {time:.2} s{fading}", clip.name)
     }
 
-    /// Names of the clips that are no loops, and are played back and forth.
+    /// Names of the clips that are not loops and are therefore played back and forth.
     pub fn turned_back(&self) -> Vec<String> {
         let acts = self
             .acts
@@ -218,7 +219,7 @@ impl<'a> Choreography<'a> {
         clips.into_iter().map(name).collect()
     }
 
-    /// What an act plays: the clip, and at what time of it.
+    /// The clip that an act plays, and the time in it, seconds.
     fn clip(&self, act: usize) -> Option<(&'a Clip, f64)> {
         let clip = &self.creature.clips[self.acts[act].clip?];
         let time = if self.acts[act].kind == Kind::Stomp {
@@ -236,7 +237,7 @@ impl<'a> Choreography<'a> {
         (self.time - begins).rem_euclid(total)
     }
 
-    /// The act now, the one that it fades in from, and how far it has faded in.
+    /// The current act, the act that it fades in from, and how far it has faded in, 0 to 1.
     fn moment(&self) -> (usize, usize, f64) {
         let total: f64 = self.acts.iter().map(|act| act.seconds).sum();
         let mut within = self.time % total;
@@ -250,7 +251,7 @@ impl<'a> Choreography<'a> {
         } else {
             (now + self.acts.len() - 1) % self.acts.len()
         };
-        // Smooth at both ends, so that nothing jerks.
+        // Smoothstep, so that the fade begins and ends without a jerk.
         let t = (within / FADE).min(1.0);
         let share = t * t * (3.0 - 2.0 * t);
         if share >= 1.0 || before == now {
@@ -260,16 +261,16 @@ impl<'a> Choreography<'a> {
         }
     }
 
-    /// On its circle through the valley, feet on the ground.
+    /// The creature's place on its circle through the valley, with its feet on the ground.
     fn world_from_model(&self) -> Similarity {
         let angle = self.walked / PATH;
         let (x, z) = (PATH * libm::cos(angle), PATH * libm::sin(angle));
-        // The ground under the middle of the body, evened out over its length.
+        // The mean height of the ground under the body.
         let heights = [(0.0, 0.0), (5.0, 0.0), (-5.0, 0.0), (0.0, 5.0), (0.0, -5.0)]
             .map(|(dx, dz)| valley::height(x + dx, z + dz));
         let ground = heights.iter().sum::<f64>() / heights.len() as f64;
         Similarity {
-            // Along the circle: +Z turned by the angle that the path has turned.
+            // Facing along the circle: +Z turned by the angle walked.
             rotation: rotation_from_axis_angle(DVec3::Y, -angle),
             scale: self.scale,
             translation: DVec3::new(x, ground - self.lowest * self.scale, z),
@@ -277,8 +278,11 @@ impl<'a> Choreography<'a> {
     }
 }
 
-/// Where clips are named so: idle, walk, shake, walk to ride; idle, stomp, idle, shake, idle, walk, idle to climb. Every clip
-/// but dying in turn where not, after the first pose of the first.
+/// The acts of a story, by the names of the creature's clips.
+///
+/// To ride: idle, walk, and if there is a shake, shake and walk. To climb: idle, stomp, idle, shake, idle, walk, idle;
+/// if the shake or the stomp is missing, as to ride. Without idle and walk: the first pose of the first clip, and then
+/// every clip in turn, except deaths.
 fn acts(creature: &Creature, story: Story) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;
@@ -322,7 +326,7 @@ fn acts(creature: &Creature, story: Story) -> Vec<Act> {
         !name.contains("death") && !name.contains("die")
     });
     let mut acts: Vec<Act> = lively.map(|(clip, _)| act(clip, 8.0, Kind::Calm)).collect();
-    // Still until a rider has landed: some attack at once, at 70 m/s.
+    // Still until a rider has landed: some clips begin with an attack, at 70 m/s.
     if let Some(first) = acts.first().and_then(|first| first.clip) {
         let still = Act {
             repeat: Repeat::Hold,

@@ -1,4 +1,4 @@
-//! Why checks fail: for each check the first tick at which it did, in words that let it be found again.
+//! The first fault of each check, described so that it can be found again.
 
 use std::collections::BTreeMap;
 
@@ -9,24 +9,24 @@ use glam::DVec3;
 
 use super::{Choreography, TICK};
 
-/// How far from a place skin is looked for to name it, as a share of the creature's height.
+/// Descriptions name the nearest skin within this distance of a place, as a share of the creature's height.
 const NEAR: f64 = 0.25;
 
-/// A tick of the creature, to describe places in.
+/// The creature at one tick, for descriptions of faults.
 #[derive(Clone, Copy)]
 pub(super) struct Moment<'a> {
     /// The creature's skin.
     pub(super) surface: &'a SkinnedSurface,
-    /// What it plays.
+    /// The creature's part of the battle.
     pub(super) choreography: &'a Choreography<'a>,
-    /// Its height, metres.
+    /// The creature's height, metres.
     pub(super) height: f64,
-    /// The tick.
+    /// Number of the tick.
     pub(super) tick: u64,
 }
 
 impl Moment<'_> {
-    /// What happened at a place, the tick, the clip, and the skin nearest to the place with its velocity.
+    /// Describes a fault `what` at a place: tick, clip, position, and the nearest skin with its speed.
     pub(super) fn describe(&self, what: &str, place: DVec3) -> String {
         let seconds = self.tick as f64 * TICK;
         let near = self.surface.closest_point(place, NEAR * self.height);
@@ -63,7 +63,7 @@ impl Moment<'_> {
 pub(super) struct Faults(BTreeMap<&'static str, String>);
 
 impl Faults {
-    /// Keeps what `describe` says, if it is the check's first fault.
+    /// Keeps the text of `describe` if it is the check's first fault; calls it only then.
     pub(super) fn note(&mut self, check: &'static str, describe: impl FnOnce() -> String) {
         self.0.entry(check).or_insert_with(describe);
     }

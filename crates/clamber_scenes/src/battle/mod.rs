@@ -1,8 +1,10 @@
-//! The main scene: a valley, a creature that walks, stomps and shakes, a climber that comes over the ground, climbs to its
-//! top and rides there, or is dropped on its back, and rocks that fall on it and roll off.
+//! The main scene: a climber climbs or rides a giant creature in a valley, while rocks fall.
 //!
-//! One tick, in this order: the creature is posed, the climber steps, the physics steps with the rocks, the
-//! scene checks what came of it.
+//! The creature walks, stomps and shakes. The climber comes over the ground, climbs to its top and rides there, or is
+//! dropped on its back at the start. The rocks fall on the creature and roll off.
+//!
+//! Order of a tick: the creature is posed, the climber steps, the physics steps with the rocks, and the scene checks
+//! the result.
 
 pub mod bot;
 mod checks;
@@ -47,65 +49,65 @@ use clamber_surface::surface::SurfaceError;
 use clamber_world::DebrisError;
 use thiserror::Error;
 
-/// Why a battle cannot be fought or written down.
+/// Why a battle cannot be run, recorded or written to files.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BattleError {
     /// The creature cannot be loaded or posed.
-    #[error("the creature cannot play: {0}")]
+    #[error("the creature cannot be loaded or posed: {0}")]
     Creature(#[from] CreatureError),
-    /// The creature has no place where a climber could stand.
-    #[error("found no place on {creature} to drop a climber on: no skin under the sky")]
+    /// The creature has no skin that a climber could be dropped on.
+    #[error("found no place to drop a climber on {creature}: no ray from above meets its skin")]
     NoPerch {
-        /// Its name.
+        /// The creature's name.
         creature: String,
     },
     /// The creature has no way from the ground to its top.
     #[error(
-        "found no way up {creature}: no skin near the ground from which a climber gets to the top; try --story ride"
+        "found no way up {creature}: no grippable skin leads from near the ground to the top; try --story ride"
     )]
     NoWay {
-        /// Its name.
+        /// The creature's name.
         creature: String,
     },
-    /// The physics engine refuses the outcrop.
-    #[error("the outcrop cannot stand in the valley: {0}")]
+    /// The physics engine rejects the outcrop's mesh.
+    #[error("the outcrop cannot be added to the valley: {0}")]
     Outcrop(String),
-    /// The creature is flat.
+    /// The creature is flat in its first pose.
     #[error("{creature} has no height in its first pose, so it cannot be scaled to {height} m")]
     NoHeight {
-        /// Its name.
+        /// The creature's name.
         creature: String,
-        /// The height asked for.
+        /// The height asked for, metres.
         height: f64,
     },
-    /// The climber refused.
+    /// The climber rejected its settings, its state or its input.
     #[error(transparent)]
     Climber(#[from] ClimberError),
-    /// A rock cannot be held against the creature.
+    /// A rock cannot collide with the creature.
     #[error(transparent)]
     Debris(#[from] DebrisError),
-    /// `--record` in a build that cannot.
+    /// `--record` was given to a build without the feature `record`.
     #[error("this build cannot record: add --features record to cargo's arguments")]
     CannotRecord,
     /// A snapshot cannot be written or read.
-    #[error("no snapshot of a battle: {0}")]
+    #[error("the snapshot of a battle cannot be written or read: {0}")]
     Snapshot(String),
-    /// Settings that no battle can be made from.
+    /// The settings are not options of a battle.
     #[error("no battle can be made from these settings: {0}")]
     Settings(String),
-    /// There are no models to ride.
+    /// No models to ride were found.
     #[error("no models to ride: {0}")]
     NoModels(String),
-    /// Whoever watches the battle failed.
+    /// The caller's `watch` function or the recording failed.
     #[error(transparent)]
     Watching(Box<dyn std::error::Error + Send + Sync>),
     /// The results cannot be written.
     #[error("cannot write {path}: {reason}")]
     Write {
-        /// Which file or folder.
+        /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
@@ -122,19 +124,21 @@ impl From<SurfaceError> for BattleError {
     }
 }
 
-/// Fights a battle from beginning to end, writes `summary.json` and `timeline.svg` into its folder,
-/// which is made if need be, and gives the summary. Records it, if the options say so.
+/// Runs a battle from beginning to end, and returns its summary.
+///
+/// Writes `summary.json` and `timeline.svg` into the folder [`BattleOptions::out`], which is created if needed. Records
+/// the battle if [`BattleOptions::record`] is set. Shows its progress on standard error.
 ///
 /// # Errors
-/// [`BattleError`]. Failed checks are no error: they stand in the summary.
+/// [`BattleError`]. Failed checks are not errors: the summary lists them.
 pub fn run(options: &BattleOptions) -> Result<Summary, BattleError> {
     run_watched(options, |_| Ok(()))
 }
 
-/// [`run`], and calls `watch` once before the first tick and after every tick: to draw it, say.
+/// As [`run`], and calls `watch` once before the first tick and after every tick, for example to draw the battle.
 ///
 /// # Errors
-/// As [`run`], and those of `watch`, which end the battle.
+/// As [`run`]. An error of `watch` ends the battle and is returned.
 pub fn run_watched(
     options: &BattleOptions,
     watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
@@ -158,7 +162,7 @@ fn fight(
     progress: &Progress,
     mut watch: impl FnMut(&Battle<'_>) -> Result<(), BattleError>,
 ) -> Result<Summary, BattleError> {
-    // First, so that a folder that cannot be is not found out about at the end.
+    // First, so that a folder that cannot be created ends the run at once.
     std::fs::create_dir_all(&options.out).map_err(|error| BattleError::Write {
         path: options.out.clone(),
         reason: error.to_string(),

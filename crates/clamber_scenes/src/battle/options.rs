@@ -9,22 +9,23 @@ use super::bot::Intent;
 use super::{BattleError, Recording, Story, TICK};
 use crate::{Creature, giant::giant};
 
-/// Metres; what a creature from a file is scaled to.
+/// Height that a creature from a file is scaled to, metres.
 const FILE_HEIGHT: f64 = 20.0;
 
-/// Metres; what the giant is scaled to, and about what it has.
+/// Height that the giant is scaled to, metres: about its own.
 const GIANT_HEIGHT: f64 = 40.0;
 
-/// How long battles take.
+/// Length of a battle in each story, seconds.
 const CLIMB_SECONDS: f64 = 78.0;
 const RIDE_SECONDS: f64 = 60.0;
 
 /// A climber climbs and rides a walking, stomping, shaking creature on which rocks fall.
 ///
-/// The climber comes over an outcrop, is knocked down by a stomp, grips a leg and climbs to the creature's top, where it
-/// stays; or it is dropped on the back, where it stands, walks and jumps, and holds on where it is too steep to stand. Checks at every tick that it is carried exactly
-/// and stays above the ground, and several times a second that neither it nor a rock is inside the creature. Ends with
-/// a table, with the first fault of each check that failed, and exits with 1 if one did.
+/// The climber comes over an outcrop, is knocked down by a stomp, grips a leg, climbs to the creature's top and stays
+/// there. Or it is dropped on the creature's back, where it stands, walks and jumps, and holds on where the skin is too
+/// steep to stand on. Checks in every tick that the climber is carried exactly and stays above the ground, and several
+/// times a second that neither the climber nor a rock is inside the creature. Prints a table with the first fault of
+/// each failed check, and exits with 1 if a check failed.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "battle", version)]
 pub struct BattleOptions {
@@ -32,26 +33,26 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub creature: Option<PathBuf>,
 
-    /// Height of the creature [default: 40 for the giant, 20 for one from a file].
+    /// Height of the creature [default: 40 for the giant, 20 for a creature from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
 
-    /// What the climber does [default: climb the giant, ride a creature from a file].
+    /// What the climber does [default: climb for the giant, ride for a creature from a file].
     #[arg(long, value_enum)]
     pub story: Option<Story>,
 
-    /// Length of the battle [default: 78 to climb, 60 to ride].
+    /// Length of the battle [default: 78 for climb, 60 for ride].
     #[arg(long, value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
 
-    /// Rocks that fall on the creature; the climber does not feel them.
+    /// Number of rocks that fall on the creature; the climber does not collide with them.
     #[arg(long, value_name = "COUNT", default_value_t = 24)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub rocks: u32,
 
-    /// Where exactly the climber begins and the rocks come down: any number; the same one gives the same battle.
+    /// Seed for the climber's start and the rocks' places; the same number gives the same battle.
     #[arg(long, default_value_t = 2)]
     pub seed: u64,
 
@@ -59,7 +60,7 @@ pub struct BattleOptions {
     #[arg(long, value_name = "DIR", default_value = "target/battle")]
     pub out: PathBuf,
 
-    /// Records the battle to a file for Foxglove, Rerun and the replay example; needs --features record.
+    /// Record the battle to a file for Foxglove, Rerun and the replay example; needs --features record.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: Option<PathBuf>,
 }
@@ -79,12 +80,12 @@ impl Default for BattleOptions {
 }
 
 impl BattleOptions {
-    /// From the command line; prints help or what is wrong with it, and exits.
+    /// Parses the command line. For `--help` or a wrong argument it prints a message and exits.
     pub fn from_command_line() -> Self {
         Self::parse()
     }
 
-    /// A minute's ride on the giant, the climber's and the rocks' places by a seed.
+    /// A ride of 60 s on the giant. `seed` determines the climber's start and the rocks' places.
     pub fn ride(rocks: u32, seed: u64) -> Self {
         Self {
             story: Some(Story::Ride),
@@ -94,10 +95,10 @@ impl BattleOptions {
         }
     }
 
-    /// What makes the same battle again, by the names of the options: all but where results go.
+    /// The settings that make the same battle again, by the options' names: all but the paths of the results.
     ///
     /// # Errors
-    /// [`BattleError::Settings`] if the creature's file has a name that is no text.
+    /// [`BattleError::Settings`] if the path of the creature's file is not UTF-8.
     pub fn to_settings(&self) -> Result<BTreeMap<String, String>, BattleError> {
         let mut settings = BTreeMap::from([
             ("height".to_owned(), self.height().to_string()),
@@ -107,17 +108,18 @@ impl BattleOptions {
             ("seed".to_owned(), self.seed.to_string()),
         ]);
         if let Some(path) = &self.creature {
-            let unreadable = || BattleError::Settings(format!("{} is no text", path.display()));
+            let unreadable =
+                || BattleError::Settings(format!("the path {} is not UTF-8", path.display()));
             let path = path.to_str().ok_or_else(unreadable)?;
             settings.insert("creature".to_owned(), path.to_owned());
         }
         Ok(settings)
     }
 
-    /// From [`BattleOptions::to_settings`].
+    /// Options from the settings that [`BattleOptions::to_settings`] gave.
     ///
     /// # Errors
-    /// [`BattleError::Settings`] if they are not options of a battle.
+    /// [`BattleError::Settings`] if the settings are not options of a battle.
     pub fn from_settings(settings: &BTreeMap<String, String>) -> Result<Self, BattleError> {
         let arguments = settings
             .iter()
@@ -133,7 +135,7 @@ impl BattleOptions {
         })
     }
 
-    /// How tall the creature is to be, metres.
+    /// Height that the creature is scaled to, metres: the option or its default.
     pub fn height(&self) -> f64 {
         let default = match &self.creature {
             Some(_) => FILE_HEIGHT,
@@ -142,7 +144,7 @@ impl BattleOptions {
         self.height.unwrap_or(default)
     }
 
-    /// What the climber does.
+    /// What the climber does: the option or its default.
     pub fn story(&self) -> Story {
         self.story.unwrap_or(match &self.creature {
             Some(_) => Story::Ride,
@@ -150,7 +152,7 @@ impl BattleOptions {
         })
     }
 
-    /// How long it lasts.
+    /// Length of the battle, seconds: the option or its default.
     pub fn seconds(&self) -> f64 {
         self.seconds.unwrap_or(match self.story() {
             Story::Climb => CLIMB_SECONDS,
@@ -158,7 +160,7 @@ impl BattleOptions {
         })
     }
 
-    /// It lasts as long as its story takes, or longer.
+    /// True if the battle lasts at least as long as its story by default.
     pub(super) fn is_whole(&self) -> bool {
         let whole = Self {
             seconds: None,
@@ -167,14 +169,16 @@ impl BattleOptions {
         self.seconds() >= whole.seconds()
     }
 
-    /// How many ticks it lasts.
+    /// Length of the battle in ticks, at least 1.
     pub fn ticks(&self) -> u64 {
         ((self.seconds() / TICK).round() as u64).max(1)
     }
 
-    /// The script. To climb: all the way. To ride: stands for four tenths of the battle, walks up and down the back for the
-    /// next third, jumps once as soon as the skin is calm after the middle of that, and stands again; where it is too steep to
-    /// stand it holds on and climbs up.
+    /// The script: what the climber should do in a tick.
+    ///
+    /// [`Story::Climb`]: climb, in every tick. [`Story::Ride`]: stand for 40 % of the battle, walk to and fro on the
+    /// back until 73 %, and stand again; at 57 % it means to jump, and does so once the skin is calm. Where the skin is
+    /// too steep to stand on, the rider holds on and climbs up.
     pub fn input_at(&self, tick: u64) -> Intent {
         if self.story() == Story::Climb {
             return Intent::Climb;
@@ -191,7 +195,8 @@ impl BattleOptions {
     }
 }
 
-/// A bar on a terminal, a line every ten seconds of the battle elsewhere; nothing where many battles are fought.
+/// Progress on standard error: a bar on a terminal, else a line for every ten seconds of the battle; nothing for many
+/// battles in a row.
 pub(super) enum Progress {
     Quiet,
     Bar(ProgressBar),

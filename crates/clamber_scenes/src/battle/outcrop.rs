@@ -7,25 +7,26 @@ use glam::{DVec3, Vec3};
 use super::BattleError;
 use crate::valley;
 
-/// Where its wall stands, and its middle across: it is climbed along X.
+/// X of its wall, and z of its middle, metres: it is climbed along +X.
 pub(super) const WALL: f64 = 33.0;
 const MIDDLE: f64 = 0.0;
 
-/// How high its top is above the ground there, and how far it reaches: out of reach from the ground, in reach of a jump.
+/// Height of its top above the ground at the wall, and length of the top along X, metres. A climber cannot reach the
+/// top from the ground, but can with a jump.
 const HEIGHT: f64 = 2.3;
 const TOP: f64 = 2.5;
 
-/// How far it falls away behind, by so much for each metre: 60 degrees.
+/// Length of the slope behind the top along X, metres, and its fall for each metre: 60 degrees.
 const SLOPE: f64 = 2.2;
 const STEEPNESS: f64 = 1.732;
 
-/// Half of its width.
+/// Half of its width along Z, metres.
 const HALF_WIDTH: f64 = 3.5;
 
-/// Where its foot is behind, along X.
+/// X of the end of its slope, metres.
 pub(super) const END: f64 = WALL + TOP + SLOPE;
 
-/// Its corners and triangles, in the world.
+/// The outcrop's corners, in the world, and its triangles.
 pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let top = valley::height(WALL, MIDDLE) + HEIGHT;
     let behind = top - SLOPE * STEEPNESS;
@@ -58,7 +59,7 @@ pub fn mesh() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (corners.collect(), triangles)
 }
 
-/// Puts it into the valley.
+/// Adds the outcrop to the valley.
 pub(super) fn insert(world: &mut PhysicsWorld) -> Result<(), BattleError> {
     let (corners, triangles) = mesh();
     let collider = ColliderBuilder::trimesh(corners, triangles);

@@ -1,5 +1,7 @@
-//! The scripted climber on its way from the ground to the creature's top: it sees where it is and what it does, and
-//! remembers what it climbs towards. Shaken off, it comes again.
+//! The script of a climber on its way from the ground to the creature's top.
+//!
+//! It reads the climber's place and mode, and remembers the target of the climb. After a fall it starts again from the
+//! ground.
 
 use clamber_climber::{Climber, ClimberInput, ClimberMode};
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
@@ -11,58 +13,59 @@ use super::{BattleError, outcrop};
 use crate::Creature;
 use crate::tour::{Ascent, Ways};
 
-/// How far ahead on its way up it aims, metres: more than the width of creases that its ball does not enter. And how far
-/// once it has come no nearer to the top for so many seconds.
+/// How far ahead on its way up it aims, metres: farther than the width of creases that its ball does not enter. If it
+/// has come no nearer to the top for `PATIENCE` seconds, it aims `FAR_AHEAD` for as long, and so on in turn.
 const AHEAD: f64 = 1.2;
 const FAR_AHEAD: f64 = 4.0;
 const PATIENCE: f64 = 2.0;
 
-/// How near to the outcrop's wall, and to the foot of its way up, it jumps, metres.
+/// It jumps within this distance of the outcrop's wall and of its foothold, metres.
 const JUMP: f64 = 0.9;
 
-/// How far it keeps from the feet of a creature that does not stand still, metres, and how much nearer or farther is as good.
+/// Distance that it keeps from its foothold while the creature is not calm, metres, and the tolerance of that distance.
 const SAFE: f64 = 11.0;
 const SWAY: f64 = 0.2;
 
-/// Who wants to walk and is slower than this, metres a second, for so many seconds stands before something.
+/// It counts as blocked if it wants to walk but moves more slowly than `KEPT`, metres a second, for `PUZZLED` seconds.
 const KEPT: f64 = 0.5;
 const PUZZLED: f64 = 0.3;
 
-/// Seconds between two jumps.
+/// Least time between two jumps, seconds.
 const BETWEEN_JUMPS: f64 = 1.2;
 
-/// How often it jumps for a foothold before it looks for another one, so many metres away.
+/// Jumps for a foothold before it gives the foothold up, and the distance of the next foothold from those given up,
+/// metres.
 const TRIES: u32 = 3;
 const ELSEWHERE: f64 = 1.5;
 
-/// How many metres along the ground are worth a metre less to jump.
+/// In the choice of a foothold, a metre of height costs as much as so many metres of distance.
 const HEIGHT_COUNTS: f64 = 5.0;
 
-/// Stamina that it rests for where it can stand; on a creature in motion it rests on until that is calm.
+/// Where it can stand it rests until it has this much stamina, and until the creature is calm.
 const RESTED: f64 = 0.95;
 
-/// With less stamina it lets go where it is level enough to stand, radians, and rests.
+/// With less stamina than `TIRED` it lets go and rests, if the slope is below `LEVEL`, radians.
 const TIRED: f64 = 0.5;
 const LEVEL: f64 = 0.8;
 
-/// Shake in which it stands at the top; in more it holds on, metres a second squared.
+/// Largest shake in which it lets go to stand, metres a second squared.
 const CALM: f64 = 3.0;
 
-/// What it is about to do, and what it has seen.
+/// The script's plan and memory.
 #[derive(Clone, Debug)]
 pub(super) struct Pilot {
     ascent: Ascent,
-    /// Where it means to get on, how often it has jumped for it, and where it could not get on.
+    /// The vertex where it means to get on, how often it has jumped for it, and the vertices where it could not get on.
     foothold: Option<VertexId>,
     tries: u32,
     given_up: Vec<VertexId>,
-    /// How near it has come to the top since it got on, in the units of the creature's file, and when, seconds.
+    /// The shortest way left to the top since it got on, in the units of the creature's file, and when, seconds.
     left: f32,
     since: f64,
-    /// When it last jumped, and when it last walked freely or wanted not to, seconds.
+    /// When it last jumped, and when it was last not blocked, seconds.
     jumped: f64,
     free: f64,
-    /// It is over the outcrop.
+    /// It has crossed the outcrop.
     crossed: bool,
     /// It has been on the creature since it was last on the ground.
     mounted: bool,
@@ -73,7 +76,7 @@ pub(super) struct Pilot {
 }
 
 impl Pilot {
-    /// For a creature with a way up over what can be gripped.
+    /// The script for a creature. [`BattleError::NoWay`] if no grippable skin leads from near the ground to the top.
     pub(super) fn new(creature: &Creature) -> Result<Self, BattleError> {
         let grips = Grips::of(creature);
         let ways = Ways::over(creature, |tag| grips.can(tag))?;
@@ -99,12 +102,12 @@ impl Pilot {
         })
     }
 
-    /// When it came to the top.
+    /// When it first came to the top, seconds; `None` if it has not.
     pub(super) fn arrived(&self) -> Option<f64> {
         self.arrived
     }
 
-    /// The input of the tick that begins at `seconds`, with a creature that stands still, or not.
+    /// The input of the tick that begins at `seconds`. `is_calm` as [`super::Choreography::is_calm`].
     pub(super) fn input(
         &mut self,
         climber: &Climber,
@@ -143,7 +146,7 @@ impl Pilot {
         }
     }
 
-    /// On the creature.
+    /// The input on the creature.
     fn go_up(
         &mut self,
         climber: &Climber,
@@ -182,7 +185,7 @@ impl Pilot {
         }
     }
 
-    /// What to climb towards: some way ahead of where it is; farther ahead for a while if it comes no nearer to the top.
+    /// The vertex to climb towards, some way ahead on the way to the top, or farther ahead while it is stuck.
     fn follow(
         &mut self,
         surface: &SkinnedSurface,
@@ -212,7 +215,8 @@ impl Pilot {
         Some(target)
     }
 
-    /// The vertex of the triangle that it is on from which the way to the top is shortest, or else the nearest one.
+    /// The vertex where its way starts: the corner of its triangle with the shortest way to the top, or else the
+    /// nearest vertex with a way.
     fn enter(
         &self,
         surface: &SkinnedSurface,
@@ -228,7 +232,7 @@ impl Pilot {
         here.or_else(|| nearest(surface, self.ascent.vertices(), position))
     }
 
-    /// On the ground, or in the air.
+    /// The input on the ground or in the air.
     fn come(
         &mut self,
         climber: &Climber,
@@ -247,7 +251,7 @@ impl Pilot {
                 .foothold
                 .or_else(|| self.find_foothold(surface, position));
             let Some(foot) = self.foothold else {
-                // None is left: all once more.
+                // No foothold is left: try all of them again.
                 self.given_up.clear();
                 return ClimberInput::default();
             };
@@ -286,7 +290,7 @@ impl Pilot {
         }
     }
 
-    /// Where to get on: low, and near.
+    /// The foothold to get on at: low and near, and away from those given up.
     fn find_foothold(&self, surface: &SkinnedSurface, position: DVec3) -> Option<VertexId> {
         let cost = |vertex: &VertexId| {
             let way = place(surface, *vertex) - position;
@@ -301,7 +305,7 @@ impl Pilot {
         feet.min_by(|a, b| cost(a).total_cmp(&cost(b)))
     }
 
-    /// Whether to jump now.
+    /// True if it jumps now: `wanted`, and not too soon after the last jump.
     fn jumps(&mut self, wanted: bool, seconds: f64) -> bool {
         let jumps = wanted && seconds - self.jumped > BETWEEN_JUMPS;
         if jumps {
@@ -311,7 +315,7 @@ impl Pilot {
     }
 }
 
-/// What of a creature can be gripped: its fur and its rough stone, or all of it if it has no fur.
+/// Which skin of a creature can be gripped: fur and stone, or all of it if it has no fur.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grips {
     has_fur: bool,

@@ -1,4 +1,4 @@
-//! A battle recorded, and fought again from what was recorded.
+//! Recording a battle, and replaying a recorded one.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::options::Progress;
 use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
 use crate::Creature;
 
-/// Ticks from one snapshot to the next: a second.
+/// Ticks from one snapshot to the next: one second.
 const SNAPSHOT_EVERY: u64 = 60;
 
 impl From<RecordError> for BattleError {
@@ -21,14 +21,15 @@ impl From<RecordError> for BattleError {
     }
 }
 
-/// Records a battle as it is fought.
+/// Records a battle tick by tick.
 pub struct BattleRecorder<W: Write>(Recorder<W>);
 
 impl<W: Write + Send + 'static> BattleRecorder<W> {
-    /// A recorder for a battle that was made from these options, into anything that takes bytes.
+    /// A recorder for a battle that was made from `options`. It writes to `out`.
     ///
     /// # Errors
-    /// [`BattleError::Settings`], and as [`Recorder::new`].
+    /// [`BattleError::Settings`] if the path of the creature's file is not UTF-8; [`BattleError::Watching`] with the
+    /// errors of [`Recorder::new`].
     pub fn new(
         out: W,
         battle: &Battle<'_>,
@@ -47,10 +48,12 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         Ok(Self(Recorder::new(out, &info, &creature.skeleton, how)?))
     }
 
-    /// Records where the battle stands: before its first tick, and after each.
+    /// Records the current state of the battle: call it before the first tick and after each tick. Adds a snapshot
+    /// every second.
     ///
     /// # Errors
-    /// As [`Recorder::tick`].
+    /// [`BattleError::Watching`] with the errors of [`Recorder::tick`] and [`Recorder::snapshot`];
+    /// [`BattleError::Snapshot`].
     pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), BattleError> {
         self.0.tick(&TickView {
             tick: battle.tick(),
@@ -67,17 +70,17 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         Ok(())
     }
 
-    /// Ends the recording.
+    /// Ends the recording and returns its writer.
     ///
     /// # Errors
-    /// As [`Recorder::finish`].
+    /// [`BattleError::Watching`] with the errors of [`Recorder::finish`].
     pub fn finish(self) -> Result<W, BattleError> {
         Ok(self.0.finish()?)
     }
 }
 
-/// Fights a battle, watched as it is, and records it to a file. What was recorded stays if the battle fails on
-/// the way.
+/// Runs a battle, calls `watch` for each tick, and records the battle to a file. If the battle fails, the file keeps
+/// what was recorded until then.
 pub(super) fn run(
     options: &BattleOptions,
     path: &Path,
@@ -117,27 +120,29 @@ fn fingerprint(creature: &Creature) -> u64 {
     creature_fingerprint(&creature.skeleton, &creature.clips, &creature.collider)
 }
 
-/// What came of a replay.
+/// The result of a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replay {
-    /// The tick that it started from: the first one, or that of a snapshot.
+    /// The tick that the replay started from: the first one, or a snapshot's.
     pub from: u64,
-    /// Ticks that agreed, the one that it started from among them.
+    /// Number of ticks that agreed, including the one that the replay started from.
     pub agreed: u64,
-    /// True if the rocks were compared, false from a snapshot, which has none.
+    /// True if the rocks were compared; false for a replay from a snapshot, which holds no rocks.
     pub with_rocks: bool,
-    /// The first tick that differs, if one does.
+    /// The first tick that differs; `None` if all agree.
     pub difference: Option<Box<Difference>>,
-    /// How the file ends.
+    /// How the recording ends.
     pub ending: Ending,
 }
 
-/// Fights a recorded battle again, with the recorded inputs, as far as it was recorded or until a tick
-/// differs; from the nearest snapshot at or before a tick, if one is given.
+/// Runs a recorded battle again with the recorded inputs, and compares every tick.
+///
+/// It stops at the end of the recording or at the first tick that differs. With a tick `from` it starts at the nearest
+/// snapshot at or before that tick, otherwise at the first tick.
 ///
 /// # Errors
-/// [`BattleError`] if the battle cannot be made again: its creature's file is gone or another one now, the
-/// tick is not there.
+/// [`BattleError`] if the battle cannot be made again, for example because the creature's file is missing or has
+/// changed, or the recording has no such tick.
 pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, BattleError> {
     let info = recording.info();
     let options = BattleOptions::from_settings(&info.settings)?;

@@ -3,27 +3,30 @@ use clamber_climber::ClimberMode;
 /// One tick of a battle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Since the beginning, at the end of the tick.
+    /// Time since the beginning at the end of the tick, seconds.
     pub seconds: f64,
-    /// Of the climber's centre over the origin, metres.
+    /// Y of the climber's centre in the world, metres.
     pub height: f64,
-    /// What the climber is doing.
+    /// The climber's mode.
     pub mode: ClimberMode,
-    /// True if it stands on the creature, or holds on to it.
+    /// True if the climber's support is the creature: it stands on it or holds on to it.
     pub riding: bool,
-    /// Distance from a standing rider's contact to the material point recorded when its input ended, metres. In a climb,
-    /// and while it holds on, from its contact to its own material point, on the creature. `None` elsewhere.
+    /// Drift of the climber from its material point on the creature, metres; `None` where it is not defined.
+    ///
+    /// For a rider that stands without input: the distance of its contact from the material point recorded when its
+    /// input ended, or the depth of its body in that point if larger. In a climb, and while it holds on: the distance
+    /// of its contact from its own material point.
     pub drift: Option<f64>,
-    /// By how much contacts kept it from where it was carried and wanted to go, metres.
+    /// Distance by which contacts kept the climber from where it was carried and wanted to go, metres.
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
     pub skinned_share: f64,
-    /// What the tick cost: pose, script, climber.
+    /// Time of the pose, the script and the climber's step, microseconds.
     pub microseconds: f64,
 }
 
 impl Sample {
-    /// In a word.
+    /// The climber's activity in one word, padded to eight characters.
     pub fn activity(&self) -> &'static str {
         match (self.mode, self.riding) {
             (ClimberMode::Falling, _) => "falling ",
@@ -42,7 +45,7 @@ impl Sample {
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     samples: Vec<Sample>,
-    /// Fingerprints of the ticks, folded.
+    /// Hash of the ticks' fingerprints.
     hash: u64,
 }
 
@@ -52,17 +55,17 @@ impl Recording {
         self.hash = (self.hash.rotate_left(5) ^ fingerprint).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     }
 
-    /// In order.
+    /// The ticks, in order.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
-    /// A number over every bit of the climber's states and the rocks' places: equal for equal battles.
+    /// A 64-bit hash of the climber's states and the rocks' poses in all ticks, for comparing battles.
     pub fn hash(&self) -> u64 {
         self.hash
     }
 
-    /// The share of `part` (0 to 1) of the ticks cost no more than this, microseconds.
+    /// The `part` quantile (0 to 1) of the ticks' times, microseconds; 0 without ticks.
     pub fn tick_us(&self, part: f64) -> f64 {
         let mut costs: Vec<f64> = self.samples.iter().map(|s| s.microseconds).collect();
         costs.sort_by(f64::total_cmp);
@@ -81,20 +84,21 @@ impl Recording {
             .fold(0.0, f64::max)
     }
 
-    /// The longest push-out of the ticks with a drift in which it stands: without input.
+    /// The longest push-out of the ticks in which the climber stands and has a drift, metres: in a ride, those without
+    /// input. 0 if there is none.
     pub fn max_push_out(&self) -> f64 {
         let stands = |s: &&Sample| s.drift.is_some() && s.mode == ClimberMode::Standing;
         let standing = self.samples.iter().filter(stands);
         standing.map(|s| s.push_out).fold(0.0, f64::max)
     }
 
-    /// Vertices skinned per tick, as a share of all: the mean over the ticks.
+    /// Mean share of the creature's vertices that were skinned in a tick.
     pub fn skinned_share(&self) -> f64 {
         let sum: f64 = self.samples.iter().map(|s| s.skinned_share).sum();
         sum / self.samples.len().max(1) as f64
     }
 
-    /// How many ticks end in a mode.
+    /// Number of ticks that end in a mode.
     pub fn ticks_in(&self, mode: ClimberMode) -> usize {
         self.samples.iter().filter(|s| s.mode == mode).count()
     }

@@ -1,10 +1,11 @@
-//! How a clip is repeated. A file does not say which of its clips are loops: a death or an attack ends in another pose
-//! than it began with, and started again it throws the skin from one pose to the other within a tick.
+//! How a clip is repeated. A file does not tell which of its clips are loops: a death or an attack ends in another pose
+//! than it begins with. Played as a loop, it throws the skin from one pose to the other within a tick.
 //!
-//! The seam of each clip is measured, at the outermost vertices of every joint: how fast each of them is in a tick that
-//! spans the end and the beginning, beside the fastest that it is within the clip. If any is much faster at the seam, the
-//! clip is not a loop; it is played to its end and back again, so that its poses stay those of the file and nothing jumps. (`place` at the seam would claim no motion either, but it teleports
-//! whatever stands on the skin, and a ride is there to test carrying.)
+//! The seam of each clip is measured at the outermost vertices of every joint: the speed of each vertex in a tick that
+//! spans the clip's end and beginning is compared with its largest speed within the clip. If a vertex is much faster at
+//! the seam, the clip is not a loop. It is then played to its end and back again, so that all poses come from the file
+//! and nothing jumps. (`SkinnedSurface::place` at the seam would report no motion either, but it teleports whatever
+//! stands on the skin, and rides exist to test carrying.)
 
 use std::collections::BTreeMap;
 
@@ -16,30 +17,30 @@ use glam::DVec3;
 use super::{BattleError, TICK};
 use crate::Creature;
 
-/// Skin this many times as fast at the seam as anywhere within the clip jumps there. A loop that lacks its closing key frame,
-/// a 24th or a 30th of a second, is two to three times as fast there: that is a jump as well.
+/// Skin that is more than so many times as fast at the seam as anywhere within the clip jumps there. A loop that lacks
+/// its closing key frame, a 24th or a 30th of a second, is two to three times as fast, and counts as a jump as well.
 const JUMP: f64 = 1.5;
 
-/// A seam slower than this many heights of the creature a second is no jump, however slow the clip is: 0.2 m/s on a
-/// creature of 20 m.
+/// Skin that is slower than this at the seam does not jump, however slow the clip is. In heights of the creature per
+/// second: 0.2 m/s on a creature of 20 m.
 const SLOW: f64 = 0.01;
 
-/// Seconds over which a clip that turns back slows down and turns, at most its own length. Shorter jerks harder.
+/// Seconds in which a clip that turns back slows down to rest, at most the clip's length. A shorter time jerks harder.
 const TURN: f64 = 0.25;
 
-/// How a clip goes on once it has come to its end.
+/// How a clip goes on after its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Repeat {
-    /// Begins again.
+    /// The clip begins again.
     Loop,
-    /// Runs backwards to its beginning, and forwards again.
+    /// The clip runs backwards to its beginning, and forwards again.
     BackAndForth,
-    /// Stays at its beginning.
+    /// The clip stays at its beginning.
     Hold,
 }
 
 impl Repeat {
-    /// Seconds after a clip's first key frame, `time` seconds after it was first played, for a clip of this length.
+    /// The time within a clip of length `duration`, `time` seconds after the clip was first played. All in seconds.
     pub(super) fn time(self, time: f64, duration: f64) -> f64 {
         if duration <= 0.0 || self == Self::Hold {
             return 0.0;
@@ -47,7 +48,8 @@ impl Repeat {
         if self == Self::Loop {
             return time.rem_euclid(duration);
         }
-        // A triangle wave, its corners rounded to parabolas over `turn` seconds, which makes it that much longer.
+        // A triangle wave with its corners rounded to parabolas over `turn` seconds, which makes each half `turn`
+        // longer.
         let turn = TURN.min(duration);
         let half = duration + turn;
         let phase = time.rem_euclid(2.0 * half);
@@ -67,17 +69,18 @@ impl Repeat {
     }
 }
 
-/// What the skin does where a clip's end meets its beginning, and within the clip: of the vertex that jumps most.
+/// Speeds of the vertex that jumps most between a clip's end and its beginning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Seam {
-    /// Its speed across the seam, heights of the creature a second.
+    /// The vertex's speed across the seam, heights of the creature a second.
     pub(super) speed: f64,
-    /// Its largest speed within the clip, heights of the creature a second.
+    /// The vertex's largest speed within the clip, heights of the creature a second.
     pub(super) within: f64,
 }
 
 impl Seam {
-    /// By how much it is faster than skin that does not jump, heights of the creature a second; negative if it is not.
+    /// How much faster the vertex is than skin that does not jump, heights of the creature a second; negative if it
+    /// does not jump.
     fn excess(self) -> f64 {
         self.speed - (JUMP * self.within).max(SLOW)
     }
@@ -102,7 +105,7 @@ pub(super) struct SeamProbe<'a> {
 }
 
 impl<'a> SeamProbe<'a> {
-    /// For a creature that is `height` model units tall.
+    /// A probe for a creature that is `height` model units tall.
     pub(super) fn new(creature: &'a Creature, height: f64) -> Self {
         Self {
             creature,
@@ -111,7 +114,7 @@ impl<'a> SeamProbe<'a> {
         }
     }
 
-    /// The seam of a clip.
+    /// Measures the seam of a clip.
     ///
     /// # Errors
     /// [`BattleError::Creature`] if the clip does not fit the skeleton.
@@ -131,7 +134,7 @@ impl<'a> SeamProbe<'a> {
             }
             before = now;
         }
-        // The tick that has the seam in its middle.
+        // A tick with the seam in its middle.
         let end = self.skinned(clip, duration - 0.5 * TICK)?;
         let start = self.skinned(clip, 0.5 * TICK)?;
         let seams = speeds(&end, &start).into_iter().zip(within);
@@ -151,7 +154,7 @@ impl<'a> SeamProbe<'a> {
     }
 }
 
-/// Of the vertices that a joint moves more than any other joint does, the outermost along each axis.
+/// For every joint, the outermost vertices along each axis of those that it moves more than any other joint does.
 fn outermost(mesh: &ColliderMesh) -> Vec<VertexId> {
     let mut by_joint: BTreeMap<u32, [VertexId; 6]> = BTreeMap::new();
     let along = |v: VertexId, axis: usize| {
@@ -189,7 +192,7 @@ mod tests {
     use super::*;
     use crate::beast::beast;
 
-    /// Ticks in a minute of a clip, and the longest step of its time in one of them.
+    /// The longest step of a clip's time in one tick, over a minute.
     fn longest_step(repeat: Repeat, duration: f64) -> f64 {
         let at = |tick: u32| repeat.time(f64::from(tick) * TICK, duration);
         let steps = (0..3600).map(|tick| (at(tick + 1) - at(tick)).abs());
@@ -212,7 +215,7 @@ mod tests {
                 (duration - 1e-4..=duration).contains(&high),
                 "{duration}: ends at {high}"
             );
-            // No faster than forwards, and no change of speed from one moment to the next.
+            // Never faster than forwards, and without sudden changes of speed.
             let speeds: Vec<f64> = times.windows(2).map(|w| (w[1] - w[0]) / 0.001).collect();
             let fastest = speeds.iter().fold(0.0f64, |a, b| a.max(b.abs()));
             assert!(fastest < 1.0 + 1e-9, "{duration}: {fastest} of its speed");
@@ -232,7 +235,7 @@ mod tests {
             let seam = probe.measure(clip).unwrap();
             assert_eq!(seam.repeat(), Repeat::Loop, "{}: {seam:?}", clip.name);
         }
-        // A second's way across its own height, and back to the beginning in no time.
+        // The root moves by the creature's height in a second, and jumps back.
         let way = Vec3::new(height as f32, 0.0, 0.0);
         let mut joints = creature.skeleton.joints().iter();
         let root = joints.position(|joint| joint.parent.is_none()).unwrap();
@@ -258,7 +261,7 @@ mod tests {
         let seam = |speed, within| Seam { speed, within }.repeat();
         assert_eq!(seam(12.0, 1.0), Repeat::BackAndForth);
         assert_eq!(seam(1.0, 1.0), Repeat::Loop);
-        // A quick clip may be quick at its seam; a still one may creep.
+        // A fast clip may be fast at its seam; a still one may creep.
         assert_eq!(seam(12.0, 11.0), Repeat::Loop);
         assert_eq!(seam(0.005, 0.0), Repeat::Loop);
     }

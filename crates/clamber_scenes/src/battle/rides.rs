@@ -1,4 +1,4 @@
-//! Rides on many models, one after another, and a table of what came of them.
+//! Rides on many models, one after another, and a table of their results.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,15 +9,15 @@ use super::options::{Progress, positive};
 use super::{BattleError, BattleOptions, ModeTicks, Story, Summary, fight};
 use crate::test_data;
 
-/// A climber rides every model of a folder for a minute, as `battle --story ride --creature FILE` does, and a table says
-/// which checks hold.
+/// A climber rides every model of a folder for a minute, as `battle --story ride --creature FILE` does, and a table
+/// shows which checks hold.
 ///
-/// Below the table stands for each check that failed where and when it first did. Exits with 1 if a model that can be
-/// loaded fails a check.
+/// Below the table, each failed check is listed with the place and time of its first failure. Exits with 1 if a model
+/// that can be loaded fails a check.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "rides", version)]
 pub struct RidesOptions {
-    /// Models in .glb or .gltf files [default: all of models/ in the folder that CLAMBER_TEST_DATA names].
+    /// Models in .glb or .gltf files [default: all files of models/ in the folder that CLAMBER_TEST_DATA names].
     #[arg(value_name = "FILE")]
     pub models: Vec<PathBuf>,
 
@@ -31,16 +31,16 @@ pub struct RidesOptions {
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: f64,
 
-    /// Rocks that fall on every creature.
+    /// Number of rocks that fall on every creature.
     #[arg(long, value_name = "COUNT", default_value_t = 24)]
     #[arg(value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub rocks: u32,
 
-    /// Where exactly the climber is dropped and the rocks come down.
+    /// Seed for the climber's start and the rocks' places; the same number gives the same rides.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 
-    /// Folder for each model's summary.json and timeline.svg, in folders by the models' names.
+    /// Folder for the results: one folder per model, with summary.json and timeline.svg.
     #[arg(long, value_name = "DIR", default_value = "target/rides")]
     pub out: PathBuf,
 }
@@ -48,14 +48,14 @@ pub struct RidesOptions {
 /// One model's ride.
 #[derive(Debug)]
 pub struct Ride {
-    /// The file's name, without its ending.
+    /// The file's name, without its extension.
     pub model: String,
-    /// What came of it; an error if there was no ride.
+    /// The summary of the ride, or the reason why there was none.
     pub outcome: Result<Summary, BattleError>,
 }
 
 impl Ride {
-    /// True if it was ridden and every check holds.
+    /// True if the model was ridden and every check holds.
     pub fn holds(&self) -> bool {
         self.outcome.as_ref().is_ok_and(Summary::holds)
     }
@@ -68,22 +68,23 @@ impl Default for RidesOptions {
 }
 
 impl RidesOptions {
-    /// From the command line; prints help or what is wrong with it, and exits.
+    /// Parses the command line. For `--help` or a wrong argument it prints a message and exits.
     pub fn from_command_line() -> Self {
         Self::parse()
     }
 
-    /// The models' files, sorted.
+    /// The models' files: those of the options, in their order, or all of the default folder, sorted.
     ///
     /// # Errors
-    /// [`BattleError::NoModels`] if no file is named, and no folder.
+    /// [`BattleError::NoModels`] if the options name no file, and the default folder is not set, cannot be read, or has
+    /// no model.
     pub fn files(&self) -> Result<Vec<PathBuf>, BattleError> {
         if !self.models.is_empty() {
             return Ok(self.models.clone());
         }
         let variable = test_data::VARIABLE;
         let root = std::env::var_os(variable).ok_or_else(|| {
-            BattleError::NoModels(format!("name files, or set {variable} to a folder"))
+            BattleError::NoModels(format!("pass files, or set {variable} to a folder"))
         })?;
         let folder = PathBuf::from(root).join("models");
         let failed =
@@ -117,10 +118,10 @@ impl RidesOptions {
     }
 }
 
-/// Rides every model, and calls `watch` after each with how many are done, and of how many.
+/// Rides every model. Calls `watch` after each ride, with the number of rides done and of all rides.
 ///
 /// # Errors
-/// [`BattleError::NoModels`]. A model that cannot be ridden stands among the rides with its error.
+/// [`BattleError::NoModels`]. A model that cannot be ridden is listed among the rides with its error.
 pub fn ride_all(
     options: &RidesOptions,
     mut watch: impl FnMut(&Ride, usize, usize),
@@ -139,10 +140,10 @@ pub fn ride_all(
     Ok(rides)
 }
 
-/// A table in Markdown, and below it the first fault of every check that failed.
+/// The rides as a Markdown table, followed by the first fault of every failed check.
 pub fn table(rides: &[Ride]) -> String {
     let mut table = String::from(
-        "| model | on it | standing | falls | drift, mm | pushed off, mm | stands off, mm | inside | rocks inside | rocks left | |\n\
+        "| model | riding | standing | falls | drift, mm | pushed off, mm | stands off, mm | inside | rocks inside | rocks left | |\n\
          |---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut causes = String::new();
@@ -152,7 +153,7 @@ pub fn table(rides: &[Ride]) -> String {
             Err(error) => writeln!(table, "| {model} | | | | | | | | | | refused: {error} |"),
             Ok(summary) => {
                 for check in summary.checks.iter().filter(|check| !check.holds) {
-                    let cause = check.cause.as_deref().unwrap_or("no cause noted");
+                    let cause = check.cause.as_deref().unwrap_or("no cause recorded");
                     let _ = writeln!(causes, "{model}: {}: {cause}", check.name);
                 }
                 row(&mut table, model, summary)

@@ -1,4 +1,4 @@
-//! Rocks that fall on the creature, and fall again once they lie in the valley.
+//! Rocks that fall on the creature. Rocks that come to lie in the valley are dropped again.
 
 use std::time::Instant;
 
@@ -13,53 +13,53 @@ use super::{BattleError, TICK};
 use crate::rocks::scatter;
 use crate::{solid_angle, valley};
 
-/// Height of the creature that rocks have their own size for, metres; for others they are scaled.
+/// Height of a creature for which rocks have a scale of 1, metres. Smaller creatures get smaller rocks.
 const HEIGHT: f64 = 40.0;
 
-/// Smallest scale of rocks: rapier's own lengths, such as the 2 cm over which it predicts, are not scaled.
+/// Smallest scale of rocks: rapier's own lengths, such as its prediction distance of 2 cm, are not scaled.
 const SMALLEST: f64 = 0.1;
 
-/// Ticks after which one of the rocks that lie in the valley falls again.
+/// Every so many ticks one of the rocks that lie in the valley is dropped again.
 const AGAIN: u64 = 60;
 
-/// Ticks between two looks at whether a rock is inside the creature, which go over all triangles.
+/// Ticks between two checks of whether a rock is inside the creature. A check goes over all triangles.
 const LOOK_EVERY: u64 = 30;
 
-/// A rock this near to the ground, in its own largest radius, lies in the valley.
+/// A rock lies in the valley if its centre is less than this above the ground, metres at a scale of 1.
 const LIES: f64 = 4.0;
 
-/// The rocks of a battle, and what became of them.
+/// The rocks of a battle, and counts of what happened to them.
 #[derive(Clone, Debug)]
 pub struct Rockfall {
     debris: Debris,
     rocks: Vec<RigidBodyHandle>,
     scale: f64,
     rng: fastrand::Rng,
-    /// The next rock to be looked at for whether it lies.
+    /// Index of the next rock to check for lying in the valley.
     next: usize,
     report: RockfallReport,
     times: Vec<f64>,
 }
 
-/// What became of the rocks.
+/// Counts of what happened to the rocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RockfallReport {
-    /// How often any was let fall.
+    /// How often a rock was dropped, the first drop of each included.
     pub drops: u32,
-    /// Rocks at the skin, over all ticks.
+    /// `DebrisReport::near`, summed over all ticks: rocks with skin near them.
     pub near: u64,
-    /// Rocks put back in front of the skin, over all ticks.
+    /// `DebrisReport::put_back`, summed over all ticks: rocks put back in front of the skin.
     pub put_back: u32,
-    /// Rocks caught between skin, over all ticks.
+    /// `DebrisReport::caught`, summed over all ticks: rocks that skin passes through.
     pub caught: u32,
-    /// How often one was seen under the ground, or inside the creature other than under its feet.
+    /// How often a rock was found under the ground, or inside the creature without being caught (such as under a foot).
     pub fell_through: u32,
-    /// Rocks batted out of the valley, where there is no ground to lie on.
+    /// How often a rock was knocked out of the valley, where there is no ground.
     pub left: u32,
 }
 
 impl Rockfall {
-    /// So many rocks over a place, for a creature of a height.
+    /// `count` rocks above a place, for a creature `height` metres tall.
     pub(super) fn new(
         world: &mut PhysicsWorld,
         count: usize,
@@ -87,7 +87,8 @@ impl Rockfall {
         })
     }
 
-    /// Steps the world with its rocks. Now and then one falls again, from `above`.
+    /// Steps the world with its rocks. Drops lost rocks again from about `above`, and once a second a rock that lies in
+    /// the valley.
     pub(super) fn step(
         &mut self,
         moment: &Moment<'_>,
@@ -143,8 +144,8 @@ impl Rockfall {
         }
     }
 
-    /// Rocks that no ground will stop fall again from above: those batted out of the valley, which are counted by
-    /// themselves, and those under its ground, which should not be there.
+    /// Drops rocks again that no ground will stop: those out of the valley, which have a count of their own, and those
+    /// under its ground, which are a fault.
     fn bring_back(
         &mut self,
         moment: &Moment<'_>,
@@ -165,13 +166,13 @@ impl Rockfall {
             } else {
                 continue;
             }
-            // A rock that was batted away spins; one that lies does not.
+            // A rock that was knocked away spins; a lying rock does not.
             body.set_angvel(Vector::ZERO, true);
             self.let_fall(index, world, above);
         }
     }
 
-    /// The next of those that lie in the valley.
+    /// Drops the next rock that lies in the valley again.
     fn drop_again(&mut self, world: &mut PhysicsWorld, above: DVec3) {
         for _ in 0..self.rocks.len() {
             let index = self.next;
@@ -184,7 +185,7 @@ impl Rockfall {
         }
     }
 
-    /// Lets a rock fall from rest, from somewhere about `above`.
+    /// Drops a rock from near `above`, without linear velocity.
     fn let_fall(&mut self, index: usize, world: &mut PhysicsWorld, above: DVec3) {
         let aside = DVec3::new(self.rng.f64() - 0.5, 0.0, self.rng.f64() - 0.5);
         let place = above + aside * (6.0 * self.scale);
@@ -194,32 +195,32 @@ impl Rockfall {
         self.report.drops += 1;
     }
 
-    /// The rocks, in the world's own handles.
+    /// Handles of the rocks' bodies in the physics world.
     pub fn bodies(&self) -> &[RigidBodyHandle] {
         &self.rocks
     }
 
-    /// How many there are.
+    /// Number of rocks.
     pub fn len(&self) -> usize {
         self.rocks.len()
     }
 
-    /// True without rocks.
+    /// True if there are no rocks.
     pub fn is_empty(&self) -> bool {
         self.rocks.is_empty()
     }
 
-    /// What became of them so far.
+    /// The counts so far.
     pub fn report(&self) -> &RockfallReport {
         &self.report
     }
 
-    /// What each tick of theirs cost, physics included, microseconds.
+    /// Time of each tick for the rocks, physics included, microseconds.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// A number over every bit of where they are.
+    /// A 64-bit hash of the rocks' positions and rotations.
     pub(super) fn fingerprint(&self, bodies: &RigidBodySet) -> u64 {
         let numbers = self.rocks.iter().flat_map(|rock| {
             let body = &bodies[*rock];

@@ -22,33 +22,35 @@ use super::{
 };
 use crate::{Creature, valley};
 
-/// Seconds of a tick.
+/// Length of a tick, seconds.
 pub const TICK: f64 = 1.0 / 60.0;
 
-/// The valley, as an obstacle.
+/// The valley's obstacle id.
 pub const TERRAIN: ObstacleId = ObstacleId(0);
 
-/// The creature, as an obstacle.
+/// The creature's obstacle id.
 pub const CREATURE: ObstacleId = ObstacleId(1);
 
-/// How far above the perch the climber is dropped, metres.
+/// Height above the perch from which the climber is first dropped, metres.
 const DROP: f64 = 2.0;
 
-/// How far above the skin it is dropped again, metres: for a creature in full motion soon carries its back away from below.
+/// Height above the skin from which the climber is dropped again, metres. Small, since a moving creature soon carries
+/// its back away from under the climber.
 const DROP_AGAIN: f64 = 0.1;
 
-/// How far above the perch rocks fall from, as a share of the creature's height.
+/// Height above the perch from which rocks fall, as a share of the creature's height.
 const ROCKS_ABOVE: f64 = 0.5;
 
-/// Ticks on the ground after which a rider is lifted back onto the creature.
+/// Ticks on the ground after which a rider is dropped on the creature again.
 const GROUNDED_TICKS: u32 = 60;
 
-/// How far before the outcrop's wall a climb begins, and how far aside at most, metres.
+/// Distance from the outcrop's wall at which a climb begins, and the largest offset to either side, metres.
 const RUN_UP: f64 = 4.0;
 const ASIDE: f64 = 1.5;
 
-/// How near a stomp knocks down who is on the ground, as a share of the creature's height, and how far above its feet at
-/// most, metres; how fast it throws them up and away, metres a second; and what it costs in hit points.
+/// A stomp knocks down a climber that is not on the creature, within this distance as a share of the creature's height,
+/// and less than `STOMP_HEIGHT` metres above its feet. It throws the climber up and away at `STOMP_SPEED`, metres a
+/// second, and costs `STOMP_DAMAGE` hit points.
 const STOMP_REACH: f64 = 0.6;
 const STOMP_HEIGHT: f64 = 2.0;
 const STOMP_SPEED: [f64; 2] = [4.0, 2.0];
@@ -63,16 +65,17 @@ pub struct Battle<'a> {
     rocks: Rockfall,
     climber: Climber,
     grips: Grips,
-    /// Where it is dropped to ride; rocks fall from above it.
+    /// The point above which the climber is dropped to ride, and from above which rocks fall.
     perch: MaterialPoint,
-    /// How it rides, if it does not climb.
+    /// The script of a ride.
     rider: Rider,
-    /// How it climbs, if it does.
+    /// The script of a climb; `None` in a ride.
     pilot: Option<Pilot>,
     height: f64,
     tick: u64,
     grounded: u32,
-    /// It began the tick faster than it walks, as after a landing: friction brakes it, and it leaves its point.
+    /// The climber began the tick faster than it walks, as after a landing: friction slows it down, and it leaves its
+    /// material point.
     slides: bool,
     drops: u32,
     landings: u32,
@@ -84,10 +87,12 @@ pub struct Battle<'a> {
 }
 
 impl<'a> Battle<'a> {
-    /// A creature in the valley, a climber before an outcrop or above the creature's back, and rocks above that.
+    /// A battle before its first tick: a creature in the valley, a climber in front of an outcrop or above the
+    /// creature's back, and rocks above the back.
     ///
     /// # Errors
-    /// [`BattleError`].
+    /// [`BattleError::NoHeight`], [`BattleError::NoPerch`], [`BattleError::NoWay`] in a climb,
+    /// [`BattleError::Outcrop`], and the errors of the creature, the climber and the debris.
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
         let (height, seed, story) = (options.height(), options.seed, options.story());
         let mut choreography = Choreography::new(creature, height, story)?;
@@ -135,7 +140,7 @@ impl<'a> Battle<'a> {
         })
     }
 
-    /// One tick, the climber's input by the script.
+    /// Runs one tick, with the climber's input from the script.
     ///
     /// # Errors
     /// [`BattleError`] if a clip does not fit the creature.
@@ -163,7 +168,7 @@ impl<'a> Battle<'a> {
         self.step_posed(input, start)
     }
 
-    /// What a foot that comes down in this tick does to who stands on the ground near by.
+    /// The blow of a foot that comes down in this tick to a climber near it, on the ground or in the air.
     fn stomp(&self) -> Option<Blow> {
         let state = self.climber.state();
         let up = self.climber.config().up();
@@ -183,7 +188,7 @@ impl<'a> Battle<'a> {
         })
     }
 
-    /// One tick with an input from elsewhere, such as a recording.
+    /// Runs one tick with a given input, such as one from a recording.
     ///
     /// # Errors
     /// [`BattleError`] if a clip does not fit the creature, or the input is not finite.
@@ -200,7 +205,7 @@ impl<'a> Battle<'a> {
         Ok(())
     }
 
-    /// The rest of a tick that began at `start`, once the creature is posed.
+    /// The rest of a tick that began at `start`, after the creature is posed.
     fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
         // The climber and the rocks pass through each other.
         let bodies = &self.world.bodies;
@@ -268,7 +273,7 @@ impl<'a> Battle<'a> {
         self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
-    /// Once it has stood on the ground for a while, or is out of the valley, a rider is dropped on the back again.
+    /// Drops a rider on the creature's back again if it has been on the ground for a while or is out of the valley.
     fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
         if self.pilot.is_some() {
             return Ok(());
@@ -287,8 +292,8 @@ impl<'a> Battle<'a> {
         };
         let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
         self.watch.fell(&moment, state.position);
-        // Onto the skin that is uppermost there now. At rest relative to the creature as a whole: the perch itself may
-        // just be flung about, and would throw the climber away.
+        // Onto the skin that is uppermost there now, and at rest relative to the creature as a whole: the perch itself
+        // may be moving fast, and its velocity would throw the climber away.
         let sky = perch.position + DVec3::Y * (4.0 * self.height);
         let top = self.surface.cast_ray(sky, -DVec3::Y, 4.0 * self.height);
         let place = top.map_or(perch.position, |top| top.point);
@@ -304,7 +309,7 @@ impl<'a> Battle<'a> {
         Ok(())
     }
 
-    /// What is needed to go on from here, beside the climber's state; the rocks are not.
+    /// The state of the battle besides the climber's state, without the rocks and the script's memory.
     pub fn snapshot(&self) -> BattleSnapshot {
         let (time, walked) = self.choreography.progress();
         BattleSnapshot {
@@ -317,11 +322,13 @@ impl<'a> Battle<'a> {
         }
     }
 
-    /// Goes on from a snapshot of a battle made with the same options. Creature and climber do so with the
-    /// same bits, given the same inputs; the rocks stay where they are, and the script of a climb remembers nothing.
+    /// Restores a snapshot of a battle that was made with the same options, and the climber's state.
+    ///
+    /// Given the same inputs, creature and climber then go on with the same bits. The rocks stay where they are. The
+    /// script's memory is not restored.
     ///
     /// # Errors
-    /// [`BattleError`] if the state is none of a climber's or a clip does not fit the creature.
+    /// [`BattleError`] if the climber rejects the state, or a clip does not fit the creature.
     pub fn restore(
         &mut self,
         snapshot: &BattleSnapshot,
@@ -338,7 +345,7 @@ impl<'a> Battle<'a> {
         Ok(())
     }
 
-    /// Ticks fought.
+    /// Number of ticks so far.
     pub fn tick(&self) -> u64 {
         self.tick
     }
@@ -358,22 +365,22 @@ impl<'a> Battle<'a> {
         &self.surface
     }
 
-    /// The creature's palette of the last tick.
+    /// The creature's palette in the last tick.
     pub fn palette(&self) -> &Palette {
         self.choreography.palette()
     }
 
-    /// What the climber was asked for in the last tick.
+    /// The climber's input in the last tick.
     pub fn input(&self) -> &ClimberInput {
         &self.input
     }
 
-    /// What came of it.
+    /// The climber's report of the last tick.
     pub fn report(&self) -> &StepReport {
         &self.report
     }
 
-    /// Valley and rocks.
+    /// The physics world: the valley, the outcrop in a climb, and the rocks.
     pub fn world(&self) -> &PhysicsWorld {
         &self.world
     }
@@ -383,27 +390,27 @@ impl<'a> Battle<'a> {
         &self.rocks
     }
 
-    /// A number over every bit of where the rocks are.
+    /// A 64-bit hash of the rocks' positions and rotations after the last tick.
     pub fn rocks_fingerprint(&self) -> u64 {
         self.rocks_fingerprint
     }
 
-    /// Every tick so far.
+    /// The ticks so far.
     pub fn recording(&self) -> &Recording {
         &self.recording
     }
 
-    /// Whether there is an outcrop in the valley, which is climbed over.
+    /// True if there is an outcrop in the valley: in a climb.
     pub fn has_outcrop(&self) -> bool {
         self.pilot.is_some()
     }
 
-    /// Seconds after which the climber came to the creature's top; `None` if it has not, or rides.
+    /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub fn arrived(&self) -> Option<f64> {
         self.pilot.as_ref().and_then(Pilot::arrived)
     }
 
-    /// How often the climber was dropped on the creature.
+    /// How often the climber was dropped on the creature; 0 in a climb.
     pub fn drops(&self) -> u32 {
         self.drops
     }
@@ -413,7 +420,7 @@ impl<'a> Battle<'a> {
         self.landings
     }
 
-    /// Names of the creature's clips that are no loops, and are played back and forth.
+    /// Names of the creature's clips that are not loops and are therefore played back and forth.
     pub fn turned_back(&self) -> Vec<String> {
         self.choreography.turned_back()
     }
@@ -437,12 +444,12 @@ fn moment<'a>(
     }
 }
 
-/// A climber with all that one can do, somewhere before the outcrop.
+/// A climber with all abilities, in front of the outcrop; the seed shifts it aside.
 fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
     let mut config = ClimberConfig::colossus_climber();
     config.ground.jump_speed = 6.0;
     if let Some(stamina) = &mut config.stamina {
-        // A strong one, whom the walk of a creature so tall does not tire: high up it swings by metres.
+        // Strong enough for the walk of a creature this tall, which swings by metres high up.
         stamina.hold_drain = 1.0 / 90.0;
         stamina.shake_threshold = 10.0;
     }
@@ -454,7 +461,8 @@ fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
     Ok(Climber::new(config, position)?)
 }
 
-/// A climber that rides whatever the creature does, in the air so far above a place: feet and arms hold in any shake.
+/// A climber for a ride, in the air `drop` metres above a place. No acceleration of the creature throws it off or makes
+/// it hang.
 fn rider_above(place: DVec3, drop: f64) -> Result<Climber, BattleError> {
     let strong = ClimberConfig::colossus_climber().grip;
     let mut config = ClimberConfig::walker();
@@ -467,8 +475,9 @@ fn rider_above(place: DVec3, drop: f64) -> Result<Climber, BattleError> {
     Ok(Climber::new(config, position)?)
 }
 
-/// The most level place near the middle of the creature's back: rays from above on a grid around
-/// the middle of its skin; the seed shifts the grid by up to half a cell.
+/// The most level place near the middle of the creature's back; `None` if no ray hits the creature.
+///
+/// Casts rays from above on a grid around the middle of the skin. The seed shifts the grid by up to half a cell.
 fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contact> {
     let world = |p: &glam::Vec3| surface.world_from_model().transform_point_f32(*p);
     let mut positions = Vec::new();
@@ -486,7 +495,7 @@ fn find_perch(surface: &SkinnedSurface, height: f64, seed: u64) -> Option<Contac
             let Some(hit) = surface.cast_ray(from, -DVec3::Y, 8.0 * height) else {
                 continue;
             };
-            // Level first; of much the same level the nearer to the middle.
+            // A level place is better, and of similar ones the nearer to the middle.
             let score = hit.normal.y - 0.5 * aside.length() / height;
             if best.is_none_or(|(other, _)| score > other) {
                 best = Some((score, hit));

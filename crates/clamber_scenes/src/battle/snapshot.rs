@@ -2,25 +2,25 @@ use serde::{Deserialize, Serialize};
 
 use super::BattleError;
 
-/// What a battle needs to go on from a tick, beside the climber's state. The rocks are no part of it.
+/// The state of a battle at a tick, besides the climber's state. It does not include the rocks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BattleSnapshot {
-    /// Ticks fought.
+    /// Number of ticks so far.
     pub tick: u64,
-    /// Seconds that the creature has played, as added up.
+    /// Time of the creature's clips, seconds: the sum of the ticks' lengths.
     pub time: f64,
-    /// Metres that it has walked.
+    /// Distance that the creature has walked, metres.
     pub walked: f64,
-    /// Ticks that the climber has stood on the ground.
+    /// Consecutive ticks for which a rider has been on the ground.
     pub grounded: u32,
-    /// How often it was dropped on the creature.
+    /// How often the climber was dropped on the creature.
     pub drops: u32,
-    /// How often it landed.
+    /// How often the climber landed.
     pub landings: u32,
 }
 
 impl BattleSnapshot {
-    /// As JSON; numbers read back to the same bits.
+    /// Writes the snapshot as JSON. Its numbers read back to the same bits.
     ///
     /// # Errors
     /// [`BattleError::Snapshot`].
@@ -28,7 +28,7 @@ impl BattleSnapshot {
         serde_json::to_string(self).map_err(|error| BattleError::Snapshot(error.to_string()))
     }
 
-    /// From [`BattleSnapshot::to_json`].
+    /// Reads a snapshot that [`BattleSnapshot::to_json`] wrote.
     ///
     /// # Errors
     /// [`BattleError::Snapshot`].

@@ -1,14 +1,14 @@
-/// What a battle is about.
+/// The climber's task in a battle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Story {
-    /// The climber comes over an outcrop, is stomped at, grips a leg and climbs to the top.
+    /// The climber comes over an outcrop, is knocked down by a stomp, grips a leg and climbs to the top.
     Climb,
     /// The climber is dropped on the back, and stands, walks and jumps there.
     Ride,
 }
 
 impl Story {
-    /// Its name on the command line.
+    /// The story's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Climb => "climb",

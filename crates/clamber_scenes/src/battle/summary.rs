@@ -12,110 +12,112 @@ use super::{Battle, BattleError, BattleOptions, Story};
 use crate::json::number;
 use crate::measure::quantile;
 
-/// Largest share of a ride's ticks that may be spent off the creature: one in ten.
+/// Largest share of a ride's ticks that the climber may spend off the creature: one in ten.
 const MAX_OFF: f64 = 0.1;
 
-/// Seconds that the script of a ride spends in the air by itself, on the drop and on the jump: more than `MAX_OFF` of a ride
-/// shorter than 20 s.
+/// Seconds in the air that the script of a ride needs for the drop and the jump. In a ride shorter than 20 s they are
+/// more than `MAX_OFF`.
 const SCRIPT_OFF: f64 = 2.0;
 
-/// Something that a battle must fulfil.
+/// A requirement of a battle: a number with an upper bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
-    /// What was looked at.
+    /// Name of the checked number, with its unit.
     pub name: &'static str,
-    /// What was found.
+    /// The number found.
     #[serde(serialize_with = "number")]
     pub found: f64,
-    /// What it may be at most.
+    /// The largest allowed number.
     pub at_most: f64,
-    /// True if it is.
+    /// True if `found` is at most `at_most`.
     pub holds: bool,
-    /// Where and when it first failed, if it did.
+    /// Place and time of the first failure; `None` if the check holds.
     pub cause: Option<String>,
 }
 
-/// How long a climber did something.
+/// Number of ticks that a climber spent in a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeTicks {
-    /// What.
+    /// Name of the mode.
     pub mode: String,
-    /// For how many ticks.
+    /// Number of ticks that end in the mode.
     pub ticks: usize,
 }
 
-/// What came of a battle.
+/// The results of a battle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// Who was ridden.
+    /// Name of the creature.
     pub creature: String,
-    /// Its joints.
+    /// Number of the creature's joints.
     pub joints: usize,
-    /// Its vertices, after welding.
+    /// Number of the collider's vertices, after welding.
     pub vertices: usize,
-    /// Its triangles.
+    /// Number of the collider's triangles.
     pub triangles: usize,
-    /// Its height, metres.
+    /// Height of the creature, metres.
     pub height_m: f64,
-    /// Clips that are no loops, and are played back and forth.
+    /// Names of the clips that are not loops and are therefore played back and forth.
     pub turned_back: Vec<String>,
-    /// Ticks fought.
+    /// Number of ticks.
     pub ticks: usize,
-    /// Their length, seconds.
+    /// Length of the battle, seconds.
     pub seconds: f64,
-    /// A number over every bit of the climber's states: equal for equal battles.
+    /// [`Recording::hash`](super::Recording::hash) in hexadecimal, for comparing battles.
     pub hash: String,
-    /// Times that a rider was dropped on the creature: 1 if it never fell to the ground; 0 of a climb.
+    /// How often a rider was dropped on the creature: 1 if it never fell to the ground; 0 in a climb.
     pub drops: u32,
-    /// Times that a rider came to the ground, or out of the valley.
+    /// How often the climber came to the ground or out of the valley. In a climb its start on the ground counts as
+    /// well.
     pub falls: u32,
-    /// Ticks at which the climber was seen inside the creature or below the ground.
+    /// Ticks at which the climber's centre was found inside the creature or below the ground.
     pub ticks_inside: u32,
-    /// Times that it landed on anything.
+    /// How often the climber landed on anything.
     pub landings: u32,
-    /// Ticks in each mode of the climber.
+    /// Number of ticks in each built-in mode of the climber.
     pub modes: Vec<ModeTicks>,
-    /// When it came to the creature's top, if it climbed there, seconds.
+    /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub arrived_s: Option<f64>,
     /// Share of the ticks spent on the creature.
     pub riding_share: f64,
-    /// Largest distance from a standing rider's contact to the material point recorded when its input ended; in a climb
-    /// from its contact to its own material point.
+    /// Largest drift of the climber from its material point, metres: see [`Sample::drift`](super::Sample::drift).
     pub max_anchor_drift_m: f64,
-    /// Farthest that other skin pushed a rider's body off its material point while standing without input.
+    /// Largest distance by which other skin pushed a rider's body off its material point while it stood without input,
+    /// metres; `None` in a climb.
     pub max_pushed_off_m: Option<f64>,
-    /// Farthest that a rider stood off its material point with no skin in between while standing without input.
+    /// Largest gap between a rider's body and its material point with no skin in between, while it stood without input,
+    /// metres; `None` in a climb.
     pub max_stands_off_m: Option<f64>,
-    /// Longest push-out of a rider while standing without input.
+    /// Longest push-out of a rider that stood without input, metres; `None` in a climb.
     pub max_push_out_m: Option<f64>,
-    /// Deepest that a rider's ball reached into the skin while standing without input.
+    /// Largest depth of a rider's ball in the skin while it stood without input, metres; `None` in a climb.
     pub max_penetration_m: Option<f64>,
-    /// Vertices skinned per tick, as a share of all: the mean over the ticks.
+    /// Mean share of the creature's vertices that were skinned in a tick.
     pub vertices_skinned_share: f64,
-    /// Rocks.
+    /// Number of rocks.
     pub rocks: usize,
-    /// How often any of them was let fall.
+    /// How often a rock was dropped, the first drop of each included.
     pub rock_drops: u32,
-    /// How often a rock was seen inside the creature or below the ground.
+    /// How often a rock was found inside the creature, unless caught under a foot or in a fold, or below the ground.
     pub rocks_inside: u32,
-    /// Rocks batted out of the valley, which fell again.
+    /// How often a rock was knocked out of the valley, and dropped again.
     pub rocks_left: u32,
-    /// Rocks at the creature's skin: the mean over the ticks.
+    /// Mean number of rocks near the creature's skin in a tick.
     pub rocks_near: f64,
-    /// Rocks that the physics let skin into, and that were put back in front of it.
+    /// Number of rocks that the physics let into the skin, and that were put back in front of it, over all ticks.
     pub rocks_put_back: u32,
-    /// What half of the ticks cost at most for the rocks, the physics included.
+    /// Median time of a tick for the rocks, physics included, microseconds.
     pub rocks_us_median: f64,
-    /// What half of the ticks cost at most, without the rocks: pose, script, climber.
+    /// Median time of a tick without the rocks, microseconds: pose, script, climber.
     pub tick_us_median: f64,
-    /// What 99 of 100 ticks cost at most.
+    /// 99th percentile of the time of a tick without the rocks, microseconds.
     pub tick_us_p99: f64,
-    /// What had to hold.
+    /// The checks of the battle's story.
     pub checks: Vec<Check>,
 }
 
 impl Summary {
-    /// Of a battle as it stands, fought with these options.
+    /// The summary of a battle so far. `options` are those that the battle was made with.
     pub fn new(battle: &Battle<'_>, options: &BattleOptions) -> Self {
         let recording = battle.recording();
         let mesh = battle.surface().mesh();
@@ -158,7 +160,7 @@ impl Summary {
         if !rides && options.is_whole() {
             let missed = if battle.arrived().is_some() { 0.0 } else { 1.0 };
             checks.push(check("never at the top", missed, 0.0));
-            // A creature from a file need not have a clip that shakes and one that stomps.
+            // A creature from a file may lack a clip that shakes or stomps.
             if options.creature.is_none() {
                 checks.push(check("modes never seen", never as f64, 0.0));
             }
@@ -204,7 +206,7 @@ impl Summary {
         self.checks.iter().all(|check| check.holds)
     }
 
-    /// Writes `summary.json` into a folder that exists.
+    /// Writes `summary.json` into an existing folder.
     pub(super) fn write(&self, folder: &Path) -> Result<(), BattleError> {
         let path = folder.join("summary.json");
         let failed = |reason: String| BattleError::Write {
@@ -247,7 +249,7 @@ impl fmt::Display for Summary {
             .collect();
         row(f, "ticks by mode", seen.join(", "))?;
         if !self.turned_back.is_empty() {
-            row(f, "no loops, back and forth", self.turned_back.join(", "))?;
+            row(f, "clips back and forth", self.turned_back.join(", "))?;
         }
         if let Some(seconds) = self.arrived_s {
             row(f, "at the top", format!("after {seconds:.1} s"))?;
@@ -264,7 +266,7 @@ impl fmt::Display for Summary {
         )?;
         row(
             f,
-            "rocks, drops, at the skin",
+            "rocks, drops, near the skin",
             format!(
                 "{}, {}, {:.1}; {} left the valley",
                 self.rocks, self.rock_drops, self.rocks_near, self.rocks_left
@@ -272,7 +274,7 @@ impl fmt::Display for Summary {
         )?;
         row(
             f,
-            "rocks, physics and all",
+            "rocks with physics, median",
             format!(
                 "{:.0} us, {} put back",
                 self.rocks_us_median, self.rocks_put_back

@@ -1,4 +1,4 @@
-//! The battle over time, as a picture: height, state, drift and cost of every tick.
+//! A plot of the battle over time: height, state, drift and time of every tick.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use plotters::prelude::*;
 
 use super::{BattleError, Recording, Sample, Summary};
 
-/// A curve and its panel.
+/// A panel of the plot, with one curve.
 struct Panel {
     title: &'static str,
     unit: &'static str,
@@ -43,14 +43,14 @@ const PANELS: [Panel; 4] = [
         value: |s| s.drift.map(|drift| drift * 1e6),
     },
     Panel {
-        title: "cost of a tick",
+        title: "time of a tick",
         unit: "us",
         color: RGBColor(110, 80, 160),
         value: |s| Some(s.microseconds),
     },
 ];
 
-/// Draws `timeline.svg` into a folder that exists.
+/// Draws `timeline.svg` into an existing folder.
 pub(super) fn draw(
     recording: &Recording,
     summary: &Summary,

@@ -1,4 +1,4 @@
-//! The beast's bones: where they start and end at rest, metres, Y up, facing +Z.
+//! The beast's bones: their start and end at rest, metres, Y up, facing +Z.
 
 use glam::DVec3;
 
@@ -6,11 +6,11 @@ use glam::DVec3;
 pub(super) struct Bone {
     pub(super) name: String,
     pub(super) parent: Option<usize>,
-    /// The joint.
+    /// Position of the joint, where the bone starts.
     pub(super) at: DVec3,
-    /// Where the bone ends.
+    /// Position of the bone's end.
     pub(super) tip: DVec3,
-    /// Of the flesh at the joint and at the tip; no flesh if both are zero.
+    /// Radii of the flesh at the joint and at the tip; no flesh if both are zero.
     pub(super) radii: [f64; 2],
 }
 
@@ -54,7 +54,7 @@ const LEGS: [Row; 10] = [
     ("hindfoot", "ankle",    [3.4, 1.2, -6.2],  [3.4, 1.15, -4.9], [1.15, 1.0]),
 ];
 
-/// All bones, every parent before its children; legs end in `.l` (positive x) or `.r`.
+/// All bones, every parent before its children. Names of the legs' bones end in `.l` (positive x) or `.r`.
 pub(super) fn bones() -> Vec<Bone> {
     let mut bones: Vec<Bone> = Vec::new();
     let mut push = |name: String, parent: &str, row: &Row, side: f64| {
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_bone_but_the_root_hangs_under_one_before_it() {
+    fn parents_come_before_their_children() {
         let bones = bones();
         assert_eq!(bones.len(), 38);
         for (index, bone) in bones.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Three looping clips: idle, walk, shake. Written as functions of a phase, kept as cubic splines.
+//! Three looping clips, idle, walk and shake: defined as functions of a phase, stored as cubic splines.
 
 use core::f64::consts::TAU;
 
@@ -8,20 +8,21 @@ use glam::{DQuat, DVec3};
 
 use super::body::Bone;
 
-/// Key frames of one cycle.
+/// Number of key frames of one cycle.
 const KEYFRAMES: usize = 32;
 
-/// Seconds of one walking cycle.
+/// Length of one walking cycle, seconds.
 const WALK_SECONDS: f64 = 3.2;
 
-/// How far the legs swing to either side, radians.
+/// How far the legs swing forwards and backwards, radians.
 const SWING: f64 = 0.3;
 
-/// A leg of 11 m sweeps twice its swing on the ground in half a cycle.
+/// Speed of the walk, metres a second: a leg of 11 m sweeps twice its swing on the ground in half a cycle.
 pub(super) const WALK_SPEED: f64 = 2.0 * 11.0 * SWING / (WALK_SECONDS / 2.0);
 
-/// What a motion does to a bone: angles about X (pitch, nose down positive), Y (yaw, to the
-/// creature's left), Z (roll), applied in the order Z, X, Y, and a shift.
+/// A bone's deviation from rest: angles about X (pitch, positive nose down), Y (yaw, positive to the
+/// creature's left) and Z (roll), radians, applied in the order Z, X, Y, and a shift, metres. Only the
+/// root bone is shifted.
 #[derive(Clone, Copy, Default)]
 struct Movement {
     pitch: f64,
@@ -30,7 +31,7 @@ struct Movement {
     shift: DVec3,
 }
 
-/// The movement of a bone at a phase of 0 to 1.
+/// Gives the movement of a bone at a phase of 0 to 1.
 type Motion = fn(name: &str, phase: f64) -> Movement;
 
 pub(super) fn clips(bones: &[Bone]) -> Result<Vec<Clip>, RigError> {
@@ -104,9 +105,9 @@ fn walk(name: &str, phase: f64) -> Movement {
     }
 }
 
-/// One leg at an angle of its cycle: swings like a sine, lifts the foot while it comes forward.
+/// One leg at an angle of its cycle: it swings like a sine, and lifts the foot while it moves forward.
 fn leg(bone: &str, angle: f64) -> Movement {
-    // Forward speed of the foot is the cosine: lifted where that is positive.
+    // The foot's forward speed follows the cosine; the foot is lifted where that is positive.
     let lift = libm::cos(angle).max(0.0);
     let swing = SWING * libm::sin(angle);
     let pitch = match bone {
@@ -124,7 +125,8 @@ fn leg(bone: &str, angle: f64) -> Movement {
     }
 }
 
-/// Rolls its trunk from side to side, five times in a cycle, running from neck to tail.
+/// Rolls the trunk from side to side five times in a cycle. The wave runs from the root along the spine to the neck,
+/// and along the tail.
 fn shake(name: &str, phase: f64) -> Movement {
     let wave = |lag: f64| libm::sin(TAU * (5.0 * phase - lag));
     let roll = |size: f64, lag: f64| Movement {
@@ -149,7 +151,7 @@ fn shake(name: &str, phase: f64) -> Movement {
     }
 }
 
-/// The tail swings from root to tip.
+/// Swings the tail; the wave runs from its root to its tip.
 fn tail(name: &str, phase: f64, size: f64) -> Movement {
     let number = name
         .strip_prefix("tail")
@@ -194,7 +196,7 @@ fn clip(bones: &[Bone], name: &str, seconds: f64, motion: Motion) -> Result<Clip
     Ok(Clip::new(name, channels))
 }
 
-/// In-tangent, value, out-tangent of each key frame: Catmull-Rom tangents over a closed cycle.
+/// In-tangent, value and out-tangent of each key frame, with Catmull-Rom tangents over a closed cycle.
 fn hermite<T>(value: impl Fn(isize) -> T, interval: f64) -> Vec<T>
 where
     T: Copy + std::ops::Sub<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -208,7 +210,7 @@ where
 }
 
 fn rotation(movement: Movement) -> DQuat {
-    // Small angles about fixed axes: consecutive key frames never differ in sign.
+    // The angles are small, so the quaternions of consecutive key frames never differ in sign.
     rotation_from_axis_angle(DVec3::Y, movement.yaw)
         * rotation_from_axis_angle(DVec3::X, movement.pitch)
         * rotation_from_axis_angle(DVec3::Z, movement.roll)

@@ -1,10 +1,10 @@
-//! The beast's body as a function: negative inside, positive outside, zero on the skin.
+//! The beast's body as a function of position: negative inside, positive outside, zero on the skin.
 
 use glam::DVec3;
 
 use super::body::Bone;
 
-/// Metres over which two limbs melt into one another.
+/// Distance over which two limbs blend into each other, metres.
 const MELT: f64 = 1.1;
 
 pub(super) struct Field<'a> {
@@ -16,7 +16,7 @@ impl<'a> Field<'a> {
         Self { bones }
     }
 
-    /// Smooth union of all limbs (polynomial smooth minimum of Quilez).
+    /// Smooth union of all limbs, by Quilez's polynomial smooth minimum.
     pub(super) fn at(&self, p: DVec3) -> f64 {
         let mut union = f64::INFINITY;
         for bone in self.bones {
@@ -30,7 +30,8 @@ impl<'a> Field<'a> {
         union
     }
 
-    /// Where on the skin a point near it belongs: two steps of Newton along the gradient.
+    /// Moves a point near the skin onto it, by two Newton steps along the gradient. Each step is at most half of
+    /// `reach` long.
     pub(super) fn onto_skin(&self, mut p: DVec3, reach: f64) -> DVec3 {
         let step = reach * 0.05;
         for _ in 0..2 {
@@ -46,7 +47,7 @@ impl<'a> Field<'a> {
         p
     }
 
-    /// A box around the body, with room to spare.
+    /// Lowest and highest corner of a box around the body, with a margin.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
@@ -59,7 +60,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Distance from the flesh of one bone: a cone with round ends. Infinite without flesh.
+/// Approximate signed distance from the flesh of one bone, a cone with round ends. Infinite without flesh.
 pub(super) fn limb_distance(bone: &Bone, p: DVec3) -> f64 {
     if bone.radii == [0.0, 0.0] {
         return f64::INFINITY;

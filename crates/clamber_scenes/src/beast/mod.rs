@@ -1,8 +1,8 @@
 //! A quadruped built in code: 38 joints, one closed mesh with smooth weights, three clips.
 //!
 //! Its body is the zero set of a smooth union of cones around its bones, turned into triangles by
-//! surface nets; its weights fall off with the distance from the bones. About 21 m tall and 36 m
-//! long, it faces +Z.
+//! surface nets. Its weights fall off with the distance from the bones. It is about 21 m tall and 36 m
+//! long, and faces +Z.
 
 mod body;
 mod clips;
@@ -23,13 +23,12 @@ use crate::Creature;
 use body::Bone;
 use field::Field;
 
-/// Surface of the beast, square metres; with the number of vertices it gives the size of a cell.
+/// Surface area of the beast, square metres. Divided by the number of vertices, it gives the area of a cell.
 const SURFACE: f64 = 1560.0;
 
-/// A beast of roughly so many vertices: between 0.8 and 1.25 times as many, from some 500 up.
+/// A beast with 0.8 to 1.25 times as many vertices as asked for; a number below 500 counts as 500.
 pub fn beast(vertices: usize) -> Creature {
-    // The tables below are constants, so this cannot fail for any number of vertices; a test
-    // builds it at several.
+    // The tables are constants, so this cannot fail for any number of vertices; a test tries several.
     match build(vertices) {
         Ok(creature) => creature,
         Err(error) => unreachable!("the beast's own tables are consistent: {error}"),
@@ -95,7 +94,8 @@ fn skeleton(bones: &[Bone]) -> Result<Skeleton, RigError> {
     Skeleton::new(joints.collect())
 }
 
-/// Fur from the elbows up, a stone belt with ledges behind the shoulders, stone feet.
+/// The tag of a triangle: fur from the elbows up, a stone belt with ledges behind the shoulders, stone feet,
+/// and skin elsewhere.
 fn tag(corners: [DVec3; 3]) -> SurfaceTag {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let belt = middle.z > 1.4 && middle.z < 2.6 && middle.y > 9.0;
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn outside_is_outside() {
+    fn the_trunk_is_inside_and_the_gap_between_the_legs_outside() {
         let creature = beast(2_000);
         let mesh = &creature.collider;
         let inside = |p| crate::solid_angle::is_inside(mesh.positions(), mesh, p);

@@ -1,5 +1,5 @@
-//! Surface nets (Gibson 1998): one vertex per grid cell that the surface crosses, one quad per
-//! grid edge. Closed by construction.
+//! Surface nets (Gibson 1998): one vertex per grid cell that the surface crosses, one quad per crossed
+//! grid edge. The mesh is closed by construction.
 
 use glam::DVec3;
 
@@ -58,7 +58,7 @@ impl Grid {
 pub(super) fn polygonise(field: &Field<'_>, cell: f64) -> Polygons {
     let grid = Grid::sample(field, cell);
     let mut positions = Vec::new();
-    // The vertex of each cell, by its lowest corner.
+    // The vertex of each cell, indexed by the cell's lowest corner.
     let mut vertex_of = vec![u32::MAX; grid.values.len()];
     for (index, vertex) in vertex_of.iter_mut().enumerate() {
         let place = grid.place(index);
@@ -74,7 +74,7 @@ pub(super) fn polygonise(field: &Field<'_>, cell: f64) -> Polygons {
         for axis in 0..3 {
             let quad = crossed_edge(&grid, place, axis).map(|cells| cells.map(|c| vertex_of[c]));
             if let Some([a, b, c, d]) = quad {
-                // Along the shorter diagonal: rounder triangles.
+                // Split along the shorter diagonal, for rounder triangles.
                 let length = |v: u32, w: u32| positions[v as usize].distance(positions[w as usize]);
                 if length(a, c) <= length(b, d) {
                     triangles.extend([[a, b, c], [a, c, d]]);
@@ -90,7 +90,7 @@ pub(super) fn polygonise(field: &Field<'_>, cell: f64) -> Polygons {
     }
 }
 
-/// The mean of the points where the surface crosses a cell's edges; `None` if it does not.
+/// The mean of the points where the surface crosses a cell's edges; `None` if it crosses none.
 fn mean_crossing(grid: &Grid, place: [usize; 3]) -> Option<DVec3> {
     let corner = |bits: usize| {
         let at = std::array::from_fn(|axis| place[axis] + (bits >> axis & 1));
@@ -112,7 +112,7 @@ fn mean_crossing(grid: &Grid, place: [usize; 3]) -> Option<DVec3> {
 }
 
 /// The four cells around the grid edge from `place` along `axis`, counter-clockwise seen from
-/// outside; `None` if the surface does not cross it.
+/// outside; `None` if the surface does not cross that edge.
 fn crossed_edge(grid: &Grid, place: [usize; 3], axis: usize) -> Option<[usize; 4]> {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     if place[axis] + 1 >= grid.size[axis] || place[u] == 0 || place[v] == 0 {

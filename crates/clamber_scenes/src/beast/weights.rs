@@ -1,21 +1,22 @@
-//! Which bones move a vertex, and how much.
+//! The beast's skin weights: which bones move a vertex, and how much.
 
 use glam::DVec3;
 
 use super::body::Bone;
 use super::field::limb_distance;
 
-/// Metres beyond the nearest limb at which another one no longer moves a vertex.
+/// A limb moves a vertex only if it is less than this farther away than the nearest limb, metres.
 const REACH: f64 = 3.0;
 
-/// How many steps along the skeleton a moving bone may be from the nearest one: legs do not pull
-/// on each other across the gap.
+/// A bone moves a vertex only if it is at most so many steps along the skeleton from the nearest bone, so
+/// that legs do not pull on each other across the gap.
 const STEPS: usize = 2;
 
-/// How many influences a vertex has.
+/// Number of influences of a vertex.
 const INFLUENCES: usize = 4;
 
-/// Joints and weights of a vertex: the nearest bones, falling off smoothly, padded with zeros.
+/// Joints and weights of a vertex: the nearest bones, with weights that fall off smoothly, padded with
+/// zeros. The weights are not normalised.
 pub(super) fn weights(bones: &[Bone], p: DVec3) -> [(u32, f64); INFLUENCES] {
     let mut by_distance: Vec<(f64, usize)> = bones
         .iter()
@@ -36,7 +37,7 @@ pub(super) fn weights(bones: &[Bone], p: DVec3) -> [(u32, f64); INFLUENCES] {
     chosen
 }
 
-/// Steps along the skeleton from one joint to another.
+/// Number of steps along the skeleton from one joint to another.
 fn steps_apart(bones: &[Bone], a: usize, b: usize) -> usize {
     let ancestors = |joint: usize| std::iter::successors(Some(joint), |j| bones[*j].parent);
     ancestors(a)

@@ -1,4 +1,4 @@
-//! Ground that stands: slopes, edges within it, stairs, bumps.
+//! Fixed ground: slopes, inner edges, stairs, bumps.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ fn walking(walk: DVec3) -> Box<dyn Fn(u32) -> Input> {
     Box::new(move |_| Input { walk, ..IDLE })
 }
 
-/// Idle for ten seconds.
+/// A character stands idle on a slope for ten seconds. Error: distance from its start.
 fn slope() -> Scene {
     let up = turned(DVec3::Z, radians(45.0));
     let normal = up.rotation * DVec3::Y;
@@ -27,7 +27,7 @@ fn slope() -> Scene {
     }
 }
 
-/// 0.6 rad and a limit just above it.
+/// A walk up a slope of 0.6 rad, with a limit just above it. Error: how much is missing to 6 m along and 3 m up.
 fn climb() -> Scene {
     let mut set = Set::new(DVec3::ZERO).with_still(Solid::ramp(0.6));
     (set.max_slope, set.speed) = (0.601, 6.0);
@@ -43,7 +43,8 @@ fn climb() -> Scene {
     }
 }
 
-/// 0.6 rad and a limit below it, by the 2 degrees that who stands may be beyond ours, and one more.
+/// A walk into a slope of 0.6 rad, with a limit 3 degrees below it: a standing climber may exceed its limit by 2
+/// degrees. Error: how far the character gets beyond 4.5 m along or 2 m up.
 fn too_steep() -> Scene {
     let mut set = Set::new(DVec3::ZERO).with_still(Solid::ramp(0.6));
     (set.max_slope, set.speed) = (0.6 - radians(3.0), 6.0);
@@ -59,7 +60,7 @@ fn too_steep() -> Scene {
     }
 }
 
-/// Its height changes by next to nothing in a tick.
+/// A walk in three directions on a level floor. Error: the largest change of height in a tick.
 fn flat() -> Scene {
     let mut set = Set::new(DVec3::new(-7.0, 0.0, -7.0)).with_still(Solid::floor(15.0));
     (set.dt, set.gravity, set.speed) = (1.0 / 30.0, 30.0, 9.0);
@@ -85,7 +86,8 @@ fn flat() -> Scene {
     }
 }
 
-/// Over inner edges and a seam: it never sinks, and comes 16 m far.
+/// A walk over inner edges and the seam between two meshes. Error: the largest distance from its first height, or how
+/// much is missing to x = 12 m.
 fn seam() -> Scene {
     let mut set = Set::new(-DVec3::X * 3.0)
         .with_still(Solid::field(-16.0, 16))
@@ -106,7 +108,7 @@ fn seam() -> Scene {
     }
 }
 
-/// 3 m up, in one and a half times what 4 m/s take on the level.
+/// A walk up 3 m of stairs, in one and a half times the time that 4 m/s take on the level.
 fn stairs() -> Scene {
     let mut set = Set::new(-DVec3::Z).with_still(Solid::stairs(10));
     set.speed = 4.0;
@@ -125,7 +127,8 @@ fn stairs() -> Scene {
     }
 }
 
-/// 3 m/s for four seconds, less a metre.
+/// A walk over bumps at 3 m/s for four seconds. Error: how much is missing to x = 11 m, a metre less than on level
+/// ground.
 fn bumps(name: &'static str, size: [f64; 2], every: f64, count: u32) -> Scene {
     let [width, height] = size;
     let mut set = Set::new(DVec3::ZERO).with_still(Solid::floor(30.0));

@@ -1,4 +1,4 @@
-//! Ground that moves.
+//! Moving ground.
 
 use core::f64::consts::{PI, TAU};
 
@@ -9,14 +9,14 @@ use super::scene::{Scene, Seen};
 use super::set::{IDLE, Input, Set, TICK, shifted, turned};
 use super::solid::Solid;
 
-/// An idle ride, and how far it leads from where the motion takes its first place.
+/// An idle ride on a platform. Error: see [`drift`].
 struct Ride {
     number: u32,
     name: &'static str,
     asked: f64,
     ticks: u32,
     half: f64,
-    /// On the floor, in its own space.
+    /// Start on the floor, in the floor's own space.
     feet: DVec3,
     motion: fn(f64) -> Similarity,
 }
@@ -78,7 +78,7 @@ const RIDES: &[Ride] = &[
     },
     Ride {
         number: 29,
-        name: "down askew, 3 and 3 m/s",
+        name: "down and sideways, 3 and 3 m/s",
         asked: 1e-3,
         ticks: 300,
         half: 5.0,
@@ -158,7 +158,7 @@ const RIDES: &[Ride] = &[
     },
 ];
 
-/// Up for a second, still for half, down for a second.
+/// A lift: up for a second, still for half a second, down for a second.
 fn lift(speed: f64, time: f64) -> Similarity {
     let (up, down) = (time.min(1.0), (time - 1.5).clamp(0.0, 1.0));
     shifted(DVec3::Y * (speed * (up - down)))
@@ -179,7 +179,7 @@ fn storm(time: f64) -> Similarity {
     }
 }
 
-/// The most that it is away from where the motion takes its first place.
+/// The largest distance of the character from the place to which the platform's motion takes its start.
 fn drift(seen: &Seen, motion: impl Fn(f64) -> Similarity) -> f64 {
     let local = motion(0.0).inverse_transform_point(seen.start);
     seen.most(|time, p| motion(time).transform_point(local).distance(p))
@@ -199,9 +199,10 @@ fn ride(ride: &Ride) -> Scene {
     }
 }
 
+/// Ticks before a jump.
 const AFTER: u32 = 30;
 
-/// Once, after half a second.
+/// One jump, after half a second.
 fn jump(tick: u32) -> Input {
     Input {
         jump: tick == AFTER + 1,
@@ -209,14 +210,14 @@ fn jump(tick: u32) -> Input {
     }
 }
 
-/// Lands where it began.
+/// A jump on a platform that moves sideways. Error: distance from the start, on the platform, at the end.
 fn jump_on_a_platform() -> Scene {
     let motion = |time: f64| shifted(DVec3::X * (5.0 * time));
     let mut set = Set::new(DVec3::X).with(Solid::floor(5.0), motion);
     set.jump = 5.0;
     Scene {
         number: 49,
-        name: "a jump on what goes sideways, 5 m/s",
+        name: "a jump on a platform moving sideways, 5 m/s",
         asked: 1e-3,
         ticks: AFTER + 90,
         always_stands: false,
@@ -230,14 +231,15 @@ fn jump_on_a_platform() -> Scene {
     }
 }
 
-/// As high above the lift as a ball would come above one at rest, to a tick of that speed.
+/// A jump off a lift that goes down. Error: the difference of its height above the lift from that of a thrown ball
+/// above a lift at rest. Allowed is one tick at that speed.
 fn jump_off_a_lift() -> Scene {
     let mut set =
         Set::new(DVec3::ZERO).with(Solid::floor(5.0), |time| shifted(DVec3::Y * (-3.0 * time)));
     set.jump = 3.0;
     Scene {
         number: 30,
-        name: "a jump of 3 m/s off what goes down at 3 m/s",
+        name: "a jump of 3 m/s off a lift going down at 3 m/s",
         asked: 3.0 * TICK,
         ticks: AFTER + 60,
         always_stands: false,
@@ -255,7 +257,8 @@ fn jump_off_a_lift() -> Scene {
     }
 }
 
-/// 3 m up, on stairs that go up and back, in one and a half times what 4 m/s take on the level.
+/// A walk up 3 m of stairs that move up, back and to a side, in one and a half times the time that 4 m/s take on the
+/// level.
 fn stairs_that_move() -> Scene {
     let velocity = DVec3::new(1.0, 0.5, -1.5);
     let motion = move |time: f64| shifted(velocity * time);

@@ -1,11 +1,11 @@
-//! Boxes and triangle meshes.
+//! Solids of the scenes: boxes and triangle meshes.
 
 use glam::DVec3;
 
 /// A shape in its own space.
 #[derive(Clone, Debug)]
 pub enum Solid {
-    /// A box along the axes.
+    /// An axis-aligned box.
     Block {
         /// The corner with the smallest coordinates.
         low: DVec3,
@@ -26,7 +26,7 @@ pub struct Mesh {
 }
 
 impl Solid {
-    /// 1 m thick; its top is the square of a half side around the origin.
+    /// A floor, 1 m thick. Its top is a square around the origin, `half` metres to each side.
     pub fn floor(half: f64) -> Self {
         Self::Block {
             low: DVec3::new(-half, -1.0, -half),
@@ -34,7 +34,7 @@ impl Solid {
         }
     }
 
-    /// A level field of 1 m squares, from `x` on along X and 8 m to both sides.
+    /// A level field of `columns` by 16 squares of 1 m. It starts at `x` along X, and reaches 8 m to both sides.
     pub fn field(x: f64, columns: u32) -> Self {
         let mut mesh = Mesh::default();
         for row in 0..=16u32 {
@@ -54,7 +54,8 @@ impl Solid {
         Self::Mesh(mesh)
     }
 
-    /// Treads and risers of 0.3 m, 4 m wide, up along +Z from the origin, with 5 m of floor before and after.
+    /// Stairs with treads and risers of 0.3 m, 4 m wide, up along +Z from the origin, with 5 m of floor before and
+    /// after.
     pub fn stairs(count: u32) -> Self {
         let mut mesh = Mesh::default();
         mesh.strip(DVec3::new(0.0, 0.0, -5.0), DVec3::ZERO);
@@ -68,7 +69,7 @@ impl Solid {
         Self::Mesh(mesh)
     }
 
-    /// Level 10 m, then up along +X from x = 2 by an angle for 30 m.
+    /// A ramp: level from x = -10 to x = 2, then 30 m up along +X at an angle, radians.
     pub fn ramp(angle: f64) -> Self {
         let end = DVec3::new(2.0 + 30.0 * libm::cos(angle), 30.0 * libm::sin(angle), 0.0);
         let corner = |at: DVec3, z: f64| DVec3::new(at.x, at.y, z);
@@ -80,7 +81,7 @@ impl Solid {
         })
     }
 
-    /// As triangles.
+    /// The solid as triangles.
     pub fn mesh(&self) -> Mesh {
         match self {
             Self::Block { low, high } => Mesh::block(*low, *high),
@@ -114,7 +115,7 @@ impl Mesh {
         }
     }
 
-    /// A quadrilateral between two lines along X, 2 m to both sides, that faces up or back along Z.
+    /// Adds a quadrilateral between two lines along X, 2 m to both sides. It faces up, or towards -Z.
     fn strip(&mut self, from: DVec3, to: DVec3) {
         let first = self.positions.len() as u32;
         let side = DVec3::X * 2.0;

@@ -1,4 +1,4 @@
-//! What is in the way, and what comes nearer.
+//! Walls in the way of a walk, and walls that push.
 
 use glam::DVec3;
 
@@ -6,7 +6,8 @@ use super::scene::Scene;
 use super::set::{IDLE, Input, PADDING, RADIUS, Set, shifted};
 use super::solid::Solid;
 
-/// Never deeper in it than the padding, nor off the floor or aside.
+/// A wall pushes an idle character. Error: its depth in the wall beyond the padding, or its distance off the floor or
+/// to a side.
 fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
     let wall = Solid::Block {
         low: DVec3::new(-3.0, -0.5, -5.0),
@@ -33,7 +34,8 @@ fn pushed(name: &'static str, speed: f64, ticks: u32) -> Scene {
     }
 }
 
-/// The same, and never farther than the wall came.
+/// A wall pushes an idle character to and fro. Error: as [`pushed`], or how far the character goes beyond the wall's
+/// reach.
 fn shoved() -> Scene {
     let wall = Solid::Block {
         low: DVec3::new(-2.0, 0.0, -3.0),
@@ -62,7 +64,7 @@ fn shoved() -> Scene {
     }
 }
 
-/// A walk into a wall at an angle neither gains nor loses.
+/// A walk into a wall at an angle. Error: distance from a walk along the wall at the same speed.
 fn alongside(name: &'static str, number: u32, asked: f64, wall: Vec<Solid>, walk: DVec3) -> Scene {
     let seconds = 1.0;
     let mut set = Set::new(DVec3::ZERO).with_still(Solid::floor(20.0));

@@ -1,22 +1,23 @@
-//! Queries against brute force over all triangles.
+//! Compares the queries with brute force over all triangles.
 
 use clamber_surface::geometry::{Capsule, Ray};
 use clamber_surface::measure::BruteForce;
 use clamber_surface::surface::{CastOptions, ModelSpace, SkinnedSurface};
 use glam::Vec3;
 
-/// What a comparison found.
+/// The result of a comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
-    /// Hits of the queries.
+    /// Number of hits that the queries returned.
     pub hits: usize,
-    /// Queries whose answer differs from brute force in any bit.
+    /// Number of queries whose answer differs from brute force in any bit.
     pub mismatches: usize,
 }
 
-/// Compares every query with brute force at random places near the skin, in the surface's pose: as the
-/// surface answers, skinning what it touches, and as it does with everything skinned ahead. Positions
-/// are compared as well.
+/// Compares every query with brute force at so many random places near the skin, in the surface's pose.
+///
+/// Each query runs twice: on the surface as it is, which skins only what it touches, and on a copy with
+/// everything skinned ahead. The skinned positions are compared as well.
 pub fn compare_queries(
     surface: &SkinnedSurface,
     rng: &mut fastrand::Rng,
@@ -85,7 +86,7 @@ pub fn compare_queries(
     agreement
 }
 
-/// Casts are compared at every so many places: by brute force they take by far the longest.
+/// Casts are compared only at every so many places: by brute force they take by far the longest.
 const CAST_EVERY: usize = 4;
 
 impl Agreement {

@@ -1,4 +1,4 @@
-//! How far the skin is from exact arithmetic, and from what is to be seen.
+//! How far the skin is from exact arithmetic, and the collider from the visual meshes.
 
 use clamber_gltf::Rig;
 use clamber_surface::geometry::{Affine, Similarity};
@@ -12,8 +12,8 @@ use std::sync::Arc;
 use super::report::Distances;
 use crate::measure::quantile;
 
-/// The worst error of any coordinate of any vertex against f64, as a share of its bound.
-/// `positions` are the mesh's vertices as skinned by `matrices`.
+/// The largest error of a vertex coordinate against skinning in f64, as a share of its bound: infinite if a
+/// position is NaN or a bound of 0 is exceeded. `positions` are the mesh's vertices, skinned with `matrices`.
 pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions: &[Vec3]) -> f64 {
     let mut worst = 0.0f64;
     for (index, position) in positions.iter().enumerate() {
@@ -23,7 +23,7 @@ pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions:
         if let (Some(exact), Some(bound)) = (exact, bound) {
             let error = (position.as_dvec3() - exact).abs();
             for (error, bound) in error.to_array().into_iter().zip(bound.to_array()) {
-                // A bound of zero is met by no error only; and NaN is the worst of all.
+                // A bound of zero allows no error at all, and NaN is the worst error.
                 let share = if error == 0.0 { 0.0 } else { error / bound };
                 worst = worst.max(if share.is_nan() { f64::INFINITY } else { share });
             }
@@ -32,12 +32,12 @@ pub fn skinning_error_share(mesh: &ColliderMesh, matrices: &[Affine], positions:
     worst
 }
 
-/// Vertices of either mesh that are measured in each pose.
+/// Number of vertices of each mesh that are measured in each pose.
 const SAMPLES: usize = 100;
 
-/// Distances between what is to be seen and the collider, from vertices of both to the other one.
+/// Distances between the visual meshes and the collider, from random vertices of each to the other.
 pub(super) struct VisualDistance {
-    /// `None` if nothing is to be seen.
+    /// `None` without visual meshes.
     visual: Option<SkinnedSurface>,
     distances: Vec<f64>,
 }
@@ -53,7 +53,7 @@ impl VisualDistance {
         Ok(Self { visual, distances })
     }
 
-    /// Measures at random vertices of both in a pose.
+    /// Measures at random vertices of both, in a pose.
     pub(super) fn measure(
         &mut self,
         palette: &Palette,
@@ -75,7 +75,7 @@ impl VisualDistance {
         Ok(())
     }
 
-    /// Median and worst; `None` if there was nothing to measure.
+    /// The median and the largest distance; `None` if nothing was measured.
     pub(super) fn finish(&mut self) -> Option<Distances> {
         let worst = self.distances.iter().copied().reduce(f64::max)?;
         Some(Distances {
@@ -85,9 +85,9 @@ impl VisualDistance {
     }
 }
 
-/// Distance of a place from a surface, looked for in ever wider spheres: near skin is found fast.
+/// Distance of a point from a surface, searched in ever wider spheres, so that near skin is found fast.
 fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> {
-    // Most places are within a hundredth of the creature's size.
+    // Most points are within a hundredth of the creature's size.
     let mut reach = surface.mesh().radius() * 0.01;
     loop {
         if let Some(hit) = surface.in_model().closest_point(place, reach) {
@@ -96,7 +96,7 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
         if reach == f32::INFINITY {
             return Ok(f64::INFINITY);
         }
-        // From nothing straight to everything.
+        // A radius of 0 cannot be widened by a factor.
         reach = if reach > 0.0 {
             reach * 4.0
         } else {
@@ -111,7 +111,7 @@ mod tests {
     use crate::beast::beast;
 
     #[test]
-    fn what_is_off_or_no_number_exceeds_the_bound() {
+    fn a_moved_vertex_and_nan_exceed_the_bound() {
         let beast = beast(500);
         let palette = beast.skeleton.palette(&beast.skeleton.rest_pose()).unwrap();
         let mesh = &beast.collider;

@@ -1,5 +1,5 @@
-//! What the import found in a file, and how the creature fares in motion: for those who make
-//! creatures, and for measuring on models.
+//! A report on a creature's file: what its import found, and measurements of the creature in every clip. For
+//! people who make creatures, and for measurements on many models.
 
 mod agreement;
 mod bounds;
@@ -28,26 +28,26 @@ use crate::measure::quantile;
 use bounds::{refit, violations};
 use deviation::VisualDistance;
 
-/// Places in each pose at which queries are compared with brute force.
+/// Number of places in each pose at which queries are compared with brute force.
 const PLACES: usize = 6;
 
 /// Why a file cannot be inspected.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum InspectError {
-    /// It cannot be loaded.
+    /// The file cannot be loaded.
     #[error(transparent)]
     Load(#[from] GltfError),
-    /// It cannot be posed.
+    /// The skeleton cannot be posed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// Its skin cannot be posed.
+    /// The surface cannot be posed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// Its palette does not fit it.
+    /// The palette does not fit the collider.
     #[error(transparent)]
     Palette(#[from] PaletteError),
-    /// What is to be seen of it is no mesh.
+    /// No mesh can be built of the visual meshes.
     #[error(transparent)]
     Visual(#[from] MeshError),
 }
@@ -55,7 +55,7 @@ pub enum InspectError {
 /// Loads a file and measures the creature over all its clips.
 ///
 /// # Errors
-/// [`InspectError`] if it cannot be loaded, or one of its clips does not fit it.
+/// [`InspectError`] if the file cannot be loaded, or a clip does not fit the creature.
 pub fn run(options: &InspectOptions) -> Result<Inspection, InspectError> {
     let mut load = LoadOptions::default();
     load.skin = options.skin;
@@ -63,10 +63,10 @@ pub fn run(options: &InspectOptions) -> Result<Inspection, InspectError> {
     inspect(&rig, options)
 }
 
-/// Measures a creature over all its clips, or at rest if it has none.
+/// Measures a creature at rest and over all its clips. Shows a progress bar on standard error.
 ///
 /// # Errors
-/// [`InspectError`] if one of its clips does not fit it.
+/// [`InspectError`] if a clip does not fit the creature, or the visual meshes are broken.
 pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, InspectError> {
     let mut inspection = Inspection::of_import(rig);
     let mut surface = SkinnedSurface::new(rig.collider.clone());
@@ -99,7 +99,7 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     Ok(inspection)
 }
 
-/// The rest pose, and so many poses of every clip.
+/// The rest pose, and `count` poses of every clip.
 fn poses(rig: &Rig, count: u32) -> Result<Vec<Pose>, RigError> {
     let rest = rig.skeleton.rest_pose();
     let mut poses = vec![rest.clone()];
@@ -112,7 +112,7 @@ fn poses(rig: &Rig, count: u32) -> Result<Vec<Pose>, RigError> {
     Ok(poses)
 }
 
-/// What skinning and refitting cost in each pose, microseconds.
+/// Times of skinning and of refitting in each pose, microseconds.
 #[derive(Default)]
 struct Timings {
     positions: Vec<Vec3>,

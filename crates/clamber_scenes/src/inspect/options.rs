@@ -2,11 +2,11 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-/// What the import finds in a creature's file, and how the creature fares in motion.
+/// Reports what the import finds in a creature's file, and measures the creature in every clip.
 ///
-/// Loads the file as the library does, poses it at rest and in every clip, and compares skinning
-/// with exact arithmetic, every query with brute force, and bounds with what they are to hold. Exits
-/// with 1 if one of these fails, with 2 if the file cannot be loaded.
+/// Loads the file as the library does, poses the creature at rest and in every clip, and compares
+/// skinning with exact arithmetic, every query with brute force, and bounds with the vertices that they must
+/// hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "inspect", version)]
 pub struct InspectOptions {
@@ -21,24 +21,24 @@ pub struct InspectOptions {
     #[arg(long, value_name = "INDEX")]
     pub skin: Option<usize>,
 
-    /// Poses of each clip.
+    /// Number of poses of each clip.
     #[arg(long, value_name = "COUNT", default_value_t = 30)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub poses: u32,
 
-    /// Where the queries are: any number; the same one gives the same places.
+    /// Seed for the places of the queries; the same number gives the same places.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 
 impl InspectOptions {
-    /// The defaults for a file.
+    /// The default options for a file.
     pub fn of(file: PathBuf) -> Self {
-        // Behind `--` a name may begin with a dash.
+        // After `--` a file's name may begin with a dash.
         Self::parse_from(["inspect".into(), "--".into(), file])
     }
 
-    /// From the command line; prints help or what is wrong with it, and exits.
+    /// Parses the command line. For `--help` or a wrong argument it prints a message and exits.
     pub fn from_command_line() -> Self {
         Self::parse()
     }

@@ -7,94 +7,94 @@ use serde::Serialize;
 
 use crate::json::number;
 
-/// What the import found, and what was measured. Lengths are in the file's metres.
+/// A report on a creature's file: what the import found, and what was measured. Lengths are in the file's metres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Inspection {
     /// Vertices of the collider, after welding.
     pub vertices: usize,
     /// Vertices merged into an equal one.
     pub welded: usize,
-    /// Vertices that stand where another one stands, but move differently: the skin can gape there.
+    /// Vertices at the position of another one that move differently: the skin can open there.
     pub cracks: usize,
     /// Triangles of the collider.
     pub triangles: usize,
-    /// Triangles without area, or given twice.
+    /// Triangles that were dropped: without area, or duplicates.
     pub dropped_triangles: usize,
     /// Joints of the skeleton.
     pub joints: usize,
-    /// The most influences of one vertex.
+    /// The largest number of influences of a vertex.
     pub max_influences: usize,
-    /// The largest difference from 1 of a vertex's weights as given.
+    /// The largest difference from 1 of the sum of a vertex's weights in the file.
     #[serde(serialize_with = "number")]
     pub worst_weight_error: f64,
     /// Names and lengths of the clips.
     pub clips: Vec<ClipLine>,
-    /// Joints that move triangles most.
+    /// Parts of the collider.
     pub parts: usize,
-    /// Triangles by tag.
+    /// Number of triangles by tag.
     pub tags: BTreeMap<String, usize>,
-    /// Where the creature can be wounded.
+    /// The weak points.
     pub weak_points: Vec<WeakPointLine>,
-    /// Meshes to be seen.
+    /// Number of visual meshes.
     pub visual_meshes: usize,
-    /// Their vertices.
+    /// Vertices of all visual meshes.
     pub visual_vertices: usize,
-    /// What was passed over or mended.
+    /// What the import skipped or repaired.
     pub warnings: Vec<String>,
-    /// Poses that all below was measured in.
+    /// Number of poses in which the following was measured.
     pub poses: usize,
-    /// Worst error of a skinned coordinate against f64, as a share of the stated bound.
+    /// Largest error of a skinned coordinate against f64, as a share of the stated bound.
     #[serde(serialize_with = "number")]
     pub skinning_error_share: f64,
-    /// Hits of the queries, lazy and skinned ahead, that were compared with brute force.
+    /// Hits that were compared with brute force, of queries that skin lazily and with everything skinned ahead.
     pub query_hits: usize,
-    /// Queries that differ from brute force in any bit.
+    /// Queries whose answer differs from brute force in any bit.
     pub query_mismatches: usize,
-    /// Vertices outside a bound that is to hold them.
+    /// How often a skinned vertex was outside a bound that must hold it.
     pub bound_violations: usize,
-    /// Between what is to be seen and the collider; none if nothing is to be seen.
+    /// Distances between the visual meshes and the collider; `None` without visual meshes.
     pub collision_to_visual: Option<Distances>,
-    /// What it costs to skin all vertices, median of all poses.
+    /// Median time to skin all vertices, microseconds.
     pub skin_us: f64,
-    /// What it costs to refit the parts' spheres, median of all poses.
+    /// Median time to refit the parts' spheres, microseconds.
     pub refit_us: f64,
 }
 
 /// A clip of the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClipLine {
-    /// Its name.
+    /// The clip's name.
     pub name: String,
-    /// Its length.
+    /// The clip's length, seconds.
     pub seconds: f64,
 }
 
 /// A weak point of the file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WeakPointLine {
-    /// Its name.
+    /// The weak point's name.
     pub name: String,
-    /// The joint that it is on.
+    /// Name of the joint that carries the weak point.
     pub joint: String,
-    /// What it takes.
+    /// Damage that the weak point takes before it is used up.
     pub hit_points: f64,
-    /// True if the creature dies of it.
+    /// True if the creature dies when the weak point is used up.
     pub major: bool,
 }
 
-/// Distances between what is to be seen and the collider, at random vertices of both.
+/// Distances between the visual meshes and the collider, from random vertices of each to the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distances {
-    /// Half of the places are at most so far.
+    /// The median, metres.
     #[serde(serialize_with = "number")]
     pub median_m: f64,
-    /// The farthest of these places.
+    /// The largest, metres.
     #[serde(serialize_with = "number")]
     pub worst_m: f64,
 }
 
 impl Inspection {
-    /// What the import says, nothing measured yet.
+    /// The report on an import, with nothing measured yet.
     pub(super) fn of_import(rig: &Rig) -> Self {
         let build = &rig.report.build;
         let mut tags = BTreeMap::new();
@@ -140,12 +140,13 @@ impl Inspection {
         }
     }
 
-    /// As one JSON object; what is not a number is `null`.
+    /// The report as one JSON object. Errors and distances that are not finite are text: `inf`, `NaN`.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).unwrap_or_else(|error| error.to_string())
     }
 
-    /// True if everything that is promised of every creature held for this one.
+    /// True if what the library promises for every creature held for this one: skinning error within its bound, no
+    /// query mismatch, and no bound violation.
     pub fn holds(&self) -> bool {
         self.skinning_error_share <= 1.0 && self.query_mismatches == 0 && self.bound_violations == 0
     }
@@ -235,7 +236,7 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Items one after the other, in lines that fit beside the names of the rows.
+/// Joins items by commas, in lines that fit beside the rows' names; `none` without items.
 fn list(items: impl Iterator<Item = String>) -> String {
     let mut text = String::new();
     let mut column = 0;
@@ -258,8 +259,8 @@ fn list(items: impl Iterator<Item = String>) -> String {
     if text.is_empty() { "none".into() } else { text }
 }
 
-/// Columns beside the names of the rows.
+/// Number of characters that fit beside the rows' names.
 const WIDTH: usize = 70;
 
-/// To the next line, under the first item.
+/// A line break, indented to the first item.
 const BREAK: &str = "\n                          ";

@@ -1,18 +1,18 @@
 use std::hint::black_box;
 
-/// Streamed between cold ticks, as the rest of a game would: more than the caches hold.
+/// Bytes streamed between cold ticks, in place of the rest of a game: more than the caches hold.
 const STREAM: usize = 64 << 20;
 
-/// Whether a tick finds its data in the caches.
+/// Whether a tick finds its data in the processor's caches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Caches {
-    /// It does.
+    /// The caches hold the data of the tick before.
     Warm,
-    /// The caches hold something else: see [`Stream`].
+    /// The caches hold other data: see [`Stream`].
     Cold,
 }
 
-/// Memory that cold ticks stream.
+/// Memory to stream before a cold tick.
 pub struct Stream(Vec<u64>);
 
 impl Default for Stream {
@@ -22,7 +22,7 @@ impl Default for Stream {
 }
 
 impl Stream {
-    /// Reads and writes all of it.
+    /// Reads and writes all of the memory, which evicts other data from the caches.
     pub fn run(&mut self) {
         for number in &mut self.0 {
             *number = number.wrapping_mul(3);

@@ -3,14 +3,14 @@ use std::path::{Path, PathBuf};
 
 use super::Table;
 
-/// What a measured number is held against.
+/// The bound that a measured number should keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// It should be no less.
+    /// The number should be at least this.
     Least(f64),
-    /// It should be no more.
+    /// The number should be at most this.
     Most(f64),
-    /// Nothing: it is only reported.
+    /// No bound: the number is only reported.
     None,
 }
 
@@ -33,12 +33,12 @@ impl Bound {
     }
 }
 
-/// Everything that a bench measured, a row each: name, value, bound, holds.
+/// The results of a bench, one row per number: its name, its value, its bound, and whether the bound holds.
 #[derive(Clone, Debug)]
 pub struct Cells(Table);
 
 impl Default for Cells {
-    /// Without rows.
+    /// No rows.
     fn default() -> Self {
         Self(Table::new(&["name", "value", "bound", "holds"]))
     }
@@ -58,16 +58,16 @@ impl Cells {
         self.0.push(row.to_vec());
     }
 
-    /// A row that is held against nothing.
+    /// Appends a row without a bound and prints it.
     pub fn value(&mut self, name: &str, value: f64) {
         self.push(name, value, Bound::None);
     }
 
-    /// Prints all rows, and writes them to `BENCH.csv` (`BENCH_brief.csv` of a brief run) in the folder
-    /// `measure` in cargo's target folder.
+    /// Prints all rows, and writes them to `BENCH.csv` in [`measure_folder`]; a brief run writes
+    /// `BENCH_brief.csv`. A bound that does not hold is no error.
     ///
     /// # Errors
-    /// What the file system says.
+    /// If the file cannot be written.
     pub fn finish(self, bench: &str, brief: bool) -> Result<(), Box<dyn Error>> {
         println!("\n{}", self.0);
         let brief = if brief { "_brief" } else { "" };
@@ -78,7 +78,7 @@ impl Cells {
     }
 }
 
-/// Where benches put their results: `measure` in cargo's target folder.
+/// The folder for the results of benches: `measure` in cargo's target folder.
 pub fn measure_folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);

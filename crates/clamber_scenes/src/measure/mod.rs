@@ -1,4 +1,4 @@
-//! What benches share: tables, plots, quantiles, times, cold caches, and the smallest ball as a yardstick.
+//! Tools that benches share: tables, plots, quantiles, times, cold caches, and the exact smallest ball.
 
 mod caches;
 mod cells;
@@ -14,15 +14,15 @@ pub use table::Table;
 
 use std::time::{Duration, Instant};
 
-/// True if a bench is to run briefly. As criterion does: only `cargo bench` passes `--bench`, and `--test`
-/// overrules it.
+/// True if a bench should run briefly, by criterion's rule: always, unless `--bench` is passed, as `cargo bench`
+/// does, and `--test` is not.
 pub fn is_brief() -> bool {
     let passed = |flag: &str| std::env::args().any(|argument| argument == flag);
     !passed("--bench") || passed("--test")
 }
 
-/// The value that the share `part` (0 to 1) of `values` does not exceed; NaN without values. Sorts
-/// them.
+/// The smallest of `values` that at least the share `part` (0 to 1) of them does not exceed; NaN without
+/// values. Sorts `values`.
 pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (values.len() as f64 * part).ceil() as usize;
@@ -30,8 +30,8 @@ pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     last.map_or(f64::NAN, |last| values[index.saturating_sub(1).min(last)])
 }
 
-/// The median time of `run`, microseconds, over as many runs as fit into `budget`, but at least
-/// three; the first is not counted.
+/// The median time of `run`, microseconds, over as many runs as fit into `budget`, at least three. One run
+/// before them is not counted.
 pub fn median_us(budget: Duration, mut run: impl FnMut()) -> f64 {
     run();
     let begin = Instant::now();

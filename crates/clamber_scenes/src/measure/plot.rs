@@ -8,24 +8,24 @@ use plotters::prelude::*;
 /// Measured points on two logarithmic axes, as an SVG.
 #[derive(Clone, Debug, Default)]
 pub struct Plot {
-    /// Above it.
+    /// The title, drawn above the plot.
     pub title: String,
-    /// What the horizontal axis shows, with its unit.
+    /// Label of the horizontal axis, with its unit.
     pub x: String,
-    /// What the vertical axis shows, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub y: String,
-    /// Each in a colour of its own.
+    /// The series. Each has its own colour, up to twelve.
     pub series: Vec<Series>,
 }
 
-/// Points that belong together.
+/// Points of one colour, with one entry in the legend.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// In the legend.
+    /// The name in the legend.
     pub name: String,
-    /// What is not finite and above 0 has no place on such axes, and is left out.
+    /// The points. Those with a coordinate that is not finite and above 0 are left out.
     pub points: Vec<(f64, f64)>,
-    /// Points are joined, in their order.
+    /// True to join the points by lines, in their order.
     pub joined: bool,
 }
 
@@ -45,10 +45,10 @@ const COLORS: [RGBColor; 12] = [
 ];
 
 impl Plot {
-    /// Draws it, and makes the folder if need be. Without a point there is nothing to draw, and no file.
+    /// Draws the plot into a file, and creates its folder if needed. Without a point to draw it writes no file.
     ///
     /// # Errors
-    /// What the file system says.
+    /// If the file or its folder cannot be written.
     pub fn write_svg(&self, path: &Path) -> Result<(), Box<dyn Error>> {
         let points = || self.series.iter().flat_map(Series::drawable);
         let (Some(x), Some(y)) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)))
@@ -102,7 +102,7 @@ impl Series {
     }
 }
 
-/// Somewhat more than what holds all values; none without values.
+/// A range that holds all values, with a margin of a factor of 1.5 at each end; `None` without values.
 fn range(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
         (low.min(value), high.max(value))
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_a_place_is_drawn_and_the_rest_left_out() {
+    fn only_finite_positive_points_are_drawn_and_none_make_no_file() {
         let folder = std::env::temp_dir().join(format!("clamber-plot-{}", std::process::id()));
         let path = folder.join("plot.svg");
         let mut plot = Plot {
@@ -138,7 +138,7 @@ mod tests {
         };
         plot.write_svg(&path).unwrap();
         let drawn = std::fs::read_to_string(&path).unwrap();
-        // Two points, and the legend's.
+        // Two points, and one in the legend.
         assert_eq!(drawn.matches("<circle").count(), 3, "{drawn}");
         assert!(drawn.contains("one"));
         std::fs::remove_dir_all(&folder).unwrap();

@@ -1,24 +1,24 @@
 //! The smallest ball around points, in f64: Welzl 1991 ("Smallest enclosing disks (balls and
-//! ellipsoids)"), unrolled into one loop per point of support. Expected linear time on points in
-//! random order; a yardstick, not for every tick.
+//! ellipsoids)"), unrolled into one loop per point of support. It takes expected linear time on points in
+//! random order. It is a reference for measurements, too slow for every tick.
 
 use glam::{DMat3, DVec3, Vec3};
 
 /// A ball in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its centre.
+    /// Centre.
     pub center: DVec3,
-    /// Its radius.
+    /// Radius.
     pub radius: f64,
 }
 
-/// Relative; a point that lies outside by less is inside. Keeps rounding from adding points of
-/// support that are some already.
+/// Relative tolerance: a point that lies outside by less counts as inside. It keeps rounding from adding the
+/// same point of support again.
 const TOLERANCE: f64 = 1e-10;
 
 impl Ball {
-    /// In cubic units of its space.
+    /// Volume, in cubic units of the ball's space.
     pub fn volume(&self) -> f64 {
         core::f64::consts::PI * (4.0 / 3.0) * self.radius * self.radius * self.radius
     }
@@ -28,16 +28,16 @@ impl Ball {
     }
 }
 
-/// The smallest ball around points, to a relative error of some 1e-10; `None` without points. They
-/// are shuffled by a fixed seed.
+/// The smallest ball around points, to a relative error of about 1e-10; `None` without points. The points
+/// are shuffled with a fixed seed.
 pub fn smallest_ball(points: impl Iterator<Item = Vec3>) -> Option<Ball> {
     let mut points: Vec<DVec3> = points.map(|p| p.as_dvec3()).collect();
     fastrand::Rng::with_seed(1).shuffle(&mut points);
     smallest_with(&points, &[])
 }
 
-/// The smallest ball around `points` that has `support` (up to four points) on its surface; `None`
-/// if there is none, or no point at all.
+/// The smallest ball around `points` that has `support` (up to four points) on its surface; `None` if
+/// there is no such ball, or no point at all.
 fn smallest_with(points: &[DVec3], support: &[DVec3]) -> Option<Ball> {
     let mut ball = circumscribed(support);
     if support.len() == 4 || ball.is_none() && !support.is_empty() {
@@ -46,15 +46,15 @@ fn smallest_with(points: &[DVec3], support: &[DVec3]) -> Option<Ball> {
     for (index, point) in points.iter().enumerate() {
         if ball.is_none_or(|ball| !ball.holds(*point)) {
             let extended = [support, &[*point]].concat();
-            // Without one, the point is dependent on the support, and outside by rounding only.
+            // If there is no such ball, the point depends on the support and is outside by rounding only.
             ball = smallest_with(&points[..index], &extended).or(ball);
         }
     }
     ball
 }
 
-/// The smallest ball with all of `support` on its surface: its centre lies in their plane. `None`
-/// without points, and if they are dependent.
+/// The smallest ball with all of `support` on its surface: its centre lies in the points' line, plane or space.
+/// `None` without points, and if they are affinely dependent.
 fn circumscribed(support: &[DVec3]) -> Option<Ball> {
     let first = *support.first()?;
     let edges: Vec<DVec3> = support[1..].iter().map(|p| *p - first).collect();
@@ -73,7 +73,7 @@ fn circumscribed(support: &[DVec3]) -> Option<Ball> {
     })
 }
 
-/// The x with `2 rows . x = squares`.
+/// The x with `2 rows . x = squares`; `None` if the rows are dependent.
 fn equidistant(rows: [DVec3; 3], squares: [f64; 3]) -> Option<DVec3> {
     let matrix = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
     let size = rows[0].length() * rows[1].length() * rows[2].length();
@@ -87,7 +87,7 @@ mod tests {
     use clamber_surface::geometry::Sphere;
 
     #[test]
-    fn holds_all_points_and_is_nowhere_larger_than_the_iterated_one() {
+    fn holds_all_points_and_is_no_larger_than_the_iterated_sphere() {
         let mut rng = fastrand::Rng::with_seed(3);
         for case in 0..400 {
             let flat = [1.0, 1e-3, 0.0][case % 3];

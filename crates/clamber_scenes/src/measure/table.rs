@@ -2,7 +2,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
-/// Rows of text under named columns: printed as Markdown, written as CSV.
+/// Rows of text under named columns, to be printed as Markdown and written as CSV.
 #[derive(Clone, Debug)]
 pub struct Table {
     columns: Vec<&'static str>,
@@ -10,7 +10,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Without rows.
+    /// A table without rows.
     pub fn new(columns: &[&'static str]) -> Self {
         Self {
             columns: columns.to_vec(),
@@ -21,16 +21,16 @@ impl Table {
     /// Appends a row.
     ///
     /// # Panics
-    /// If it has not one cell per column.
+    /// If the number of cells is not the number of columns.
     pub fn push(&mut self, row: Vec<String>) {
         assert_eq!(row.len(), self.columns.len(), "{row:?}");
         self.rows.push(row);
     }
 
-    /// Writes the table as CSV, and makes the folder if need be.
+    /// Writes the table as CSV, and creates the folder if needed.
     ///
     /// # Errors
-    /// What the file system says.
+    /// If the file or its folder cannot be written.
     pub fn write_csv(&self, path: &Path) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
@@ -48,7 +48,7 @@ impl Table {
     }
 }
 
-/// A CSV field (RFC 4180).
+/// A cell as a CSV field, quoted if needed (RFC 4180).
 fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
@@ -58,7 +58,7 @@ fn quoted(cell: &str) -> String {
 }
 
 impl fmt::Display for Table {
-    /// As Markdown, columns aligned.
+    /// Writes the table as Markdown with aligned columns.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let width = |column: usize| {
             let cells = self.rows.iter().map(|row| row[column].chars().count());

@@ -2,34 +2,34 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::round_up_to_f32;
 
-/// All points within `radius` of the segment from `a` to `b`. A ball where the two are equal.
+/// All points within `radius` of the segment from `a` to `b`; a ball if the two are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingCapsule {
-    /// One end of the segment, in the space of the points that it bounds.
+    /// First end of the segment, in the space of the bounded points.
     pub a: Vec3,
-    /// Its other end.
+    /// Second end of the segment.
     pub b: Vec3,
-    /// Radius, not negative.
+    /// Radius, at least 0.
     pub radius: f32,
 }
 
-/// How often the covariance is squared: the second direction fades by the 64th power of the ratio
-/// of their variances. More turns the axis by less than the shape of a limb is uncertain.
+/// The covariance is squared once more than this: the second direction fades by the 128th power of the
+/// ratio of the variances. Further squarings change the axis by less than a limb's own shape leaves open.
 const SQUARINGS: usize = 6;
 
-/// Relative slack for a distance from a segment in f64: six roundings of 2^-53, thrice over.
+/// Relative slack for a distance from a segment in f64: three times six roundings of 2^-53.
 const DISTANCE_SLACK: f64 = 2e-15;
 
 impl BoundingCapsule {
-    /// The capsule along the direction of greatest spread that holds all `points`; `None` without
+    /// A capsule that holds all `points`, along the direction of their greatest spread; `None` without
     /// points.
     ///
-    /// Its axis is the first eigenvector of the covariance, through the middle of the points' box
-    /// across it; the segment is as short as the caps allow (Ericson 2005, *Real-Time Collision
-    /// Detection*, chapter 4). Six passes; neither axis nor radius is searched for, so it is not the
-    /// smallest one, and a round cloud is better off in a sphere. The radius is measured last, from
-    /// the rounded segment, and rounded up: no point lies outside. Points must be finite, at most
-    /// 2^100 from the origin.
+    /// Its axis is the first eigenvector of the covariance, through the middle of the points' bounding
+    /// box across the axis; the segment is as short as the caps allow (Ericson 2005, *Real-Time Collision
+    /// Detection*, chapter 4). It takes six passes over the points. Neither axis nor radius is optimised,
+    /// so it is not the smallest capsule, and for a round cloud a sphere is tighter. The radius is measured
+    /// last, from the rounded segment, and rounded up: no point lies outside. Points must be finite and at
+    /// most 2^100 from the origin.
     pub fn around_principal_axis(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let (mean, axis) = principal_axis(points.clone())?;
         let (across, along) = axis.any_orthonormal_pair();
@@ -65,7 +65,7 @@ impl BoundingCapsule {
         Some(Self::around_segment(at(start), at(end), points))
     }
 
-    /// The smallest capsule about the segment from `a` to `b` that holds all `points`, its radius
+    /// The smallest capsule around the segment from `a` to `b` that holds all `points`. Its radius is
     /// rounded up: no point lies outside.
     pub fn around_segment(a: Vec3, b: Vec3, points: impl Iterator<Item = Vec3>) -> Self {
         let segment = Self { a, b, radius: 0.0 };
@@ -82,15 +82,15 @@ impl BoundingCapsule {
         self.distance(point) <= f64::from(self.radius)
     }
 
-    /// In cubic units of its space.
+    /// Volume, in cubic units of the capsule's space.
     pub fn volume(&self) -> f64 {
         let radius = f64::from(self.radius);
         let length = (self.b.as_dvec3() - self.a.as_dvec3()).length();
         core::f64::consts::PI * radius * radius * (length + radius * (4.0 / 3.0))
     }
 
-    /// How far `point` is from the segment, in f64: never less than the truth but for
-    /// [`DISTANCE_SLACK`], since any point of the segment is at least as far as the nearest.
+    /// Distance of `point` from the segment, in f64. Rounding may make it smaller by [`DISTANCE_SLACK`] at
+    /// most: it is measured to some point of the segment, and none is nearer than the nearest.
     fn distance(&self, point: Vec3) -> f64 {
         let segment = self.b.as_dvec3() - self.a.as_dvec3();
         let offset = point.as_dvec3() - self.a.as_dvec3();
@@ -104,7 +104,8 @@ impl BoundingCapsule {
     }
 }
 
-/// The mean of points and the unit direction of their greatest spread; X where all are equal.
+/// The mean of points and the unit direction of their greatest spread, or X if all are equal; `None`
+/// without points.
 fn principal_axis(points: impl Iterator<Item = Vec3> + Clone) -> Option<(DVec3, DVec3)> {
     let (sum, count) = points.clone().fold((DVec3::ZERO, 0.0), |(sum, count), p| {
         (sum + p.as_dvec3(), count + 1.0)

@@ -1,7 +1,7 @@
 use clamber_surface::rig::{JointId, Palette};
 use glam::{DAffine3, DMat3};
 
-/// What bounds read of a palette: every matrix in f64, and how much it stretches and moves at most.
+/// A palette as the bounds read it: every matrix in f64, its largest stretch, and the length of its translation.
 #[derive(Clone, Debug, Default)]
 pub struct JointMaps {
     maps: Vec<JointMap>,
@@ -18,7 +18,7 @@ pub(super) struct JointMap {
 }
 
 impl JointMaps {
-    /// Reads a palette; keeps its memory.
+    /// Reads a palette. Reuses the memory of the last one.
     pub fn update(&mut self, palette: &Palette) {
         self.maps.clear();
         let matrices = palette.matrices().iter().map(|matrix| matrix.to_f64());
@@ -34,8 +34,9 @@ impl JointMaps {
     }
 }
 
-/// `(norm_inf((A^T A)^4))^(1/8)`, rounded up: at least the largest singular value, at most 1.04 times it; for matrices
-/// of the size that creatures have, whose eighth powers neither over- nor underflow.
+/// `(norm_inf((A^T A)^4))^(1/8)`, rounded up: at least the largest singular value, and at most 1.04 times it.
+///
+/// Holds while the eighth powers neither overflow nor underflow, as they do not for a creature's matrices.
 fn stretch_bound(linear: &DMat3) -> f64 {
     let squared = linear.transpose() * *linear;
     let fourth = squared * squared;

@@ -1,13 +1,15 @@
 //! Bounds of parts in any pose, from the palette alone, in f64: spheres and capsules, by hull and by weight interval.
 //!
-//! What the library itself uses are spheres, eight at a time in f32 (`SkinnedSurface::in_model().part_spheres()`); these
-//! are what benches compare and pictures show. With the words of `clamber_surface`'s bounds, a capsule: at rest
-//! `p = s + q` with s on the segment from a to b and `|q| <= r`. Put s for c in the weight interval:
-//! `p' = s' + sum w_i A_i q + sum (w_i - o_i) (M_i s - s')` with `s' = sum o_i M_i s`, which runs along the segment from a'
-//! to b' as s runs from a to b. `sum d_i |M_i s - s'|` is a sum of lengths of affine functions of s, hence convex along
-//! the segment, and largest at one of its ends: p' lies in the capsule about a'b' of radius
-//! `r max s_i + max over the two ends e of sum d_i |M_i e - e'|`. By the hull's argument it also lies in the one of radius
-//! `max_i (s_i r + max over the two ends e of |M_i e - e'|)`; the smaller radius counts.
+//! The library itself uses spheres only, eight at a time in f32 (`SkinnedSurface::in_model().part_spheres()`). The
+//! bounds here serve benches, which compare them with the library's, and pictures.
+//!
+//! The spheres are derived in `clamber_surface`'s `bounds` module. The capsule follows with the same symbols. At rest
+//! `p = s + q`, with s on the segment from a to b and `|q| <= r`. Replace c by s in the weight interval:
+//! `p' = s' + sum w_i A_i q + sum (w_i - o_i) (M_i s - s')` with `s' = sum o_i M_i s`, which runs along the segment from
+//! a' to b' as s runs from a to b. `sum d_i |M_i s - s'|` is a sum of lengths of affine functions of s. It is therefore
+//! convex along the segment, and largest at one of its ends, so p' lies in the capsule around a'b' of radius
+//! `r max s_i + max over the two ends e of sum d_i |M_i e - e'|`. By the hull's argument p' also lies in the capsule
+//! around a'b' of radius `max_i (s_i r + max over the two ends e of |M_i e - e'|)`. The smaller radius is used.
 
 mod capsule;
 mod joint_maps;
@@ -21,7 +23,7 @@ pub use volume::BoundingVolume;
 
 use clamber_surface::mesh::{ColliderMesh, PartId};
 
-/// Bounds of the parts of a mesh under any palette. Made once a mesh.
+/// Bounds of the parts of a mesh under any palette. Built once per mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartBounds {
     parts: Vec<Option<NodeBounds>>,
@@ -38,12 +40,12 @@ impl PartBounds {
         }
     }
 
-    /// How many parts there are, those without triangles included.
+    /// Number of parts, including those without triangles.
     pub fn part_count(&self) -> usize {
         self.parts.len()
     }
 
-    /// The rest data of a part; `None` if it does not exist or has no triangles left.
+    /// The bounds of a part; `None` if it does not exist or has no triangles left.
     pub fn node(&self, part: PartId) -> Option<&NodeBounds> {
         self.parts.get(part.index())?.as_ref()
     }

@@ -8,20 +8,20 @@ use glam::{DVec3, Vec3};
 use super::joint_maps::JointMaps;
 use super::{BoundingCapsule, round_up_to_f32};
 
-/// How much one joint moves the vertices of a node.
+/// The interval of one joint's weights over the vertices of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WeightInterval {
     joint: JointId,
-    /// Near the middle of its weights; those of a node add up to exactly 1.
+    /// Near the middle of the joint's weights. The middles of a node add up to exactly 1.
     middle: f32,
-    /// The most by which a weight differs from `middle`.
+    /// The largest difference between a weight and `middle`.
     deviation: f32,
 }
 
-/// The rest data of a set of vertices, and from them bounds of the skinned vertices under any
-/// palette, whatever way the joints go. The module's documentation derives them.
+/// Bounds of a set of vertices under any palette, computed from its rest data. The module's documentation
+/// derives them.
 ///
-/// The scalar reference of faster forms. A node that holds no vertex does not exist.
+/// This is the scalar reference of faster forms. A node has at least one vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeBounds {
     intervals: Vec<WeightInterval>,
@@ -29,11 +29,11 @@ pub struct NodeBounds {
     capsule: BoundingCapsule,
     /// The largest distance of a rest position from the mesh's origin, rounded up.
     reach: f64,
-    /// The most influences of one vertex.
+    /// The largest number of influences of a vertex.
     influences: usize,
 }
 
-/// A centre with a radius, not yet inflated and rounded.
+/// A ball in f64, before it is inflated and rounded.
 struct Ball {
     center: DVec3,
     radius: f64,
@@ -41,7 +41,7 @@ struct Ball {
 
 impl NodeBounds {
     /// Reads the rest data of `vertices`, in any order. `None` without vertices, or if one is out
-    /// of range. Costs some 80 passes over them.
+    /// of range. Takes about 80 passes over them.
     pub fn new(mesh: &ColliderMesh, vertices: &[VertexId]) -> Option<Self> {
         let all = mesh.positions();
         if vertices.iter().any(|v| v.index() >= all.len()) {
@@ -59,23 +59,29 @@ impl NodeBounds {
         })
     }
 
-    /// A ball about the hull of the rest ball's images under each joint, in model space. The
-    /// smallest such ball for two joints, not always for more.
+    /// A ball around the rest ball's images under every joint, in model space. It is the smallest such
+    /// ball for two joints, not always for more.
     ///
     /// # Panics
-    /// If `maps` belong to a mesh with fewer joints; so do all bounds below.
+    /// If `maps` lacks a joint that moves one of the vertices.
     pub fn hull(&self, maps: &JointMaps) -> Sphere {
         self.inflated(maps, self.hull_ball(maps))
     }
 
-    /// The ball that the weight intervals leave, in model space: that of a rigid body where all
-    /// vertices have equal weights.
+    /// The ball by weight intervals, in model space. If all vertices have equal weights, its radius is the
+    /// rest radius times the largest stretch of a joint.
+    ///
+    /// # Panics
+    /// As [`NodeBounds::hull`].
     pub fn weight_interval(&self, maps: &JointMaps) -> Sphere {
         self.inflated(maps, self.weight_interval_ball(maps))
     }
 
-    /// A capsule that holds the skinned vertices, in model space, from the rest capsule by weight
-    /// intervals or hull, whichever gives the smaller radius.
+    /// A capsule that holds the skinned vertices, in model space: the rest capsule's axis, blended, with the
+    /// smaller of the radii by weight intervals and by hull.
+    ///
+    /// # Panics
+    /// As [`NodeBounds::hull`].
     pub fn capsule(&self, maps: &JointMaps) -> BoundingCapsule {
         let ends = [self.capsule.a.as_dvec3(), self.capsule.b.as_dvec3()];
         let blended = ends.map(|end| self.blend(maps, end));
@@ -94,7 +100,7 @@ impl NodeBounds {
         }
         let interval = rest_radius * self.stretch(maps) + deviation[0].max(deviation[1]);
         let radius = interval.min(hull) + self.inflation(maps);
-        // A point of the segment moves no farther than its ends when these are rounded.
+        // Rounding the ends moves no point of the segment farther than an end.
         let [a, b] = blended.map(|end| end.as_vec3());
         let moved = |end: DVec3, rounded: Vec3| (end - rounded.as_dvec3()).length();
         let rounding = moved(blended[0], a).max(moved(blended[1], b));
@@ -125,7 +131,7 @@ impl NodeBounds {
                 radius = grown;
             }
         }
-        // Measured once more: rounding of the growth does not matter then.
+        // The radius is measured again, so that rounding in the growth does not matter.
         let farthest = self
             .intervals
             .iter()
@@ -155,7 +161,7 @@ impl NodeBounds {
         }
     }
 
-    /// Where the joints take a rest point, each with the middle of its weights.
+    /// Skins a rest point with the middles as weights.
     fn blend(&self, maps: &JointMaps, rest: DVec3) -> DVec3 {
         self.intervals.iter().fold(DVec3::ZERO, |sum, interval| {
             let map = maps.of(interval.joint);
@@ -169,7 +175,8 @@ impl NodeBounds {
         stretches.fold(0.0, f64::max)
     }
 
-    /// What f32 skinning may add to a radius; see the module's documentation.
+    /// How far f32 skinning may move a vertex out of an exact bound, with slack. `clamber_surface`'s
+    /// `bounds/spheres.rs` derives it.
     fn inflation(&self, maps: &JointMaps) -> f64 {
         let size = self
             .intervals
@@ -193,12 +200,13 @@ impl NodeBounds {
     }
 }
 
-/// Rounded up.
+/// The square root of 3, rounded up.
 const SQRT_3: f64 = 1.732_050_807_568_878;
 
-/// The interval of every joint that moves one of the vertices, ascending; `None` without vertices.
+/// The weight interval of every joint that moves one of the vertices, by ascending joint; `None` without
+/// vertices.
 fn weight_intervals(mesh: &ColliderMesh, vertices: &[VertexId]) -> Option<Vec<WeightInterval>> {
-    // Smallest and largest weight, and how many vertices the joint moves.
+    // Smallest and largest weight of each joint, and the number of vertices that it moves.
     let mut seen: BTreeMap<JointId, (f32, f32, usize)> = BTreeMap::new();
     for vertex in vertices {
         for (joint, weight) in mesh.influences(*vertex) {
@@ -213,14 +221,14 @@ fn weight_intervals(mesh: &ColliderMesh, vertices: &[VertexId]) -> Option<Vec<We
             *low = 0.0;
         }
     }
-    // Twice the middles. Their rounding does not matter, that they add up to 1 does.
+    // Twice the middles. Their rounding does not matter; their sum of 1 does.
     let doubled = |(joint, (low, high, _)): (&JointId, &(f32, f32, usize))| Influence {
         joint: *joint,
         weight: low + high,
     };
     let middles = normalize_influences(&seen.iter().map(doubled).collect::<Vec<_>>())?;
     let interval = |(joint, (low, high, _)): (JointId, (f32, f32, usize))| {
-        // Without those of the joints whose middle rounds to 0.
+        // A joint whose middle rounds to 0 is missing from the middles.
         let middle = middles.iter().find(|influence| influence.joint == joint);
         let middle = middle.map_or(0.0, |influence| influence.weight);
         WeightInterval {

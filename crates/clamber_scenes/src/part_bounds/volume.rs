@@ -4,12 +4,12 @@ use clamber_surface::geometry::Sphere;
 
 use super::BoundingCapsule;
 
-/// What bounds a part.
+/// The bounding volume of a part: a sphere or a capsule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoundingVolume {
     /// A ball.
     Sphere(Sphere),
-    /// A segment with a radius.
+    /// A capsule.
     Capsule(BoundingCapsule),
 }
 
@@ -22,7 +22,7 @@ impl BoundingVolume {
         }
     }
 
-    /// In cubic units of its space.
+    /// Volume, in cubic units of its space.
     pub fn volume(&self) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.volume(),

@@ -1,6 +1,7 @@
-//! Drawing the shortest edge together again and again, where the surface stays a surface: the
-//! edge's ends may have no neighbours in common but those opposite the edge (Dey et al. 1999, the
-//! link condition), and no triangle may turn over.
+//! Fewer vertices: collapses the shortest edge again and again, as long as the surface stays a manifold.
+//!
+//! The edge's ends may have no common neighbours except the two opposite the edge (the link condition,
+//! Dey et al. 1999), and no triangle may flip.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -9,15 +10,15 @@ use glam::DVec3;
 
 use super::{Edge, Pieces, Point, edge};
 
-/// The least cosine between a triangle's normals before and after: some 70 degrees, so that creases
-/// may close but nothing turns over.
+/// Smallest cosine between a triangle's normals before and after a collapse: about 70 degrees, so that
+/// creases may close but no triangle flips.
 const MIN_COSINE: f64 = 0.3;
 
 struct Coarsening<'a> {
     pieces: &'a mut Pieces,
-    /// By point: its triangles.
+    /// The triangles of each point.
     around: Vec<BTreeSet<u32>>,
-    /// By point: how often it has moved.
+    /// How often each point has moved.
     moves: Vec<u32>,
 }
 
@@ -55,7 +56,8 @@ pub(super) fn coarsen(pieces: &mut Pieces, vertices: usize) {
     pieces.triangles = kept.collect();
 }
 
-/// Length, edge, and how often its ends had moved: shortest first, of equal ones the smaller.
+/// [`Pieces::length`] of an edge, the edge, and how often each end had moved by then. The shortest edge comes
+/// first; ties go to the smaller edge.
 type Queue = BinaryHeap<Reverse<(u64, Edge, [u32; 2])>>;
 
 impl Coarsening<'_> {
@@ -73,7 +75,7 @@ impl Coarsening<'_> {
         all.filter(|corner| *corner != point).collect()
     }
 
-    /// Puts the edges of a point into the queue, those to greater points only if `half`.
+    /// Puts the edges of a point into the queue; if `half`, only those to points with a greater index.
     fn push_edges(&self, point: u32, half: bool, queue: &mut Queue) {
         for neighbour in self.neighbours(point) {
             if !half || neighbour > point {
@@ -87,7 +89,8 @@ impl Coarsening<'_> {
         }
     }
 
-    /// Draws an edge together into its first end; false if the surface would not stay one.
+    /// Collapses an edge into its first end, at its middle. Changes nothing and returns false if the surface
+    /// would not stay a manifold, or a triangle would flip.
     fn collapse(&mut self, ends: Edge) -> bool {
         let [a, b] = ends.map(|end| end as usize);
         let shared: Vec<u32> = self.around[a]
@@ -124,7 +127,7 @@ impl Coarsening<'_> {
         true
     }
 
-    /// True if a triangle turns over, or nearly, when both ends of an edge come to `middle`.
+    /// True if a triangle flips, or nearly, when both ends of an edge move to `middle`.
     fn turns(&self, triangle: u32, ends: Edge, middle: DVec3) -> bool {
         let corners = self.corners(triangle);
         let before = corners.map(|corner| self.pieces.points[corner as usize].position);

@@ -9,11 +9,14 @@ use clamber_surface::mesh::{
 };
 use glam::DVec3;
 
-/// The mesh with so many vertices, or nearly: longest edges are halved until there are enough, or
-/// shortest ones drawn together until there are few enough, as far as no triangle turns over.
+/// The mesh with about so many vertices: the longest edges are halved until there are enough, or the
+/// shortest ones collapsed until there are few enough.
+///
+/// More vertices than asked for remain if every further collapse would flip a triangle or break the
+/// manifold. Points without a triangle are dropped.
 ///
 /// # Errors
-/// [`MeshError`] if nothing is left, which takes a mesh that was nearly nothing.
+/// [`MeshError`] if no usable triangle is left, which takes a mesh of very few triangles.
 pub fn resample(mesh: &ColliderMesh, vertices: usize) -> Result<ColliderMesh, MeshError> {
     let mut pieces = Pieces::of(mesh);
     if vertices > pieces.points.len() {
@@ -24,7 +27,7 @@ pub fn resample(mesh: &ColliderMesh, vertices: usize) -> Result<ColliderMesh, Me
     pieces.build(mesh.joint_count())
 }
 
-/// A mesh taken apart.
+/// A mesh as plain points and triangles, for editing.
 struct Pieces {
     points: Vec<Point>,
     triangles: Vec<Triangle>,
@@ -44,18 +47,18 @@ struct Triangle {
 }
 
 impl Point {
-    /// Half way between two points, in place and in influences.
+    /// The point half way between two points, in position and in influences.
     fn between(a: &Self, b: &Self) -> Self {
         let all = [a.influences.as_slice(), &b.influences].concat();
         Self {
             position: (a.position + b.position) * 0.5,
-            // Both were normalised, so this always is something.
+            // Both lists were normalised, so their sum is not zero.
             influences: normalize_influences(&all).unwrap_or(all),
         }
     }
 }
 
-/// An edge, the smaller vertex first.
+/// An edge as two point indices, the smaller one first.
 type Edge = [u32; 2];
 
 fn edge(a: u32, b: u32) -> Edge {
@@ -83,13 +86,13 @@ impl Pieces {
         }
     }
 
-    /// Length of an edge, squared, as bits: of numbers that are not negative these are in order.
+    /// Squared length of an edge, as the bits of an f64: for numbers of at least 0 these sort like the numbers.
     fn length(&self, [a, b]: Edge) -> u64 {
         let (a, b) = (&self.points[a as usize], &self.points[b as usize]);
         a.position.distance_squared(b.position).to_bits()
     }
 
-    /// The mesh of all points that a triangle has.
+    /// The mesh of all triangles, and of the points that they use.
     fn build(&self, joint_count: usize) -> Result<ColliderMesh, MeshError> {
         let mut number = vec![u32::MAX; self.points.len()];
         let (mut positions, mut influences, mut influence_ends) = (vec![], vec![], vec![]);
@@ -141,7 +144,7 @@ mod tests {
             let crowded = flaws(&beast).crowded_edges;
             assert!(flaws(&mesh).crowded_edges <= crowded, "{vertices}");
             assert_eq!(flaws(&mesh).open_edges, 0, "{vertices}");
-            // Edges drawn together to their middles cut the round: 3.6 % from 3,000 to 1,000.
+            // Collapsing edges to their middles flattens curved skin: 3.6 % of volume from 3,000 to 1,000.
             let change = (volume(&mesh) / whole - 1.0).abs();
             assert!(change < 0.05, "{vertices}: volume is off by {change}");
             assert_eq!(mesh.joint_count(), beast.joint_count());

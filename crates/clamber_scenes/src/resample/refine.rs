@@ -1,5 +1,5 @@
-//! Halving the longest edge again and again: triangles stay well shaped, and the surface is the
-//! same set of points.
+//! More vertices: halves the longest edge again and again. Triangles stay well shaped, and the surface at
+//! rest stays the same set of points.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -14,7 +14,7 @@ pub(super) fn refine(pieces: &mut Pieces, vertices: usize) {
             sharing.entry(edge).or_default().push(index as u32);
         }
     }
-    // Longest first, of equal ones the smaller: the map's order does not show.
+    // Longest first, ties by the smaller edge: the hash map's order has no effect.
     let mut queue: BinaryHeap<(u64, Reverse<Edge>)> = sharing
         .keys()
         .map(|edge| (pieces.length(*edge), Reverse(*edge)))
@@ -33,7 +33,7 @@ pub(super) fn refine(pieces: &mut Pieces, vertices: usize) {
         for old in triangles {
             let new = pieces.triangles.len() as u32;
             let Triangle { corners, tag } = pieces.triangles[old as usize];
-            // In the triangle's own order: from `first` over the middle to `second`.
+            // In the triangle's own winding: from `first` through `middle` to `second`.
             let Some(first) = (0..3).find(|k| edge(corners[*k], corners[(k + 1) % 3]) == [a, b])
             else {
                 continue;

@@ -1,5 +1,7 @@
-//! What the scene holds against the library, by means that owe nothing to its queries; but that a rock lies on
-//! the giant is asked of one.
+//! Checks of where the rocks are, which mostly do not use the library's queries: solid angles tell what is inside.
+//!
+//! Two places use the query for the closest point: to tell that a rock lies on the giant, and for the depth of a point
+//! that is inside it.
 
 use std::fmt;
 
@@ -11,32 +13,32 @@ use glam::DVec3;
 use super::Rocks;
 use crate::{solid_angle, valley};
 
-/// What became of the rocks.
+/// Where the rocks are, and what happened to them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
-    /// How many there are.
+    /// Number of rocks.
     pub rocks: usize,
-    /// How many lie on the giant, or on others there.
+    /// Rocks that lie on the giant, or on other rocks there.
     pub on_giant: usize,
-    /// How many lie in the valley.
+    /// Rocks that lie in the valley.
     pub on_ground: usize,
-    /// How often the middle of one was seen inside the giant or under the ground.
+    /// How often a rock's centre was found inside the giant or under the ground.
     pub tunnelled: usize,
-    /// Deepest that any that had settled reached into the giant, metres.
+    /// The largest depth of a settled rock in the skin, metres.
     pub deepest: f64,
-    /// Bodies put back in front of skin, over all ticks.
+    /// `DebrisReport::put_back`, summed over all ticks.
     pub put_back: u32,
-    /// Bodies caught between skin, over all ticks.
+    /// `DebrisReport::caught`, summed over all ticks.
     pub caught: u32,
 }
 
 impl Outcome {
-    /// True if the last look found each of them on the giant or in the valley, none in the air.
+    /// True if the last [`Outcome::settle`] found every rock on the giant or in the valley, none in the air.
     pub fn all_lie(&self) -> bool {
         self.on_giant + self.on_ground == self.rocks
     }
 
-    /// Looks at whether rocks are inside the giant or under the ground.
+    /// Counts the rocks that are inside the giant or under the ground now.
     pub fn look(&mut self, scene: &Rocks<'_>) {
         let mut positions = Vec::new();
         scene.surface.skin_all(&mut positions);
@@ -53,7 +55,7 @@ impl Outcome {
         }
     }
 
-    /// Looks at where they lie, now that they have settled, and how deep in the skin.
+    /// Notes where the settled rocks lie, and the largest depth of one in the skin.
     pub fn settle(&mut self, scene: &Rocks<'_>) {
         self.rocks = scene.rocks().len();
         (self.on_giant, self.on_ground) = (0, 0);
@@ -68,7 +70,7 @@ impl Outcome {
     }
 }
 
-/// How far a rock's middle may be from what it lies on, others between included, metres.
+/// How far a rock's centre may be from the giant or the ground that it lies on, metres; other rocks may be in between.
 const PILE: f64 = 2.5;
 
 impl fmt::Display for Outcome {
@@ -87,12 +89,14 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Directions in which a rock is felt for its farthest points, along each of two angles.
+/// Support points of a body are taken in so many directions per half turn, along each of two angles.
 const SPREAD: u32 = 10;
 
-/// How deep a body reaches into the skin, metres; 0 if it does not. Over points all over the body that
-/// the mesh winds around, the distance to the nearest triangle; over the mesh's vertices that are in the
-/// body, their way out of it.
+/// How deep a body reaches into the skin, metres; 0 if it does not.
+///
+/// The larger of two depths: of the body's support points that are inside the mesh, the distance to the nearest
+/// triangle; of the mesh's vertices that are inside the body, the distance to the body's surface. Reads the body's
+/// first collider.
 pub fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHandle) -> f64 {
     let (root, mesh) = (surface.world_from_model(), surface.mesh());
     let body = &world.bodies[body];
@@ -124,7 +128,7 @@ pub fn depth(surface: &SkinnedSurface, world: &PhysicsWorld, body: RigidBodyHand
             let local = support.local_support_point(direction.as_vec3());
             let place = body.position().transform_point(local).as_dvec3();
             let in_model = root.inverse_transform_point(place);
-            // Far from the skin no sum over all triangles is needed.
+            // Far from the skin the sum over all triangles is saved.
             let near = surface.in_model().closest_point(in_model.as_vec3(), 0.5);
             if let Some(near) = near
                 && solid_angle::is_inside(&positions, mesh, in_model)

@@ -14,17 +14,17 @@ use thiserror::Error;
 use crate::CreatureError;
 use crate::battle::BattleError;
 
-/// Why rocks cannot roll.
+/// Why the scene with the rocks failed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RocksError {
     /// The giant cannot be loaded or posed.
     #[error(transparent)]
     Creature(#[from] CreatureError),
-    /// The giant cannot play its part.
+    /// The giant cannot perform its clips.
     #[error(transparent)]
     Battle(#[from] BattleError),
-    /// A rock cannot be held against the giant.
+    /// A rock cannot collide with the giant.
     #[error(transparent)]
     Debris(#[from] DebrisError),
 }

@@ -10,10 +10,10 @@ use glam::DVec3;
 use super::RocksError;
 use crate::{Creature, CreatureError, valley};
 
-/// Seconds of a tick.
+/// Length of a tick, seconds.
 pub const TICK: f64 = 1.0 / 60.0;
 
-/// The giant among the surfaces of the debris.
+/// The giant's id among the debris's surfaces.
 const CREATURE: ObstacleId = ObstacleId(0);
 
 /// Seconds over which one clip fades into the next.
@@ -22,17 +22,17 @@ const FADE: f64 = 0.6;
 /// The running scene: a giant in the valley, and rocks that fall on it.
 pub struct Rocks<'a> {
     creature: &'a Creature,
-    /// Now, and the one before that it fades in from.
+    /// The current clip, and the one that it fades in from.
     clips: [Option<&'a Clip>; 2],
-    /// When it began.
+    /// When the current clip began, in seconds of the scene.
     began: f64,
     rest: Pose,
     pose: Pose,
     fading: Pose,
     palette: Palette,
-    /// Its skin.
+    /// The creature's skin.
     pub surface: SkinnedSurface,
-    /// Valley and rocks.
+    /// The physics world: the valley and the rocks.
     pub world: PhysicsWorld,
     debris: Debris,
     rocks: Vec<RigidBodyHandle>,
@@ -41,8 +41,8 @@ pub struct Rocks<'a> {
 }
 
 impl<'a> Rocks<'a> {
-    /// The creature in the middle of the valley, and so many rocks, logs and stones above it; `seed`
-    /// says which and where.
+    /// The creature in the middle of the valley, and `count` rocks, stones and logs above it. `seed`
+    /// determines their sizes and places.
     ///
     /// # Errors
     /// [`RocksError`].
@@ -81,8 +81,8 @@ impl<'a> Rocks<'a> {
         Ok(scene)
     }
 
-    /// What the creature does from now on: a clip whose name contains `word`, into which it fades, or
-    /// nothing.
+    /// Fades the creature into the first clip whose name contains `word` (lower case), or into its rest pose
+    /// if there is none.
     pub fn play(&mut self, word: Option<&str>) {
         let clip = word.and_then(|word| self.creature.clip_like(&[word]));
         let name = |clip: Option<&'a Clip>| clip.map(|clip| clip.name.as_str());
@@ -92,7 +92,7 @@ impl<'a> Rocks<'a> {
         }
     }
 
-    /// Poses the creature for the next tick: the part of a tick that everything shares.
+    /// Poses the creature for the next tick. Call it once before each [`Rocks::step`].
     ///
     /// # Errors
     /// [`RocksError::Creature`].
@@ -103,7 +103,7 @@ impl<'a> Rocks<'a> {
         Ok(advanced.map_err(CreatureError::from)?)
     }
 
-    /// Puts the skin near the rocks into the world, steps it, and keeps the rocks out of the skin.
+    /// Adds the skin near the rocks to the physics world, steps the world, and keeps the rocks out of the skin.
     ///
     /// # Errors
     /// [`RocksError::Debris`].
@@ -113,10 +113,10 @@ impl<'a> Rocks<'a> {
         self.keep_out()
     }
 
-    /// The first part of [`Rocks::step`].
+    /// The first part of [`Rocks::step`]: adds the skin near the rocks to the physics world.
     ///
     /// # Errors
-    /// As that one.
+    /// [`RocksError::Debris`].
     pub fn bring_skin(&mut self) -> Result<(), RocksError> {
         let (bodies, colliders) = (&mut self.world.bodies, &mut self.world.colliders);
         let surfaces = [(CREATURE, &self.surface)];
@@ -125,10 +125,10 @@ impl<'a> Rocks<'a> {
             .before_step(&surfaces, bodies, colliders, TICK)?)
     }
 
-    /// The last part of [`Rocks::step`].
+    /// The last part of [`Rocks::step`]: puts rocks that got into the skin back in front of it.
     ///
     /// # Errors
-    /// As that one.
+    /// [`RocksError::Debris`].
     pub fn keep_out(&mut self) -> Result<DebrisReport, RocksError> {
         let world = &mut self.world;
         let (broad_phase, narrow_phase) = (&world.broad_phase, &world.narrow_phase);
@@ -143,7 +143,7 @@ impl<'a> Rocks<'a> {
         )?)
     }
 
-    /// The part of rapier in [`Rocks::step`].
+    /// The middle part of [`Rocks::step`]: rapier's own step.
     pub fn step_world(&mut self) {
         self.world.step_with_events(&self.debris, &());
     }
@@ -165,7 +165,7 @@ impl<'a> Rocks<'a> {
                     .map_err(failed)?;
             }
         }
-        // Smooth at both ends, so that nothing jerks.
+        // Smoothstep, so that the fade begins and ends without a jerk.
         let share = ((self.time - self.began) / FADE).clamp(0.0, 1.0);
         let share = share * share * (3.0 - 2.0 * share);
         self.pose.blend_in(&self.fading, share).map_err(failed)?;
@@ -176,8 +176,9 @@ impl<'a> Rocks<'a> {
     }
 }
 
-/// Rocks, stones and logs above a place; a sixth of them logs. At a scale of 1 they have radii of 25
-/// to 70 cm.
+/// Adds `count` rocks, stones and logs to a physics world, in layers from `above` upwards; every sixth is a
+/// log. At a scale of 1 a rock's size is 25 to 70 cm: the radius of a ball, or the largest half extent of a
+/// box. A log has half of its size as radius, and twice its size as half length without the round ends.
 pub fn scatter(
     world: &mut PhysicsWorld,
     count: usize,
@@ -196,7 +197,7 @@ pub fn scatter(
             1 | 3 => ColliderBuilder::cuboid(size, size * 0.7, size * 0.8),
             _ => ColliderBuilder::ball(size),
         };
-        // In layers, so that none begins inside another.
+        // In layers, so that no rock begins inside another.
         let (layer, row, column) = (index / 25, (index % 25) / 5, index % 5);
         let aside = Vector::new(
             (row as f32 - 2.0) * 2.6 * scale + between(-0.3, 0.3),

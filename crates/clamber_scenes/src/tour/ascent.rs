@@ -1,4 +1,4 @@
-//! From anywhere on a creature to its top.
+//! Shortest ways from everywhere on a creature to its top.
 
 use std::collections::BTreeSet;
 
@@ -8,24 +8,26 @@ use glam::Vec3;
 use super::Ways;
 use crate::Creature;
 
-/// For every vertex the next one on the shortest way to the largest level place of the head, at rest; or to the highest
-/// level places, on a creature without a joint called head.
+/// For every vertex the next vertex on the shortest way to the creature's top, at rest.
+///
+/// The top is the largest level patch of the head. On a creature without level skin on a joint called head it is the
+/// highest level skin.
 #[derive(Clone, Debug)]
 pub struct Ascent {
     next: Vec<Option<VertexId>>,
-    /// Metres of the file, along edges; infinite where nothing leads to the top.
+    /// Length of the way along edges, in the file's metres; infinite where no way leads to the top.
     left: Vec<f32>,
     feet: Vec<VertexId>,
 }
 
-/// Cosine of the steepest slope that one stands on at the top: 32 degrees.
+/// Skin is level if the upward component of its normal is above this: a slope below 32 degrees.
 const LEVEL: f32 = 0.85;
 
-/// How far below the highest such place is still the top, as a share of the creature's height.
+/// Without a head, level skin this far below the highest counts as the top, as a share of the creature's height.
 const TOP: f32 = 0.03;
 
 impl Ascent {
-    /// By ways that can be gone.
+    /// The ascent along `ways`, which must be of the same creature.
     pub fn new(creature: &Creature, ways: &Ways) -> Self {
         let (next, left) = ways.tree(&crown(creature, ways));
         let leads_up = |vertex: &&u32| left[**vertex as usize].is_finite();
@@ -37,12 +39,12 @@ impl Ascent {
         }
     }
 
-    /// The next vertex; `None` at the top, and where nothing leads there.
+    /// The next vertex on the way; `None` at the top, and where no way leads to it.
     pub fn next(&self, vertex: VertexId) -> Option<VertexId> {
         *self.next.get(vertex.index())?
     }
 
-    /// How far it is to the top, in the units of the creature's file; infinite where nothing leads there.
+    /// Length of the way from a vertex to the top, in the units of the creature's file; infinite if there is none.
     pub fn left(&self, vertex: VertexId) -> f32 {
         let left = self.left.get(vertex.index());
         left.copied().unwrap_or(f32::INFINITY)
@@ -60,7 +62,7 @@ impl Ascent {
     }
 }
 
-/// The largest level place: of the head, if there is one.
+/// The vertices of the top: see [`Ascent`].
 fn crown(creature: &Creature, ways: &Ways) -> Vec<u32> {
     let mesh = &creature.collider;
     let joints = creature.skeleton.joints();
@@ -94,7 +96,7 @@ fn crown(creature: &Creature, ways: &Ways) -> Vec<u32> {
     largest_patch(&head, ways)
 }
 
-/// Of some vertices the most that are neighbours.
+/// The largest connected patch of some vertices.
 fn largest_patch(vertices: &[u32], ways: &Ways) -> Vec<u32> {
     let mut left: BTreeSet<u32> = vertices.iter().copied().collect();
     let mut largest = Vec::new();

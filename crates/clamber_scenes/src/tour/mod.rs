@@ -1,4 +1,4 @@
-//! A bot grips a creature's foot and climbs to its head, while the creature moves.
+//! A bot grips a creature's foot and climbs to its head while the creature moves.
 
 mod ascent;
 mod route;
@@ -12,41 +12,43 @@ use clamber_climber::{Climber, ClimberConfig, ClimberEvent, ClimberInput, Climbe
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 
-/// Ticks a second.
+/// Ticks per second.
 pub const RATE: f64 = 60.0;
 
-/// How near to a waypoint, metres from the climber's centre, it counts as reached.
+/// A waypoint counts as reached within this distance of the climber's centre, metres.
 const REACHED: f64 = 0.9;
 
-/// Seconds for which it tries to reach a waypoint.
+/// Seconds after which the climber gives up a waypoint.
 const PATIENCE: f64 = 4.0;
 
-/// What became of a tour.
+/// The result of a tour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Seconds until the head was reached, or the end.
+    /// Seconds until the climber arrived, or until the tour ended.
     pub seconds: f64,
-    /// Share of the way.
+    /// Share of the waypoints that the climber reached or gave up.
     pub progress: f64,
-    /// It arrived.
+    /// True if the climber reached the end of the route.
     pub arrived: bool,
-    /// Times that it lost its hold for any reason but stamina.
+    /// How often the climber lost its hold and fell, slid or tumbled, except when it was shaken off.
     pub falls: u32,
-    /// Times that it hung.
+    /// How often the climber began to hang by its hands ([`ClimberMode::Hanging`]).
     pub hung: u32,
-    /// Waypoints that it gave up.
+    /// Waypoints that the climber gave up.
     pub skipped: u32,
-    /// Corners that it turned.
+    /// Corners that the climber turned.
     pub corners: u32,
-    /// How deep anything was in its core, metres, worst.
+    /// The largest depth of skin in the climber's core (its body less the margin), metres. Ticks that crush it are left
+    /// out.
     pub penetration: f64,
-    /// Ticks in which it was crushed, or its movement was not clear.
+    /// Ticks in which the climber's movement was not clear, plus the events that it was crushed.
     pub trouble: u32,
-    /// Mode at the end.
+    /// The climber's mode at the end.
     pub mode: Option<ClimberMode>,
 }
 
-/// A climber that never tires soon, for long ways.
+/// The settings of a climber for long ways: [`ClimberConfig::colossus_climber`], with stamina to hold on for 600 s to a
+/// creature that keeps still.
 pub fn config() -> ClimberConfig {
     let mut config = ClimberConfig::colossus_climber();
     if let Some(stamina) = &mut config.stamina {
@@ -55,10 +57,10 @@ pub fn config() -> ClimberConfig {
     config
 }
 
-/// Climbs along a route for so many seconds at most, all of the creature being fur.
+/// Climbs along a route for at most `limit` seconds. The climber may grip all of the creature, as if it were all fur.
 ///
 /// # Errors
-/// If the creature cannot be posed or the climber not be made.
+/// If the creature cannot be posed, the climber cannot be made, or there is no room for it anywhere on the route.
 pub fn climb(
     stage: &mut Stage<'_>,
     route: &Route,
@@ -67,7 +69,8 @@ pub fn climb(
 ) -> Result<Outcome, Box<dyn std::error::Error>> {
     let mut outcome = Outcome::default();
     stage.place(0.0)?;
-    let (first, start) = free_place(stage, route, &config).ok_or("no room for it at the foot")?;
+    let (first, start) =
+        free_place(stage, route, &config).ok_or("there is no room for the climber on the route")?;
     let mut climber = Climber::new(config, start)?;
     let (mut next, mut since) = (first, 0.0);
     let ticks = (limit * RATE) as u32;
@@ -84,7 +87,7 @@ pub fn climb(
         {
             (next, since) = (reached + 1, time);
         } else if time - since > PATIENCE {
-            // In a crease that its ball does not enter.
+            // The waypoint lies in a crease that the climber's ball does not enter.
             (next, since) = (next + 1, time);
             outcome.skipped += 1;
         }
@@ -126,7 +129,7 @@ pub fn climb(
     Ok(outcome)
 }
 
-/// The first waypoint at which there is room for a climber, and where it is then: the very first may lie in a crease.
+/// The first waypoint with room for a climber, and the climber's position there. The route may begin in a crease.
 fn free_place(stage: &Stage<'_>, route: &Route, config: &ClimberConfig) -> Option<(usize, DVec3)> {
     let radius = config.body.radius;
     let mut places = route.waypoints.iter().enumerate().map(|(index, vertex)| {

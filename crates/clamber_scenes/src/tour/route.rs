@@ -8,17 +8,17 @@ use glam::Vec3;
 
 use crate::{Creature, CreatureError};
 
-/// Pieces that are no farther apart than this share of the creature's height are climbed between.
+/// Separate pieces of skin are joined by ways where they are nearer than this share of the creature's height.
 const GAP: f32 = 0.04;
 
 /// A way over a creature, from vertex to vertex.
 #[derive(Clone, Debug)]
 pub struct Route {
-    /// Neighbours by edges, or across gaps between pieces.
+    /// The vertices. Consecutive ones share an edge, or lie on both sides of a gap between two pieces of skin.
     pub waypoints: Vec<VertexId>,
 }
 
-/// All ways over a creature, or over what of it can be gripped.
+/// All ways over a creature, or over its triangles with certain tags: a graph of vertices.
 #[derive(Clone, Debug)]
 pub struct Ways {
     rest: Vec<Vec3>,
@@ -27,22 +27,22 @@ pub struct Ways {
     heads: Vec<u32>,
 }
 
-/// A vertex on the way, nearest first.
+/// An entry of Dijkstra's queue; the nearest vertex comes first.
 struct Open {
     distance: f32,
     vertex: u32,
 }
 
 impl Ways {
-    /// At rest.
+    /// All ways over a creature, at rest.
     ///
     /// # Errors
-    /// [`CreatureError`] if its rest pose does not fit it.
+    /// [`CreatureError`] if the rest pose does not fit the collider.
     pub fn new(creature: &Creature) -> Result<Self, CreatureError> {
         Self::over(creature, |_| true)
     }
 
-    /// At rest, over triangles with certain tags alone.
+    /// The ways over those triangles of a creature whose tag satisfies `is_way`, at rest.
     ///
     /// # Errors
     /// As [`Ways::new`].
@@ -95,7 +95,8 @@ impl Ways {
         })
     }
 
-    /// From a vertex near the ground to one near the top, by a seed; `None` where nothing connects them.
+    /// A way from a vertex near the ground to one near the top, both chosen by a seed. `None` if 50 such choices find
+    /// no connected pair.
     pub fn climb(&self, seed: u64) -> Option<Route> {
         let mut rng = fastrand::Rng::with_seed(seed);
         let mut one_of =
@@ -118,29 +119,29 @@ impl Ways {
         Some(Route { waypoints })
     }
 
-    /// Vertices near the bottom.
+    /// Vertices near the bottom, between 2 % and 15 % of the height.
     pub(super) fn feet(&self) -> &[u32] {
         &self.feet
     }
 
-    /// All vertices at rest.
+    /// Positions of all vertices at rest.
     pub(super) fn rest(&self) -> &[Vec3] {
         &self.rest
     }
 
-    /// Where ways lead from a vertex.
+    /// The vertices that ways lead to from a vertex.
     pub(super) fn neighbours(&self, vertex: u32) -> &[u32] {
         &self.neighbours[vertex as usize]
     }
 
-    /// Vertices that ways lead over.
+    /// The vertices with at least one way.
     pub(super) fn used(&self) -> impl Iterator<Item = u32> {
         let vertices = 0..self.rest.len() as u32;
         vertices.filter(|vertex| !self.neighbours[*vertex as usize].is_empty())
     }
 
-    /// The shortest ways from the nearest of some vertices to all others: for each the vertex before it, and how long
-    /// the way is.
+    /// The shortest way to every vertex from the nearest of `from`: the vertex before it, and the length of the way.
+    /// The length is infinite where no way leads.
     pub(super) fn tree(&self, from: &[u32]) -> (Vec<Option<u32>>, Vec<f32>) {
         let mut best = vec![f32::INFINITY; self.rest.len()];
         let mut before = vec![None; self.rest.len()];
@@ -173,7 +174,7 @@ impl Ways {
     }
 }
 
-/// For each vertex the first one that edges lead to.
+/// The piece of each vertex, named by the smallest vertex that edges connect it with.
 fn pieces(neighbours: &[Vec<u32>]) -> Vec<u32> {
     let mut piece = vec![u32::MAX; neighbours.len()];
     let mut open = Vec::new();

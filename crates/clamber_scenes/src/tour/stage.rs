@@ -11,19 +11,19 @@ use crate::{Creature, CreatureError};
 /// How a creature moves while it is climbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// Its idle clip, or its first, at half speed.
+    /// It plays its idle clip, or else its first clip.
     Idle,
-    /// Its walk, on the spot unless the clip goes on.
+    /// It plays its walk, on the spot unless the clip itself moves the root.
     Walk,
-    /// Its idle clip, and a gentle shake of all of it.
+    /// It plays its idle clip, or else its first clip, while the whole creature sways by centimetres.
     Shake,
 }
 
-/// A creature of some height that moves.
+/// A moving creature, scaled to a height, at the origin.
 pub struct Stage<'a> {
     creature: &'a Creature,
     surface: SkinnedSurface,
-    /// Corners of one triangle at each vertex.
+    /// The corners of one triangle at each vertex.
     triangle_at: Vec<Option<[VertexId; 3]>>,
     scale: f64,
     tempo: f64,
@@ -31,11 +31,11 @@ pub struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    /// With its rest pose so high, metres, its clips played at a tempo: giants are slower than what clips are made for, as
-    /// the root of their size.
+    /// A creature whose rest pose is `height` metres high, and whose clips are played at `tempo` times their speed.
+    /// Giants move slower than the creatures that clips are made for, by the square root of their size.
     ///
     /// # Errors
-    /// [`CreatureError`] if its rest pose does not fit it.
+    /// [`CreatureError`] if the rest pose does not fit the collider.
     pub fn new(
         creature: &'a Creature,
         (height, tempo): (f64, f64),
@@ -62,7 +62,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// As it is at a time, without motion.
+    /// Puts the creature into its pose at a time, seconds, without motion.
     ///
     /// # Errors
     /// [`CreatureError`] if a clip does not fit.
@@ -71,7 +71,7 @@ impl<'a> Stage<'a> {
         Ok(self.surface.place(&palette, root)?)
     }
 
-    /// The next tick.
+    /// Moves the creature on to its pose at a time, seconds: the next tick.
     ///
     /// # Errors
     /// As [`Stage::place`].
@@ -107,12 +107,12 @@ impl<'a> Stage<'a> {
         Ok((self.creature.skeleton.palette(&pose)?, root))
     }
 
-    /// What is climbed.
+    /// The creature's skin.
     pub fn surface(&self) -> &SkinnedSurface {
         &self.surface
     }
 
-    /// Where a vertex is now, and the normal of one of its triangles.
+    /// The current position of a vertex in the world, and the unit normal of one of its triangles.
     pub fn vertex(&self, vertex: VertexId) -> (DVec3, DVec3) {
         let world_from_model = self.surface.world_from_model();
         let place = |vertex: VertexId| {

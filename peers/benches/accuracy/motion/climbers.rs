@@ -1,4 +1,4 @@
-//! Climbers in the way of a limb, or on it.
+//! Climbers in the way of a limb, or on one.
 
 use std::error::Error;
 
@@ -10,26 +10,26 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 
-/// The ground is so far below the limb's axis, against Z, metres: the limb swings 5 cm above it.
+/// Distance of the ground below the limb's axis, along -Z, metres: the limb swings 5 cm above it.
 pub(crate) const GROUND: f64 = 0.55;
 
-/// Ticks that a climber has to come to rest.
+/// Number of ticks in which a climber comes to rest.
 const SETTLE: usize = 60;
 
-/// Where a climber is.
+/// Place and support of a climber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Stance {
-    /// It floats, without weight, and flies where it is struck to.
+    /// It floats without gravity, and flies off when it is struck.
     InAir,
-    /// It stands on ground below the limb, and does nothing.
+    /// It stands on the ground below the limb, without input.
     OnGround,
-    /// It stands on the limb, from which nothing throws it.
+    /// It stands on the limb. No acceleration throws it off.
     OnLimb,
-    /// It grips the limb, from which nothing shakes it.
+    /// It grips the limb. No acceleration shakes it off.
     Holding,
 }
 
-/// A climber, and what it stands on beside the limb.
+/// A climber, and the ground below it if there is one.
 pub(crate) struct Walker {
     pub(crate) climber: Climber,
     ground: Option<SkinnedSurface>,
@@ -76,7 +76,7 @@ impl Walker {
         Ok(())
     }
 
-    /// Comes to stand or hold, while the limb is held still.
+    /// Lets the climber come to stand or hold while the limb does not move. Fails if it does not.
     pub(crate) fn settle(&mut self, limb: &SkinnedSurface, dt: f64) -> Result<(), Box<dyn Error>> {
         let wanted = if self.input.grip {
             ClimberMode::Holding
@@ -95,7 +95,7 @@ impl Walker {
     }
 }
 
-/// A square of 60 m across Z.
+/// The ground: a square of 60 m, perpendicular to Z.
 fn ground() -> Result<SkinnedSurface, Box<dyn Error>> {
     let corner = |x: f32, y: f32| Vec3::new(x, y, -GROUND as f32);
     let positions = [

@@ -1,4 +1,4 @@
-//! A limb on one joint, and how it moves.
+//! A limb on one joint, and its motion.
 
 use std::sync::Arc;
 
@@ -10,28 +10,28 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use crate::truth::Truth;
 
-/// Metres: the limb lies along X from the joint on.
+/// Length and radius of the limb, metres. It lies along X, from the joint on.
 pub(crate) const LENGTH: f64 = 10.0;
 pub(crate) const RADIUS: f64 = 0.5;
 
-/// Where along it a speed is meant, metres from the joint.
+/// Distance from the joint at which the limb has its stated speed, metres.
 pub(crate) const AT: f64 = 8.0;
 
-/// Vertices around it and along it.
+/// Number of vertices around the limb, and of segments along it.
 const SIDES: u32 = 32;
 const RINGS: u32 = 80;
 
-/// How a limb moves.
+/// The motion of a limb.
 #[derive(Clone, Copy)]
 pub(crate) enum Course {
-    /// It turns about Z, so fast that [`AT`] makes so many metres a second, from `from` radians on.
+    /// The limb turns about Z from the angle `from`, radians. At [`AT`] it moves at `speed` metres a second.
     Swing { speed: f64, from: f64 },
-    /// It goes up and down, its fastest at so many metres a second, once a second.
+    /// The limb moves up and down once a second, at most at `speed` metres a second.
     Heave { speed: f64 },
 }
 
 impl Course {
-    /// Where the joint is, so many seconds on.
+    /// The joint's transform at a time, seconds.
     pub(crate) fn model_from_joint(&self, time: f64) -> DAffine3 {
         match self {
             Self::Swing { speed, from } => {
@@ -41,7 +41,7 @@ impl Course {
             Self::Heave { speed } => {
                 let angle = core::f64::consts::TAU * time;
                 let height = speed / core::f64::consts::TAU * libm::sin(angle);
-                // It rolls a little as it goes.
+                // The limb rolls and tilts a little as it moves.
                 let roll = rotation_from_axis_angle(DVec3::X, 0.1 * libm::sin(angle));
                 let tilt = rotation_from_axis_angle(DVec3::Z, 0.05 * libm::cos(angle));
                 let turn: DQuat = tilt * roll;
@@ -50,13 +50,13 @@ impl Course {
         }
     }
 
-    /// The palette, so many seconds on.
+    /// The palette at a time, seconds.
     pub(crate) fn palette(&self, time: f64) -> Palette {
         Palette::from_matrices([Affine::from_f64(&self.model_from_joint(time))])
     }
 }
 
-/// A closed tube.
+/// The limb: a closed tube.
 pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
     let mut positions = Vec::new();
     for ring in 0..=RINGS {
@@ -97,10 +97,10 @@ pub(crate) fn limb() -> Result<Arc<ColliderMesh>, MeshError> {
     ))
 }
 
-/// How far a point is from the skin, in f64 over all triangles; negative inside.
+/// Distance of a point from the skin, in f64 over all triangles; negative inside.
 pub(crate) fn signed_distance(mesh: &ColliderMesh, palette: &Palette, point: DVec3) -> f64 {
     let mut positions = Vec::new();
-    // One joint, as the mesh has.
+    // The palette has one joint, as the mesh has, so this cannot fail.
     let _ = skin_into(mesh, palette.matrices(), &mut positions);
     let triangles = mesh.triangles().iter();
     let triangles = triangles.map(|t| t.map(|v| positions[v.index()].as_dvec3()));

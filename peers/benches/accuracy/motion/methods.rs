@@ -1,4 +1,4 @@
-//! Ways to keep a sphere out of a limb that moves.
+//! Methods of keeping a sphere out of a moving limb.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -14,24 +14,25 @@ use glam::{DVec3, Vec3};
 use super::climbers::{Stance, Walker};
 use super::limb::Course;
 
-/// Sweeps, and rounds over speculative planes, in a tick.
+/// Number of sweeps, or of rounds over speculative planes, in a tick.
 const ROUNDS: usize = 8;
 
-/// The distance from touching at which a sweep ends, metres; afterwards the sphere is moved away by as much.
+/// Tolerance of a sweep, metres. After a contact the sphere is moved away by as much.
 const TOLERANCE: f64 = 1e-4;
 
 const SWEEP: CastOptions = CastOptions::MOVING.with_tolerance(TOLERANCE);
 
-/// How a tick's collisions are resolved.
+/// A method of resolving the collisions of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
-    /// The mean of all push-outs at so many poses within the tick; the thesis's with one.
+    /// The mean of all push-outs, at `steps` poses within the tick. The thesis's method has one step.
     PushOut { steps: u32 },
-    /// Planes of what is near at the start of the tick, each moving as its point does; then a push-out.
+    /// A plane for each triangle that is near at the start of the tick, which moves with its contact point; then a
+    /// push-out.
     Speculative,
-    /// Sweeps against the moving skin, each contact a plane that moves with it; then a push-out.
+    /// Sweeps against the moving skin, with a plane for each contact that moves with the skin; then a push-out.
     Sweep,
-    /// No test sphere: a whole climber, whose ball is as large.
+    /// A whole climber instead of the test sphere. Its ball has the same radius.
     Climber(Stance),
 }
 
@@ -44,28 +45,28 @@ pub(crate) const SPHERES: [(Method, &str); 6] = [
     (Method::Sweep, "sweeps"),
 ];
 
-/// In the way of a limb that swings.
+/// Climbers in the way of a swinging limb.
 pub(crate) const STRUCK: [(Method, &str); 2] = [
     (Method::Climber(Stance::InAir), "climber, in the air"),
     (Method::Climber(Stance::OnGround), "climber, standing"),
 ];
 
-/// On a limb that heaves.
+/// Climbers on a heaving limb.
 pub(crate) const RIDING: [(Method, &str); 2] = [
     (Method::Climber(Stance::OnLimb), "climber, standing"),
     (Method::Climber(Stance::Holding), "climber, holding"),
 ];
 
-/// A sphere beside a limb.
+/// A sphere or a climber beside a limb.
 pub(crate) struct Body {
     pub(crate) center: DVec3,
     radius: f64,
-    /// It rests on a material point.
+    /// The material point that the sphere rests on; `None` if it does not ride.
     anchor: Option<Anchor>,
     method: Method,
     walker: Option<Walker>,
     surface: SkinnedSurface,
-    /// As the limb was a tick ago, for what looks ahead from there.
+    /// The limb a tick ago, for speculative contacts.
     before: SkinnedSurface,
     contacts: Vec<Contact>,
     hits: Vec<SurfaceHit>,
@@ -100,7 +101,7 @@ impl Body {
         Ok(body)
     }
 
-    /// What nothing may be in: all of a sphere, but for a climber its core, without the skin width.
+    /// Radius that nothing may enter: a sphere's own radius, or a climber's without its contact margin.
     pub(crate) fn core(&self) -> f64 {
         self.walker.as_ref().map_or(self.radius, |walker| {
             let body = &walker.climber.config().body;
@@ -108,7 +109,7 @@ impl Body {
         })
     }
 
-    /// Rests on the nearest skin from now on, or on the ground.
+    /// Lets the body rest from now on: a sphere on the nearest skin, a climber as its stance says.
     pub(crate) fn rest(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
         if let Some(walker) = &mut self.walker {
             walker.settle(&self.surface, dt)?;
@@ -122,7 +123,7 @@ impl Body {
         Ok(())
     }
 
-    /// The tick from `time` on.
+    /// Runs the tick that starts at `time`.
     pub(crate) fn tick(
         &mut self,
         course: &Course,
@@ -168,7 +169,7 @@ impl Body {
         self.surface.advance(palette, Similarity::IDENTITY)
     }
 
-    /// How far its anchor takes it, turned with it.
+    /// The displacement by which the anchor's motion carries the sphere, rotation included.
     fn carried(&self, dt: f64) -> Result<DVec3, SurfaceError> {
         let Some(anchor) = &self.anchor else {
             return Ok(DVec3::ZERO);
@@ -199,9 +200,9 @@ impl Body {
         self.center += mean_push_out(contacts, self.radius);
     }
 
-    /// A motion that stays in front of all planes of what the sphere may meet.
+    /// The wanted motion, corrected to stay in front of the planes of all triangles that the sphere may reach.
     fn look_ahead(&mut self, wanted: DVec3) -> Result<DVec3, Box<dyn Error>> {
-        // Nothing comes from farther than the fastest skin near here moves.
+        // No skin comes from farther than the fastest skin near here moves.
         let reach = self.ball(self.radius + self.fastest() + wanted.length())?;
         self.before
             .in_model()
@@ -211,7 +212,7 @@ impl Body {
             let anchor = self.surface.anchor_at(hit)?;
             let motion = self.surface.in_model().motion(&anchor, 1.0)?;
             let away = (self.center - hit.point.as_dvec3()).normalize_or(hit.normal.as_dvec3());
-            // From behind the skin there is no way out ahead.
+            // A sphere behind the skin gets no plane: it would keep the sphere inside.
             if away.dot(hit.normal.as_dvec3()) > 0.0 {
                 let gap = hit.distance - self.radius;
                 planes.push((away, motion.velocity.as_dvec3().dot(away) - gap));
@@ -226,16 +227,16 @@ impl Body {
         Ok(motion)
     }
 
-    /// About where it is.
+    /// A ball around the sphere's centre.
     fn ball(&self, radius: f64) -> Result<Capsule, &'static str> {
         Capsule::ball(self.center.as_vec3(), radius as f32).ok_or("a sphere is out of bounds")
     }
 
-    /// The most that a point of the limb nearby moves in this tick.
+    /// The largest displacement of a point of the limb in this tick.
     fn fastest(&self) -> f64 {
         let space = self.surface.in_model();
         let mut fastest = 0.0_f64;
-        // The limb is straight and stiff: its ends are its fastest.
+        // The limb is straight and rigid: its ends are fastest.
         for vertex in [0, self.surface.mesh().positions().len() - 1] {
             let vertex = clamber_surface::mesh::VertexId(vertex as u32);
             let ends = (space.position(vertex), space.previous_position(vertex));
@@ -246,7 +247,7 @@ impl Body {
         fastest
     }
 
-    /// A motion that sweeps find free, or that keeps touching what it met.
+    /// The wanted motion, corrected until sweeps find no closing contact or the rounds are used up.
     fn sweep(&self, wanted: DVec3) -> Result<DVec3, Box<dyn Error>> {
         let space = self.surface.in_model();
         let ball = self.ball(self.radius)?;
@@ -265,13 +266,14 @@ impl Body {
             if closing <= 0.0 {
                 break;
             }
-            // From the contact on it goes with the skin; spread over the tick, so that it is linear.
+            // From the contact on the sphere moves with the skin. The correction is spread over the tick, so that the
+            // motion stays linear.
             motion += normal * (closing * (1.0 - hit.time) + TOLERANCE);
         }
         Ok(motion)
     }
 
-    /// Ends a tick: what is now was a tick ago in the next.
+    /// Ends a tick that ends at `time`: the current limb becomes the limb a tick ago.
     pub(crate) fn end(&mut self, course: &Course, time: f64) -> Result<(), SurfaceError> {
         if self.method == Method::Speculative {
             self.before

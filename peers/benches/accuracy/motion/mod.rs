@@ -1,4 +1,5 @@
-//! A sphere or a climber and a limb that moves: what each way of keeping them apart costs, and what it lets through.
+//! A sphere or a climber and a moving limb: the time of each method of keeping them apart, and the penetration that it
+//! leaves.
 
 mod climbers;
 mod limb;
@@ -15,13 +16,14 @@ use glam::DVec3;
 use limb::{AT, Course, LENGTH, RADIUS, limb, signed_distance};
 use methods::{Body, Method, RIDING, SPHERES, STRUCK};
 
-/// Of the sphere, metres.
+/// Radius of the sphere, metres.
 const SPHERE: f64 = 0.4;
 
-/// The limb has passed the sphere by when it has swung so far beyond its place, radians.
+/// The limb swings so far beyond the sphere's place, radians. By then it has passed.
 const BEYOND: f64 = 0.35;
 
-/// Behind the limb and nearer to its axis than this share of both radii, the sphere has come through it, not around.
+/// A sphere that gets behind the limb has passed through it, not around it, if it is nearer to the limb's axis than
+/// this share of the sum of both radii.
 const THROUGH: f64 = 0.9;
 
 const COLUMNS: [&str; 10] = [
@@ -37,7 +39,7 @@ const COLUMNS: [&str; 10] = [
     "drift, m",
 ];
 
-/// What came of one method in one scene.
+/// The results of one method in one scene.
 #[derive(Default)]
 struct Outcome {
     microseconds: Vec<f64>,
@@ -96,8 +98,8 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     plot.write_svg(&folder.join(format!("accuracy_motion{brief}.svg")))
 }
 
-/// A limb swings through where a sphere is, at most half beside the middle of it; through where a climber stands, a sixth
-/// beside it.
+/// A limb swings into a sphere or a climber. The limb's axis passes the centre at a random distance of up to half the
+/// sum of both radii; for a climber on the ground, at a sixth of that sum.
 fn swing(
     mesh: &Arc<ColliderMesh>,
     method: Method,
@@ -109,7 +111,7 @@ fn swing(
     let dt = 1.0 / rate;
     let mut outcome = Outcome::default();
     for _ in 0..trials {
-        // It starts anywhere within a tick's way before the sphere.
+        // The limb starts at a random place within one tick's motion, so that ticks hit the sphere in any phase.
         let before = 0.3 + speed / AT * dt * rng.f64();
         let course = Course::Swing {
             speed,
@@ -139,7 +141,7 @@ fn swing(
                 .model_from_joint(time + dt)
                 .inverse()
                 .transform_point3(body.center);
-            // Beyond the tip there is nothing to be deep in.
+            // Beyond the tip there is no limb to be in.
             if at.x < LENGTH {
                 let depth = body.core() - signed_distance(mesh, &palette, body.center);
                 outcome.depths.push(depth.max(0.0));
@@ -152,7 +154,7 @@ fn swing(
         }
         let is_climber = matches!(method, Method::Climber(_));
         if is_climber && body.center.distance(place) < 0.1 * SPHERE {
-            return Err(format!("no limb came to the climber at {place}").into());
+            return Err(format!("the limb did not reach the climber at {place}").into());
         }
         outcome.trials += 1;
         outcome.passed += usize::from(passed);
@@ -160,7 +162,7 @@ fn swing(
     Ok(outcome)
 }
 
-/// A sphere that rests on a limb which goes up and down and rolls.
+/// A sphere or a climber rides on a limb that moves up and down and rolls.
 fn ride(
     mesh: &Arc<ColliderMesh>,
     method: Method,
@@ -170,7 +172,7 @@ fn ride(
 ) -> Result<Outcome, Box<dyn Error>> {
     let dt = 1.0 / rate;
     let course = Course::Heave { speed };
-    // On the top of the limb as it is at first.
+    // On top of the limb at the start.
     let top = DVec3::new(5.0, RADIUS + SPHERE, 0.0);
     let place = course.model_from_joint(0.0).transform_point3(top);
     let mut body = Body::new(mesh, method, &course, place, SPHERE)?;
@@ -196,7 +198,7 @@ fn ride(
         body.end(&course, time + dt)?;
         let depth = body.core() - signed_distance(mesh, &course.palette(time + dt), body.center);
         outcome.depths.push(depth.max(0.0));
-        // Against the limb itself; what it is lifted off counts too.
+        // Relative to the limb. Being lifted off counts as well.
         let drift = from_joint(time + dt, body.center).distance(start);
         outcome.drift = outcome.drift.max(drift);
     }
@@ -211,7 +213,7 @@ fn report(
     [speed, rate]: [f64; 2],
     mut outcome: Outcome,
 ) {
-    // The mean: most ticks have nothing near, and those that have are what is paid for.
+    // The mean, not the median: most ticks have nothing near, and the others make up the cost.
     let cost = outcome.microseconds.iter().sum::<f64>() / outcome.microseconds.len() as f64;
     let depths = [0.5, 0.99, 1.0].map(|part| quantile(&mut outcome.depths, part));
     let mut row = [scene, &format!("{speed}"), &format!("{rate}"), method]

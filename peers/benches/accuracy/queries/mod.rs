@@ -1,4 +1,4 @@
-//! Rays, overlaps, closest points and sphere casts on one pose, of all peers.
+//! Rays, overlaps, closest points and sphere casts of all peers, on one pose.
 
 mod score;
 mod sets;
@@ -12,10 +12,10 @@ use clamber_scenes::measure::quantile;
 use score::{Report, Score};
 use sets::{Query, Set, sets};
 
-/// Rounds that are timed.
+/// Number of rounds that are timed.
 const ROUNDS: usize = 7;
 
-/// What is asked.
+/// The kind of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Ray,
@@ -31,7 +31,7 @@ pub(crate) const KINDS: [(Kind, &str); 4] = [
     (Kind::Cast, "sphere cast"),
 ];
 
-/// Judges all peers, on all sets.
+/// Scores all peers on all sets.
 pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut report = Report::default();
     let entries = clamber_peers::all();
@@ -52,13 +52,13 @@ pub(crate) fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     report.finish(brief)
 }
 
-/// The true answer to a query: metres along a ray, to the nearest point, or along a motion; for overlaps how many
-/// triangles.
+/// The true answer to a query: a distance along a ray, to the closest point, or along a motion, metres; for overlaps
+/// the number of triangles.
 struct Expected {
     value: Option<f64>,
-    /// How much more an overlap may find: triangles at the border.
+    /// How many more triangles an overlap may find: those at the sphere's border.
     more: usize,
-    /// What is small enough for an error, beyond which it is a leak.
+    /// The query's reach, metres. An error larger than a share of it counts as a leak or a false hit.
     scale: f64,
 }
 
@@ -95,7 +95,7 @@ fn expected(set: &Set, query: &Query, kind: Kind) -> Expected {
     }
 }
 
-/// A peer's answer, as [`Expected`] has it.
+/// A peer's answer, in the form of [`Expected::value`].
 fn answer(peer: &mut dyn Peer, query: &Query, kind: Kind) -> Answer<Option<f64>> {
     Ok(match kind {
         Kind::Ray => {
@@ -118,7 +118,7 @@ fn answer(peer: &mut dyn Peer, query: &Query, kind: Kind) -> Answer<Option<f64>>
     })
 }
 
-/// `None` for what the peer cannot do.
+/// The score of a peer; `None` if it has no such query.
 fn judge(
     entry: &Entry,
     set: &Set,

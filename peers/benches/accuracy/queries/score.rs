@@ -1,4 +1,4 @@
-//! Errors of one peer's answers to one set, and what is told of them.
+//! The score of a peer on a set of queries, and the report of all scores.
 
 use std::error::Error;
 
@@ -6,10 +6,11 @@ use clamber_scenes::measure::{Plot, Series, Table, measure_folder, quantile};
 
 use super::{KINDS, Kind};
 
-/// Beyond this share of a query's reach a wrong distance is no error but a leak, or a hit where nothing is.
+/// A distance that is wrong by more than this share of the query's reach counts as a leak or a false hit, not as an
+/// error.
 const LEAK: f64 = 0.01;
 
-/// Errors below this, metres, are drawn as this: f32 holds no less of a metre.
+/// Errors below this are drawn as this, metres. f32 does not resolve less of a metre.
 const FLOOR: f64 = 1e-9;
 
 const COLUMNS: [&str; 11] = [
@@ -26,16 +27,16 @@ const COLUMNS: [&str; 11] = [
     "of",
 ];
 
-/// What came of one peer's answers.
+/// The score of a peer's answers.
 #[derive(Default)]
 pub(crate) struct Score {
     pub(crate) nanoseconds: f64,
     errors: Vec<f64>,
-    /// Most that an answer was beyond the true distance.
+    /// Largest distance of an answer beyond the true one, metres.
     latest: f64,
-    /// What is there and was not found, or only far behind it.
+    /// Answers that miss skin, or find skin only far behind the first.
     leaks: usize,
-    /// What was found and is not there.
+    /// Answers that find skin where there is none.
     false_hits: usize,
     count: usize,
 }
@@ -73,10 +74,10 @@ impl Score {
     }
 }
 
-/// Table and plots.
+/// The table and the plots.
 pub(crate) struct Report {
     table: Table,
-    /// By kind of query.
+    /// The series of each kind of query.
     plots: Vec<Vec<Series>>,
 }
 
@@ -90,7 +91,7 @@ impl Default for Report {
 }
 
 impl Report {
-    /// Adds a peer's score; `None` for what it cannot do. Fails if ours leaks.
+    /// Adds a peer's score; `None` if it has no such query. Fails if clamber has a leak or a false hit.
     pub(crate) fn add(
         &mut self,
         set: &str,

@@ -1,4 +1,4 @@
-//! What is asked: seeded sets of queries, ordinary and nasty.
+//! Seeded sets of queries, ordinary and difficult ones.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -13,10 +13,10 @@ use glam::{DVec3, Vec3};
 
 use crate::truth::{Corners, Truth};
 
-/// How far out the set is that is not at the origin, metres.
+/// Place of the creature in the set far from the origin, metres.
 const FAR: DVec3 = DVec3::new(1_000.0, 0.0, -1_000.0);
 
-/// A skin, posed and placed, and what is asked of it.
+/// A posed and placed skin, with its true positions and its queries.
 pub(crate) struct Set {
     pub(crate) name: &'static str,
     pub(crate) mesh: Arc<ColliderMesh>,
@@ -26,7 +26,7 @@ pub(crate) struct Set {
     pub(crate) queries: Vec<Query>,
 }
 
-/// A ray that meets the skin, and beside it the point and the sphere that the other queries take.
+/// A ray that hits the skin, and the sphere, point and motion that the other queries take.
 pub(crate) struct Query {
     pub(crate) ray: Ray,
     pub(crate) reach: f32,
@@ -34,12 +34,12 @@ pub(crate) struct Query {
     pub(crate) motion: Vec3,
 }
 
-/// How rays are aimed.
+/// The target of rays.
 #[derive(Clone, Copy, PartialEq)]
 enum Aim {
-    /// At points inside of triangles, from the front.
+    /// At points inside triangles, from the front.
     Inside,
-    /// So flatly that the skin is met at some thousandth of a radian.
+    /// At points inside triangles, at an angle of about a thousandth of a radian to the skin.
     Grazing,
     /// At points of edges.
     Edges,
@@ -90,7 +90,8 @@ impl Set {
             let Some(query) = query(&truth.0[triangle], aim, &mut rng) else {
                 continue;
             };
-            // Where a triangle turns away, a ray at the edge may pass by: there all are right.
+            // At the edge of a triangle that faces away a ray may pass by the skin, and both answers are right. Such
+            // queries are left out.
             let corners = mesh.triangles()[triangle];
             let at = |v: usize| around[corners[v].index()].iter().copied();
             let along = query.ray.direction().as_dvec3();
@@ -115,7 +116,7 @@ impl Set {
     }
 }
 
-/// By vertex, the triangles that have it.
+/// The triangles around each vertex.
 fn around(mesh: &ColliderMesh) -> Vec<Vec<usize>> {
     let mut around = vec![Vec::new(); mesh.positions().len()];
     for (index, corners) in mesh.triangles().iter().enumerate() {
@@ -126,12 +127,12 @@ fn around(mesh: &ColliderMesh) -> Vec<Vec<usize>> {
     around
 }
 
-/// True if a triangle clearly shows its front to a direction.
+/// True if a triangle clearly faces a ray with this direction.
 fn faces(&[a, b, c]: &Corners, along: DVec3) -> bool {
     (b - a).cross(c - a).normalize_or_zero().dot(along) < -0.05
 }
 
-/// Towards a triangle, from at most some metres away.
+/// A query at a triangle, from a few metres away at most; `None` if the triangle has no area.
 fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Query> {
     let normal = (b - a).cross(c - a).try_normalize()?;
     let target = match aim {
@@ -155,7 +156,7 @@ fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Quer
     };
     let back = (normal * steep + sideways).normalize();
     let length = 0.2 + 2.0 * rng.f64();
-    // The query is what f32 holds of it; from there the direction is aimed anew.
+    // The origin is rounded to f32 first, and the direction is aimed from there.
     let origin = (target + back * length).as_vec3();
     let direction = (target - origin.as_dvec3()).normalize().as_vec3();
     let radius = 0.05 + 0.4 * rng.f32();
@@ -170,7 +171,7 @@ fn query(&[a, b, c]: &Corners, aim: Aim, rng: &mut fastrand::Rng) -> Option<Quer
     })
 }
 
-/// A closed ball of 6 rings and 2,048 segments, 10 m across: its triangles are hundreds of times as long as wide.
+/// A closed ball of 6 rings and 2,048 segments, 10 m across. Its triangles are hundreds of times as long as wide.
 fn needles() -> Result<ColliderMesh, Box<dyn Error>> {
     let (positions, triangles) = ball(6, 2_048, |_, _| 5.0);
     let influence = Influence {

@@ -1,4 +1,4 @@
-//! Sets as worlds of rapier.
+//! A set as a rapier world.
 
 use std::error::Error;
 
@@ -9,14 +9,14 @@ use clamber_world::rapier3d::prelude::{
 };
 use glam::Quat;
 
-/// A world, and its bodies that move.
+/// A world, and its moving bodies.
 pub(super) struct Bodies {
     pub(super) world: PhysicsWorld,
     pub(super) moving: Vec<(RigidBodyHandle, Motion)>,
 }
 
 impl Bodies {
-    /// `kinematic` makes a body that moves.
+    /// The world of a set. `kinematic` makes a moving body.
     pub(super) fn new(
         set: &Set,
         kinematic: fn() -> RigidBodyBuilder,
@@ -47,7 +47,7 @@ pub(super) fn pose(motion: &Similarity) -> Pose {
     Pose::from_parts(motion.translation.as_vec3(), rotation)
 }
 
-/// Meshes with pseudo-normals, which is how rapier keeps edges within them from being felt.
+/// The collider of a solid. Meshes get pseudo-normals, by which rapier avoids contacts with inner edges.
 fn collider(solid: &Solid) -> Result<ColliderBuilder, Box<dyn Error>> {
     Ok(match solid {
         Solid::Block { low, high } => {

@@ -1,4 +1,4 @@
-//! Ours, on bodies of rapier and on skin.
+//! clamber's climber, on rapier bodies and on skin.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -44,14 +44,14 @@ fn climber(set: &Set) -> Result<Climber, Box<dyn Error>> {
         jump_speed: set.jump,
         snap_distance: SNAP,
         step_height: STEP,
-        // Feet that stick to any ground, as those of the others do.
+        // Feet stick to any ground, as for the other controllers.
         throw_acceleration: f64::INFINITY,
         ..config.ground
     };
     Ok(Climber::new(config, set.feet + DVec3::Y * RADIUS)?)
 }
 
-/// Microseconds of its step.
+/// Steps the climber; returns the time, microseconds.
 fn timed(
     climber: &mut Climber,
     obstacles: &[(ObstacleId, &dyn Obstacle)],
@@ -145,7 +145,7 @@ impl OnSkin {
     }
 }
 
-/// Skin of one joint.
+/// A collider on one joint.
 fn collider(mesh: &Mesh) -> Result<Arc<ColliderMesh>, Box<dyn Error>> {
     let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
     let influence = Influence {

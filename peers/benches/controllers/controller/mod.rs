@@ -1,4 +1,4 @@
-//! The controllers that play the scenes.
+//! The character controllers.
 
 mod bodies;
 mod clamber;
@@ -10,18 +10,18 @@ use std::error::Error;
 
 use clamber_scenes::controllers::{Controller, Set};
 
-/// Puts a character into a set.
+/// A function that puts a character on a set.
 type Make = fn(&Set) -> Result<Box<dyn Controller>, Box<dyn Error>>;
 
-/// A way to move a character.
+/// A controller's name, and the function that makes it.
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
-    /// It has to pass every scene, or the bench fails.
+    /// True for clamber's: it must pass every scene, or the bench fails.
     pub(crate) is_ours: bool,
     pub(crate) make: Make,
 }
 
-/// All of them; ours first.
+/// All controllers; clamber's come first.
 pub(crate) fn all() -> Vec<Entry> {
     let mut all = Vec::new();
     all.extend(clamber::ENTRIES);

@@ -1,11 +1,12 @@
 //! rapier's `KinematicCharacterController`, used in two ways.
 //!
-//! In both the world steps first, as in rapier's own test of a moving wall (`issue_485_kcc_depenetration.rs`), then the
-//! controller moves the character. Who walks or is carried falls by what gravity adds in a tick. Who is to be taken along
-//! by the controller and does not walk is pressed down by 0.1 m, as in rapier's own test of ground
-//! (`character_ground_detection`): with nothing asked for, the controller casts nothing and follows no platform; with the
-//! fall of one tick it loses lifts of 5 m/s; but pressed down it climbs no steps. The character is a shape alone: nothing
-//! here would see a body of its own.
+//! In both the world steps first, as in rapier's own test of a moving wall (`issue_485_kcc_depenetration.rs`), and then
+//! the controller moves the character. A character that walks, or that its caller carries, falls by what gravity adds
+//! in a tick. A character that the controller should take along is pressed down by 0.1 m while it does not walk, as in
+//! rapier's own test of ground (`character_ground_detection`). Without any motion the controller casts nothing and
+//! follows no platform, and with the fall of one tick it loses lifts of 5 m/s. A character that is pressed down climbs
+//! no steps, so it is not pressed while it walks. The character is only a shape: no other body would react to a body of
+//! its own.
 
 use std::error::Error;
 use std::time::Instant;
@@ -37,24 +38,24 @@ pub(super) const ENTRIES: [Entry; 2] = [
     },
 ];
 
-/// Who takes the character along with what it stands on.
+/// The part of the program that carries the character along with its ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Carried {
-    /// The controller, from the velocities of bodies: what its documentation promises.
+    /// The controller carries it, by the velocities of bodies, as its documentation promises.
     ByController,
-    /// Its caller: takes the character to where its point of the body has gone, hides the bodies' velocities from the
-    /// controller, lets it out of what came into it, and only then moves it.
+    /// The controller's caller carries it: takes the character to where its point of the body has moved, hides the
+    /// bodies' velocities from the controller, lets the character out of what moved into it, and only then moves it.
     ByCaller,
 }
 
-/// By how much who does not walk is pressed down in a tick, metres.
+/// How far a character that does not walk is pressed down in a tick, metres.
 const PRESS: f32 = 0.1;
 
-/// Where it stands.
+/// The body that the character stands on.
 #[derive(Clone, Copy, Debug)]
 struct Ground {
     body: RigidBodyHandle,
-    /// The middle of its lower ball in the body's space.
+    /// Centre of the character's lower ball in the body's space.
     local: Vector,
 }
 
@@ -66,9 +67,9 @@ struct Rapier {
     carried: Carried,
     stands: bool,
     ground: Option<Ground>,
-    /// Its own, metres a second: upwards, and in all directions of who has jumped off what moves.
+    /// The character's own velocity, metres a second: vertical, and after a jump off a moving body in all directions.
     velocity: Vector,
-    /// Of what it stood on last.
+    /// Velocity of the ground that it stood on last.
     ground_velocity: Vector,
     gravity: f32,
     jump: f32,
@@ -79,7 +80,7 @@ impl Rapier {
     fn new(set: &Set, carried: Carried) -> Result<Self, Box<dyn Error>> {
         let half = HEIGHT as f32 * 0.5;
         let middle = set.feet + DVec3::Y * (RADIUS + HEIGHT * 0.5);
-        // Of bodies moved by their position nobody can hide the velocities.
+        // The velocities of bodies that are moved by position cannot be hidden.
         let kinematic = match carried {
             Carried::ByController => RigidBodyBuilder::kinematic_position_based,
             Carried::ByCaller => RigidBodyBuilder::kinematic_velocity_based,
@@ -87,13 +88,14 @@ impl Rapier {
         Ok(Self {
             bodies: Bodies::new(set, kinematic)?,
             controller: KinematicCharacterController {
-                // Ten times the default, as its documentation advises for who gets stuck: it passes one scene more.
+                // Ten times the default, as rapier's documentation advises for a character that gets stuck: it passes
+                // one more scene.
                 normal_nudge_factor: 1e-3,
                 offset: CharacterLength::Absolute(PADDING as f32),
                 snap_to_ground: Some(CharacterLength::Absolute(SNAP as f32)),
                 autostep: Some(CharacterAutostep {
                     max_height: CharacterLength::Absolute(STEP as f32),
-                    // Half its width, as is the default, finds no room on a tread of 0.3 m.
+                    // The default, half its width, finds no room on a tread of 0.3 m.
                     min_width: CharacterLength::Absolute(0.1),
                     include_dynamic_bodies: false,
                 }),
@@ -114,7 +116,7 @@ impl Rapier {
         })
     }
 
-    /// Takes each body to where it is to be.
+    /// Moves each body to its pose at `time`, and steps the world.
     fn drive(&mut self, time: f64) {
         let Bodies { world, moving } = &mut self.bodies;
         for (handle, motion) in moving {
@@ -129,7 +131,7 @@ impl Rapier {
         world.step();
     }
 
-    /// So that the controller takes them for still.
+    /// Sets the bodies' velocities to 0, so that the controller takes them for still.
     fn hide_velocities(&mut self) {
         let Bodies { world, moving } = &mut self.bodies;
         for (handle, _) in moving {
@@ -150,8 +152,8 @@ impl Rapier {
         self.stands = moved.grounded;
     }
 
-    /// A tick of walking, jumping and falling; on the way up nothing is ground. `carried` is the velocity with which it
-    /// was taken along in this tick: a jump keeps it from the next tick on.
+    /// A tick of walking, jumping and falling. On the way up nothing counts as ground. `carried` is the velocity with
+    /// which the character was carried in this tick; a jump keeps it from the next tick on.
     fn walk(&mut self, input: &Input, carried: Vector) {
         let mut walk = Vector::ZERO;
         let mut made = Vector::ZERO;
@@ -177,11 +179,11 @@ impl Rapier {
         self.stands &= !rises;
     }
 
-    /// The same, after going where its ground has gone.
+    /// As [`Rapier::walk`], after the caller has carried the character along with its ground.
     fn walk_carried(&mut self, input: &Input) {
         let carried = self.carry();
-        // With no motion asked for, and only then, the controller looks for overlaps: with its ground they would throw
-        // it off steps.
+        // Only without any motion does the controller resolve overlaps. The ground is left out, since overlaps with it
+        // would throw the character off steps.
         let mut moving = QueryFilter::only_kinematic();
         if let Some(ground) = self.ground {
             moving = moving.exclude_rigid_body(ground.body);
@@ -193,7 +195,7 @@ impl Rapier {
         self.ground = if self.stands { self.below() } else { None };
     }
 
-    /// To where its ground has gone; gives the velocity of that.
+    /// Moves the character to where its point of the ground has moved; returns the velocity of that.
     fn carry(&mut self) -> Vector {
         let Some(ground) = self.ground else {
             return Vector::ZERO;
@@ -206,7 +208,7 @@ impl Rapier {
         way / self.dt
     }
 
-    /// What it stands on.
+    /// The ground below the character.
     fn below(&self) -> Option<Ground> {
         let world = &self.bodies.world;
         let options = ShapeCastOptions {
@@ -225,13 +227,13 @@ impl Rapier {
         })
     }
 
-    /// The middle of its lower ball.
+    /// Centre of the character's lower ball.
     fn lower(&self) -> Vector {
         self.pose.translation - Vector::Y * (HEIGHT as f32 * 0.5)
     }
 }
 
-/// Of a body's centre of mass, and about it, that take it to a pose in a tick.
+/// The linear velocity of a body's centre of mass and the angular velocity that take the body to a pose in a tick.
 fn velocities(body: &RigidBody, next: &Pose, dt: f64) -> (Vector, Vector) {
     let now = body.position();
     let center = body.center_of_mass();

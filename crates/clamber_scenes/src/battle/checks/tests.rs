@@ -1,4 +1,4 @@
-//! Each check of a ride fails on the fault that it is there for, and on none else.
+//! Each check of a ride fails on its own fault and on no other.
 
 use clamber_climber::{Climber, ClimberState};
 use clamber_surface::rig::Palette;
@@ -13,7 +13,7 @@ use crate::beast::beast;
 
 const HEIGHT: f64 = 20.0;
 
-/// A rider that has stood on a beast for a while, and a watch that has seen it there.
+/// A rider that has stood on a beast for a while, and a watch that has recorded its point there.
 struct Scene<'a> {
     battle: &'a Battle<'a>,
     choreography: Choreography<'a>,
@@ -27,12 +27,12 @@ impl<'a> Scene<'a> {
             choreography: Choreography::new(creature, HEIGHT, Story::Ride).unwrap(),
             watch: Watch::default(),
         };
-        // The first look records the point that it stands on.
+        // The first look records the point that the rider stands on.
         scene.look(*battle.climber().state());
         scene
     }
 
-    /// Looks at the rider as if it were in a state; gives the drift.
+    /// Checks the rider as if it were in a state; returns the drift.
     fn look(&mut self, state: ClimberState) -> Option<f64> {
         let mut climber: Climber = self.battle.climber().clone();
         climber.restore(state).unwrap();
@@ -64,11 +64,14 @@ fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
         battle.step(Intent::Stand).unwrap();
     }
     let state = *battle.climber().state();
-    assert!(state.support.is_some(), "it has not landed: {state:?}");
+    assert!(
+        state.support.is_some(),
+        "the rider has not landed: {state:?}"
+    );
     test(&mut Scene::new(&creature, &battle), state)
 }
 
-/// The state with its body moved, and nothing else.
+/// The state with only its body moved.
 fn moved(state: ClimberState, by: DVec3) -> ClimberState {
     ClimberState {
         position: state.position + by,
@@ -146,7 +149,7 @@ fn a_body_that_floats_stands_off_and_is_not_pushed() {
     });
 }
 
-/// The ball touches skin, but skin that would leave it room on its point: it went there by itself.
+/// The ball touches skin, but skin that leaves it room on its point: nothing pushed it away.
 #[test]
 fn a_body_that_slid_along_open_skin_stands_off_and_is_not_pushed() {
     stood(|scene, state| {
@@ -183,7 +186,7 @@ fn a_rider_on_the_ground_has_fallen_once_until_it_is_dropped_again() {
 }
 
 #[test]
-fn a_rider_under_the_ground_is_below_it_but_not_outside_of_the_valley() {
+fn a_rider_below_the_ground_is_a_fault_inside_the_valley_only() {
     stood(|scene, state| {
         scene.look(moved(state, DVec3::Y * -60.0));
         assert_eq!(scene.watch.fell_through, 1);

@@ -1,4 +1,4 @@
-//! What gets lost is brought back, at rest.
+//! Rocks and riders that get lost are brought back, at rest.
 
 use clamber_world::rapier3d::prelude::Vector;
 
@@ -15,8 +15,8 @@ fn with_battle<R>(rocks: u32, test: impl FnOnce(&mut Battle<'_>) -> R) -> R {
     test(&mut Battle::new(&creature, &options).unwrap())
 }
 
-/// Puts the first rock somewhere, spinning and fast, and steps once; gives its speed, its spin and how far it is from
-/// the climber.
+/// Moves the first rock to a place, spinning and fast, and steps once. Returns its speed, its spin and its distance
+/// from the climber.
 fn throw_a_rock(battle: &mut Battle<'_>, to: DVec3) -> [f64; 3] {
     let rock = battle.rocks.bodies()[0];
     let body = &mut battle.world.bodies[rock];

@@ -1,9 +1,9 @@
 //! Jolt's `CharacterVirtual`, moved as in Jolt's own sample (`Samples/Tests/Character/CharacterVirtualTest.cpp`).
 //!
-//! Bodies are told by `MoveKinematic` where they are to be; the ground's velocity is asked for anew; the character is given
-//! that velocity, what it wants and the fall of a tick; `ExtendedUpdate` moves it, sticks it to the floor and takes it up
-//! steps; then the world steps. "Character inertia" is off, as the sample offers: feet stick, as those of the others do. Who
-//! does not walk does not slide on what stands, as the sample's listener has it.
+//! In a tick `MoveKinematic` tells the bodies their next poses, and the ground's velocity is updated. The character
+//! gets that velocity, its walk and the fall of a tick. `ExtendedUpdate` moves it, sticks it to the floor and takes it
+//! up steps. Then the world steps. "Character inertia", an option of the sample, is off: feet stick to the ground, as
+//! for the other controllers. The sample's listener keeps a character that does not walk from sliding on still ground.
 //!
 //! The crate `oxijolt-sys` builds Jolt and joltc, a wrapper in C, from their sources, in single precision.
 
@@ -46,7 +46,7 @@ impl Jolt {
         })
     }
 
-    /// What its documentation has a caller add up.
+    /// The character's velocity, added up as Jolt's documentation describes.
     fn velocity(&self, input: &Input) -> Vec3 {
         let now = self.world.velocity();
         let ground = self.world.ground_velocity();

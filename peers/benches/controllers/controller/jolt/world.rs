@@ -1,4 +1,4 @@
-//! A world of Jolt with one character.
+//! A Jolt world with one character.
 
 #![allow(unsafe_code, reason = "calls Jolt")]
 
@@ -12,15 +12,15 @@ use clamber_surface::geometry::Similarity;
 use glam::Vec3;
 use oxijolt_sys::*;
 
-/// How far Jolt looks ahead of the shape, metres. 0.1 as it comes, which lets walls of more than 6 m/s in; 0.5 is as far
-/// as one of 30 m/s comes in a tick.
+/// How far Jolt looks ahead of the shape, metres. The default of 0.1 lets walls of more than 6 m/s in; 0.5 is the
+/// distance that a wall of 30 m/s moves in a tick.
 const PREDICTIVE: f32 = 0.5;
 
 const STILL: JPH_ObjectLayer = 0;
 const MOVING: JPH_ObjectLayer = 1;
 const LAYERS: u32 = 2;
 
-/// Where a character begins, and what it is like.
+/// Start and properties of a character.
 pub(super) struct Start {
     /// The lowest point of its shape, padding included.
     pub(super) feet: Vec3,
@@ -28,13 +28,13 @@ pub(super) struct Start {
     pub(super) gravity: f32,
 }
 
-/// A world, its bodies, and a character in it, of which each pointer is owned until drop.
+/// A world, its bodies, and a character in it. The pointers are owned until drop.
 pub(super) struct World {
     system: *mut JPH_PhysicsSystem,
     jobs: *mut JPH_JobSystem,
     character: *mut JPH_CharacterVirtual,
     listener: *mut JPH_CharacterContactListener,
-    /// Whether it may slide: the listener, which lives as long, reads it while the character is updated.
+    /// True if the character may slide. The listener, which lives as long, reads it while the character is updated.
     may_slide: *mut bool,
     moving: Vec<Mover>,
 }
@@ -42,16 +42,16 @@ pub(super) struct World {
 struct Mover {
     body: JPH_BodyID,
     motion: Motion,
-    /// Of the body in its piece.
+    /// The body's centre in its piece's space.
     middle: glam::DVec3,
 }
 
 impl World {
     pub(super) fn new(pieces: &[Piece], start: &Start) -> Result<Self, Box<dyn Error>> {
         static STARTED: OnceLock<bool> = OnceLock::new();
-        // SAFETY: once in a process; nothing else of Jolt has been called.
+        // SAFETY: called once in a process, before any other function of Jolt.
         if !STARTED.get_or_init(|| unsafe { JPH_Init() }) {
-            return Err("Jolt does not start".into());
+            return Err("Jolt failed to start".into());
         }
         let system = system(start.gravity)?;
         let threads = JobSystemThreadPoolConfig {
@@ -93,7 +93,7 @@ impl World {
             OnContactSolve: Some(stay),
             OnCharacterContactSolve: None,
         };
-        // SAFETY: the functions are there for ever; listener and `may_slide` until drop, after the character.
+        // SAFETY: the functions are static. The listener and `may_slide` live until drop, longer than the character.
         unsafe {
             JPH_CharacterContactListener_SetProcs(&raw const PROCS);
             self.listener = JPH_CharacterContactListener_Create(self.may_slide.cast());
@@ -102,7 +102,7 @@ impl World {
     }
 
     fn bodies(&self) -> *mut JPH_BodyInterface {
-        // SAFETY: the system lives until drop, and owns what is given.
+        // SAFETY: the system lives until drop, and owns the returned interface.
         unsafe { JPH_PhysicsSystem_GetBodyInterface(self.system) }
     }
 
@@ -137,7 +137,7 @@ impl World {
             body
         };
         if body == u32::MAX {
-            return Err("Jolt makes no body".into());
+            return Err("Jolt failed to make a body".into());
         }
         if piece.moves {
             self.moving.push(Mover {
@@ -149,7 +149,7 @@ impl World {
         Ok(())
     }
 
-    /// Gives bodies the velocities that take them to where they are to be.
+    /// Gives the moving bodies the velocities that take them to their poses at `time`.
     pub(super) fn drive(&mut self, time: f64, dt: f32) {
         let bodies = self.bodies();
         for mover in &self.moving {
@@ -173,19 +173,20 @@ impl World {
         if error == JPH_PhysicsUpdateError_None {
             return Ok(());
         }
-        Err(format!("Jolt's step fails: {error}").into())
+        Err(format!("Jolt's step failed: {error}").into())
     }
 
-    /// Asks the ground for its velocity, which has changed.
+    /// Updates the ground's velocity, which has changed.
     pub(super) fn look_at_ground(&mut self) {
         // SAFETY: the character lives until drop.
         unsafe { JPH_CharacterVirtual_UpdateGroundVelocity(self.character) };
     }
 
-    /// Moves the character, sticks it to the floor, takes it up steps. Who may not slide stays on still ground.
+    /// Moves the character, sticks it to the floor, and takes it up steps. If it may not slide, it stays in place on
+    /// still ground.
     pub(super) fn update(&mut self, velocity: Vec3, may_slide: bool, dt: f32) {
         let velocity = vector(velocity);
-        // As Jolt has them, but for our distances.
+        // Jolt's defaults, except for our distances.
         let settings = JPH_ExtendedUpdateSettings {
             stickToFloorStepDown: vector(Vec3::Y * -SNAP as f32),
             walkStairsStepUp: vector(Vec3::Y * STEP as f32),
@@ -194,8 +195,8 @@ impl World {
             walkStairsCosAngleForwardContact: libm::cosf(75.0 * core::f32::consts::PI / 180.0),
             walkStairsStepDownExtra: vector(Vec3::ZERO),
         };
-        // SAFETY: character and system live until drop, velocity and settings for the call; without filters everything
-        // is met that the layers let meet.
+        // SAFETY: character and system live until drop, velocity and settings for the call. Null means no filters: the
+        // layers alone decide.
         unsafe {
             *self.may_slide = may_slide;
             JPH_CharacterVirtual_SetLinearVelocity(self.character, &raw const velocity);
@@ -225,7 +226,7 @@ impl World {
         Vec3::new(velocity.x, velocity.y, velocity.z)
     }
 
-    /// Whether what it stands on is as steep as to slide down.
+    /// True if the ground is too steep to stand on.
     pub(super) fn is_on_steep(&self) -> bool {
         let mut normal = vector(Vec3::ZERO);
         // SAFETY: the character lives until drop; only `normal` is written to.
@@ -241,7 +242,7 @@ impl World {
         state == JPH_GroundState_OnGround
     }
 
-    /// The lowest point of its shape, padding included, as Jolt has it.
+    /// The lowest point of the character's shape, padding included, as Jolt reports it.
     pub(super) fn feet(&self) -> Vec3 {
         let mut position = vector(Vec3::ZERO);
         // SAFETY: the character lives until drop; only `position` is written to.
@@ -252,7 +253,7 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: each is destroyed once, whoever uses another before it.
+        // SAFETY: each is destroyed once, and before those that it uses.
         unsafe {
             if !self.character.is_null() {
                 JPH_CharacterBase_Destroy(self.character.cast());
@@ -267,7 +268,8 @@ impl Drop for World {
     }
 }
 
-/// As in Jolt's tests and samples: who does not want to move does not slide on what stands and is not too steep.
+/// As in Jolt's tests and samples: a character that does not want to move does not slide on ground that is still and
+/// not too steep.
 ///
 /// # Safety
 /// Called by Jolt during an update, with the `may_slide` that the listener was made with.
@@ -283,7 +285,7 @@ unsafe extern "C" fn stay(
     _: *const JPH_Vec3,
     velocity: *mut JPH_Vec3,
 ) {
-    // SAFETY: all live during the call, and only `velocity` is written to.
+    // SAFETY: all pointers are valid during the call, and only `velocity` is written to.
     unsafe {
         let still = Vec3::new((*contact).x, (*contact).y, (*contact).z).length_squared() < 1e-12;
         let steep = JPH_CharacterBase_IsSlopeTooSteep(character.cast_mut().cast(), normal);
@@ -293,11 +295,11 @@ unsafe extern "C" fn stay(
     }
 }
 
-/// What moves meets everything.
+/// A physics system in which moving bodies collide with everything.
 fn system(gravity: f32) -> Result<*mut JPH_PhysicsSystem, Box<dyn Error>> {
     let gravity = vector(Vec3::Y * -gravity);
-    // SAFETY: each table is of the layers told, lives when the next is made from it, and goes to the system, which
-    // destroys it.
+    // SAFETY: each table has the given number of layers, lives when the next is made from it, and is passed to the
+    // system, which destroys it.
     let system = unsafe {
         let pairs = JPH_ObjectLayerPairFilterTable_Create(LAYERS);
         JPH_ObjectLayerPairFilterTable_EnableCollision(pairs, STILL, MOVING);
@@ -319,14 +321,14 @@ fn system(gravity: f32) -> Result<*mut JPH_PhysicsSystem, Box<dyn Error>> {
         JPH_PhysicsSystem_Create(&raw const settings)
     };
     if system.is_null() {
-        return Err("Jolt makes no system".into());
+        return Err("Jolt failed to make a physics system".into());
     }
     // SAFETY: the system lives.
     unsafe { JPH_PhysicsSystem_SetGravity(system, &raw const gravity) };
     Ok(system)
 }
 
-/// Settings as Jolt has them, with our size; contacts of the lower ball are what can support it.
+/// A character with Jolt's default settings and our size. Only contacts of the lower ball can support it.
 fn character(
     system: *mut JPH_PhysicsSystem,
     start: &Start,
@@ -379,25 +381,25 @@ fn character(
         character
     };
     if character.is_null() {
-        return Err("Jolt makes no character".into());
+        return Err("Jolt failed to make a character".into());
     }
     Ok(character)
 }
 
-/// A shape that holds one reference, and where its middle is.
+/// A shape that holds one reference, and the position of its centre.
 fn shape(solid: &Solid) -> Result<(*mut JPH_Shape, glam::DVec3), Box<dyn Error>> {
     let (shape, middle): (*mut JPH_Shape, _) = match solid {
         Solid::Block { low, high } => {
             let half = vector(((*high - *low) * 0.5).as_vec3());
-            // SAFETY: the numbers live for the call. No convex radius: edges are as sharp as everybody's.
+            // SAFETY: the numbers live for the call. No convex radius: edges are as sharp as for the other controllers.
             let shape = unsafe { JPH_BoxShape_Create(&raw const half, 0.0) };
             (shape.cast(), (*high + *low) * 0.5)
         }
         Solid::Mesh(mesh) => {
             let corners: Vec<_> = mesh.positions.iter().map(|p| vector(p.as_vec3())).collect();
             let triangles: Vec<_> = mesh.triangles.iter().map(|t| triangle(*t)).collect();
-            // SAFETY: corners and triangles live for the call and are as many as told; the settings are destroyed after
-            // their only use.
+            // SAFETY: corners and triangles live for the call and have the given lengths. The settings are destroyed
+            // after their only use.
             let shape = unsafe {
                 let settings = JPH_MeshShapeSettings_Create2(
                     corners.as_ptr(),
@@ -413,12 +415,12 @@ fn shape(solid: &Solid) -> Result<(*mut JPH_Shape, glam::DVec3), Box<dyn Error>>
         }
     };
     if shape.is_null() {
-        return Err("Jolt makes no shape".into());
+        return Err("Jolt failed to make a shape".into());
     }
     Ok((shape, middle))
 }
 
-/// Any: a mesh has none of its own, and what is kinematic needs one.
+/// Sets any mass: a mesh has none of its own, and a kinematic body needs one.
 ///
 /// # Safety
 /// The settings live.
@@ -438,7 +440,7 @@ unsafe fn give_mass(settings: *mut JPH_BodyCreationSettings) {
             column: [unit(0), unit(1), unit(2), unit(3)],
         },
     };
-    // SAFETY: the settings live, as the caller says; the mass is copied.
+    // SAFETY: the settings live, as the caller guarantees. The mass is copied.
     unsafe {
         JPH_BodyCreationSettings_SetOverrideMassProperties(
             settings,
