@@ -14,6 +14,17 @@ const FEATURES: &str = "\
     bevy_clamber/gltf,bevy_clamber/picking,bevy_clamber/rapier,clamber/record,clamber/render,\
     clamber_benches/record,clamber_benches/render,clamber_climber/serde,clamber_oracle/exact";
 
+/// The packages whose tests `cargo test` runs in full: the workspace's default members, but for the oracle, which has
+/// more tests with its feature.
+const DEFAULT: [&str; 6] = [
+    "clamber",
+    "clamber_climber",
+    "clamber_gltf",
+    "clamber_mover",
+    "clamber_surface",
+    "clamber_world",
+];
+
 /// The golden runs and the main examples as released, and SIMD levels down to scalar code. Here, since scalar code with
 /// overflow checks takes as long to compile as all other levels together, and there are none in sums of floats.
 pub(crate) const RELEASED: [&str; 8] = [
@@ -30,6 +41,12 @@ pub(crate) const RELEASED: [&str; 8] = [
 /// The whole workspace, with [`FEATURES`].
 pub(crate) fn selection() -> Vec<&'static str> {
     vec!["--workspace", IGNORE_RUST_VERSION, "--features", FEATURES]
+}
+
+/// [`selection`] for tests of packages that are not [`DEFAULT`] members. The libraries are built alike.
+pub(crate) fn beyond_default() -> Vec<&'static str> {
+    let excluded = DEFAULT.iter().flat_map(|package| ["--exclude", *package]);
+    selection().into_iter().chain(excluded).collect()
 }
 
 /// The features that are on with [`selection`], as `package/feature`: those named, those on by default, and what

@@ -75,7 +75,7 @@ const STEPS: [Step; 11] = [
     ("tests", |_| {
         // The command of the front page; then all that it leaves out.
         cargo(&["test"])?;
-        cargo(&[&["test"][..], &build::selection()].concat())
+        cargo(&[&["test"][..], &build::beyond_default()].concat())
     }),
     ("golden", golden::run),
     ("format", |_| cargo(&["fmt", "--all", "--check"])),

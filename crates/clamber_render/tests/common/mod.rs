@@ -1,5 +1,7 @@
 //! Helpers that tests of pictures share.
 
+use std::io::Write;
+
 use clamber_render::{Gpu, RenderError};
 
 /// Opens a device; `None`, with a message, if there is none and none is required.
@@ -14,9 +16,11 @@ pub(crate) fn gpu(what: &str) -> Option<Gpu> {
         Err(RenderError::NoAdapter { reason })
             if std::env::var_os("CLAMBER_REQUIRE_GPU").is_none() =>
         {
-            eprintln!(
-                "SKIPPED, {what}: no graphics adapter, install mesa-vulkan-drivers ({reason})"
+            // Not by `eprintln`, whose output passing tests swallow.
+            let line = format!(
+                "SKIPPED {what}: no graphics adapter, install mesa-vulkan-drivers ({reason})\n"
             );
+            let _ = std::io::stderr().write_all(line.as_bytes());
             None
         }
         Err(error) => panic!("{what}: {error}"),

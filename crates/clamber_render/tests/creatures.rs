@@ -6,14 +6,15 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-#[path = "../crates/clamber_render/tests/common/mod.rs"]
 mod common;
 
-use clamber::prelude::*;
-use clamber::render::{Camera, Drawn, Frame, Image, Light, Look, Overlay, RenderMesh, Renderer};
+use clamber_render::{Camera, Drawn, Frame, Image, Light, Look, Overlay, RenderMesh, Renderer};
 use clamber_scenes::giant::giant;
 use clamber_scenes::picture::add_collider;
 use clamber_scenes::{Creature, test_data};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{Palette, Playback};
+use clamber_surface::surface::SkinnedSurface;
 use glam::{DVec3, Vec3};
 
 fn palettes(creature: &Creature) -> Vec<Palette> {
@@ -41,7 +42,8 @@ fn the_device_poses_the_skin_as_the_collider_does() {
         let (mut worst, mut poses) = (0.0f64, 0);
         for palette in palettes(creature) {
             let posed = renderer.posed_positions(mesh, &palette).unwrap();
-            let skinned = clamber::skin::skin(&creature.collider, palette.matrices()).unwrap();
+            let skinned =
+                clamber_surface::skin::skin(&creature.collider, palette.matrices()).unwrap();
             let far = |bound: Vec3, p: &Vec3| bound.max(p.abs());
             let extent = f64::from(skinned.iter().fold(Vec3::ZERO, far).max_element());
             for (seen, touched) in posed.iter().zip(&skinned) {
@@ -169,10 +171,10 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
 
 #[test]
 fn a_rigs_meshes_are_ready_for_the_renderer() {
-    let mut rig = clamber::gltf::load(clamber_scenes::giant::path()).unwrap();
+    let mut rig = clamber_gltf::load(clamber_scenes::giant::path()).unwrap();
     let tinted = rig.visual[0].positions.len();
     rig.visual[0].colors = vec![[0.5, 1.0, 0.0, 1.0]; tinted];
-    let sources: Vec<_> = clamber::render::visual_meshes(&rig).collect();
+    let sources: Vec<_> = clamber_render::visual_meshes(&rig).collect();
     assert_eq!(sources.len(), rig.visual.len());
     for (source, mesh) in sources.iter().zip(&rig.visual) {
         let source = source.source();
