@@ -113,7 +113,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
     for palette in palettes(&giant) {
         surface.place(&palette, root).unwrap();
         let above = root.translation + DVec3::new(0.3, 60.0, 0.4);
-        let hit = surface.cast_ray(above, -DVec3::Y, 100.0);
+        let hit = surface.in_world().cast_ray(above, -DVec3::Y, 100.0);
         let Some(hit) = hit.filter(|hit| hit.normal.y > 0.4) else {
             continue;
         };
@@ -132,7 +132,7 @@ fn the_climber_stands_on_the_creature_and_its_triangle_lies_under_its_foot() {
             drawn: vec![drawn(skin, root, Some(&palette))],
             overlay: Overlay::default(),
         };
-        let corners = surface.mesh().triangles()[hit.material.key as usize];
+        let corners = surface.mesh().triangles()[hit.triangle.index()];
         let corners =
             corners.map(|v| root.transform_point_f32(surface.in_model().position(v).unwrap()));
         frame.overlay.triangle(corners, [0.0, 1.0, 0.0, 1.0]);

@@ -122,12 +122,3 @@ fn measure(criterion: &mut Criterion, subject: &Subject) -> Result<(), Box<dyn E
     group.finish();
     Ok(())
 }
-
-/// The folder for the results: `measure` in cargo's target folder.
-fn measure_folder() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("target"),
-        PathBuf::from,
-    );
-    target.join("measure")
-}
