@@ -134,6 +134,6 @@ fn the_whole_battle_passes_its_checks_and_repeats_bit_for_bit() {
         );
     }
     let svg = std::fs::read_to_string(folder.join("timeline.svg")).unwrap();
-    assert!(svg.contains("cost of a tick") && svg.contains("</svg>"));
+    assert!(svg.contains("time of a tick") && svg.contains("</svg>"));
     std::fs::remove_dir_all(&folder).unwrap();
 }

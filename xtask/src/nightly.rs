@@ -3,7 +3,7 @@
 
 use cargo_metadata::Metadata;
 
-use crate::run::cargo;
+use crate::run::cargo_with;
 use crate::steps::Step;
 use crate::{app, features, golden, peers, soak};
 
@@ -19,7 +19,8 @@ pub(crate) const STEPS: [Step; 6] = [
     ("soak", |_| soak::run(MINUTES, 1, None)),
 ];
 
-/// The tests that are ignored elsewhere. One at a time: some take gigabytes, some measure.
+/// The tests that are ignored elsewhere, and all cases of those that run a fifth of them. One at a time: some take
+/// gigabytes, some measure.
 fn all_cases(_: &Metadata) -> Result<(), String> {
     let test = ["test", "--release", "--no-fail-fast"];
     let packages = [
@@ -33,8 +34,8 @@ fn all_cases(_: &Metadata) -> Result<(), String> {
         "clamber_surface",
     ];
     let features = ["--features", "clamber_surface/scalar"];
-    let ignored = ["--", "--ignored", "--test-threads", "1"];
-    cargo(
+    let ignored = ["--", "--include-ignored", "--test-threads", "1"];
+    cargo_with(
         &[
             &test[..],
             &packages,
@@ -43,5 +44,6 @@ fn all_cases(_: &Metadata) -> Result<(), String> {
             &ignored,
         ]
         .concat(),
+        &[("CLAMBER_ALL_CASES", "1")],
     )
 }

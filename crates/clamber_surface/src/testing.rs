@@ -8,6 +8,15 @@ use crate::geometry::{Affine, Capsule, rotation_from_axis_angle};
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use crate::rig::{JointId, Palette};
 
+/// How many cases of a randomised test are run: all of them if the variable `CLAMBER_ALL_CASES` is set, as `cargo xtask
+/// nightly` does, or a fifth, the first ones.
+pub(crate) fn cases(all: usize) -> usize {
+    match std::env::var_os("CLAMBER_ALL_CASES") {
+        Some(_) => all,
+        None => all.div_ceil(5),
+    }
+}
+
 /// A closed tube of radius 0.5 along X from 0 to `joints - 1`, one joint per metre. Each vertex follows the two
 /// nearest joints.
 pub(crate) fn tube(joints: u32, sides: u32) -> Arc<ColliderMesh> {

@@ -9,7 +9,7 @@ use crate::mesh::{ColliderMesh, PartId, TriangleId};
 use crate::rig::Palette;
 use crate::surface::agreement::assert_queries_agree;
 use crate::surface::{CastOptions, SkinnedSurface, SweepHit};
-use crate::testing::{ball, bend, capsule, rigid, tube};
+use crate::testing::{ball, bend, capsule, cases, rigid, tube};
 use glam::{DQuat, DVec3, Vec3};
 
 const RATES: [f64; 3] = [30.0, 60.0, 120.0];
@@ -330,10 +330,10 @@ fn sweeps_of_a_bent_tube_agree_at_every_level_lazily_and_ahead() {
             if tick % 2 == 0 {
                 surface.skin_ahead();
             }
-            found += assert_queries_agree(&surface, &mut rng, 10);
+            found += assert_queries_agree(&surface, &mut rng, cases(10));
         }
     }
-    assert!(found > 1_000, "{found}");
+    assert!(found > cases(1_000), "{found}");
 }
 
 #[test]

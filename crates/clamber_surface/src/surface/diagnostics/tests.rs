@@ -6,7 +6,7 @@ use super::Diagnostics;
 use crate::geometry::{Ray, Similarity};
 use crate::mesh::TriangleId;
 use crate::surface::SkinnedSurface;
-use crate::testing::{ball, bend, tube};
+use crate::testing::{ball, bend, cases, tube};
 
 #[test]
 fn each_triangle_is_in_one_cluster_whose_flags_match_the_diagnostics() {
@@ -93,7 +93,7 @@ fn any_number_of_threads_skins_the_same_ticks_ahead() {
     let is_ahead = |[ahead, _]: &&[Diagnostics; 2]| ahead.clusters_skinned == ahead.clusters;
     let ahead = wanted.iter().filter(is_ahead).count();
     assert!(ahead > 15 && ahead < 50, "{ahead} of {}", wanted.len());
-    for threads in 2..=8 {
+    for threads in [2, 8, 3, 4, 5, 6, 7].into_iter().take(cases(7)) {
         for (tick, (found, wanted)) in ticks(threads, 100).iter().zip(&wanted).enumerate() {
             assert_eq!(found, wanted, "{threads} threads, tick {tick}");
         }

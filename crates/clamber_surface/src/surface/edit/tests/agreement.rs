@@ -9,7 +9,7 @@ use crate::geometry::{Similarity, rotation_from_axis_angle};
 use crate::mesh::ColliderMesh;
 use crate::surface::agreement::{answers, assert_queries_agree};
 use crate::surface::{SkinnedSurface, SurfacePoint};
-use crate::testing::{bend, direction, point, tube};
+use crate::testing::{bend, cases, direction, point, tube};
 use glam::{DVec3, Vec3};
 
 /// The same surface, with clusters and hierarchy made from scratch.
@@ -114,17 +114,19 @@ fn all_kinds(made: &[usize; KINDS], edits: usize) {
 }
 
 #[test]
-fn six_thousand_edits_of_a_small_tube_agree_with_a_rebuild() {
-    all_kinds(&edit_at_random(tube(4, 6), 91, 6_000), 6_000);
+fn edits_of_a_small_tube_agree_with_a_rebuild() {
+    let edits = cases(6_000);
+    all_kinds(&edit_at_random(tube(4, 6), 91, edits), edits);
 }
 
 #[test]
-fn a_thousand_edits_of_parts_of_many_clusters_agree_with_a_rebuild() {
-    all_kinds(&edit_at_random(tube(3, 100), 93, 1_000), 1_000);
+fn edits_of_parts_of_many_clusters_agree_with_a_rebuild() {
+    let edits = cases(1_000);
+    all_kinds(&edit_at_random(tube(3, 100), 93, edits), edits);
 }
 
 #[test]
-fn a_thousand_edits_of_few_parts_for_many_joints_agree_with_a_rebuild() {
+fn edits_of_few_parts_for_many_joints_agree_with_a_rebuild() {
     let mut rng = fastrand::Rng::with_seed(94);
     let (mesh, _) = creature(&mut rng, 3, Spread::Few);
     assert!(mesh.parts().len() < 15);
