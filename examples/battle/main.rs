@@ -96,17 +96,17 @@ struct FilmOptions {
 }
 
 fn rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (0.01..=60.0).contains(&number) => Ok(number),
-        Ok(_) => Err("must be from 0.01 to 60".into()),
-        Err(error) => Err(error.to_string()),
-    }
+    within(text, 0.01, 60.0)
 }
 
 fn from(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 1e6)
+}
+
+fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(number) if (0.0..=1e6).contains(&number) => Ok(number),
-        Ok(_) => Err("must be from 0 to 1000000".into()),
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        Ok(_) => Err(format!("must be from {least} to {most}")),
         Err(error) => Err(error.to_string()),
     }
 }

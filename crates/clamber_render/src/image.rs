@@ -1,6 +1,6 @@
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::RenderError;
 
@@ -62,70 +62,5 @@ impl Image {
             height,
             pixels,
         }
-    }
-}
-
-/// Writes an animated GIF, picture by picture. The animation repeats for ever.
-pub struct Gif {
-    path: PathBuf,
-    encoder: gif::Encoder<BufWriter<File>>,
-    size: (u16, u16),
-    /// Time that each picture is shown, in hundredths of a second.
-    delay: u16,
-}
-
-/// Speed of the GIF encoder: from 1, slow with the best colours, to 30.
-const SPEED: i32 = 10;
-
-impl Gif {
-    /// Creates a GIF file for pictures of a size in pixels, each shown for `delay` hundredths of a second.
-    ///
-    /// # Errors
-    /// [`RenderError::Write`] if the file cannot be created, or a side has more than 65535 pixels.
-    pub fn create(path: &Path, width: u32, height: u32, delay: u16) -> Result<Self, RenderError> {
-        let failed = |reason: String| RenderError::Write {
-            path: path.to_path_buf(),
-            reason,
-        };
-        let size = (u16::try_from(width), u16::try_from(height));
-        let (Ok(width), Ok(height)) = size else {
-            return Err(failed(
-                "GIF pictures have at most 65535 pixels a side".into(),
-            ));
-        };
-        let file = File::create(path).map_err(|error| failed(error.to_string()))?;
-        let encoder = gif::Encoder::new(BufWriter::new(file), width, height, &[]);
-        let mut encoder = encoder.map_err(|error| failed(error.to_string()))?;
-        let repeat = encoder.set_repeat(gif::Repeat::Infinite);
-        repeat.map_err(|error| failed(error.to_string()))?;
-        Ok(Self {
-            path: path.to_path_buf(),
-            encoder,
-            size: (width, height),
-            delay,
-        })
-    }
-
-    /// Adds a picture.
-    ///
-    /// # Errors
-    /// [`RenderError::Write`] if the file cannot be written, or the picture has another size.
-    pub fn push(&mut self, image: &Image) -> Result<(), RenderError> {
-        let failed = |reason: String| RenderError::Write {
-            path: self.path.clone(),
-            reason,
-        };
-        let (width, height) = self.size;
-        if (image.width, image.height) != (u32::from(width), u32::from(height)) {
-            let (found, wanted) = ((image.width, image.height), self.size);
-            return Err(failed(format!(
-                "a picture of size {found:?} in a file of size {wanted:?}"
-            )));
-        }
-        let mut pixels = image.pixels.clone();
-        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, SPEED);
-        frame.delay = self.delay;
-        let written = self.encoder.write_frame(&frame);
-        written.map_err(|error| failed(error.to_string()))
     }
 }

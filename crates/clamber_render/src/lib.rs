@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate self as clamber_render;
 
+mod animation;
 mod camera;
 mod error;
 #[cfg(test)]
@@ -26,13 +27,14 @@ mod text;
 #[cfg(feature = "gltf")]
 mod visual;
 
+pub use animation::Gif;
 pub use camera::Camera;
 pub use error::RenderError;
 pub use frame::{Drawn, Frame, Light};
 /// The version of glam whose vectors and quaternions this crate uses.
 pub use glam;
 pub use gpu::Gpu;
-pub use image::{Gif, Image};
+pub use image::Image;
 pub use mesh::{Look, RenderMesh, RenderMeshId, SkinSource};
 pub use overlay::{Color, Overlay};
 pub use paint::Paint;

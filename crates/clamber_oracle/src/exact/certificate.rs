@@ -15,8 +15,8 @@ use std::cell::LazyCell;
 use dashu::rational::Relaxed;
 use glam::DVec3;
 
+use super::arithmetic::{Exact, dot, length_sq, minus, number, rounded};
 use super::nearest::{Nearest, nearest};
-use super::number::{Exact, dot, length_sq, minus, number, rounded};
 use super::pair::ExactPair;
 use crate::MovingPair;
 

@@ -1,6 +1,6 @@
 use dashu::rational::Relaxed;
 
-use super::number::{
+use super::arithmetic::{
     Exact, between, between_triangle_and_segment, exact, from_triangle, length_sq, number, plus,
 };
 use crate::MovingPair;

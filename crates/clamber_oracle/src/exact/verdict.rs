@@ -1,5 +1,5 @@
+use super::arithmetic::number;
 use super::certificate::{Apart, Last, Motion};
-use super::number::number;
 use crate::MovingPair;
 
 /// The answer of a sweep for a pair.
