@@ -1,10 +1,12 @@
 //! `cargo xtask ci` runs what CI runs, for a person as well: tests, golden runs, format, lints, each feature,
-//! documentation, examples, benches, dependency arrows, packages. `cargo xtask nightly` runs what takes hours.
+//! documentation, public items, examples, benches, dependency arrows and their picture, packages. `cargo xtask nightly`
+//! runs what takes hours.
 
 mod app;
 mod arrows;
 mod benches;
 mod build;
+mod crates;
 mod examples;
 mod face;
 mod features;
@@ -50,6 +52,8 @@ enum Task {
     },
     /// Stores the public items of each crate, with which `ci` compares those that it finds.
     Face,
+    /// Draws the picture of the crates, docs/crates.svg, with which `ci` compares the one that it draws.
+    Crates,
     /// The app on all of Bevy, which stands outside the workspace: its format, and a picture that it draws and
     /// checks by itself, off-screen. A job of its own: a cold build of Bevy takes many minutes.
     App,
@@ -71,7 +75,7 @@ enum Task {
     },
 }
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     ("tests", |_| {
         // The command of the front page; then all that it leaves out.
         cargo(&["test"])?;
@@ -103,6 +107,7 @@ const STEPS: [Step; 11] = [
         arrows::check(metadata)?;
         modules::check()
     }),
+    ("crates", crates::check),
     ("packages", packages::check),
 ];
 
@@ -129,6 +134,7 @@ fn main() -> ExitCode {
         Task::Nightly { only } => steps::run(&nightly::STEPS, &metadata, only.as_deref()),
         Task::App => ended(app::check()),
         Task::Face => ended(face::store(&metadata)),
+        Task::Crates => ended(crates::store(&metadata)),
         Task::Soak {
             minutes,
             seed,

@@ -1,0 +1,65 @@
+//! The programs of the README: it has them word for word, and they run.
+
+/// The first program, as a single frame without a window. Bevy's umbrella crate asks for a newer Rust than this crate,
+/// so its names are those of Bevy's sub-crates here.
+mod app {
+    mod bevy {
+        pub(crate) mod mesh {
+            pub(crate) use bevy_mesh::*;
+        }
+
+        pub(crate) mod prelude {
+            pub(crate) use bevy_app::prelude::*;
+            pub(crate) use bevy_asset::prelude::*;
+            pub(crate) use bevy_ecs::prelude::*;
+            pub(crate) use bevy_math::prelude::*;
+            pub(crate) use bevy_shape::prelude::*;
+            pub(crate) use bevy_transform::prelude::*;
+
+            /// The plugins that surfaces need.
+            pub(crate) struct DefaultPlugins;
+
+            impl Plugin for DefaultPlugins {
+                fn build(&self, app: &mut App) {
+                    app.add_plugins((
+                        TaskPoolPlugin::default(),
+                        bevy_time::TimePlugin,
+                        TransformPlugin,
+                        AssetPlugin::default(),
+                        bevy_mesh::MeshPlugin,
+                    ));
+                }
+            }
+        }
+    }
+
+    include!("app.rs");
+
+    #[test]
+    fn the_first_program_runs() {
+        main();
+    }
+}
+
+#[cfg(feature = "clamber_gltf")]
+mod headless {
+    include!("headless.rs");
+
+    #[test]
+    fn the_headless_program_runs() {
+        // Where its file is.
+        std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets")).unwrap();
+        main();
+    }
+}
+
+#[test]
+fn the_readme_has_the_programs_word_for_word() {
+    // A checkout may have other line ends.
+    let text = |text: &str| text.replace("\r\n", "\n");
+    let readme = text(include_str!("../../README.md"));
+    for program in [include_str!("app.rs"), include_str!("headless.rs")] {
+        let block = format!("```rust,ignore\n{}```\n", text(program));
+        assert!(readme.contains(&block), "not in the README:\n{block}");
+    }
+}
