@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("clamber_oracle", &[]),
     ("clamber_surface", &[]),
     ("clamber_world", &["clamber_surface"]),
@@ -55,15 +55,17 @@ const ALLOWED: [(&str, &[&str]); 14] = [
         ],
     ),
     ("clamber_benches", &[]),
+    ("clamber_recipes", &[]),
     ("xtask", &[]),
 ];
 
 /// What tests and examples of a crate may use beyond that.
-const ALLOWED_FOR_TESTS: [(&str, &str); 7] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 8] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_benches", "clamber"),
     ("clamber_benches", "clamber_scenes"),
+    ("clamber_recipes", "clamber"),
     ("clamber_fuzz", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),
