@@ -10,7 +10,7 @@ use crate::{Image, RenderError};
 ///
 /// All pictures share one palette: colours of the first picture, chosen by NeuQuant (Dekker 1994, "Kohonen neural
 /// networks for optimal colour quantization"), and evenly spaced ones for what comes later. A pixel that keeps its colour
-/// within [`KEPT`] is left out, so that a still background costs nothing.
+/// within 6 of 255 in each channel is left out, so that a still background costs nothing.
 pub struct Gif {
     path: PathBuf,
     size: (u16, u16),
