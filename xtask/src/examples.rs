@@ -27,14 +27,21 @@ const ARGUMENTS: [(&str, &[&str]); 4] = [
     ("soak", &["--minutes", "0.2", "--out", "target/soak-brief"]),
 ];
 
-/// Options of a battle that cannot be meant, which it refuses before it fights.
-const REFUSED: [&[&str]; 6] = [
-    &["--rate", "0", "--frames", "target/none"],
-    &["--from", "nan", "--frames", "target/none"],
-    &["--seconds", "1", "--from", "99", "--frames", "target/none"],
-    &["--camera", "chase"],
-    &["--overlay", "joints"],
-    &["--frames", "Cargo.toml/none"],
+/// Options that a battle refuses, and a part of the reason that it gives. Without it a machine that cannot draw would
+/// seem to refuse them.
+const REFUSED: [(&[&str], &str); 6] = [
+    (
+        &["--rate", "0", "--frames", "target/none"],
+        "from 0.01 to 60",
+    ),
+    (&["--from", "nan", "--frames", "target/none"], "from 0 to"),
+    (
+        &["--seconds", "1", "--from", "99", "--frames", "target/none"],
+        "nothing to film",
+    ),
+    (&["--camera", "chase"], "--frames <DIR>"),
+    (&["--overlay", "joints"], "--frames <DIR>"),
+    (&["--record", "Cargo.toml/none"], "cannot write Cargo.toml"),
 ];
 
 /// A vertex that falls through a face, in the form of the query files.
@@ -56,8 +63,8 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
         program(binary, &[arguments, &files].concat())?;
     }
     let battle = find(&examples, "battle")?;
-    for arguments in REFUSED {
-        refuses(battle, arguments)?;
+    for (arguments, reason) in REFUSED {
+        refuses(battle, arguments, reason)?;
     }
     let hash = battle_hash(metadata, battle, &[])?;
     film(metadata, battle, &hash)
@@ -70,6 +77,12 @@ pub(crate) fn compare_builds(metadata: &Metadata) -> Result<(), String> {
     let released = ["--release", "--example", "battle", "--example", "replay"];
     let released = build::examples(&[&released[..], &build::RELEASED].concat())?;
     let fast = battle_hash(metadata, find(&released, "battle")?, &[])?;
+    let plain = battle_hash(metadata, find(&tested, "battle")?, &[])?;
+    if plain != fast {
+        return Err(format!(
+            "the battle's hash is {fast} in release, and {plain} as built for tests"
+        ));
+    }
     let recording = metadata.target_directory.join("xtask-battle.mcap");
     let recorded = ["--record", recording.as_str()];
     let recorded = battle_hash(metadata, find(&tested, "battle")?, &recorded)?;
@@ -103,6 +116,7 @@ fn film(metadata: &Metadata, battle: &Utf8Path, hash: &str) -> Result<(), String
         note_skipped(line);
         return Ok(());
     }
+    refuses(battle, &["--frames", "Cargo.toml/none"], "Cargo.toml/none")?;
     let frames = metadata.target_directory.join("xtask-frames");
     let gif = frames.join("battle.gif");
     if frames.exists() {

@@ -128,21 +128,21 @@ pub(crate) fn program(binary: &Utf8Path, arguments: &[&str]) -> Result<(), Strin
     }
 }
 
-/// Runs a program that must end with an error of its own, exit code 1 or 2, and say why.
-pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str]) -> Result<(), String> {
+/// Runs a program that must end with an error of its own, exit code 1 or 2, and print this reason.
+pub(crate) fn refuses(binary: &Utf8Path, arguments: &[&str], reason: &str) -> Result<(), String> {
     let name = binary.file_name().unwrap_or(binary.as_str());
     println!("   {name} {} (refused)", arguments.join(" "));
     let output = Command::new(binary)
         .args(arguments)
         .output()
         .map_err(|error| format!("cannot start {binary}: {error}"))?;
-    let is_refused = matches!(output.status.code(), Some(1 | 2)) && !output.stderr.is_empty();
-    if is_refused {
+    let said = String::from_utf8_lossy(&output.stderr);
+    if matches!(output.status.code(), Some(1 | 2)) && said.contains(reason) {
         return Ok(());
     }
     let (arguments, status) = (arguments.join(" "), output.status);
     Err(format!(
-        "`{binary} {arguments}` should be refused with a reason; it ended with {status}"
+        "`{binary} {arguments}` should be refused with {reason:?}; it ended with {status}:\n{said}"
     ))
 }
 

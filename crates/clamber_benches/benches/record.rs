@@ -92,7 +92,7 @@ fn measure(
         beside + recording,
     );
     cells.value(&format!("{name}: of that, recording"), recording);
-    // By what is due in a tick: whatever is due less often includes what is due more often.
+    // Grouped by the rarest record that is due in a tick. Its time includes those of the more frequent ones.
     let kinds = [
         ("state and input only", 1, 4),
         ("with transforms", 4, 30),

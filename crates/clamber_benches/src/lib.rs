@@ -4,4 +4,5 @@
 //! cargo bench -p clamber_benches --bench tick
 //! ```
 //!
-//! With `-- --test` behind it, a bench runs briefly and checks what it checks. The tables go to `target/measure`.
+//! With `-- --test` behind it, a bench runs briefly, and still fails if a check of its own fails. The tables go to
+//! `target/measure`.
