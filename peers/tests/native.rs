@@ -10,6 +10,7 @@
 
 use std::sync::Arc;
 
+use clamber_oracle::brute_force::{self, Triangles};
 use clamber_peers::{Peer, Unsupported, all};
 use clamber_scenes::ball::ball;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
@@ -59,7 +60,7 @@ fn palette(angle: f64, by: DVec3) -> Palette {
 
 /// All triangles of a pose.
 struct Truth {
-    corners: Vec<[DVec3; 3]>,
+    triangles: Triangles,
     /// The error that f32 may have: about ten units in the last place of the largest coordinate.
     slack: f64,
 }
@@ -75,9 +76,11 @@ impl Truth {
         skin_into(mesh, &moved, &mut positions).unwrap();
         let corners = mesh.triangles().iter();
         Self {
-            corners: corners
-                .map(|t| t.map(|v| positions[v.index()].as_dvec3()))
-                .collect(),
+            triangles: Triangles(
+                corners
+                    .map(|t| t.map(|v| positions[v.index()].as_dvec3()))
+                    .collect(),
+            ),
             slack: (place.length() + 10.0) * 2e-6,
         }
     }
@@ -85,57 +88,11 @@ impl Truth {
     /// Distance along a ray at which it hits a triangle, grown by a share of the triangle's size, or shrunk if `grown`
     /// is negative.
     fn cast(&self, ray: &Ray, triangle: usize, grown: f64) -> Option<f64> {
-        let [a, b, c] = self.corners[triangle];
-        let direction = ray.direction().as_dvec3();
-        let (ab, ac) = (b - a, c - a);
-        let across = direction.cross(ac);
-        let inverse = 1.0 / ab.dot(across);
-        let from = ray.origin().as_dvec3() - a;
-        let u = from.dot(across) * inverse;
-        let along = from.cross(ab);
-        let v = direction.dot(along) * inverse;
-        let t = ac.dot(along) * inverse;
-        let least = u.min(v).min(1.0 - u - v);
-        (least >= -grown && t >= -self.slack).then_some(t)
+        let (origin, direction) = (ray.origin().as_dvec3(), ray.direction().as_dvec3());
+        let crossing = brute_force::ray(origin, direction, &self.triangles.0[triangle])?;
+        let met = crossing.border >= -grown && crossing.distance >= -self.slack;
+        met.then_some(crossing.distance)
     }
-
-    fn distances(&self, point: DVec3) -> impl Iterator<Item = f64> {
-        let corners = self.corners.iter();
-        corners.map(move |corners| distance(point, *corners))
-    }
-
-    fn distance(&self, point: DVec3) -> f64 {
-        self.distances(point).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The share of its motion that a sphere makes before it touches, by moving it repeatedly by its free distance.
-    /// `None` if it does not touch.
-    fn cast_sphere(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
-        let mut time = 0.0;
-        while time <= 1.0 {
-            let free = self.distance(center + motion * time) - radius;
-            if free < 1e-5 {
-                return Some(time);
-            }
-            time += free / motion.length();
-        }
-        None
-    }
-}
-
-/// Distance of a point from a triangle: from its plane if the point is above the triangle, else from the nearest edge.
-fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a);
-    let inside = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(normal) >= 0.0;
-    if inside(a, b) && inside(b, c) && inside(c, a) {
-        return ((p - a).dot(normal) / normal.length()).abs();
-    }
-    let from_edge = |from: DVec3, to: DVec3| {
-        let edge = to - from;
-        let share = (p - from).dot(edge) / edge.length_squared();
-        (p - from - edge * share.clamp(0.0, 1.0)).length()
-    };
-    from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a))
 }
 
 struct Queries {
@@ -165,7 +122,7 @@ fn rays_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Quer
         let max_distance = queries.rng.f32() * 20.0;
         let most = f64::from(max_distance);
         let context = format!("{name}: {ray:?}, {max_distance}");
-        let all = 0..truth.corners.len();
+        let all = 0..truth.triangles.0.len();
         let surely = all.filter_map(|k| truth.cast(&ray, k, -GROWN));
         let first = surely
             .filter(|t| (truth.slack..most - truth.slack).contains(t))
@@ -198,9 +155,9 @@ fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut 
             radius: 0.1 + queries.rng.f32() * 2.0,
         };
         let center = sphere.center.as_dvec3();
-        let within = |radius: f64| truth.distances(center).filter(|d| *d <= radius).count();
         let radius = f64::from(sphere.radius);
-        let (least, most) = (within(radius - truth.slack), within(radius + truth.slack));
+        let [least, unsure] = truth.triangles.within(center, radius, truth.slack);
+        let most = least + unsure;
         let found = match peer.overlap_sphere(&sphere) {
             Err(Unsupported) => return,
             Ok(found) => found,
@@ -220,7 +177,7 @@ fn overlaps_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut 
         radius: 30.0,
     };
     let found = peer.overlap_sphere(&around_all);
-    assert_eq!(found, Ok(truth.corners.len()), "{name}: {around_all:?}");
+    assert_eq!(found, Ok(truth.triangles.0.len()), "{name}: {around_all:?}");
 }
 
 fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &mut Queries) {
@@ -232,7 +189,7 @@ fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries:
             _ => queries.rng.f32() * 4.0,
         };
         let context = format!("{name}: {point}, {max_distance}");
-        let distance = truth.distance(point.as_dvec3());
+        let distance = truth.triangles.distance(point.as_dvec3());
         let found = match peer.closest_point(point, max_distance) {
             Err(Unsupported) => return,
             Ok(found) => found,
@@ -250,7 +207,7 @@ fn closest_points_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries:
             found.distance <= max_distance,
             "{context}: {found:?} is beyond"
         );
-        let off = truth.distance(found.point.as_dvec3());
+        let off = truth.triangles.distance(found.point.as_dvec3());
         assert!(
             off < truth.slack,
             "{context}: {found:?} is {off} off the skin"
@@ -268,7 +225,11 @@ fn sphere_casts_agree(name: &str, peer: &mut dyn Peer, truth: &Truth, queries: &
             radius: 0.1 + queries.rng.f32(),
         };
         let motion = queries.vector(10.0);
-        let cast = |radius| truth.cast_sphere(sphere.center.as_dvec3(), radius, motion.as_dvec3());
+        let cast = |radius| {
+            truth
+                .triangles
+                .cast_sphere(sphere.center.as_dvec3(), radius, motion.as_dvec3())
+        };
         let radius = f64::from(sphere.radius);
         let (earliest, latest) = (cast(radius + GAP), cast(radius - GAP));
         // In Bullet a sphere that starts in contact and moves away has no hit.

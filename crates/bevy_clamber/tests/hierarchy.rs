@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod common;
-#[path = "common/oracle.rs"]
-mod oracle;
+#[path = "common/posed.rs"]
+mod posed;
 
 use std::time::Instant;
 
@@ -59,7 +59,7 @@ fn in_model(app: &App, entity: Entity) -> Vec<Vec3> {
 
 /// The largest distance of a vertex from where Bevy draws it. The limb's mesh is neither welded nor reordered.
 fn worst(app: &App, entity: Entity) -> f64 {
-    let posed = oracle::posed(app, entity);
+    let posed = posed::positions(app, entity);
     let surface = surface(app, entity);
     assert_eq!(posed.len(), surface.mesh().positions().len());
     let found = in_model(app, entity);

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod common;
-#[path = "common/oracle.rs"]
-mod oracle;
+#[path = "common/posed.rs"]
+mod posed;
 
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ fn anchor_at(app: &mut App, height: f32) -> SurfaceAnchor {
 
 /// The drawn position of an anchor's point, and the outward normal of the skin there.
 fn on_skin(app: &App, limb: &Limb, anchor: &SurfaceAnchor) -> (DVec3, DVec3) {
-    let posed = oracle::posed(app, limb.mesh);
+    let posed = posed::positions(app, limb.mesh);
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];
     let [a, b, c] = corners.map(|corner| posed[corner.index()]);
@@ -173,7 +173,7 @@ fn many_anchors_follow_one_limb_at_any_frame_rate() {
         let mut state = 3;
         for _ in 0..rate as usize {
             jitter(&mut app, &mut state);
-            let posed = oracle::posed(&app, limb.mesh);
+            let posed = posed::positions(&app, limb.mesh);
             let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
             for (arrow, anchor) in arrows.iter().zip(&anchors) {
                 let corners = surface.mesh().triangles()[anchor.anchor().unwrap().triangle.index()];

@@ -9,9 +9,9 @@ use clamber_surface::mesh::{
 };
 use glam::Vec3;
 
+use crate::bits::bits;
 use crate::bytes::Bytes;
 use crate::mesh::{Source, options};
-use crate::same::bits;
 
 /// Builds a mesh from any bytes; returns true if it was accepted.
 ///

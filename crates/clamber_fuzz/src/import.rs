@@ -1,13 +1,13 @@
 //! The fuzz target of imports: any file is rejected with a reason, or gives a rig that can be used.
 
 use clamber_gltf::{LoadOptions, Rig, load_slice};
-use clamber_surface::geometry::{Capsule, Similarity};
+use clamber_oracle::agreement::{Comparison, Question, Shape};
+use clamber_surface::geometry::Similarity;
 use clamber_surface::measure::BruteForce;
 use clamber_surface::rig::Playback;
 use clamber_surface::surface::SkinnedSurface;
 use glam::Vec3;
 
-use crate::same::same_hits;
 use crate::seed::glb;
 
 /// Loads any bytes as a file, and uses the rig; returns true if the file loads.
@@ -72,13 +72,15 @@ fn compare(surface: &SkinnedSurface) {
     let mesh = surface.mesh();
     let center = mesh.positions().first().copied().unwrap_or(Vec3::ZERO);
     let radius = mesh.radius() * 0.5;
-    let Some(ball) = Capsule::ball(center, radius) else {
-        panic!("no ball of radius {radius} around {center}");
-    };
+    let shape = Shape::ball(center, radius);
+    let mut comparison = Comparison::default();
     let space = surface.in_model();
-    let (mut found, mut wanted) = (Vec::new(), Vec::new());
-    space.overlap_capsule(&ball, &mut found);
-    BruteForce::new(space).overlap_capsule(&ball, &mut wanted);
-    let same = same_hits(&found, &wanted);
-    assert!(same, "{ball:?}:\n{found:?}\n{wanted:?}");
+    comparison.ask(&BruteForce::new(space), &Question::OverlapCapsule { shape });
+    if let Err(disagreement) = comparison.hold(&space) {
+        panic!("{disagreement}");
+    }
+    assert!(
+        !comparison.found().is_empty(),
+        "nothing within {radius} of {center}"
+    );
 }

@@ -10,6 +10,7 @@
 
 #![expect(clippy::panic, reason = "a finding is a panic")]
 
+mod bits;
 mod builder;
 mod bytes;
 pub mod ccd;
@@ -18,10 +19,8 @@ mod mesh;
 mod palettes;
 mod poses;
 mod queries;
-mod same;
 mod seed;
 pub mod stress;
-mod sweeps;
 
 pub use builder::builder;
 pub use import::import;

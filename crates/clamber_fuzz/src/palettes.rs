@@ -10,10 +10,10 @@ use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, Motion, SkinnedSurface};
 use glam::Vec3;
 
+use crate::bits::bits;
 use crate::bytes::Bytes;
 use crate::mesh::built;
 use crate::poses::{is_absurd, is_tame, palette, similarity};
-use crate::same::bits;
 
 /// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,19 +3,19 @@
 
 use std::sync::Arc;
 
+use clamber_oracle::agreement::{Among, Answers, Cast, Comparison, Found, Question, Shape};
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::{Capsule, Ray};
 use clamber_surface::measure::BruteForce;
 use clamber_surface::mesh::{ColliderMesh, Influence, PartId, TriangleId, VertexId};
 use clamber_surface::rig::JointId;
-use clamber_surface::surface::{ModelSpace, SkinnedSurface, SurfaceEdit, SurfaceError, SurfaceHit};
+use clamber_surface::surface::{ModelSpace, SkinnedSurface, SurfaceEdit, SurfaceError};
 use glam::Vec3;
 
+use crate::bits::bits;
 use crate::bytes::Bytes;
 use crate::mesh::{built, tag};
 use crate::poses::{palette, similarity};
-use crate::same::{bits, same_hits};
-use crate::sweeps::{self, Moves};
 
 /// Counts of what was checked.
 #[derive(Clone, Copy, Debug, Default)]
@@ -143,67 +143,130 @@ fn shown(surface: &SkinnedSurface) -> Vec<bool> {
     ids.map(|id| surface.is_enabled(TriangleId(id))).collect()
 }
 
-/// A posed surface, and brute force to compare it with.
-pub(crate) struct Both<'a> {
-    pub(crate) space: ModelSpace<'a>,
-    pub(crate) brute_force: BruteForce<'a>,
-}
-
+/// Asks at some places, and compares the answers.
 fn compare(surface: &SkinnedSurface, bytes: &mut Bytes<'_>, seen: &mut Queries) {
     let space = surface.in_model();
     let brute_force = BruteForce::new(space);
-    let both = Both { space, brute_force };
-    let positions = both.brute_force.positions();
+    let positions = brute_force.positions();
     for (v, p) in (0..).map(VertexId).zip(positions) {
         let wanted = surface.mesh().has_vertex(v).then(|| bits(*p));
         assert_eq!(space.position(v).map(bits), wanted, "vertex {v}");
     }
     let largest = |p: &Vec3| p.abs().max_element();
     let size = positions.iter().map(largest).fold(0.0, f32::max);
+    let mut asked = Vec::new();
     for _ in 0..4 {
-        let origin = place(bytes, positions, size);
-        let to = place(bytes, positions, size);
-        let reach = length(bytes, size);
-        let aim = if bytes.one_in(4) {
-            bytes.hostile_point()
-        } else {
-            to - origin
-        };
-        if let Some(ray) = ray(origin, aim) {
-            seen.ask_along(&both, &ray, reach);
-        }
-        seen.ask_nearest(&both, origin, reach);
-        // A shape's radius must be finite.
-        let radius = if reach == f32::INFINITY {
-            f32::MAX
-        } else {
-            reach
-        };
-        let moves = Moves::any(bytes, to - origin, radius);
-        for (end, ways) in [(origin, moves.of_ball()), (to, moves.of_capsule())] {
-            let Some(capsule) = capsule(origin, end, radius) else {
-                seen.refused += 1;
-                continue;
-            };
-            seen.ask_about(&both, &capsule, reach);
-            let swept = sweeps::compare(&both, &capsule, ways, moves.tolerance);
-            seen.answered += swept.answered;
-            seen.refused += swept.refused;
-            seen.hits += swept.hits;
+        questions(bytes, positions, size, &mut asked);
+        for question in &asked {
+            seen.ask(&brute_force, &space, question);
         }
     }
 }
 
-/// A capsule, or `None`; checks that it is `None` exactly for invalid arguments.
-fn capsule(a: Vec3, b: Vec3, radius: f32) -> Option<Capsule> {
-    let capsule = Capsule::new(a, b, radius);
-    let usable = a.is_finite() && b.is_finite() && radius >= 0.0 && radius.is_finite();
-    assert_eq!(capsule.is_some(), usable, "{a}, {b}, {radius}");
-    capsule
+/// Questions of every kind from one place, sound ones and others.
+fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec<Question>) {
+    let origin = place(bytes, positions, size);
+    let to = place(bytes, positions, size);
+    let max_distance = length(bytes, size);
+    let direction = if bytes.one_in(4) {
+        bytes.hostile_point()
+    } else {
+        to - origin
+    };
+    check_ray(origin, direction);
+    *all = vec![
+        Question::CastRay {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::IntersectsRay {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::CastRayAll {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::ClosestPoint {
+            point: origin,
+            max_distance,
+        },
+        Question::VisitBox {
+            low: origin.min(to),
+            high: to,
+        },
+    ];
+    // A shape's radius must be finite.
+    let radius = if max_distance == f32::INFINITY {
+        f32::MAX
+    } else {
+        max_distance
+    };
+    let motion = motion(bytes, to - origin);
+    let tolerance = Some(f64::from(tolerance(bytes, radius)));
+    let other = if bytes.one_in(2) { motion } else { to - origin };
+    for (end, displacements) in [(origin, [motion; 2]), (to, [motion, other])] {
+        let shape = Shape {
+            ends: [origin, end],
+            radius,
+        };
+        check_capsule(shape);
+        all.push(Question::OverlapCapsule { shape });
+        all.push(Question::ClosestToCapsule {
+            shape,
+            max_distance,
+        });
+        for moving in [true, false] {
+            let cast = Cast {
+                shape,
+                displacements,
+                moving,
+                tolerance,
+            };
+            let ways = [Among::All, Among::OutsideAtStart, Among::EveryThirdTriangle];
+            all.extend(ways.map(|among| Question::CastCapsule { cast, among }));
+            all.push(Question::CastCapsuleAll { cast });
+        }
+    }
 }
 
-/// A ray, or `None`; checks that it is `None` exactly for invalid arguments.
-fn ray(origin: Vec3, aim: Vec3) -> Option<Ray> {
+/// A displacement of a shape whose aim is at `way` from it.
+fn motion(bytes: &mut Bytes<'_>, way: Vec3) -> Vec3 {
+    match bytes.byte() % 4 {
+        0 => Vec3::ZERO,
+        1 => way,
+        2 => way * bytes.share() * 3.0,
+        _ if bytes.one_in(6) => bytes.hostile_point(),
+        _ => bytes.point() * way.length(),
+    }
+}
+
+fn tolerance(bytes: &mut Bytes<'_>, radius: f32) -> f32 {
+    match bytes.byte() % 4 {
+        0 => 0.0,
+        1 => radius * 0.01,
+        2 if bytes.one_in(4) => bytes.hostile(),
+        _ => 1e-4,
+    }
+}
+
+/// Checks that there is a capsule exactly for valid arguments.
+fn check_capsule(
+    Shape {
+        ends: [a, b],
+        radius,
+    }: Shape,
+) {
+    let usable = a.is_finite() && b.is_finite() && radius >= 0.0 && radius.is_finite();
+    let capsule = Capsule::new(a, b, radius);
+    assert_eq!(capsule.is_some(), usable, "{a}, {b}, {radius}");
+}
+
+/// Checks that there is a ray exactly for valid arguments.
+fn check_ray(origin: Vec3, aim: Vec3) {
     let ray = Ray::new(origin, aim);
     let usable = origin.is_finite() && aim.is_finite() && aim != Vec3::ZERO;
     assert_eq!(ray.is_some(), usable, "{origin}, {aim}");
@@ -211,7 +274,6 @@ fn ray(origin: Vec3, aim: Vec3) -> Option<Ray> {
         let length = ray.direction().as_dvec3().length();
         assert!((length - 1.0).abs() < 1e-6, "{ray:?}");
     }
-    ray
 }
 
 /// A point on the surface, near it, or anywhere.
@@ -240,73 +302,85 @@ fn length(bytes: &mut Bytes<'_>, size: f32) -> f32 {
 }
 
 impl Queries {
-    fn ask_along(&mut self, both: &Both<'_>, ray: &Ray, reach: f32) {
-        let Both { space, brute_force } = both;
-        let may_find = reach >= 0.0;
-        let one = space.cast_ray(ray, reach);
-        let wanted = brute_force.cast_ray(ray, reach);
-        let met = space.intersects_ray(ray, reach);
-        assert_eq!(met, wanted.is_some(), "{ray:?}, {reach}");
-        let question = || format!("cast {ray:?}, {reach}");
-        self.same(may_find, one.as_slice(), wanted.as_slice(), question);
-        let (mut all, mut wanted) = (Vec::new(), Vec::new());
-        space.cast_ray_all(ray, reach, &mut all);
-        brute_force.cast_ray_all(ray, reach, &mut wanted);
-        let question = || format!("all along {ray:?}, {reach}");
-        self.same(may_find, &all, &wanted, question);
-    }
-
-    fn ask_nearest(&mut self, both: &Both<'_>, point: Vec3, reach: f32) {
-        let may_find = point.is_finite() && reach >= 0.0;
-        let one = both.space.closest_point(point, reach);
-        let wanted = both.brute_force.closest_point(point, reach);
-        let question = || format!("closest to {point}, {reach}");
-        self.same(may_find, one.as_slice(), wanted.as_slice(), question);
-    }
-
-    fn ask_about(&mut self, both: &Both<'_>, capsule: &Capsule, reach: f32) {
-        let Both { space, brute_force } = both;
-        let (mut all, mut wanted) = (Vec::new(), Vec::new());
-        space.overlap_capsule(capsule, &mut all);
-        brute_force.overlap_capsule(capsule, &mut wanted);
-        self.same(true, &all, &wanted, || format!("{capsule:?}"));
-        let one = space.closest_to_capsule(capsule, reach);
-        let wanted = brute_force.closest_to_capsule(capsule, reach);
-        let (one, wanted) = (one.map(|hit| hit.surface), wanted.map(|hit| hit.surface));
-        let question = || format!("closest to {capsule:?}, {reach}");
-        self.same(reach >= 0.0, one.as_slice(), wanted.as_slice(), question);
-    }
-
-    /// Checks that two answers to one question are equal and valid, and empty unless the question `may_find` something.
-    fn same(
-        &mut self,
-        may_find: bool,
-        found: &[SurfaceHit],
-        wanted: &[SurfaceHit],
-        question: impl Fn() -> String,
-    ) {
-        let same = same_hits(found, wanted);
-        assert!(same, "{}:\n{found:?}\n{wanted:?}", question());
-        for hit in found {
-            check(hit, &question);
-        }
-        if may_find {
+    /// Compares one answer with brute force's, and checks that a question with invalid arguments finds nothing.
+    ///
+    /// If coordinates differ in size by about 2^50, bounds may rule out contacts that the exact test cannot decide. So
+    /// if brute force leaves a contact undecided, only a first contact is compared, and only if both have decided it.
+    fn ask(&mut self, brute_force: &BruteForce<'_>, space: &ModelSpace<'_>, question: &Question) {
+        let mut comparison = Comparison::default();
+        comparison.ask(brute_force, question);
+        let result = comparison.hold(space).map(<[Found]>::len);
+        let found = match result {
+            Ok(found) => found,
+            Err(_) if is_undecided(brute_force, &comparison, question) => 0,
+            Err(disagreement) => panic!("{disagreement}"),
+        };
+        if is_sound(question) {
             self.answered += 1;
         } else {
-            assert!(found.is_empty(), "{}: {found:?}", question());
+            assert!(
+                comparison.found().is_empty(),
+                "{question:?} finds something"
+            );
             self.refused += 1;
         }
-        self.hits += found.len();
+        self.hits += found;
     }
 }
 
-fn check(hit: &SurfaceHit, question: &impl Fn() -> String) {
-    let say = || format!("{}: {hit:?}", question());
-    let [u, v, w] = hit.barycentric;
-    assert!(u >= 0.0 && v >= 0.0 && w >= 0.0, "{}", say());
-    assert!((u + v + w - 1.0).abs() < 1e-6, "{}", say());
-    assert!(hit.point.is_finite(), "{}", say());
-    let normal = hit.normal.as_dvec3().length();
-    assert!((normal - 1.0).abs() < 1e-6, "{}", say());
-    assert!(hit.distance >= 0.0 && hit.distance.is_finite(), "{}", say());
+/// True if brute force leaves undecided what it has to compare.
+fn is_undecided(brute_force: &BruteForce<'_>, asked: &Comparison, question: &Question) -> bool {
+    let any = |rows: &[Found]| rows.iter().any(Found::is_undecided);
+    let Question::CastCapsule { cast, .. } = *question else {
+        return any(asked.wanted());
+    };
+    let mut all = Vec::new();
+    brute_force.answer(&Question::CastCapsuleAll { cast }, &mut all);
+    any(&all) && (any(asked.wanted()) || any(asked.found()))
+}
+
+/// True if a question's arguments are valid.
+fn is_sound(question: &Question) -> bool {
+    let line = |origin: Vec3, direction: Vec3| {
+        origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO
+    };
+    let capsule = |shape: Shape| {
+        let finite = shape.ends.iter().all(|end| end.is_finite());
+        finite && shape.radius >= 0.0 && shape.radius.is_finite()
+    };
+    let cast = |cast: Cast| {
+        let tolerance = cast.tolerance.unwrap_or_default();
+        let finite = cast.displacements.iter().all(|way| way.is_finite());
+        capsule(cast.shape) && finite && tolerance >= 0.0 && tolerance.is_finite()
+    };
+    match *question {
+        Question::CastRay {
+            origin,
+            direction,
+            max_distance,
+        }
+        | Question::IntersectsRay {
+            origin,
+            direction,
+            max_distance,
+        }
+        | Question::CastRayAll {
+            origin,
+            direction,
+            max_distance,
+        } => line(origin, direction) && max_distance >= 0.0,
+        Question::ClosestPoint {
+            point,
+            max_distance,
+        } => point.is_finite() && max_distance >= 0.0,
+        Question::ClosestToCapsule {
+            shape,
+            max_distance,
+        } => capsule(shape) && max_distance >= 0.0,
+        Question::OverlapCapsule { shape } => capsule(shape),
+        Question::CastCapsule { cast: of, .. } | Question::CastCapsuleAll { cast: of } => cast(of),
+        Question::VisitBox { low, high } => {
+            low.is_finite() && high.is_finite() && low.cmple(high).all()
+        }
+    }
 }

@@ -1,5 +1,7 @@
 #![doc = include_str!("../README.md")]
 
+pub mod agreement;
+pub mod brute_force;
 pub mod cases;
 #[cfg(feature = "exact")]
 pub mod exact;

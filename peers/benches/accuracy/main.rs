@@ -26,7 +26,6 @@
 mod motion;
 mod queries;
 mod skinning;
-mod truth;
 
 use std::error::Error;
 use std::process::ExitCode;

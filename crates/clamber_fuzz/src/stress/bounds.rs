@@ -1,11 +1,11 @@
 //! Checks that every bound holds its skinned vertices.
 
+use clamber_surface::geometry::Capsule;
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::surface::CastOptions;
 use glam::Vec3;
 
 use super::posed::Posed;
-use super::questions::ball;
 
 /// Random vertices, chosen once, at which queries are checked in every pose.
 pub(super) struct Bounds {
@@ -43,7 +43,9 @@ impl Bounds {
         let mut hits = Vec::new();
         for (vertex, triangles) in &self.around {
             let p = posed.positions[*vertex];
-            let point = ball(p, 0.0);
+            let Some(point) = Capsule::ball(p, 0.0) else {
+                panic!("no ball at {p}");
+            };
             space.overlap_capsule(&point, &mut hits);
             for triangle in triangles {
                 let found = hits.iter().any(|hit| hit.triangle.0 == *triangle);

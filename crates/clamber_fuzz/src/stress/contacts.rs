@@ -1,12 +1,13 @@
 //! Checks that no contact is missed, reported late, or reported where there is none: casts and sweeps against skin
 //! whose motion is known, in f64.
 
-use clamber_surface::surface::{CastOptions, SweepHit};
+use clamber_oracle::agreement::{
+    Among, Answers, Cast, Found, Hit, Question, Shape, point_of, weights,
+};
+use clamber_oracle::brute_force::distance;
 use glam::DVec3;
 
-use super::aims::Aims;
-use super::posed::{Posed, nearest_in, point_of, random_weights};
-use super::questions::{Answer, Question, ball, capsule};
+use super::posed::Posed;
 use super::soups::random_direction;
 
 /// Number of times within a tick at which all triangles are checked.
@@ -50,11 +51,10 @@ impl Mover {
 /// Checks casts and sweeps at known points; returns how many had to touch.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -> usize {
     let mut checked = 0;
-    let mut answer = Answer::default();
     for round in 0..rounds {
         let sweeps = round % 2 == 0;
         let triangle = posed.any_triangle(rng);
-        let weights = random_weights(rng);
+        let weights = weights(rng);
         let unit = posed.extent;
         let radius = unit * libm::exp10f(-3.0 + 2.0 * rng.f32());
         // The motion starts anywhere near, and ends within the radius of a point of the skin.
@@ -62,14 +62,13 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
         let within = random_direction(rng).as_vec3() * (radius * 0.9 * rng.f32());
         let way = random_direction(rng).as_vec3() * (unit * rng.f32());
         let center = end + within - way;
-        let tolerance = Aims::new(posed, rng).tolerance();
-        let options = if sweeps {
-            CastOptions::MOVING
-        } else {
-            CastOptions::STILL
+        let tolerance = posed.aims(rng).tolerance();
+        let cast = Cast {
+            shape: Shape::ball(center, radius),
+            displacements: [way; 2],
+            moving: sweeps,
+            tolerance: Some(tolerance.into()),
         };
-        let options = options.with_tolerance(tolerance.into());
-        let question = Question::Cast(ball(center, radius), [way; 2], options);
         let mover = Mover {
             start: [center.as_dvec3(); 2],
             ways: [way.as_dvec3(); 2],
@@ -77,18 +76,22 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
             tolerance: f64::from(tolerance),
             sweeps,
         };
-        checked += compare(posed, &question, &mover, triangle, weights, &mut answer);
+        checked += compare(posed, cast, &mover, triangle, weights);
 
         let other = end + random_direction(rng).as_vec3() * (unit * 0.3 * rng.f32());
         let back = random_direction(rng).as_vec3() * (unit * rng.f32());
         let ends = [center, other - back];
-        let question = Question::Cast(capsule(ends, radius), [way, back], options);
+        let cast = Cast {
+            shape: Shape { ends, radius },
+            displacements: [way, back],
+            ..cast
+        };
         let mover = Mover {
             start: ends.map(|end| end.as_dvec3()),
             ways: [way.as_dvec3(), back.as_dvec3()],
             ..mover
         };
-        checked += compare(posed, &question, &mover, triangle, weights, &mut answer);
+        checked += compare(posed, cast, &mover, triangle, weights);
     }
     checked
 }
@@ -96,18 +99,21 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, rounds: usize) -
 /// Asks a question and checks its answer against the known motion; returns 1 if there had to be a contact.
 fn compare(
     posed: &Posed<'_>,
-    question: &Question,
+    cast: Cast,
     mover: &Mover,
     triangle: usize,
     weights: [f32; 3],
-    answer: &mut Answer,
 ) -> usize {
-    question.ask(posed.surface, answer);
-    let hit = answer.sweeps.first();
-    if let Some(hit) = hit {
-        assert_near(posed, question, mover, hit);
+    let among = Among::All;
+    let question = &Question::CastCapsule { cast, among };
+    let mut found = Vec::new();
+    posed.surface.in_model().answer(question, &mut found);
+    let found = found.first();
+    let mut time = f64::INFINITY;
+    if let Some(contact @ Found::Contact { hit, time: at, .. }) = found {
+        assert_near(posed, question, mover, hit, *at, contact.is_undecided());
+        time = *at;
     }
-    let time = hit.map_or(f64::INFINITY, |hit| hit.time);
     let enough = mover.radius - mover.lost(posed);
     let mut known = false;
     let mut at_latest = |at: f64, distance: f64, of: usize| {
@@ -116,7 +122,7 @@ fn compare(
             let name = || posed.name(of);
             assert!(
                 time <= at,
-                "missed or late: {question:?} touches {} by {at}: {hit:?}",
+                "missed or late: {question:?} touches {} by {at}: {found:?}",
                 name()
             );
         }
@@ -142,7 +148,7 @@ fn compare(
             let corners = corners(posed, mover, of, at);
             for k in 0..points {
                 let p = a + (b - a) * (k as f64 / (ALONG - 1) as f64);
-                at_latest(at, (nearest_in(corners, p) - p).length(), of);
+                at_latest(at, distance(p, &corners), of);
             }
         }
     }
@@ -154,17 +160,24 @@ fn corners(posed: &Posed<'_>, mover: &Mover, triangle: usize, at: f64) -> [DVec3
 }
 
 /// Checks that a reported contact touches, within the tolerance.
-fn assert_near(posed: &Posed<'_>, question: &Question, mover: &Mover, hit: &SweepHit) {
-    let [a, b, c] = corners(posed, mover, hit.triangle.index(), hit.time);
+fn assert_near(
+    posed: &Posed<'_>,
+    question: &Question,
+    mover: &Mover,
+    hit: &Hit,
+    time: f64,
+    undecided: bool,
+) {
+    let [a, b, c] = corners(posed, mover, hit.triangle as usize, time);
     let [u, v, w] = hit.barycentric.map(f64::from);
     let point = a * u + b * v + c * w;
     let size = f64::from(posed.farthest);
     let rounded = 1e-6 * ((a - b).length() + (b - c).length() + size);
     let same = (hit.point.as_dvec3() - point).length() <= rounded;
     assert!(same, "{question:?}: {hit:?} is not at {point}");
-    let distance = (mover.facing(hit.time, point) - point).length();
+    let distance = (mover.facing(time, point) - point).length();
     let limit = mover.radius + mover.tolerance + rounded + mover.lost(posed);
-    let near = hit.undecided || distance <= limit;
+    let near = undecided || distance <= limit;
     assert!(near, "{question:?}: {hit:?} is {distance} away");
     let told = (hit.distance - distance).abs() <= rounded + mover.lost(posed);
     assert!(

@@ -5,12 +5,12 @@
 //! angles of the triangles over 4 pi (van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle"), here in
 //! f64.
 
+use clamber_oracle::agreement::{Answers, Question};
+use clamber_oracle::brute_force::distance;
 use clamber_surface::geometry::Ray;
 use glam::{DVec3, Vec3};
 
-use super::aims::Aims;
-use super::posed::{Posed, nearest_in};
-use super::questions::{Answer, Question};
+use super::posed::Posed;
 
 /// Largest distance of a computed winding number from a whole number.
 const ROUNDED: f64 = 1e-3;
@@ -25,7 +25,7 @@ fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
     let mut sum = 0.0;
     for triangle in 0..posed.surface.mesh().triangles().len() {
         let corners = posed.corners(triangle).map(|p| p.as_dvec3() - point);
-        if nearest_in(corners, DVec3::ZERO).length() < clear {
+        if distance(DVec3::ZERO, &corners) < clear {
             return None;
         }
         let [a, b, c] = corners;
@@ -41,14 +41,13 @@ fn winding(posed: &Posed<'_>, point: DVec3) -> Option<i64> {
 /// Aims rays at edges, vertices and triangles from either side; returns how many rays had to hit.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) -> usize {
     let mut checked = 0;
-    let mut answer = Answer::default();
     for _ in 0..origins {
         let origin = origin(posed, rng);
         let Some(around) = winding(posed, origin.as_dvec3()) else {
             continue;
         };
         for kind in 0..6 {
-            let mut aims = Aims::new(posed, rng);
+            let mut aims = posed.aims(rng);
             let target = match kind % 3 {
                 0 => aims.edge(),
                 1 => aims.vertex(),
@@ -58,7 +57,7 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
                 continue;
             };
             if around != 0 {
-                must_hit(posed, &ray, f32::INFINITY, &mut answer);
+                must_hit(posed, [origin, target - origin], f32::INFINITY);
                 checked += 1;
             }
             // A ray that ends just beyond the skin aimed at.
@@ -66,7 +65,11 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, origins: usize) 
             let reach = (target - origin).as_dvec3().length() + beyond;
             let end = origin.as_dvec3() + ray.direction().as_dvec3() * reach;
             if winding(posed, end).is_some_and(|there| there != around) {
-                must_hit(posed, &ray, (reach * (1.0 + 1e-6)) as f32, &mut answer);
+                must_hit(
+                    posed,
+                    [origin, target - origin],
+                    (reach * (1.0 + 1e-6)) as f32,
+                );
                 checked += 1;
             }
         }
@@ -84,14 +87,26 @@ fn origin(posed: &Posed<'_>, rng: &mut fastrand::Rng) -> Vec3 {
     ((a + b + c) / 3.0 + normal * (side * off)).as_vec3()
 }
 
-fn must_hit(posed: &Posed<'_>, ray: &Ray, reach: f32, answer: &mut Answer) {
+fn must_hit(posed: &Posed<'_>, [origin, direction]: [Vec3; 2], max_distance: f32) {
     for question in [
-        Question::Ray(*ray, reach),
-        Question::AnyAlong(*ray, reach),
-        Question::AllAlong(*ray, reach),
+        Question::CastRay {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::IntersectsRay {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::CastRayAll {
+            origin,
+            direction,
+            max_distance,
+        },
     ] {
-        question.ask(posed.surface, answer);
-        let found = answer.count() > 0;
-        assert!(found, "a leak: {question:?} finds nothing");
+        let mut found = Vec::new();
+        posed.surface.in_model().answer(&question, &mut found);
+        assert!(!found.is_empty(), "a leak: {question:?} finds nothing");
     }
 }

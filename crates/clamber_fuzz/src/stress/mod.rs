@@ -14,7 +14,6 @@
 //!   leaves no trace in that tick or the next;
 //! - answers in the world are as exact 100 km from the origin as at the origin.
 
-mod aims;
 mod bounds;
 mod contacts;
 mod families;
@@ -23,7 +22,6 @@ mod nearest;
 mod places;
 mod posed;
 mod poses;
-mod questions;
 mod run;
 mod seen;
 mod shapes;

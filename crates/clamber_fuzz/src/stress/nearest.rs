@@ -1,13 +1,14 @@
 //! Checks closest points against all triangles in f64, by independent arithmetic.
 
-use super::aims::Aims;
-use super::posed::{Posed, nearest_in};
+use clamber_oracle::brute_force::distance;
+
+use super::posed::Posed;
 
 /// Checks `count` closest points, at several distances from the skin; returns `count`.
 pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) -> usize {
     for _ in 0..count {
         let off = [0.0, 0.001, 0.05, 3.0][rng.usize(0..4)];
-        let mut aims = Aims::new(posed, rng);
+        let mut aims = posed.aims(rng);
         let skin = aims.skin();
         let point = aims.off(skin, off);
         let space = posed.surface.in_model();
@@ -16,10 +17,8 @@ pub(super) fn check(posed: &Posed<'_>, rng: &mut fastrand::Rng, count: usize) ->
         };
         let p = point.as_dvec3();
         let triangles = 0..posed.surface.mesh().triangles().len();
-        let distances = triangles.map(|triangle| {
-            let corners = posed.corners(triangle).map(|corner| corner.as_dvec3());
-            (nearest_in(corners, p) - p).length()
-        });
+        let distances = triangles
+            .map(|triangle| distance(p, &posed.corners(triangle).map(|corner| corner.as_dvec3())));
         let nearest = distances.fold(f64::INFINITY, f64::min);
         // The size of the lengths involved.
         let size = f64::from(posed.farthest) + p.length();

@@ -1,5 +1,6 @@
 //! Runs one case from beginning to end.
 
+use clamber_oracle::agreement::{Answers, Comparison, Found, Question};
 use clamber_surface::SimdLevel;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::measure::BruteForce;
@@ -8,12 +9,10 @@ use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::DVec3;
 
-use super::aims::{Aims, Named};
 use super::bounds::Bounds;
 use super::places::Journey;
 use super::posed::Posed;
 use super::poses::{Motion, spoilt};
-use super::questions::{Answer, Question};
 use super::world::Before;
 use super::{Case, Class, Seen, Subject, Times, contacts, leaks, nearest, world};
 
@@ -104,28 +103,20 @@ pub fn run(case: &Case, mut times: Option<&mut Times>) -> Seen {
 fn compare(posed: &Posed<'_>, twin: &SkinnedSurface, rng: &mut fastrand::Rng) -> Seen {
     let mut seen = Seen::default();
     let brute_force = BruteForce::new(posed.surface.in_model());
-    let mut questions: Vec<Named> = Vec::new();
-    let [mut lazy, mut ahead, mut wanted] = [(); 3].map(|()| Answer::default());
+    let (mut questions, mut comparison) = (Vec::new(), Comparison::default());
     for _ in 0..ROUNDS {
-        Aims::new(posed, rng).all(&mut questions);
+        posed.aims(rng).named(&mut questions);
         for (name, question) in &questions {
-            question.ask(posed.surface, &mut lazy);
-            question.ask(twin, &mut ahead);
-            question.ask_brute_force(&brute_force, &mut wanted);
-            lazy.check(question);
-            let same = lazy.same(&wanted);
-            assert!(
-                same,
-                "{name} {question:?}: {lazy:?}, by brute force {wanted:?}"
-            );
-            let same = ahead.same(&wanted);
-            assert!(
-                same,
-                "{name} {question:?}: {ahead:?} ahead, by brute force {wanted:?}"
-            );
+            comparison.ask(&brute_force, question);
+            for (how, surface) in [("ahead", twin), ("lazily", posed.surface)] {
+                if let Err(disagreement) = comparison.hold(&surface.in_model()) {
+                    panic!("{name}, skinned {how}: {disagreement}");
+                }
+            }
+            let found = comparison.found();
             seen.questions += 1;
-            seen.hits += lazy.count();
-            seen.undecided += lazy.sweeps.iter().filter(|hit| hit.undecided).count();
+            seen.hits += found.len();
+            seen.undecided += found.iter().filter(|found| found.is_undecided()).count();
         }
     }
     let steps = posed.surface.diagnostics().most_cast_steps;
@@ -143,7 +134,7 @@ fn refuse(
 ) {
     let state = |surface: &SkinnedSurface| {
         let posed = Posed::new(surface, 1.0);
-        let bits = |p: &glam::Vec3| crate::same::bits(*p);
+        let bits = |p: &glam::Vec3| crate::bits::bits(*p);
         let now: Vec<_> = posed.positions.iter().map(bits).collect();
         let before: Vec<_> = posed.previous.iter().map(bits).collect();
         (
@@ -185,9 +176,9 @@ fn time(
     rng: &mut fastrand::Rng,
 ) {
     let mut fresh = posed.surface.clone();
-    let (mut questions, mut answer) = (Vec::new(), Answer::default());
+    let (mut questions, mut answer) = (Vec::new(), Vec::new());
     for _ in 0..TIMED {
-        Aims::new(posed, rng).all(&mut questions);
+        posed.aims(rng).named(&mut questions);
         for (query, question) in &questions {
             let class = Class {
                 mesh: case.mesh,
@@ -198,7 +189,10 @@ fn time(
             // Asked once before it is timed, so that all it touches is skinned, and on the same surface: a surface that
             // is skinned ahead has other bounds, so the work differs.
             let class = class.with_work(work(&mut fresh, poses, question, &mut answer));
-            times.add(class, case, || question.ask(&fresh, &mut answer));
+            times.add(class, case, || {
+                answer.clear();
+                fresh.in_model().answer(question, &mut answer);
+            });
         }
     }
 }
@@ -208,13 +202,14 @@ fn work(
     fresh: &mut SkinnedSurface,
     [before, now]: Poses<'_>,
     question: &Question,
-    answer: &mut Answer,
+    answer: &mut Vec<Found>,
 ) -> usize {
     let done = fresh
         .place(before.0, before.1)
         .and_then(|()| fresh.advance(now.0, now.1));
     assert_eq!(done, Ok(()));
-    question.ask(fresh, answer);
+    answer.clear();
+    fresh.in_model().answer(question, answer);
     let touched = fresh.diagnostics();
     // A node has eight bounds.
     let nodes = touched.bounds_evaluated / 8;

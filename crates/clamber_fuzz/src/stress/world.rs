@@ -1,13 +1,13 @@
 //! Checks that answers in the world are as exact 100 km from the origin as at the origin.
 
+use clamber_oracle::agreement::{point_of, weights};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Contact, MaterialPoint, Obstacle};
 use glam::{DVec3, Vec3};
 
-use super::aims::Aims;
-use super::posed::{Posed, point_of, random_weights};
+use super::posed::Posed;
 
 /// Length of a tick, seconds.
 const TICK: f64 = 1.0 / 60.0;
@@ -65,7 +65,7 @@ pub(super) fn check(
     let world = 1e-15 * away.length();
     let mut checked = 0;
     for _ in 0..count {
-        let mut aims = Aims::new(posed, rng);
+        let mut aims = posed.aims(rng);
         let skin = aims.skin();
         let near = aims.off(skin, 0.1);
         let size = f64::from(posed.farthest.max(near.abs().max_element()));
@@ -125,7 +125,7 @@ fn check_contact(posed: &Posed<'_>, contact: &Contact, exact: f64) {
 /// Checks the motion of a material point against its positions at both ends of the tick.
 fn check_motion(posed: &Posed<'_>, palette: &Palette, before: &Before, rng: &mut fastrand::Rng) {
     let triangle = posed.any_triangle(rng);
-    let weights = random_weights(rng);
+    let weights = weights(rng);
     let material = MaterialPoint {
         key: triangle as u64,
         coordinates: weights.map(f64::from),

@@ -1,6 +1,6 @@
 //! Points and distances in exact rational arithmetic.
 
-use dashu::rational::Relaxed;
+use dashu_ratio::Relaxed;
 use glam::{DVec3, Vec3};
 
 /// A point or vector in rational numbers.

@@ -12,7 +12,7 @@
 
 use std::cell::LazyCell;
 
-use dashu::rational::Relaxed;
+use dashu_ratio::Relaxed;
 use glam::DVec3;
 
 use super::arithmetic::{Exact, dot, length_sq, minus, number, rounded};

@@ -39,3 +39,6 @@ pub use certificate::{Apart, Last, Motion};
 pub use pair::ExactPair;
 pub use tally::Tally;
 pub use verdict::{Claim, Verdict};
+
+/// The rational numbers of this module.
+pub use dashu_ratio::Relaxed;

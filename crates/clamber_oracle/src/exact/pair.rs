@@ -1,4 +1,4 @@
-use dashu::rational::Relaxed;
+use dashu_ratio::Relaxed;
 
 use super::arithmetic::{
     Exact, between, between_triangle_and_segment, exact, from_triangle, length_sq, number, plus,

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use dashu::integer::IBig;
-use dashu::rational::Relaxed;
+use dashu_int::IBig;
+use dashu_ratio::Relaxed;
 
 use super::error::{QueryFileError, RowError};
 use super::query::{FileQuery, QueryKind};

@@ -1,4 +1,4 @@
-use dashu::rational::Relaxed;
+use dashu_ratio::Relaxed;
 use glam::Vec3;
 
 use super::error::RowError;

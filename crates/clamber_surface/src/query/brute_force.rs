@@ -55,6 +55,11 @@ impl<'a> BruteForce<'a> {
         best.hit(self.instance, ray.origin())
     }
 
+    /// Reference for [`ModelSpace::intersects_ray`].
+    pub fn intersects_ray(&self, ray: &Ray, max_distance: f32) -> bool {
+        self.cast_ray(ray, max_distance).is_some()
+    }
+
     /// Reference for [`ModelSpace::cast_ray_all`].
     pub fn cast_ray_all(&self, ray: &Ray, max_distance: f32, hits: &mut Vec<SurfaceHit>) {
         hits.clear();
@@ -123,6 +128,19 @@ impl<'a> BruteForce<'a> {
             self.contacts(&sweep, options.target, |first| earliest.offer(first));
             earliest.hit(self.instance, &sweep)
         })
+    }
+
+    /// Reference for [`ModelSpace::cast_capsule_where`].
+    pub fn cast_capsule_where(
+        &self,
+        capsule: &Capsule,
+        displacements: [Vec3; 2],
+        options: &CastOptions,
+        counts: &mut dyn FnMut(&SweepHit) -> bool,
+    ) -> Option<SweepHit> {
+        let mut hits = Vec::new();
+        self.cast_capsule_all(capsule, displacements, options, &mut hits);
+        hits.into_iter().find(counts)
     }
 
     /// Reference for [`ModelSpace::cast_capsule_all`].

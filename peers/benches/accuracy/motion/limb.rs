@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
+use clamber_oracle::brute_force::Triangles;
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
 use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshError, MeshSource};
 use clamber_surface::rig::{JointId, Palette};
 use clamber_surface::skin::skin_into;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
-
-use crate::truth::Truth;
 
 /// Length and radius of the limb, metres. It lies along X, from the joint on.
 pub(crate) const LENGTH: f64 = 10.0;
@@ -104,7 +103,7 @@ pub(crate) fn signed_distance(mesh: &ColliderMesh, palette: &Palette, point: DVe
     let _ = skin_into(mesh, palette.matrices(), &mut positions);
     let triangles = mesh.triangles().iter();
     let triangles = triangles.map(|t| t.map(|v| positions[v.index()].as_dvec3()));
-    let distance = Truth(triangles.collect()).distance(point);
+    let distance = Triangles(triangles.collect()).distance(point);
     if clamber_scenes::solid_angle::is_inside(&positions, mesh, point) {
         -distance
     } else {

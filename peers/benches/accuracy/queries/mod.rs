@@ -71,7 +71,7 @@ fn expected(set: &Set, query: &Query, kind: Kind) -> Expected {
     let (value, more) = match kind {
         Kind::Ray => {
             let direction = query.ray.direction().as_dvec3();
-            (truth.ray(origin, direction, f64::from(query.reach)), 0)
+            (truth.cast_ray(origin, direction, f64::from(query.reach)), 0)
         }
         Kind::Closest => {
             let distance = truth.distance(origin);
@@ -84,7 +84,7 @@ fn expected(set: &Set, query: &Query, kind: Kind) -> Expected {
         }
         Kind::Cast => {
             let motion = query.motion.as_dvec3();
-            let share = truth.cast(origin, radius, motion);
+            let share = truth.cast_sphere(origin, radius, motion);
             (share.map(|share| share * motion.length()), 0)
         }
     };

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
+use clamber_oracle::brute_force::{Corners, Triangles};
 use clamber_scenes::ball::ball;
 use clamber_scenes::giant::giant;
 use clamber_surface::geometry::{Affine, Ray, Sphere, rotation_from_axis_angle};
@@ -10,8 +11,6 @@ use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource};
 use clamber_surface::rig::{JointId, Palette, Playback};
 use clamber_surface::skin::skin_into;
 use glam::{DVec3, Vec3};
-
-use crate::truth::{Corners, Truth};
 
 /// Place of the creature in the set far from the origin, metres.
 const FAR: DVec3 = DVec3::new(1_000.0, 0.0, -1_000.0);
@@ -22,7 +21,7 @@ pub(crate) struct Set {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) palette: Palette,
     pub(crate) place: DVec3,
-    pub(crate) truth: Truth,
+    pub(crate) truth: Triangles,
     pub(crate) queries: Vec<Query>,
 }
 
@@ -81,7 +80,7 @@ impl Set {
         skin_into(mesh, palette.matrices(), &mut positions)?;
         let corners = mesh.triangles().iter();
         let truth = corners.map(|t| t.map(|v| positions[v.index()].as_dvec3() + place));
-        let truth = Truth(truth.collect());
+        let truth = Triangles(truth.collect());
         let mut rng = fastrand::Rng::with_seed(11);
         let mut queries = Vec::with_capacity(count);
         let around = around(mesh);

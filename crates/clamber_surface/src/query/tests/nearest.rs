@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use clamber_oracle::agreement::Question;
 use glam::Vec3;
 
 use crate::geometry::Ray;
@@ -11,7 +12,7 @@ use crate::measure::BruteForce;
 use crate::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
 use crate::rig::JointId;
 use crate::surface::SkinnedSurface;
-use crate::surface::agreement::assert_same_bits;
+use crate::surface::agreement::assert_same_answers;
 use crate::testing::{direction, point};
 
 /// Triangles of one joint at rest.
@@ -38,21 +39,28 @@ struct Count {
     tied: usize,
 }
 
-/// Compares `cast_ray` with `cast_ray_all`, both of them with brute force, and the order of all hits with the exact
-/// distances.
+/// Compares `cast_ray` and `cast_ray_all` with brute force, the first with the first of all, and the order of all hits
+/// with the exact distances.
 fn assert_one_order(surface: &SkinnedSurface, ray: &Ray, count: &mut Count) {
-    let (mut all, mut wanted) = (Vec::new(), Vec::new());
-    let first = surface.in_model().cast_ray(ray, f32::INFINITY);
-    surface
-        .in_model()
-        .cast_ray_all(ray, f32::INFINITY, &mut all);
-    let alone = all.first().copied();
-    assert_same_bits(first.as_slice(), alone.as_slice(), &format!("{ray:?}"));
+    let (origin, direction, max_distance) = (ray.origin(), ray.direction(), f32::INFINITY);
     let brute_force = BruteForce::new(surface.in_model());
-    let alone = brute_force.cast_ray(ray, f32::INFINITY);
-    assert_same_bits(first.as_slice(), alone.as_slice(), &format!("{ray:?}"));
-    brute_force.cast_ray_all(ray, f32::INFINITY, &mut wanted);
-    assert_same_bits(&all, &wanted, &format!("{ray:?}"));
+    let questions = [
+        Question::CastRay {
+            origin,
+            direction,
+            max_distance,
+        },
+        Question::CastRayAll {
+            origin,
+            direction,
+            max_distance,
+        },
+    ];
+    assert_same_answers(surface, &brute_force, &questions);
+    let mut all = Vec::new();
+    surface.in_model().cast_ray_all(ray, max_distance, &mut all);
+    let first = surface.in_model().cast_ray(ray, max_distance);
+    assert_eq!(first.as_ref(), all.first(), "{ray:?}");
 
     let sheared = ShearedRay::new(ray);
     let distance = |triangle: TriangleId| {

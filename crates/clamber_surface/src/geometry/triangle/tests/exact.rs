@@ -1,6 +1,9 @@
 //! Points and segments against exact rational arithmetic.
 
-use dashu::rational::Relaxed;
+use clamber_oracle::exact::{
+    Exact, Relaxed, between_triangle_and_segment, exact, from_triangle, length_sq, minus, number,
+    plus,
+};
 
 use super::cases::{moved, query, segment, triangle};
 use super::*;
@@ -8,133 +11,6 @@ use super::*;
 /// Largest allowed error of a distance, as a share of the lengths involved. Of 600,000 cases all but 20 stay below
 /// 5e-15, and slivers reach 1e-12; a result that is wrong by more than rounding shows 1e-10.
 const TOLERANCE: f64 = 5e-12;
-
-type Exact = [Relaxed; 3];
-
-fn number(x: f64) -> Relaxed {
-    Relaxed::try_from(x).unwrap()
-}
-
-fn exact(p: Vec3) -> Exact {
-    p.to_array().map(|x| number(f64::from(x)))
-}
-
-fn zip(a: &Exact, b: &Exact, f: impl Fn(&Relaxed, &Relaxed) -> Relaxed) -> Exact {
-    [f(&a[0], &b[0]), f(&a[1], &b[1]), f(&a[2], &b[2])]
-}
-
-fn minus(a: &Exact, b: &Exact) -> Exact {
-    zip(a, b, |a, b| a - b)
-}
-
-fn plus_scaled(a: &Exact, b: &Exact, t: &Relaxed) -> Exact {
-    zip(a, b, |a, b| a + b * t)
-}
-
-fn dot(a: &Exact, b: &Exact) -> Relaxed {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &Exact, b: &Exact) -> Exact {
-    let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
-    [part(1, 2), part(2, 0), part(0, 1)]
-}
-
-fn length_sq(a: &Exact) -> Relaxed {
-    dot(a, a)
-}
-
-fn is_zero(a: &Relaxed) -> bool {
-    *a == Relaxed::ZERO
-}
-
-fn within_unit(t: &Relaxed) -> bool {
-    *t >= Relaxed::ZERO && *t <= Relaxed::ONE
-}
-
-fn point_segment_sq(p: &Exact, a: &Exact, b: &Exact) -> Relaxed {
-    let along = minus(b, a);
-    let from = minus(p, a);
-    let (num, den) = (dot(&from, &along), length_sq(&along));
-    if num <= Relaxed::ZERO {
-        return length_sq(&from);
-    }
-    if num >= den {
-        return length_sq(&minus(p, b));
-    }
-    length_sq(&from) - &num * &num / den
-}
-
-fn segments_sq(a: &Exact, b: &Exact, c: &Exact, d: &Exact) -> Relaxed {
-    let mut best = point_segment_sq(a, c, d);
-    best = best.min(point_segment_sq(b, c, d));
-    best = best.min(point_segment_sq(c, a, b));
-    best = best.min(point_segment_sq(d, a, b));
-    let (u, v, r) = (minus(b, a), minus(d, c), minus(c, a));
-    let n = cross(&u, &v);
-    let n_sq = length_sq(&n);
-    if !is_zero(&n_sq) {
-        let s = dot(&cross(&r, &v), &n) / &n_sq;
-        let t = dot(&cross(&r, &u), &n) / &n_sq;
-        if within_unit(&s) && within_unit(&t) {
-            let apart = dot(&r, &n);
-            best = best.min(&apart * &apart / n_sq);
-        }
-    }
-    best
-}
-
-/// Squared distance to the foot on the face, if it falls inside.
-fn face_sq(corners: &[Exact; 3], p: &Exact) -> Option<Relaxed> {
-    let [a, b, c] = corners;
-    let n = cross(&minus(b, a), &minus(c, a));
-    let n_sq = length_sq(&n);
-    if is_zero(&n_sq) {
-        return None;
-    }
-    let inside =
-        |a: &Exact, b: &Exact| dot(&cross(&minus(b, a), &minus(p, a)), &n) >= Relaxed::ZERO;
-    let height = dot(&minus(p, a), &n);
-    (inside(a, b) && inside(b, c) && inside(c, a)).then(|| &height * &height / n_sq)
-}
-
-fn triangle_point_sq(corners: &[Exact; 3], p: &Exact) -> Relaxed {
-    let [a, b, c] = corners;
-    let edges = point_segment_sq(p, a, b)
-        .min(point_segment_sq(p, b, c))
-        .min(point_segment_sq(p, c, a));
-    face_sq(corners, p).map_or(edges.clone(), |face| face.min(edges))
-}
-
-fn crosses(corners: &[Exact; 3], p: &Exact, q: &Exact) -> bool {
-    let [a, b, c] = corners;
-    let n = cross(&minus(b, a), &minus(c, a));
-    let (from, to) = (dot(&minus(p, a), &n), dot(&minus(q, a), &n));
-    if from == to
-        || (from > Relaxed::ZERO) == (to > Relaxed::ZERO) && !is_zero(&from) && !is_zero(&to)
-    {
-        return false;
-    }
-    let s = &from / (&from - &to);
-    let at = plus_scaled(p, &minus(q, p), &s);
-    within_unit(&s) && face_sq(corners, &at).is_some()
-}
-
-fn triangle_segment_sq(corners: &[Exact; 3], p: &Exact, q: &Exact) -> Relaxed {
-    if crosses(corners, p, q) {
-        return Relaxed::ZERO;
-    }
-    let [a, b, c] = corners;
-    let mut best = segments_sq(a, b, p, q)
-        .min(segments_sq(b, c, p, q))
-        .min(segments_sq(c, a, p, q));
-    for end in [p, q] {
-        if let Some(face) = face_sq(corners, end) {
-            best = best.min(face);
-        }
-    }
-    best
-}
 
 /// The point with the weights found; asserts that they are the weights of a point of the triangle.
 fn point_of(corners: &[Exact; 3], found: &TrianglePoint) -> Exact {
@@ -147,7 +23,8 @@ fn point_of(corners: &[Exact; 3], found: &TrianglePoint) -> Exact {
     let origin = [Relaxed::ZERO, Relaxed::ZERO, Relaxed::ZERO];
     let mut at = origin;
     for (corner, weight) in corners.iter().zip(&weights) {
-        at = plus_scaled(&at, corner, &(weight / &sum));
+        let share = weight / &sum;
+        at = plus(&at, &corner.each_ref().map(|x| x * &share));
     }
     at
 }
@@ -194,7 +71,7 @@ fn points(cases: u32) -> [f64; 2] {
         let corners = [a, b, c];
         let found = closest_point(corners, p);
         let (wide, q) = (corners.map(exact), exact(p));
-        let truth = triangle_point_sq(&wide, &q);
+        let truth = length_sq(&from_triangle(&q, &wide));
         let at = length_sq(&minus(&point_of(&wide, &found), &q));
         let errors = errors(&found, &truth, &at, longest_edge(corners));
         for (worst, error) in worst.iter_mut().zip(errors) {
@@ -221,8 +98,10 @@ fn segments(cases: u32) -> [f64; 2] {
         let corners = [a, b, c];
         let found = closest_to_segment(corners, p, q);
         let (wide, [from, to]) = (corners.map(exact), [p, q].map(exact));
-        let truth = triangle_segment_sq(&wide, &from, &to);
-        let at = point_segment_sq(&point_of(&wide, &found), &from, &to);
+        let truth = length_sq(&between_triangle_and_segment(&wide, [&from, &to]));
+        // The distance from a segment is that from a collapsed triangle.
+        let point = point_of(&wide, &found);
+        let at = length_sq(&from_triangle(&point, &[from.clone(), to.clone(), to]));
         let size = longest_edge(corners) + (widen(q) - widen(p)).length();
         let errors = errors(&found, &truth, &at, size);
         for (worst, error) in worst.iter_mut().zip(errors) {

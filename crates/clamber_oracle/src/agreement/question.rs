@@ -1,0 +1,126 @@
+use glam::Vec3;
+
+/// A query of a posed surface with its arguments, in the surface's model space. Lengths are in model units and may be
+/// infinite; invalid arguments are allowed, and find nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Question {
+    /// The first hit along a ray: at most one [`Found::Hit`].
+    CastRay {
+        /// Start of the ray.
+        origin: Vec3,
+        /// Direction of the ray, of any length.
+        direction: Vec3,
+        /// Largest distance of a hit.
+        max_distance: f32,
+    },
+    /// Whether a ray hits anything: [`Found::Any`] or nothing.
+    IntersectsRay {
+        /// Start of the ray.
+        origin: Vec3,
+        /// Direction of the ray, of any length.
+        direction: Vec3,
+        /// Largest distance of a hit.
+        max_distance: f32,
+    },
+    /// All hits along a ray, by distance.
+    CastRayAll {
+        /// Start of the ray.
+        origin: Vec3,
+        /// Direction of the ray, of any length.
+        direction: Vec3,
+        /// Largest distance of a hit.
+        max_distance: f32,
+    },
+    /// The nearest point of the surface: at most one [`Found::Hit`].
+    ClosestPoint {
+        /// The point.
+        point: Vec3,
+        /// Largest distance.
+        max_distance: f32,
+    },
+    /// The nearest points of the surface and a capsule's segment: at most one [`Found::Nearest`].
+    ClosestToCapsule {
+        /// The capsule.
+        shape: Shape,
+        /// Largest distance from the capsule's outside.
+        max_distance: f32,
+    },
+    /// All triangles that overlap a capsule, each with its point nearest to the segment, by id.
+    OverlapCapsule {
+        /// The capsule.
+        shape: Shape,
+    },
+    /// The first contact of a moving capsule: at most one [`Found::Contact`].
+    CastCapsule {
+        /// The capsule and its motion.
+        cast: Cast,
+        /// Which contacts count.
+        among: Among,
+    },
+    /// The first contact of a moving capsule with every triangle, by time.
+    CastCapsuleAll {
+        /// The capsule and its motion.
+        cast: Cast,
+    },
+    /// The triangles that meet a box now or a tick ago: one [`Found::Triangle`] each, by id.
+    VisitBox {
+        /// Corner of the box with the smallest coordinates.
+        low: Vec3,
+        /// Corner of the box with the largest coordinates.
+        high: Vec3,
+    },
+}
+
+/// A capsule; a ball if both ends are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// Ends of the segment.
+    pub ends: [Vec3; 2],
+    /// Distance of the capsule's outside from the segment.
+    pub radius: f32,
+}
+
+/// A moving capsule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cast {
+    /// The capsule at time 0.
+    pub shape: Shape,
+    /// Displacement of each end from time 0 to time 1.
+    pub displacements: [Vec3; 2],
+    /// True if the surface moves meanwhile, from its last pose to its current one.
+    pub moving: bool,
+    /// Largest gap that counts as a contact; `None` for the query's default.
+    pub tolerance: Option<f64>,
+}
+
+/// Which contacts of a cast count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// All of them.
+    All,
+    /// Those of triangles that the capsule does not overlap at the start.
+    OutsideAtStart,
+    /// Those of triangles whose id is a multiple of three.
+    EveryThirdTriangle,
+}
+
+impl Shape {
+    /// A ball.
+    pub fn ball(center: Vec3, radius: f32) -> Self {
+        Self {
+            ends: [center; 2],
+            radius,
+        }
+    }
+}
+
+impl Among {
+    /// True if a contact counts.
+    pub fn counts(self, triangle: u32, started_inside: bool) -> bool {
+        match self {
+            Self::All => true,
+            Self::OutsideAtStart => !started_inside,
+            Self::EveryThirdTriangle => triangle.is_multiple_of(3),
+        }
+    }
+}
