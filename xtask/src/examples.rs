@@ -11,8 +11,7 @@ use crate::build;
 use crate::run::{note_skipped, program, refuses};
 
 /// What an example cannot do without.
-const ARGUMENTS: [(&str, &[&str]); 4] = [
-    ("inspect", &["assets/colossus.glb", "--poses", "2"]),
+const ARGUMENTS: [(&str, &[&str]); 3] = [
     (
         "rides",
         &[

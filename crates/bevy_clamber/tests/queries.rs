@@ -239,7 +239,9 @@ fn nearest_points_and_overlaps_agree_with_brute_force() {
                 sphere,
                 &(|t: &Corners| brute_force::distance(a, t)) as &dyn Fn(&Corners) -> f64,
             ),
-            ("capsule", capsule, &|t: &Corners| segment_distance([a, b], t)),
+            ("capsule", capsule, &|t: &Corners| {
+                segment_distance([a, b], t)
+            }),
         ] {
             let range = within(reach - CLOSE, distance)..=within(reach + CLOSE, distance);
             let case = format!("{what} {case}: {a} {b} {radius}");

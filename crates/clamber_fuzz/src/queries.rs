@@ -226,8 +226,10 @@ fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec
                 moving,
                 tolerance,
             };
-            let ways = [Among::All, Among::OutsideAtStart, Among::EveryThirdTriangle];
-            all.extend(ways.map(|among| Question::CastCapsule { cast, among }));
+            let some = bytes.pick(&[Among::OutsideAtStart, Among::EveryThirdTriangle]);
+            for among in [Among::All, some] {
+                all.push(Question::CastCapsule { cast, among });
+            }
             all.push(Question::CastCapsuleAll { cast });
         }
     }

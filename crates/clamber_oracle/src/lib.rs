@@ -5,6 +5,7 @@ pub mod brute_force;
 pub mod cases;
 #[cfg(feature = "exact")]
 pub mod exact;
+pub mod golden;
 mod pair;
 #[cfg(feature = "exact")]
 pub mod queries;

@@ -11,7 +11,6 @@
 //! - [`valley`]: the terrain of the scenes.
 //! - [`battle`]: the main scene: a climber climbs or rides a walking, shaking creature.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
-//! - [`inspect`]: a report on a creature's file: its import, and measurements in every clip.
 //! - [`measure`]: tables, plots, quantiles and reference values for benches.
 //! - [`part_bounds`]: spheres and capsules around parts in any pose, in f64.
 //! - [`tour`]: a bot climbs from a creature's foot to its head.
@@ -26,7 +25,6 @@ pub mod closed;
 pub mod controllers;
 mod creature;
 pub mod giant;
-pub mod inspect;
 mod json;
 pub mod measure;
 pub mod part_bounds;

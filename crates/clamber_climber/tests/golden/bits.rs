@@ -1,6 +1,5 @@
 //! A hash of bits: 64-bit FNV-1a (Fowler, Noll, Vo).
 
-use clamber_climber::ClimberState;
 use clamber_surface::surface::{Motion, SurfaceHit, SweepHit};
 use glam::Vec3;
 
@@ -14,7 +13,7 @@ impl Default for Bits {
 }
 
 impl Bits {
-    pub(crate) fn word(&mut self, word: u64) {
+    fn word(&mut self, word: u64) {
         for byte in word.to_le_bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
@@ -71,9 +70,5 @@ impl Bits {
         self.singles(motion.frame.to_array());
         self.singles([motion.area_ratio]);
         self.singles(motion.stretches);
-    }
-
-    pub(crate) fn climber(&mut self, state: &ClimberState) {
-        self.word(state.fingerprint());
     }
 }

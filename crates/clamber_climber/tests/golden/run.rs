@@ -10,6 +10,8 @@ use clamber_world::{Obstacle, ObstacleId};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use clamber_oracle::golden::GoldenRun;
+
 use crate::bits::Bits;
 use crate::creature::{JOINTS, clip, ground, skeleton, tube};
 
@@ -27,15 +29,15 @@ const PLACE: DVec3 = DVec3::new(1e5, 40.0, -3e4);
 /// Metres per unit of the model.
 const SCALE: f64 = 4.0;
 
-/// Plays the run. Returns the hashes of queries and anchors, and of climbers.
-pub(crate) fn run(level: SimdLevel, threads: usize) -> [u64; 2] {
+/// Plays the run.
+pub(crate) fn run(level: SimdLevel, threads: usize) -> GoldenRun {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build()
         .unwrap()
         .install(|| run_on_these_threads(level))
 }
 
-fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
+fn run_on_these_threads(level: SimdLevel) -> GoldenRun {
     let (skeleton, clip) = (skeleton(), clip());
     let mut surface = SkinnedSurface::with_simd_level(tube(), level);
     let mut floor = SkinnedSurface::with_simd_level(ground(), level);
@@ -44,7 +46,8 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
         .place(&Palette::from_matrices([Affine::IDENTITY]), under)
         .unwrap();
     let mut climbers: Vec<Climber> = (0..CLIMBERS).map(climber).collect();
-    let (mut answers, mut riders) = (Bits::default(), Bits::default());
+    let mut run = GoldenRun::default();
+    let mut positions = Vec::new();
     let mut carried = 0;
     for tick in 0..TICKS {
         let time = f64::from(tick) * TICK;
@@ -61,7 +64,9 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
             .into_par_iter()
             .map(|index| ask(&surface, u64::from(tick) * QUERIES + index))
             .collect();
-        asked.into_iter().for_each(|bits| answers.word(bits));
+        for (index, bits) in asked.into_iter().enumerate() {
+            run.field(&format!("query {index}"), bits);
+        }
         let states = climbers.par_iter_mut().enumerate().map(|(index, climber)| {
             let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
                 [(ObstacleId(0), &floor), (TUBE, &surface)];
@@ -72,18 +77,22 @@ fn run_on_these_threads(level: SimdLevel) -> [u64; 2] {
             *climber.state()
         });
         let states: Vec<_> = states.collect();
-        states.iter().for_each(|state| riders.climber(state));
+        for (index, state) in states.iter().enumerate() {
+            run.fields(&format!("climber {index}'s "), state);
+        }
         let on_tube =
             |state: &&ClimberState| state.support.is_some_and(|s| s.attachment.obstacle == TUBE);
         carried += states.iter().filter(on_tube).count();
+        // Also the vertices that queries did not touch.
+        surface.skin_all(&mut positions);
+        let mut bits = Bits::default();
+        bits.positions(&positions);
+        run.field("vertices", bits.finish());
+        run.end_tick();
     }
     // Otherwise the hashes would cover little.
     assert!(carried > 400, "{carried} ticks of climbers on the tube");
-    // Also the vertices that queries did not touch.
-    let mut positions = Vec::new();
-    surface.skin_all(&mut positions);
-    answers.positions(&positions);
-    [answers.finish(), riders.finish()]
+    run
 }
 
 /// Pose of the tube's root, which crawls, turns and rolls.

@@ -5,10 +5,10 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::prelude::*;
-use clamber::skin::skin;
-use clamber_scenes::inspect::skinning_error_share;
+use clamber_cli::inspect::skinning_error_share;
 use clamber_scenes::{Creature, beast::beast, test_data};
+use clamber_surface::rig::Playback;
+use clamber_surface::skin::skin;
 
 /// Number of poses of each clip.
 const POSES: u32 = 12;

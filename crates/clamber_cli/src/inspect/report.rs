@@ -3,9 +3,7 @@ use std::fmt;
 
 use clamber_gltf::Rig;
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
-use serde::Serialize;
-
-use crate::json::number;
+use serde::{Serialize, Serializer};
 
 /// A report on a creature's file: what the import found, and what was measured. Lengths are in the file's metres.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -46,10 +44,14 @@ pub struct Inspection {
     /// Largest error of a skinned coordinate against f64, as a share of the stated bound.
     #[serde(serialize_with = "number")]
     pub skinning_error_share: f64,
-    /// Hits that were compared with brute force, of queries that skin lazily and with everything skinned ahead.
-    pub query_hits: usize,
-    /// Queries whose answer differs from brute force in any bit.
-    pub query_mismatches: usize,
+    /// Answers that were compared with brute force, half of them skinned lazily, half with everything skinned ahead.
+    pub answers: usize,
+    /// Hits and contacts in those that agree.
+    pub hits: usize,
+    /// Answers that differ from brute force in any bit.
+    pub wrong_answers: usize,
+    /// The first of them: question, answer, and what brute force answers.
+    pub first_wrong_answer: Option<String>,
     /// How often a skinned vertex was outside a bound that must hold it.
     pub bound_violations: usize,
     /// Distances between the visual meshes and the collider; `None` without visual meshes.
@@ -146,9 +148,9 @@ impl Inspection {
     }
 
     /// True if what the library promises for every creature held for this one: skinning error within its bound, no
-    /// query mismatch, and no bound violation.
+    /// wrong answer, and no bound violation.
     pub fn holds(&self) -> bool {
-        self.skinning_error_share <= 1.0 && self.query_mismatches == 0 && self.bound_violations == 0
+        self.skinning_error_share <= 1.0 && self.wrong_answers == 0 && self.bound_violations == 0
     }
 }
 
@@ -161,35 +163,47 @@ fn name_of(tag: SurfaceTag) -> String {
     format!("{kind}{}", if tag.ledge { " ledge" } else { "" })
 }
 
-impl fmt::Display for Inspection {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut row = |name: &str, value: String| writeln!(f, "  {name:<24}{value}");
+/// The rows of a table.
+#[derive(Default)]
+struct Rows(String);
+
+impl Rows {
+    fn push(&mut self, name: &str, value: impl fmt::Display) {
+        self.0.push_str(&format!("  {name:<24}{value}\n"));
+    }
+}
+
+impl Inspection {
+    /// What the import found, as rows of a table.
+    pub fn import(&self) -> String {
+        let mut rows = Rows::default();
+        let mut row = |name: &str, value: String| rows.push(name, value);
         row(
             "vertices",
             format!("{} ({} welded)", self.vertices, self.welded),
-        )?;
-        row("cracks", self.cracks.to_string())?;
+        );
+        row("cracks", self.cracks.to_string());
         let dropped = self.dropped_triangles;
         row(
             "triangles",
             format!("{} ({dropped} dropped)", self.triangles),
-        )?;
-        row("joints, parts", format!("{}, {}", self.joints, self.parts))?;
-        row("max influences", self.max_influences.to_string())?;
+        );
+        row("joints, parts", format!("{}, {}", self.joints, self.parts));
+        row("max influences", self.max_influences.to_string());
         row(
             "worst weight error",
             format!("{:.1e}", self.worst_weight_error),
-        )?;
+        );
         let clips = self
             .clips
             .iter()
             .map(|c| format!("{} {:.2} s", c.name, c.seconds));
-        row("clips", list(clips))?;
+        row("clips", list(clips));
         let tags = self
             .tags
             .iter()
             .map(|(tag, count)| format!("{tag} {count}"));
-        row("triangles by tag", list(tags))?;
+        row("triangles by tag", list(tags));
         let points = self.weak_points.iter().map(|point| {
             let major = if point.major { ", major" } else { "" };
             format!(
@@ -197,42 +211,71 @@ impl fmt::Display for Inspection {
                 point.name, point.joint, point.hit_points
             )
         });
-        row("weak points", list(points))?;
+        row("weak points", list(points));
         let vertices = self.visual_vertices;
         row(
             "visual meshes",
             format!("{} ({vertices} vertices)", self.visual_meshes),
-        )?;
+        );
         for warning in &self.warnings {
-            row("warning", warning.clone())?;
+            row("warning", warning.clone());
         }
-        row("measured in", format!("{} poses", self.poses))?;
+        rows.0
+    }
+
+    /// What was measured, as rows of a table.
+    pub fn measured(&self) -> String {
+        let mut rows = Rows::default();
+        let mut row = |name: &str, value: String| rows.push(name, value);
+        row("measured in", format!("{} poses", self.poses));
         let verdict = |holds: bool| if holds { "ok" } else { "FAILED" };
         let share = self.skinning_error_share;
         row(
             "skinning error",
             format!("{share:.3} of the bound  {}", verdict(share <= 1.0)),
-        )?;
-        let mismatches = self.query_mismatches;
-        let hits = self.query_hits;
+        );
+        let (wrong, answers) = (self.wrong_answers, self.answers);
         row(
-            "query mismatches",
-            format!("{mismatches} in {hits} hits  {}", verdict(mismatches == 0)),
-        )?;
+            "wrong answers",
+            format!(
+                "{wrong} of {answers}, with {} hits  {}",
+                self.hits,
+                verdict(wrong == 0)
+            ),
+        );
+        if let Some(first) = &self.first_wrong_answer {
+            row("first wrong answer", first.clone());
+        }
         let violations = self.bound_violations;
         row(
             "bound violations",
             format!("{violations}  {}", verdict(violations == 0)),
-        )?;
+        );
         if let Some(distance) = self.collision_to_visual {
             let Distances { median_m, worst_m } = distance;
             row(
                 "collision to visual",
                 format!("median {median_m:.3} m, worst {worst_m:.3} m"),
-            )?;
+            );
         }
-        row("skinning, all vertices", format!("{:.1} us", self.skin_us))?;
-        row("refitting spheres", format!("{:.1} us", self.refit_us))
+        row("skinning, all vertices", format!("{:.1} us", self.skin_us));
+        row("refitting spheres", format!("{:.1} us", self.refit_us));
+        rows.0
+    }
+}
+
+impl fmt::Display for Inspection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.import(), self.measured())
+    }
+}
+
+/// Serialises a finite number as a number, any other as text (`inf`, `NaN`), where JSON would have `null`.
+fn number<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if number.is_finite() {
+        serializer.serialize_f64(*number)
+    } else {
+        serializer.serialize_str(&number.to_string())
     }
 }
 

@@ -9,8 +9,8 @@ use clamber_surface::surface::{SkinnedSurface, SurfaceError};
 use glam::Vec3;
 use std::sync::Arc;
 
+use super::median;
 use super::report::Distances;
-use crate::measure::quantile;
 
 /// The largest error of a vertex coordinate against skinning in f64, as a share of its bound: infinite if a
 /// position is NaN or a bound of 0 is exceeded. `positions` are the mesh's vertices, skinned with `matrices`.
@@ -79,7 +79,7 @@ impl VisualDistance {
     pub(super) fn finish(&mut self) -> Option<Distances> {
         let worst = self.distances.iter().copied().reduce(f64::max)?;
         Some(Distances {
-            median_m: quantile(&mut self.distances, 0.5),
+            median_m: median(&mut self.distances)?,
             worst_m: worst,
         })
     }
@@ -108,7 +108,7 @@ fn distance(surface: &SkinnedSurface, place: Vec3) -> Result<f64, SurfaceError> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beast::beast;
+    use clamber_scenes::beast::beast;
 
     #[test]
     fn a_moved_vertex_and_nan_exceed_the_bound() {

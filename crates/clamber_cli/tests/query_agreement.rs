@@ -6,14 +6,16 @@
     reason = "a test's helpers may fail like the test"
 )]
 
-use clamber::prelude::*;
-use clamber_scenes::inspect::compare_queries;
+use clamber_cli::inspect::compare_queries;
+use clamber_oracle::agreement::Agreement;
 use clamber_scenes::{Creature, beast::beast, test_data};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::Playback;
+use clamber_surface::surface::SkinnedSurface;
 use glam::{DQuat, DVec3};
 
-/// Number of poses of each clip, and of places in each pose.
+/// Number of poses of each clip.
 const POSES: u32 = 4;
-const PLACES: usize = 12;
 
 /// Compares all queries over the poses of all clips; returns the number of hits.
 fn assert_agreement(creature: &Creature) -> usize {
@@ -32,10 +34,11 @@ fn assert_agreement(creature: &Creature) -> usize {
                 translation: DVec3::new(f64::from(k), 0.0, 0.0),
             };
             surface.advance(&palette, world_from_model).unwrap();
-            let agreement = compare_queries(&surface, &mut rng, PLACES);
+            let mut agreement = Agreement::default();
+            compare_queries(&surface, &mut rng, &mut agreement);
             let context = format!("{}, {}, {time} s", creature.name, clip.name);
-            assert_eq!(agreement.mismatches, 0, "{context}");
-            hits += agreement.hits;
+            assert_eq!(agreement.first, None, "{context}");
+            hits += agreement.found;
         }
     }
     hits

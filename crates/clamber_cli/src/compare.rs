@@ -1,0 +1,126 @@
+//! Compares two recordings of one scene.
+
+use std::path::PathBuf;
+
+use clamber_record::{Difference, Ending, RecordError, Recording, Replayed};
+use clap::Args;
+use thiserror::Error;
+
+/// Compares two recordings of one scene tick by tick, bit for bit.
+///
+/// For example, the recordings of one fight on two platforms. Prints the first tick and the first field that differ.
+/// Exits with 1 if the recordings differ, with 2 if one cannot be read.
+#[derive(Args, Clone, Debug)]
+pub struct CompareOptions {
+    /// A recording.
+    #[arg(value_name = "FILE.mcap")]
+    pub first: PathBuf,
+
+    /// Another recording, which should be the same.
+    #[arg(value_name = "OTHER.mcap")]
+    pub second: PathBuf,
+}
+
+/// Why recordings cannot be compared.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A recording cannot be read.
+    #[error("{}: {error}", path.display())]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        error: RecordError,
+    },
+    /// The recordings are not of one scene.
+    #[error("the recordings cannot be compared: their {0} differ")]
+    Scene(&'static str),
+}
+
+/// How two recordings compare.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Comparison {
+    /// So many ticks are equal in every bit, and there are no others.
+    Equal(u64),
+    /// The first tick that differs.
+    Differ(Box<Difference>),
+    /// One ends after so many ticks that are equal, the other goes on.
+    Shorter(u64),
+}
+
+/// Compares two recordings. The first counts as the recorded one, the second as the replayed one.
+///
+/// # Errors
+/// [`CompareError`] if one cannot be read, or they are of different creatures or of different ticks.
+pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
+    let open = |path: &PathBuf| {
+        Recording::open(path).map_err(|error| CompareError::Record {
+            path: path.clone(),
+            error,
+        })
+    };
+    let [first, second] = [open(&options.first)?, open(&options.second)?];
+    let (one, other) = (first.info(), second.info());
+    if one.creature_fingerprint != other.creature_fingerprint {
+        return Err(CompareError::Scene("creatures"));
+    }
+    if one.tick_seconds != other.tick_seconds {
+        return Err(CompareError::Scene("tick lengths"));
+    }
+    if first.first() != second.first() {
+        return Err(CompareError::Scene("first ticks"));
+    }
+    let mut equal = 0;
+    for (ours, theirs) in first.ticks().zip(second.ticks()) {
+        let failed = |path: &PathBuf, error| CompareError::Record {
+            path: path.clone(),
+            error,
+        };
+        let ours = ours.map_err(|error| failed(&options.first, error))?;
+        let theirs = theirs.map_err(|error| failed(&options.second, error))?;
+        let replayed = Replayed {
+            state: theirs.state,
+            palette_fingerprint: theirs.palette_fingerprint,
+            scene_fingerprint: Some(theirs.scene_fingerprint),
+        };
+        if let Some(difference) = Difference::between(&ours, &replayed) {
+            return Ok(Comparison::Differ(Box::new(difference)));
+        }
+        equal += 1;
+    }
+    Ok(if first.len() == second.len() {
+        Comparison::Equal(equal)
+    } else {
+        Comparison::Shorter(equal)
+    })
+}
+
+/// Compares two recordings and prints the result; returns true if they are equal.
+///
+/// # Errors
+/// As [`compare`].
+pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
+    for path in [&options.first, &options.second] {
+        if let Ok(recording) = Recording::open(path)
+            && *recording.ending() != Ending::Whole
+        {
+            println!("{}: {}", path.display(), recording.ending());
+        }
+    }
+    Ok(match compare(options)? {
+        Comparison::Equal(ticks) => {
+            println!("all {ticks} ticks are equal in every bit");
+            true
+        }
+        Comparison::Shorter(ticks) => {
+            println!("{ticks} ticks are equal in every bit; then one recording ends");
+            false
+        }
+        Comparison::Differ(difference) => {
+            print!("{difference}");
+            false
+        }
+    })
+}

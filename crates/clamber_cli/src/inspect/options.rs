@@ -1,0 +1,87 @@
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Reports what the import finds in a creature's file, and measures the creature in motion.
+///
+/// Loads the file as the library does and says at once what it found. Then it poses the creature at rest and in its
+/// clips, and compares skinning with exact arithmetic, every query with brute force, and bounds with the vertices that
+/// they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
+#[derive(Args, Clone, Debug)]
+pub struct InspectOptions {
+    /// A .glb or .gltf file.
+    pub file: PathBuf,
+
+    /// Print one JSON object instead of a table.
+    #[arg(long)]
+    pub json: bool,
+
+    /// Index of a skin of the creature to inspect [default: the creature with the most triangles].
+    #[arg(long, value_name = "INDEX")]
+    pub skin: Option<usize>,
+
+    /// Measure only in this clip. May be given several times.
+    #[arg(long = "clip", value_name = "NAME")]
+    pub clips: Vec<String>,
+
+    /// Number of poses of each clip [default: 30, or less, so that there are some 300 poses in all].
+    #[arg(long, value_name = "COUNT", conflicts_with = "thorough")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub poses: Option<u32>,
+
+    /// Measure 30 poses of each clip, however many clips there are.
+    #[arg(long)]
+    pub thorough: bool,
+
+    /// Seed for the places of the queries; the same number gives the same places.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// Number of poses of a clip, if there are few clips.
+const POSES: u32 = 30;
+
+/// About so many poses are measured by default.
+const BUDGET: usize = 300;
+
+impl InspectOptions {
+    /// The default options for a file.
+    pub fn of(file: PathBuf) -> Self {
+        Self {
+            file,
+            json: false,
+            skin: None,
+            clips: Vec::new(),
+            poses: None,
+            thorough: false,
+            seed: 1,
+        }
+    }
+
+    /// Number of poses of each of so many clips: at least 1.
+    pub(super) fn poses_of_each(&self, clips: usize) -> u32 {
+        let within_budget = (BUDGET / clips.max(1)).clamp(1, POSES as usize) as u32;
+        match self.poses {
+            Some(poses) => poses,
+            None if self.thorough => POSES,
+            None => within_budget,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_budget_is_shared_by_the_clips() {
+        let options = InspectOptions::of(PathBuf::new());
+        let poses = [0, 1, 7, 10, 76, 300, 1_000].map(|clips| options.poses_of_each(clips));
+        assert_eq!(poses, [30, 30, 30, 30, 3, 1, 1]);
+        let thorough = InspectOptions {
+            thorough: true,
+            ..options
+        };
+        assert_eq!(thorough.poses_of_each(76), 30);
+    }
+}

@@ -1,0 +1,5 @@
+#![doc = include_str!("../README.md")]
+
+pub mod compare;
+pub mod inspect;
+mod progress;

@@ -1,0 +1,36 @@
+//! The command `clamber`.
+
+use std::process::ExitCode;
+
+use clamber_cli::compare::{self, CompareOptions};
+use clamber_cli::inspect::{self, InspectOptions};
+use clap::{Parser, Subcommand};
+
+/// Tools for creatures that are climbed, and for recordings of those who climb them.
+#[derive(Debug, Parser)]
+#[command(name = "clamber", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Inspect(InspectOptions),
+    Compare(CompareOptions),
+}
+
+fn main() -> ExitCode {
+    let ended = match Arguments::parse().command {
+        Command::Inspect(options) => inspect::print(&options).map_err(|error| error.to_string()),
+        Command::Compare(options) => compare::print(&options).map_err(|error| error.to_string()),
+    };
+    match ended {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("clamber: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

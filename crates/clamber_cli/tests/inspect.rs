@@ -1,0 +1,102 @@
+//! The giant and real models pass the inspection; the command line says what is wrong with its arguments.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::process::{Command, Output};
+
+use clamber_cli::inspect::{InspectOptions, inspect};
+use clamber_gltf::load;
+use clamber_scenes::{giant, test_data};
+
+#[test]
+fn the_giant_passes_the_inspection() {
+    let options = InspectOptions {
+        poses: Some(4),
+        ..InspectOptions::of(giant::path())
+    };
+    let inspection = inspect(&load(giant::path()).unwrap(), &options).unwrap();
+    println!("{inspection}");
+    assert!(inspection.holds(), "{inspection}");
+    assert!(inspection.hits > 1_000);
+    // The largest distances are at slots between stone and fur, which the collision mesh closes.
+    let distance = inspection.collision_to_visual.unwrap();
+    assert!(
+        distance.median_m < 0.15 && distance.worst_m < 2.0,
+        "{distance:?}"
+    );
+}
+
+#[test]
+fn every_model_passes_the_inspection() {
+    let files = test_data::gltf_files("inspection of all models").unwrap();
+    let mut inspected = 0;
+    for (name, path) in files.iter().filter(|(name, _)| name.starts_with("models/")) {
+        let Ok(rig) = load(path) else {
+            continue;
+        };
+        let options = InspectOptions {
+            poses: Some(1),
+            ..InspectOptions::of(path.clone())
+        };
+        let inspection = inspect(&rig, &options).unwrap();
+        assert!(inspection.holds(), "{name}\n{inspection}");
+        assert!(inspection.hits > 0, "{name}\n{inspection}");
+        inspected += 1;
+    }
+    assert!(files.is_empty() || inspected == 27, "{inspected}");
+}
+
+/// Runs `clamber` with arguments.
+fn clamber(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_clamber"));
+    command.args(arguments).output().unwrap()
+}
+
+#[test]
+fn the_import_is_told_before_the_measurements() {
+    let file = giant::path();
+    let file = file.to_str().unwrap();
+    let ended = clamber(&["inspect", file, "--clip", "idle", "--poses", "1"]);
+    let text = String::from_utf8(ended.stdout).unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{text}");
+    let [import, measured] = ["weak points", "measured in             2 poses"].map(|row| {
+        text.find(row)
+            .unwrap_or_else(|| panic!("no {row} in {text}"))
+    });
+    assert!(import < measured, "{text}");
+
+    let ended = clamber(&["inspect", file, "--json", "--clip", "idle", "--poses", "1"]);
+    let text = String::from_utf8(ended.stdout).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(report["poses"], 2, "{text}");
+    assert_eq!(report["wrong_answers"], 0, "{text}");
+    assert!(report["answers"].as_u64().unwrap() > 100, "{text}");
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    let file = giant::path();
+    let file = file.to_str().unwrap();
+    for (arguments, told) in [
+        (&["inspect", "nowhere.glb"][..], "nowhere.glb"),
+        (
+            &["inspect", file, "--clip", "jump"],
+            "the clips are: die, idle",
+        ),
+        (&["inspect", file, "--poses", "0"], "--poses"),
+        (
+            &["inspect", file, "--poses", "2", "--thorough"],
+            "--thorough",
+        ),
+        (&["compare", "nowhere.mcap", "there.mcap"], "nowhere.mcap"),
+        (&["compare", "nowhere.mcap"], "<OTHER.mcap>"),
+    ] {
+        let ended = clamber(arguments);
+        let text = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{text}");
+        assert!(text.contains(told), "{text}");
+    }
+}

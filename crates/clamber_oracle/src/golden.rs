@@ -1,0 +1,252 @@
+//! Golden runs: a hash of every bit of a run, and beside it a file with a checksum of every field in every tick. The
+//! hash tells that a run has changed, the file where: in which tick and field first.
+//!
+//! ```
+//! use clamber_oracle::golden::GoldenRun;
+//!
+//! #[derive(Debug)]
+//! struct Body {
+//!     height: f64,
+//!     speed: f64,
+//! }
+//!
+//! let play = |gravity: f64| {
+//!     let mut body = Body { height: 10.0, speed: 0.0 };
+//!     let mut run = GoldenRun::default();
+//!     for tick in 0..5 {
+//!         if tick == 3 {
+//!             body.speed += gravity;
+//!         }
+//!         body.height += body.speed;
+//!         run.fields("", &body);
+//!         run.end_tick();
+//!     }
+//!     run
+//! };
+//! let stored = play(-9.81).to_bytes();
+//! assert_eq!(play(-9.81).difference(&stored), None);
+//! let difference = play(-9.80).difference(&stored).unwrap();
+//! assert_eq!(difference, "the first difference is at tick 3, in height, speed");
+//! ```
+
+use core::fmt::Debug;
+use std::path::Path;
+
+/// A run that is hashed as it goes.
+#[derive(Clone, Debug, Default)]
+pub struct GoldenRun {
+    /// Names of the fields, which are the same in every tick.
+    names: Vec<String>,
+    /// Of all fields of one tick after another.
+    checksums: Vec<u16>,
+    ticks: usize,
+    hash: Hash,
+}
+
+/// A 64-bit FNV-1a hash (Fowler, Noll, Vo).
+#[derive(Clone, Copy, Debug)]
+struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl GoldenRun {
+    /// Adds a field to this tick: its bits, or a hash of them.
+    pub fn field(&mut self, name: &str, bits: u64) {
+        let mut hash = Hash::default();
+        hash.add(&bits.to_le_bytes());
+        self.push(name, hash);
+    }
+
+    /// Adds each field of a struct to this tick, named `of` and its own name. Numbers count with every bit, but for the
+    /// bits of NaN: the text of [`Debug`] has them all.
+    pub fn fields(&mut self, of: &str, value: &impl Debug) {
+        let text = format!("{value:#?}");
+        let mut current: Option<(&str, Hash)> = None;
+        for line in text.lines() {
+            // A field of the struct itself is indented once, what it holds is indented deeper.
+            let own = line
+                .strip_prefix("    ")
+                .filter(|rest| !rest.starts_with([' ', '}', ')', ']']));
+            if let Some((name, _)) = own.and_then(|rest| rest.split_once(':')) {
+                if let Some((name, hash)) = current.take() {
+                    self.push(&format!("{of}{name}"), hash);
+                }
+                current = Some((name, Hash::default()));
+            }
+            if let Some((_, hash)) = &mut current {
+                hash.add(line.as_bytes());
+            }
+        }
+        if let Some((name, hash)) = current {
+            self.push(&format!("{of}{name}"), hash);
+        }
+    }
+
+    fn push(&mut self, name: &str, hash: Hash) {
+        if self.ticks == 0 {
+            self.names.push(name.to_owned());
+        }
+        self.hash.add(&hash.0.to_le_bytes());
+        let folded = hash.0 ^ hash.0 >> 32;
+        self.checksums.push((folded ^ folded >> 16) as u16);
+    }
+
+    /// Ends a tick. Each tick must have the same fields in the same order.
+    pub fn end_tick(&mut self) {
+        self.ticks += 1;
+    }
+
+    /// The hash of all fields so far.
+    pub fn hash(&self) -> u64 {
+        self.hash.0
+    }
+
+    /// Holds this run against its stored hash and file. With the environment variable `CLAMBER_BLESS`, stores the file
+    /// instead, and only the hash may differ.
+    ///
+    /// # Errors
+    /// What differs, and where first, or that the file cannot be read or written, in words.
+    pub fn hold(&self, file: impl AsRef<Path>, hash: u64) -> Result<(), String> {
+        let file = file.as_ref();
+        let named = |error: std::io::Error| format!("{}: {error}", file.display());
+        if std::env::var_os("CLAMBER_BLESS").is_some() {
+            std::fs::write(file, self.to_bytes()).map_err(named)?;
+        }
+        let stored = std::fs::read(file).map_err(named)?;
+        match (self.difference(&stored), self.hash() == hash) {
+            (None, true) => Ok(()),
+            (difference, _) => Err(format!(
+                "the hash is {:#018x}, and {hash:#018x} was expected: {}. If this is intended, store the hash, and the file {} \
+                 by CLAMBER_BLESS=1",
+                self.hash(),
+                difference.unwrap_or("the stored file is equal".into()),
+                file.display(),
+            )),
+        }
+    }
+
+    /// The content of the file beside the hash: the fields' names, a line each, an empty line, and the checksums, 16
+    /// bits each, little endian.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = self.names.join("\n").into_bytes();
+        bytes.extend(b"\n\n");
+        let checksums = self.checksums.iter().map(|sum| sum.to_le_bytes());
+        bytes.extend(checksums.flatten());
+        bytes
+    }
+
+    /// Where this run and a stored one first differ, in words; `None` if all checksums are equal. A field that changed
+    /// keeps its checksum once in 65,536 ticks, and is then found a tick late.
+    pub fn difference(&self, stored: &[u8]) -> Option<String> {
+        let ours = self.to_bytes();
+        if ours == stored {
+            return None;
+        }
+        let names = ours.len() - 2 * self.checksums.len();
+        if stored.get(..names) != ours.get(..names) {
+            return Some("the stored run has other fields".into());
+        }
+        let theirs = stored[names..].as_chunks::<2>().0;
+        let wanted = |index: usize| theirs.get(index).map(|sum| u16::from_le_bytes(*sum));
+        let fields = self.names.len().max(1);
+        for (tick, row) in self.checksums.chunks(fields).enumerate() {
+            let differ = |field: &usize| Some(row[*field]) != wanted(tick * fields + field);
+            let differing = (0..row.len()).filter(differ);
+            let names: Vec<&str> = differing.map(|field| self.names[field].as_str()).collect();
+            if !names.is_empty() {
+                let names = names.join(", ");
+                return Some(format!(
+                    "the first difference is at tick {tick}, in {names}"
+                ));
+            }
+        }
+        Some(format!("the stored run goes on after tick {}", self.ticks))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug)]
+    struct Nested {
+        place: [f64; 2],
+        inner: Option<Inner>,
+        count: u32,
+    }
+
+    #[derive(Debug)]
+    struct Inner {
+        weight: f32,
+    }
+
+    fn run(value: &Nested) -> GoldenRun {
+        let mut run = GoldenRun::default();
+        run.fields("body ", value);
+        run.field("rest", 7);
+        run.end_tick();
+        run
+    }
+
+    #[test]
+    fn a_change_deep_in_a_field_is_named_by_the_field() {
+        let value = |weight, place| Nested {
+            place,
+            inner: Some(Inner { weight }),
+            count: 3,
+        };
+        let first = run(&value(1.5, [0.0, 1.0]));
+        assert_eq!(
+            first.names,
+            ["body place", "body inner", "body count", "rest"]
+        );
+        let stored = first.to_bytes();
+        assert_eq!(run(&value(1.5, [0.0, 1.0])).difference(&stored), None);
+        let other = run(&value(1.5000001, [0.0, 1.0]));
+        let told = other.difference(&stored).unwrap();
+        assert_eq!(told, "the first difference is at tick 0, in body inner");
+        assert!(other.hash() != first.hash());
+        let told = run(&value(1.5, [-0.0, 1.0])).difference(&stored).unwrap();
+        assert_eq!(told, "the first difference is at tick 0, in body place");
+    }
+
+    #[test]
+    fn other_lengths_and_fields_are_told() {
+        let mut first = GoldenRun::default();
+        let mut longer = first.clone();
+        for tick in 0..3 {
+            longer.field("a", tick);
+            longer.end_tick();
+            if tick < 2 {
+                first.field("a", tick);
+                first.end_tick();
+            }
+        }
+        let told = first.difference(&longer.to_bytes()).unwrap();
+        assert_eq!(told, "the stored run goes on after tick 2");
+        let told = longer.difference(&first.to_bytes()).unwrap();
+        assert_eq!(told, "the first difference is at tick 2, in a");
+        let told = run(&Nested {
+            place: [0.0; 2],
+            inner: None,
+            count: 0,
+        });
+        assert_eq!(
+            told.difference(&first.to_bytes()).unwrap(),
+            "the stored run has other fields"
+        );
+        assert!(first.difference(b"").is_some());
+    }
+}
