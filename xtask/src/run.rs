@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 use cargo_metadata::camino::Utf8Path;
 
@@ -43,6 +44,7 @@ pub(crate) fn cargo(arguments: &[&str]) -> Result<(), String> {
 /// Runs cargo with environment variables.
 pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
     println!("   cargo {}", arguments.join(" "));
+    let start = Instant::now();
     let failed = |error: std::io::Error| format!("cannot run cargo: {error}");
     let mut command = command(arguments);
     command.envs(variables.iter().copied());
@@ -61,6 +63,7 @@ pub(crate) fn cargo_with(arguments: &[&str], variables: &[(&str, &str)]) -> Resu
         note_skipped(&line);
     }
     let status = child.wait().map_err(failed)?;
+    println!("   {:.0} s", start.elapsed().as_secs_f64());
     if status.success() {
         Ok(())
     } else {

@@ -42,7 +42,10 @@ pub struct SurfaceAnchor {
 }
 
 impl SurfaceAnchor {
-    /// Anchors to a point of a surface in its current pose. `rotation` is the entity's rotation in world space.
+    /// An anchor at a point of `surface`, the surface of `entity`, in its current pose. `rotation` is the rotation that
+    /// the anchored entity has in this pose, in world space; it turns with the skin.
+    ///
+    /// An `anchor` of another mesh is not refused here. It is lost when it is first followed, with [`AnchorLost`].
     pub fn new(entity: Entity, surface: &SkinnedSurface, anchor: Anchor, rotation: Quat) -> Self {
         let world_from_model = surface.world_from_model();
         let skin = (world_from_model.rotation * anchor.frame.as_dquat()).normalize();

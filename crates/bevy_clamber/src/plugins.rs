@@ -43,7 +43,8 @@ impl PluginGroup for ClamberPlugins {
     }
 }
 
-/// The sets of this crate's systems, in the order of a frame unless plugins are given other schedules.
+/// The sets of this crate's systems, for a game to order its own systems by. If no plugin is given another schedule, a
+/// frame runs them in the order of this list.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClamberSystems {
     /// In `PreUpdate`: colliders are built from mesh assets, surfaces are inserted and removed.

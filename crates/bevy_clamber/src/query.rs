@@ -138,8 +138,8 @@ impl SurfaceQuery<'_, '_> {
         })
     }
 
-    /// Finds every triangle that a ray hits, from either side, up to `max_distance` metres. `hits` is cleared first and
-    /// keeps its memory.
+    /// Finds every triangle that a ray hits, from either side, up to `max_distance` metres, the nearest first. `hits`
+    /// is cleared before and keeps its memory.
     pub fn cast_ray_all(
         &self,
         ray: Ray3d,

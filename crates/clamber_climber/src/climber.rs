@@ -17,7 +17,8 @@ pub type CanGrip<'a> = dyn Fn(ObstacleId, &Contact) -> bool + 'a;
 pub struct StepRules<'a> {
     /// Which contacts can be gripped. By default those whose tag is [fur](clamber_world::SurfaceKind::Fur).
     pub can_grip: &'a CanGrip<'a>,
-    /// Handlers of the game's custom modes. In this order they are asked whether they begin. By default none.
+    /// Handlers of the game's custom modes. In each tick, all but the current mode's are asked in this order whether
+    /// they begin, until one does. A climber in a custom mode whose handler is missing falls. By default none.
     pub modes: &'a [&'a dyn CustomMode],
 }
 

@@ -56,7 +56,8 @@ pub struct HalfSpace {
     /// Unit normal that points into the half-space. Planes whose normal is shorter than a half, longer than 2, or not
     /// finite are ignored.
     pub normal: DVec3,
-    /// Metres for points, metres a second for velocities.
+    /// Distance of the plane from the origin along `normal`; may be negative. Metres in a half-space of points, metres
+    /// a second in one of velocities.
     pub offset: f64,
 }
 

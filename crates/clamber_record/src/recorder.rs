@@ -45,7 +45,7 @@ impl Default for RecordOptions {
     }
 }
 
-/// The data of one tick, as it is at the end of the tick.
+/// What a game passes to [`Recorder::tick`]: the data of one tick, as it is at the end of the tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickView<'a> {
     /// Number of the tick: any for the first tick, then one more than the number of the tick before.
@@ -203,8 +203,8 @@ impl<W: Write> Recorder<W> {
 
     /// Records a snapshot of the scene after the tick recorded last.
     ///
-    /// `scene` is what the scene needs to resume from that tick, beside the climber's state, in a format of its own.
-    /// [`Recording::snapshot`](crate::Recording::snapshot) reads it back.
+    /// `scene` is what the scene needs to resume from that tick, in a format of its own. It can leave out the climber's
+    /// state, since every tick has it. [`Recording::snapshot`](crate::Recording::snapshot) reads both back.
     ///
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.

@@ -5,10 +5,10 @@ use thiserror::Error;
 
 use crate::{RecordError, RecordedTick};
 
-/// The result of one tick of a replay.
+/// What a game's `step` returns to [`replay`]: the result of one replayed tick, to compare with the recorded one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Replayed {
-    /// The climber's state at the end of the tick.
+    /// The climber's state at the end of the tick, as the replay has computed it.
     pub state: ClimberState,
     /// [`palette_fingerprint`](crate::palette_fingerprint) of the creature's palette.
     pub palette_fingerprint: u64,

@@ -22,8 +22,9 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens the fastest device. The environment variable `WGPU_BACKEND` restricts the choice to some backends, as
-    /// everywhere in wgpu.
+    /// Opens the device whose kind is the fastest: a discrete GPU before an integrated one, and software only if there
+    /// is no other. The environment variable `WGPU_BACKEND` restricts the choice to some backends, as everywhere in
+    /// wgpu.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`] if there is no device, [`RenderError::Adapter`] if it cannot be opened.

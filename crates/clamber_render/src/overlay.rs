@@ -99,14 +99,15 @@ impl Overlay {
         }
     }
 
-    /// Adds a sphere, as three circles.
+    /// Adds a sphere, as three circles of lines `width` pixels wide.
     pub fn sphere(&mut self, center: DVec3, radius: f64, width: f32, color: Color) {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             self.circle(center, axis, radius, width, color);
         }
     }
 
-    /// Adds a capsule, as circles and half circles at its ends and four lines between them.
+    /// Adds a capsule about the segment from `a` to `b`, as circles and half circles at its ends and four lines between
+    /// them, all `width` pixels wide.
     pub fn capsule(&mut self, a: DVec3, b: DVec3, radius: f64, width: f32, color: Color) {
         let axis = (b - a).normalize_or(DVec3::Y);
         let side = axis.any_orthonormal_vector() * radius;

@@ -25,7 +25,7 @@ use crate::Look;
 pub struct Paint {
     /// Linear red, green and blue, one for each vertex; white for vertices without a group.
     pub colors: Vec<[f32; 3]>,
-    /// One for each vertex; [`Look::Plain`] for vertices without a group.
+    /// One look for each vertex: that of the last group that uses it; [`Look::Plain`] for vertices without a group.
     pub looks: Vec<Look>,
     /// Triangles of all groups, one group after the other.
     pub triangles: Vec<[u32; 3]>,

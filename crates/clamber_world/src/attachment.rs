@@ -88,7 +88,8 @@ pub enum Continuity {
 #[non_exhaustive]
 pub struct Followed {
     /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`], it
-    /// is the motion that the obstacle reports, which starts elsewhere.
+    /// is the motion that the obstacle reports for the tick. It does not start where the point was last followed, so
+    /// the teleport is not part of it.
     pub motion: PointMotion,
     /// How the point got to its current position.
     pub continuity: Continuity,

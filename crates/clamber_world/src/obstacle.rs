@@ -20,7 +20,7 @@ fn farthest(bounds: Option<(DVec3, f64)>, from: DVec3) -> f64 {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObstacleId(pub u64);
 
-/// A point of an obstacle's material. Only the obstacle that made it can interpret it.
+/// A point of an obstacle's material. Only the obstacle that it belongs to can interpret it.
 ///
 /// A small plain value. Two values from one obstacle are the same point if their bits are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -34,6 +34,10 @@ impl From<WorldSweepHit> for SweepContact {
 
 impl MaterialPoint {
     /// The point of a skinned surface at these barycentric coordinates on a triangle.
+    ///
+    /// The point does not store its surface, and nothing is checked. Use it only with the surface that the triangle
+    /// belongs to. There, [`Obstacle::motion`] is `None` for a triangle that does not exist, and for weights that are
+    /// negative or do not add up to 1.
     pub fn on_triangle(triangle: TriangleId, barycentric: [f32; 3]) -> Self {
         Self {
             key: u64::from(triangle.0),

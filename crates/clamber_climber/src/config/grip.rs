@@ -2,7 +2,7 @@ use super::check;
 use super::ground::DEGREE;
 use crate::ClimberError;
 
-/// Gripping and climbing.
+/// Settings for gripping and climbing: [`ClimberConfig::grip`](crate::ClimberConfig::grip).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GripConfig {
@@ -18,8 +18,9 @@ pub struct GripConfig {
     /// Shake above which it only hangs, metres a second squared, not negative, may be infinite. Default 15. It climbs
     /// again once the shake has stayed below seven tenths of this for `calm_time`.
     pub hang_acceleration: f64,
-    /// How long a hold has to be calm before a hanging climber pulls itself in to climb, seconds, not negative. Default
-    /// 0.4.
+    /// How long without a break a hold has to be calm before a hanging climber pulls itself in to climb, seconds, not
+    /// negative. Default 0.4. A hold is calm if its shake is at most seven tenths of `hang_acceleration` and it is not
+    /// steeper than `max_overhang`.
     pub calm_time: f64,
     /// Speed at which a jump leaves a hold or a ledge, away from it and upwards, metres a second, not negative. Default
     /// 4. A faster blow takes the climber off its hold.

@@ -1,7 +1,7 @@
 use super::check;
 use crate::ClimberError;
 
-/// Standing, walking and jumping.
+/// Settings for standing, walking and jumping: [`ClimberConfig::ground`](crate::ClimberConfig::ground).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GroundConfig {

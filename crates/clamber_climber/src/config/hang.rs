@@ -1,7 +1,7 @@
 use super::check;
 use crate::ClimberError;
 
-/// Hanging by the hands from a grip, as a pendulum.
+/// Settings for hanging by the hands from a grip, as a pendulum: [`ClimberConfig::hang`](crate::ClimberConfig::hang).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HangConfig {

@@ -1,7 +1,7 @@
 use super::check;
 use crate::ClimberError;
 
-/// Hanging from ledges and climbing over them.
+/// Settings for hanging from ledges and climbing over them: [`ClimberConfig::ledge`](crate::ClimberConfig::ledge).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LedgeConfig {

@@ -18,7 +18,7 @@ pub struct Support {
 }
 
 impl Support {
-    /// [`Support::normal`] in world space.
+    /// [`Support::normal`] in world space: a unit vector, for the pose of the material in the climber's last step.
     pub fn normal_in_world(&self) -> DVec3 {
         self.attachment.frame * self.normal
     }

@@ -26,18 +26,21 @@ pub trait CustomMode {
     /// Id of the mode, unique among the game's modes. The climber's mode is [`ClimberMode::Custom`] with this id.
     fn id(&self) -> u16;
 
-    /// Whether the mode begins now.
+    /// Whether the mode begins now. If it does, [`CustomMode::step`] runs in the same tick.
     ///
-    /// Called once in a tick while the climber is in another mode, after its support has carried it and before it
+    /// Called once in a tick while the climber is in any other mode, after its support has carried it and before it
     /// moves. Modes are asked in the order in which they are given; after one begins, the rest are not asked in that
-    /// tick. This is also the place to count down a timer such as a cooldown. While the mode itself runs, use
-    /// [`CustomMode::step`].
+    /// tick.
+    ///
+    /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::memory`]. The timer
+    /// misses the ticks in which a mode before this one begins. While the mode itself runs, count in [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
     /// Runs one tick of the mode, and returns what comes next.
     ///
-    /// Move the body at most once, by [`ModeContext::move_to`] or [`ModeContext::move_by`]. Without a movement, the
-    /// climber is carried by its support, or goes on at its velocity if it has none.
+    /// Move the body at most once, by [`ModeContext::move_to`] or [`ModeContext::move_by`]. A second movement is not
+    /// refused, but meets the obstacles' motion of this tick a second time. Without a movement, the climber is carried
+    /// by its support; without a support, it goes on at its velocity.
     fn step(&self, context: &mut ModeContext<'_, '_>) -> NextMode;
 }
 

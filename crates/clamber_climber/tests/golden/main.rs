@@ -23,9 +23,12 @@ const RUN: u64 = 0xf96d_b806_739a_7cc6;
 /// Plays the run on `threads` threads at a SIMD level.
 fn assert_golden(level: SimdLevel, threads: usize) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/run.golden");
-    if let Err(difference) = run::run(level, threads).hold(file, RUN) {
-        panic!("{} on {threads} threads: {difference}", level.name());
-    }
+    let held = run::run(level, threads).hold(file, RUN);
+    assert!(
+        held.is_ok(),
+        "{} on {threads} threads: {held:?}",
+        level.name()
+    );
 }
 
 #[test]

@@ -29,7 +29,7 @@ impl Comparison {
     ///
     /// # Errors
     /// [`Disagreement`] if the answers differ, or both hold a number that no answer may have ([`Found::fault`]).
-    pub fn hold(&mut self, tested: &impl Answers) -> Result<&[Found], Disagreement> {
+    pub fn hold(&mut self, tested: &impl Answers) -> Result<&[Found], Box<Disagreement>> {
         self.found.clear();
         let Some(question) = &self.question else {
             return Ok(&[]);
@@ -37,13 +37,13 @@ impl Comparison {
         tested.answer(question, &mut self.found);
         match self.fault() {
             None => Ok(&self.found),
-            Some((row, field)) => Err(Disagreement {
+            Some((row, field)) => Err(Box::new(Disagreement {
                 question: *question,
                 field,
                 row,
                 found: self.found.get(row).copied(),
                 wanted: self.wanted.get(row).copied(),
-            }),
+            })),
         }
     }
 
@@ -118,13 +118,13 @@ pub struct Agreement {
 
 impl Agreement {
     /// Counts a comparison.
-    pub fn count(&mut self, result: Result<&[Found], Disagreement>) {
+    pub fn count(&mut self, result: Result<&[Found], Box<Disagreement>>) {
         self.questions += 1;
         match result {
             Ok(found) => self.found += found.len(),
             Err(disagreement) => {
                 self.disagreements += 1;
-                self.first = self.first.or(Some(disagreement));
+                self.first = self.first.or(Some(*disagreement));
             }
         }
     }

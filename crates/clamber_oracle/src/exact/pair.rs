@@ -15,7 +15,8 @@ pub struct ExactPair {
 }
 
 impl ExactPair {
-    /// The vector from the triangle's nearest point to the core's nearest point, at a time.
+    /// The vector from the triangle's nearest point to the core's nearest point, at a time: 0 at the start of the
+    /// motion, 1 at its end. Zero if they intersect.
     pub fn apart(&self, time: &Relaxed) -> Exact {
         let [from, to] = &self.corners;
         let corners = [0, 1, 2].map(|k| between(&from[k], &to[k], time));

@@ -75,7 +75,9 @@ impl FileQuery {
         (self.extent * REACH) as f32
     }
 
-    /// The largest distance of the exact points at which a sweep may report a hit: radius plus tolerance.
+    /// The largest distance between the two exact shapes at which a sweep of the rounded points may report a hit, in
+    /// the units of the file. It leaves room for [`FileQuery::radius`], [`FileQuery::tolerance`], and the change of the
+    /// distance by rounding.
     pub fn reach(&self) -> f64 {
         f64::from(self.radius()) + self.extent * REACH
     }

@@ -98,7 +98,10 @@ pub struct ColliderMesh {
 }
 
 impl ColliderMesh {
-    /// The mesh's current id.
+    /// The mesh's id as it is now. Each vertex or triangle that an edit adds changes it; removals and tags do not.
+    ///
+    /// Hits and anchors carry the id from when their triangle was built or added. So do not compare theirs with this
+    /// one: ask [`ColliderMesh::continues`].
     pub fn id(&self) -> MeshId {
         self.lineage.id()
     }

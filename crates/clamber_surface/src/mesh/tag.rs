@@ -7,7 +7,8 @@ pub enum SurfaceKind {
     Skin,
     /// Fur or vegetation: a climber can grip and climb it.
     Fur,
-    /// Armour or rock: a climber can stand on it; its edges may be ledges.
+    /// Armour or rock: a climber can stand on it, and by default cannot grip it. As on every material, a climber can
+    /// hang from an edge that has the shape of a ledge.
     Stone,
 }
 

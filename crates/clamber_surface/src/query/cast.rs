@@ -45,8 +45,10 @@ pub struct CastOptions {
     /// Whether the skin moves during the cast.
     pub target: TargetMotion,
     /// Largest gap between shape and skin that counts as a contact, in model units; for a cast in world space, in
-    /// metres. `None` stands for a 4,000th of the shape's radius, which is less than one sees, and at least the spacing
-    /// of f32 at the mesh's size.
+    /// metres. May be 0; a cast with a negative or infinite tolerance, or NaN, finds nothing.
+    ///
+    /// `None` stands for a 4,000th of the shape's radius, or for the spacing of f32 at the mesh's size if that is
+    /// larger. Such a gap is too small to see.
     pub tolerance: Option<f64>,
 }
 

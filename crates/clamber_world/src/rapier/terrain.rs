@@ -161,7 +161,7 @@ impl<'a> RapierTerrain<'a> {
     }
 
     /// Handle of the collider that a material point of a rapier world lies on. The collider may have been removed
-    /// since.
+    /// since. For a point of any other obstacle, the handle has no meaning.
     pub fn collider_of(point: &MaterialPoint) -> ColliderHandle {
         ColliderHandle::from_raw_parts(point.key as u32, (point.key >> 32) as u32)
     }

@@ -8,7 +8,10 @@ use crate::RigidPose;
 /// Rounding error of a box in f32, four times over, as a fraction of its largest coordinate.
 const LOOSE: f32 = 1e-6;
 
-/// A body that moved over a tick, with a box around its whole path. An engine's own box may cover only the current
+/// A body that moved over a tick, with a box around its whole path, in the space of its poses. Each of its points is
+/// taken to move in a straight line.
+///
+/// For an [`Obstacle`](crate::Obstacle) that wraps a physics engine: the engine's own box may cover only the current
 /// pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moved {
