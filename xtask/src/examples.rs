@@ -69,12 +69,11 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
     film(metadata, battle, &hash)
 }
 
-/// The battle as released has the hash that it has as built for tests, recorded or not; what one build recorded is fought
-/// again by the other.
+/// The battle as released has the hash that it has as built for tests, recorded or not; what is recorded can be fought
+/// again.
 pub(crate) fn compare_builds(metadata: &Metadata) -> Result<(), String> {
     let tested = build::examples(&build::selection())?;
-    let released = ["--release", "--example", "battle", "--example", "replay"];
-    let released = build::examples(&[&released[..], &build::RELEASED].concat())?;
+    let released = build::examples(&["--release", "-p", "clamber", "--example", "battle"])?;
     let fast = battle_hash(metadata, find(&released, "battle")?, &[])?;
     let plain = battle_hash(metadata, find(&tested, "battle")?, &[])?;
     if plain != fast {
@@ -82,18 +81,47 @@ pub(crate) fn compare_builds(metadata: &Metadata) -> Result<(), String> {
             "the battle's hash is {fast} in release, and {plain} as built for tests"
         ));
     }
+    println!("   battle: hash {fast} in both profiles");
+    let recording = record(metadata, &tested, &fast)?;
+    replay(&tested, &recording)?;
+    let folder = metadata.target_directory.join("xtask-climb");
+    program(find(&released, "battle")?, &["--out", folder.as_str()])
+}
+
+/// What one build records, the other fights again.
+pub(crate) fn exchange_recordings(metadata: &Metadata) -> Result<(), String> {
+    let tested = build::examples(&build::selection())?;
+    let released = ["--release", "-p", "clamber", "--features", "clamber/record"];
+    let named = ["--example", "battle", "--example", "replay"];
+    let released = build::examples(&[&released[..], &named].concat())?;
+    let hash = battle_hash(metadata, find(&released, "battle")?, &[])?;
+    for [from, to] in [[&tested, &released], [&released, &tested]] {
+        replay(to, &record(metadata, from, &hash)?)?;
+    }
+    Ok(())
+}
+
+/// Records a battle, which must have this hash; gives the file.
+fn record(
+    metadata: &Metadata,
+    build: &BTreeMap<String, Utf8PathBuf>,
+    hash: &str,
+) -> Result<Utf8PathBuf, String> {
     let recording = metadata.target_directory.join("xtask-battle.mcap");
     let recorded = ["--record", recording.as_str()];
-    let recorded = battle_hash(metadata, find(&tested, "battle")?, &recorded)?;
-    if recorded != fast {
-        return Err(format!(
-            "the battle's hash is {fast} in release, and {recorded} as built for tests and recorded"
-        ));
+    let recorded = battle_hash(metadata, find(build, "battle")?, &recorded)?;
+    if recorded == hash {
+        Ok(recording)
+    } else {
+        Err(format!(
+            "the battle's hash is {hash}, and {recorded} if it is recorded"
+        ))
     }
-    println!("   battle: hash {fast} in both profiles");
-    let folder = metadata.target_directory.join("xtask-climb");
-    program(find(&released, "battle")?, &["--out", folder.as_str()])?;
-    let replay = find(&released, "replay")?;
+}
+
+/// Fights a recorded battle again, all of it and from a snapshot.
+fn replay(build: &BTreeMap<String, Utf8PathBuf>, recording: &Utf8Path) -> Result<(), String> {
+    let replay = find(build, "replay")?;
     program(replay, &[recording.as_str()])?;
     program(replay, &[recording.as_str(), "--from", "200"])
 }

@@ -6,10 +6,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
+use cargo_metadata::Metadata;
 use cargo_metadata::camino::Utf8PathBuf;
-use cargo_metadata::{Metadata, Package};
 use public_api::Builder;
 
+use crate::features::published;
 use crate::run::{IGNORE_RUST_VERSION, cargo_with};
 
 /// Where the lists stand.
@@ -63,9 +64,7 @@ fn compare(name: &str, stored: &str, found: &str) -> Vec<String> {
 /// The name of each published crate with a list of its public items, one a line.
 fn faces(metadata: &Metadata) -> Result<Vec<(String, String)>, String> {
     document()?;
-    let published = |package: &&Package| package.publish.as_ref().is_none_or(|to| !to.is_empty());
-    let packages = metadata.workspace_packages().into_iter();
-    let faces = packages.filter(published).map(|package| {
+    let faces = published(metadata).map(|package| {
         let name = package.name.to_string();
         let json: Utf8PathBuf = metadata.target_directory.join(format!("doc/{name}.json"));
         let items = Builder::from_rustdoc_json(&json)

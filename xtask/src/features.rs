@@ -1,9 +1,12 @@
-//! The library of every crate alone, as its users build it: with no features, and with each of its features alone,
-//! without warnings. What only its tests depend on is left out, so that it turns no feature on; tests, benches and
-//! examples, and all features together, are linted in another step. Here dependencies that declare a newer Rust than ours
-//! are refused. Nightly, the library's tests with each feature that is not on in the tests of the workspace.
+//! The library of every published crate alone, as its users build it: with no features, and with each of its features
+//! alone, without warnings. What only its tests depend on is left out, so that it turns no feature on; tests, benches
+//! and examples, and all features together, are linted in another step. Here dependencies that declare a newer Rust than
+//! ours are refused.
+//!
+//! Nightly: each feature alone of the crates whose features bring in much that is not ours, and the libraries' tests with
+//! each feature that is not on in the tests of the workspace.
 
-use cargo_metadata::{Metadata, Package, Target, TargetKind};
+use cargo_metadata::{Metadata, Package};
 
 use crate::build::selected;
 use crate::run::{IGNORE_RUST_VERSION, cargo};
@@ -15,23 +18,51 @@ const NEWER_RUST: [&str; 3] = [
     "bevy_clamber/rapier",
 ];
 
+/// Crates whose features build other parts of Bevy, rapier or wgpu for each. All of these features together are linted,
+/// and none of them is checked here; each alone nightly.
+const HEAVY: [&str; 2] = ["bevy_clamber", "clamber"];
+
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
-    for package in metadata.workspace_packages() {
-        let features = package.features.keys().filter(|name| *name != "default");
-        let target = target(package);
-        let lint = ["clippy", "--quiet", "-p", &package.name, target];
-        let bare = ["--no-default-features"];
-        let strict = ["--", "-D", "warnings"];
-        cargo(&[&lint[..], &bare, &strict].concat())?;
-        for feature in features {
-            let mut with = vec!["--features", feature];
-            if NEWER_RUST.contains(&format!("{}/{feature}", package.name).as_str()) {
-                with.push(IGNORE_RUST_VERSION);
-            }
-            cargo(&[&lint[..], &bare, &with, &strict].concat())?;
+    for package in published(metadata) {
+        lint(package, None)?;
+        if !HEAVY.contains(&package.name.as_str()) {
+            each(package)?;
         }
     }
     Ok(())
+}
+
+/// Each feature alone of the crates that [`check`] leaves out.
+pub(crate) fn check_heavy(metadata: &Metadata) -> Result<(), String> {
+    let heavy = |package: &&Package| HEAVY.contains(&package.name.as_str());
+    published(metadata).filter(heavy).try_for_each(each)
+}
+
+/// The packages that users can depend on.
+pub(crate) fn published(metadata: &Metadata) -> impl Iterator<Item = &Package> {
+    let packages = metadata.workspace_packages().into_iter();
+    packages.filter(|package| package.publish.as_ref().is_none_or(|to| !to.is_empty()))
+}
+
+/// A package with each of its features alone.
+fn each(package: &Package) -> Result<(), String> {
+    let features = package.features.keys().filter(|name| *name != "default");
+    features
+        .into_iter()
+        .try_for_each(|feature| lint(package, Some(feature)))
+}
+
+/// A package's library with one feature, or with none.
+fn lint(package: &Package, feature: Option<&str>) -> Result<(), String> {
+    let lint = ["clippy", "--quiet", "-p", &package.name, "--lib"];
+    let mut with = vec!["--no-default-features"];
+    if let Some(feature) = feature {
+        with.extend(["--features", feature]);
+        if NEWER_RUST.contains(&format!("{}/{feature}", package.name).as_str()) {
+            with.push(IGNORE_RUST_VERSION);
+        }
+    }
+    cargo(&[&lint[..], &with, &["--", "-D", "warnings"]].concat())
 }
 
 /// The tests of each library with each of its features that the tests of the workspace do not turn on.
@@ -48,14 +79,4 @@ pub(crate) fn test(metadata: &Metadata) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// What of a package is built: its library, or its program if it has none.
-fn target(package: &Package) -> &'static str {
-    let is_library = |target: &Target| target.kind.contains(&TargetKind::Lib);
-    if package.targets.iter().any(is_library) {
-        "--lib"
-    } else {
-        "--bins"
-    }
 }

@@ -3,21 +3,31 @@
 
 use cargo_metadata::Metadata;
 
-use crate::build;
 use crate::examples;
 use crate::run::cargo;
 
-/// As released, at all SIMD levels, which the core's own tests hold against each other as well; and a battle as released,
-/// fought again from a recording of the other build.
+/// As released: the run of the core at all SIMD levels down to scalar code, and a battle. Scalar code is tested here, since
+/// with overflow checks it takes as long to compile as all other levels together, and there are none in sums of floats.
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
-    let run = [&["test", "--release"][..], &build::RELEASED].concat();
-    cargo(&[&run[..], &["--lib", "--test", "golden"]].concat())?;
+    cargo(&[
+        "test",
+        "--release",
+        "-p",
+        "clamber_climber",
+        "-p",
+        "clamber_surface",
+        "--features",
+        "clamber_surface/scalar",
+        "--test",
+        "golden",
+    ])?;
     examples::compare_builds(metadata)
 }
 
-/// Not optimised, and for the very processor at hand; the second with rapier, whose instructions depend on the processor
+/// As released, recorded and fought again by the other build; not optimised; and for the very processor at hand; the last with rapier, whose instructions depend on the processor
 /// unless it is told otherwise.
 pub(crate) fn other_builds(metadata: &Metadata) -> Result<(), String> {
+    examples::exchange_recordings(metadata)?;
     let test = ["test", "-p", "clamber_climber", "--test", "golden"];
     let plain = "profile.dev.opt-level=0";
     // Apart, or each of these builds would have the other's dependencies built anew.

@@ -1,23 +1,43 @@
-//! What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other libraries
-//! held against ours, the app on all of Bevy, and the soak.
+//! What takes too long for CI: every case of tests that have short forms, each heavy feature alone, other engines,
+//! golden runs in other builds, packages that build by themselves, other libraries held against ours, the app on all of
+//! Bevy, and the soak.
 
 use cargo_metadata::Metadata;
 
-use crate::run::cargo_with;
+use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_with};
 use crate::steps::Step;
-use crate::{app, features, golden, peers, soak};
+use crate::{app, features, golden, packages, peers, soak};
 
 /// Minutes of the soak.
 const MINUTES: f64 = 30.0;
 
-pub(crate) const STEPS: [Step; 6] = [
+pub(crate) const STEPS: [Step; 8] = [
     ("all cases", all_cases),
-    ("features", features::test),
+    ("features", |metadata| {
+        features::check_heavy(metadata)?;
+        features::test(metadata)
+    }),
+    ("engines", |_| engines()),
     ("golden", golden::other_builds),
+    ("packages", packages::build),
     ("peers", |_| peers::check()),
     ("app", |_| app::check()),
     ("soak", |_| soak::run(MINUTES, 1, None)),
 ];
+
+/// Climbers on the terrain of avian and of `bevy_rapier3d`, which take minutes to build.
+fn engines() -> Result<(), String> {
+    cargo(&[
+        "test",
+        "-p",
+        "bevy_clamber",
+        "--features",
+        "avian,rapier",
+        IGNORE_RUST_VERSION,
+        "--test",
+        "obstacles",
+    ])
+}
 
 /// The tests that are ignored elsewhere, and all cases of those that run a fifth of them. One at a time: some take
 /// gigabytes, some measure.

@@ -1,9 +1,10 @@
-//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not
-//! belong there, and it builds from its package alone.
+//! Every publishable crate as crates.io would get it: metadata, licences, nothing that does not belong there. Nightly, it
+//! builds from its package alone.
 
 use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, Package};
 
+use crate::features::published;
 use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, program};
 
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
@@ -21,16 +22,18 @@ const TOP_LEVEL: [&str; 8] = [
 ];
 
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {
-    let packages: Vec<&Package> = metadata
-        .workspace_packages()
-        .into_iter()
-        .filter(|package| package.publish.as_ref().is_none_or(|to| !to.is_empty()))
-        .collect();
+    let packages: Vec<&Package> = published(metadata).collect();
     for package in &packages {
         check_metadata(package)?;
         check_licences(metadata, package)?;
         check_files(package)?;
     }
+    Ok(())
+}
+
+/// Each builds from its package alone.
+pub(crate) fn build(metadata: &Metadata) -> Result<(), String> {
+    let packages: Vec<&Package> = published(metadata).collect();
     let folder = metadata.target_directory.join("xtask-packages");
     // What an interrupted run has left, today's packages may lack.
     if folder.exists() {

@@ -181,6 +181,7 @@ mod tests {
     use super::*;
 
     #[derive(Debug)]
+    #[expect(dead_code, reason = "only printed")]
     struct Nested {
         place: [f64; 2],
         inner: Option<Inner>,
@@ -188,6 +189,7 @@ mod tests {
     }
 
     #[derive(Debug)]
+    #[expect(dead_code, reason = "only printed")]
     struct Inner {
         weight: f32,
     }

@@ -4,7 +4,7 @@ use glam::Vec3;
 /// infinite; invalid arguments are allowed, and find nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
-    /// The first hit along a ray: at most one [`Found::Hit`].
+    /// The first hit along a ray: at most one [`Found::Hit`](super::Found::Hit).
     CastRay {
         /// Start of the ray.
         origin: Vec3,
@@ -13,7 +13,7 @@ pub enum Question {
         /// Largest distance of a hit.
         max_distance: f32,
     },
-    /// Whether a ray hits anything: [`Found::Any`] or nothing.
+    /// Whether a ray hits anything: [`Found::Any`](super::Found::Any) or nothing.
     IntersectsRay {
         /// Start of the ray.
         origin: Vec3,
@@ -31,14 +31,14 @@ pub enum Question {
         /// Largest distance of a hit.
         max_distance: f32,
     },
-    /// The nearest point of the surface: at most one [`Found::Hit`].
+    /// The nearest point of the surface: at most one [`Found::Hit`](super::Found::Hit).
     ClosestPoint {
         /// The point.
         point: Vec3,
         /// Largest distance.
         max_distance: f32,
     },
-    /// The nearest points of the surface and a capsule's segment: at most one [`Found::Nearest`].
+    /// The nearest points of the surface and a capsule's segment: at most one [`Found::Nearest`](super::Found::Nearest).
     ClosestToCapsule {
         /// The capsule.
         shape: Shape,
@@ -50,7 +50,7 @@ pub enum Question {
         /// The capsule.
         shape: Shape,
     },
-    /// The first contact of a moving capsule: at most one [`Found::Contact`].
+    /// The first contact of a moving capsule: at most one [`Found::Contact`](super::Found::Contact).
     CastCapsule {
         /// The capsule and its motion.
         cast: Cast,
@@ -62,7 +62,7 @@ pub enum Question {
         /// The capsule and its motion.
         cast: Cast,
     },
-    /// The triangles that meet a box now or a tick ago: one [`Found::Triangle`] each, by id.
+    /// The triangles that meet a box now or a tick ago: one [`Found::Triangle`](super::Found::Triangle) each, by id.
     VisitBox {
         /// Corner of the box with the smallest coordinates.
         low: Vec3,
