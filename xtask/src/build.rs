@@ -11,7 +11,8 @@ use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 /// What is not on by default but needed by an example, a test or a bench, or only adds to what there is.
 const FEATURES: &str = "\
     bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/gizmos,bevy_clamber/gltf,\
-    bevy_clamber/picking,clamber/record,clamber/render,clamber_benches/record,clamber_benches/render,clamber_climber/serde,clamber_oracle/exact";
+    bevy_clamber/picking,clamber/record,clamber/render,clamber_benches/record,clamber_benches/render,\
+    clamber_climber/serde,clamber_oracle/exact";
 
 /// The packages whose tests `cargo test` runs in full: the workspace's default members, but for the oracle, which has
 /// more tests with its feature.
@@ -22,6 +23,21 @@ const DEFAULT: [&str; 6] = [
     "clamber_mover",
     "clamber_surface",
     "clamber_world",
+];
+
+/// Golden runs as released, with SIMD levels down to scalar code. Here, since scalar code with overflow checks takes as
+/// long to compile as all other levels together, and there are none in sums of floats. One selection for all of them:
+/// with another one, cargo would build rapier again.
+pub(crate) const RELEASED: [&str; 9] = [
+    "--release",
+    "-p",
+    "clamber",
+    "-p",
+    "clamber_climber",
+    "-p",
+    "clamber_surface",
+    "--features",
+    "clamber_surface/scalar",
 ];
 
 /// The whole workspace, with [`FEATURES`].

@@ -73,7 +73,7 @@ pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
 /// again.
 pub(crate) fn compare_builds(metadata: &Metadata) -> Result<(), String> {
     let tested = build::examples(&build::selection())?;
-    let released = build::examples(&["--release", "-p", "clamber", "--example", "battle"])?;
+    let released = build::examples(&[&build::RELEASED[..], &["--example", "battle"]].concat())?;
     let fast = battle_hash(metadata, find(&released, "battle")?, &[])?;
     let plain = battle_hash(metadata, find(&tested, "battle")?, &[])?;
     if plain != fast {

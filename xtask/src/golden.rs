@@ -3,29 +3,18 @@
 
 use cargo_metadata::Metadata;
 
+use crate::build;
 use crate::examples;
 use crate::run::cargo;
 
-/// As released: the run of the core at all SIMD levels down to scalar code, and a battle. Scalar code is tested here, since
-/// with overflow checks it takes as long to compile as all other levels together, and there are none in sums of floats.
+/// As released: the run of the core at all SIMD levels down to scalar code, and a battle.
 pub(crate) fn run(metadata: &Metadata) -> Result<(), String> {
-    cargo(&[
-        "test",
-        "--release",
-        "-p",
-        "clamber_climber",
-        "-p",
-        "clamber_surface",
-        "--features",
-        "clamber_surface/scalar",
-        "--test",
-        "golden",
-    ])?;
+    cargo(&[&["test"][..], &build::RELEASED, &["--test", "golden"]].concat())?;
     examples::compare_builds(metadata)
 }
 
-/// As released, recorded and fought again by the other build; not optimised; and for the very processor at hand; the last with rapier, whose instructions depend on the processor
-/// unless it is told otherwise.
+/// As released, recorded and fought again by the other build; not optimised; and for the very processor at hand, with
+/// rapier, whose instructions depend on the processor unless it is told otherwise.
 pub(crate) fn other_builds(metadata: &Metadata) -> Result<(), String> {
     examples::exchange_recordings(metadata)?;
     let test = ["test", "-p", "clamber_climber", "--test", "golden"];

@@ -36,12 +36,15 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks; goes on after a failure and lists
-    /// them all at the end. Takes some minutes on a cold target.
+    /// Everything that CI checks; goes on after a failure and lists them all at the end. What only checks runs in a
+    /// process of its own, beside what builds and runs. Takes some twenty minutes on a cold target.
     Ci {
-        /// Run only the steps whose name contains this.
+        /// Run only the steps whose name contains this, one after the other.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
+        /// Run only what checks.
+        #[arg(long, hide = true)]
+        checks: bool,
     },
     /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
     /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
@@ -75,14 +78,27 @@ enum Task {
     },
 }
 
-const STEPS: [Step; 12] = [
+/// What runs programs.
+const BUILDS: [Step; 4] = [
     ("tests", |_| {
         // The command of the front page; then all that it leaves out.
         cargo(&["test"])?;
         cargo(&[&["test"][..], &build::beyond_default()].concat())
     }),
     ("golden", golden::run),
+    ("examples", examples::run),
+    ("benches", benches::run),
+];
+
+/// What only reads, and shares no build with the others.
+const CHECKS: [Step; 8] = [
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
+    ("arrows", |metadata| {
+        arrows::check(metadata)?;
+        modules::check()
+    }),
+    ("crates", crates::check),
+    ("packages", packages::check),
     ("lints", |_| {
         let lint = ["clippy", "--all-targets", "--quiet", "--workspace"];
         let all = ["--all-features", IGNORE_RUST_VERSION];
@@ -101,14 +117,6 @@ const STEPS: [Step; 12] = [
         run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
     }),
     ("face", face::check),
-    ("examples", examples::run),
-    ("benches", benches::run),
-    ("arrows", |metadata| {
-        arrows::check(metadata)?;
-        modules::check()
-    }),
-    ("crates", crates::check),
-    ("packages", packages::check),
 ];
 
 fn main() -> ExitCode {
@@ -130,7 +138,17 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     match task {
-        Task::Ci { only } => steps::run(&STEPS, &metadata, only.as_deref()),
+        Task::Ci {
+            only: None,
+            checks: true,
+        } => steps::run(&CHECKS, &metadata, None),
+        Task::Ci { only: None, .. } => steps::beside(&["ci", "--checks"], &metadata, || {
+            steps::run(&BUILDS, &metadata, None)
+        }),
+        Task::Ci { only, .. } => {
+            let all: Vec<Step> = BUILDS.into_iter().chain(CHECKS).collect();
+            steps::run(&all, &metadata, only.as_deref())
+        }
         Task::Nightly { only } => steps::run(&nightly::STEPS, &metadata, only.as_deref()),
         Task::App => ended(app::check()),
         Task::Face => ended(face::store(&metadata)),

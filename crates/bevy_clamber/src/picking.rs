@@ -27,8 +27,8 @@ use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 pub struct SurfacePick {
     /// The collider's triangle.
     pub triangle: TriangleId,
-    /// Its index among the mesh asset's triangles, in the order of its list or strip; `None` for a triangle that an
-    /// edit added.
+    /// Index of the triangle in the mesh asset, in the order of the asset's list or strip. Triangles of a strip that
+    /// have no area are counted too. `None` for a triangle that an edit added.
     pub source_triangle: Option<u32>,
     /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
     pub barycentric: [f32; 3],

@@ -43,8 +43,8 @@ impl PluginGroup for ClamberPlugins {
     }
 }
 
-/// The sets of this crate's systems, for a game to order its own systems by. If no plugin is given another schedule, a
-/// frame runs them in the order of this list.
+/// The sets of this crate's systems, for a game to order its own systems by. A frame runs them in the order of this
+/// list, as long as every plugin keeps its default schedule.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClamberSystems {
     /// In `PreUpdate`: colliders are built from mesh assets, surfaces are inserted and removed.

@@ -85,7 +85,9 @@ pub struct EntityHit {
     pub mesh: MeshId,
     /// The collider's triangle; [`PosedSurface::source_triangle`] gives its index in the mesh asset.
     pub triangle: TriangleId,
-    /// Weights of the triangle's corners: not negative, sum 1 up to rounding.
+    /// Weights of the triangle's three corners, in the order of
+    /// [`ColliderMesh::triangles`](clamber_surface::mesh::ColliderMesh::triangles). None is negative; they add up to 1,
+    /// up to rounding.
     pub barycentric: [f32; 3],
     /// The part of the collider: the triangles that one joint moves most.
     pub part: PartId,

@@ -130,7 +130,7 @@ pub enum ClimberEvent {
 pub struct Push {
     /// The obstacle that is pushed.
     pub obstacle: ObstacleId,
-    /// The point of its material that is pushed.
+    /// The point of the obstacle's material that is pushed.
     pub material: MaterialPoint,
     /// Where the impulse acts, in world space.
     pub point: DVec3,

@@ -6,6 +6,8 @@
 #![doc = include_str!("guide/modes.md")]
 #![doc = ""]
 #![doc = include_str!("guide/details.md")]
+#![cfg_attr(feature = "serde", doc = "")]
+#![cfg_attr(feature = "serde", doc = include_str!("guide/saving.md"))]
 
 /// The items that the pages link to.
 #[cfg(doc)]

@@ -64,8 +64,8 @@ pub fn load_slice(bytes: &[u8], options: &LoadOptions) -> Result<Rig, GltfError>
 ///
 /// Use it for files in an archive, from the web, or embedded in the program. `resolve` is called with a path relative
 /// to the document, percent-decoded, with `/` between its parts. It returns the contents of the whole file. It is
-/// called once for each file, in the order of the buffers, and never for images. Paths that are absolute or lead out of
-/// the document's folder are refused before the first call.
+/// called in the order of the buffers, once for each file even if several buffers name it, and never for images. Paths
+/// that are absolute or lead out of the document's folder are refused before the first call.
 ///
 /// ```
 /// use std::io;

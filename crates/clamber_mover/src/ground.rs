@@ -9,7 +9,8 @@ use crate::{Hit, Mover, MoverBody, Touch};
 /// Parameters of a search for ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundProbe {
-    /// The body that is to stand there.
+    /// The shape that is to stand on the ground. Its position is an argument of the search, as in
+    /// [`Mover::find_ground`].
     pub body: MoverBody,
     /// Unit vector that points up.
     pub up: DVec3,
@@ -144,8 +145,8 @@ impl Mover<'_> {
     }
 
     /// The contact that the body has slid to since it touched `met`: the nearest one within the margin of its ball, on
-    /// the same obstacle, with a normal within 45 degrees of `met`'s. Of equally near contacts the one on the most level
-    /// face is taken, since rounding must not decide on which of two faces the body stands.
+    /// the same obstacle, with a normal within 45 degrees of `met`'s. Of equally near contacts, the one on the most
+    /// level face is taken, since rounding must not decide on which of two faces the body stands.
     pub fn still_underfoot(
         &mut self,
         body: &MoverBody,

@@ -220,7 +220,8 @@ impl<'a> Mover<'a> {
             .is_none()
     }
 
-    /// The first contact of a capsule that moves by `way`, against obstacles in their current state.
+    /// The first contact of a capsule that moves by `way`, metres in world space. The obstacles stand still meanwhile,
+    /// in their state at the end of the tick. `None` if it meets nothing, and for input that is not finite.
     pub fn cast(&mut self, capsule: &WorldCapsule, way: DVec3) -> Option<Hit> {
         self.first(capsule, [way; 2], |_, obstacle| {
             obstacle.cast_capsule(capsule, [way; 2], TargetMotion::Still)

@@ -86,7 +86,7 @@ pub struct Hit {
     pub touch: Touch,
     /// Time of contact as a fraction of the movement, 0 to 1.
     pub time: f64,
-    /// True if they overlap at the start; the time is then 0.
+    /// True if the moving body and the obstacle overlap at the start; the time is then 0.
     pub started_inside: bool,
 }
 

@@ -63,7 +63,8 @@ impl Triangles {
         counts
     }
 
-    /// The share of its motion that a sphere makes until it touches; `None` if it does not touch.
+    /// The share of its motion, 0 to 1, that a sphere makes until it touches a triangle: 0 if it touches one at the
+    /// start, `None` if it touches none. All lengths are in the unit of the corners.
     pub fn cast_sphere(&self, center: DVec3, radius: f64, motion: DVec3) -> Option<f64> {
         let low = center.min(center + motion) - DVec3::splat(radius);
         let high = center.max(center + motion) + DVec3::splat(radius);

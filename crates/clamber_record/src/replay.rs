@@ -39,6 +39,13 @@ impl Difference {
         })
     }
 
+    /// Fields of the climber's state in which replay and recording differ, such as `velocity` or
+    /// `support.attachment.point`; empty if the states are equal. If an optional field is `None` in one of them alone,
+    /// or the modes differ, only the first field that differs is named.
+    pub fn fields(&self) -> Vec<String> {
+        fields(&self.recorded.state, &self.replayed.state)
+    }
+
     /// Names of what differs: creature, climber, rest of the scene.
     fn what(&self) -> String {
         let (recorded, replayed) = (&self.recorded, &self.replayed);
@@ -66,6 +73,10 @@ impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (recorded, replayed) = (&self.recorded, &self.replayed);
         writeln!(f, "tick {} differs in {}", recorded.tick, self.what())?;
+        let fields = self.fields();
+        if !fields.is_empty() {
+            writeln!(f, "the climber's state differs in {}", fields.join(", "))?;
+        }
         let scene = replayed.scene_fingerprint;
         let sides = [
             (
@@ -90,6 +101,33 @@ impl fmt::Display for Difference {
         }
         Ok(())
     }
+}
+
+/// The paths of the fields in which two values differ, by the lines of their texts.
+fn fields(a: &impl fmt::Debug, b: &impl fmt::Debug) -> Vec<String> {
+    let [a, b] = [format!("{a:#?}"), format!("{b:#?}")];
+    let alike = a.lines().count() == b.lines().count();
+    let mut found = Vec::new();
+    // Names of the fields around a line, each with its indentation.
+    let mut around: Vec<(usize, &str)> = Vec::new();
+    for (ours, theirs) in a.lines().zip(b.lines()) {
+        let indentation = ours.len() - ours.trim_start().len();
+        around.retain(|(outer, _)| *outer < indentation);
+        if let Some((name, _)) = ours.trim_start().split_once(": ") {
+            around.push((indentation, name));
+        }
+        if ours != theirs {
+            let names: Vec<&str> = around.iter().map(|(_, name)| *name).collect();
+            let path = names.join(".");
+            if found.last() != Some(&path) {
+                found.push(path);
+            }
+            if !alike {
+                break;
+            }
+        }
+    }
+    found
 }
 
 /// Why a replay stopped before its end.
@@ -137,4 +175,29 @@ pub fn replay<E>(
         agreed += 1;
     }
     Ok(agreed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fields;
+    use clamber_climber::{Climber, ClimberConfig};
+    use glam::DVec3;
+
+    #[test]
+    fn differing_fields_are_named_by_their_paths() {
+        let climber = Climber::new(ClimberConfig::walker(), DVec3::Y).unwrap();
+        let state = *climber.state();
+        assert_eq!(fields(&state, &state), [""; 0]);
+
+        let mut other = state;
+        other.velocity.x = -0.0;
+        other.velocity.z = f64::MIN_POSITIVE;
+        other.flying.jumping = !state.flying.jumping;
+        assert_eq!(fields(&state, &other), ["velocity", "flying.jumping"]);
+
+        // What is there in one of them only has more lines, and nothing after it can be told.
+        other.velocity = state.velocity;
+        other.support_velocity = Some(DVec3::X);
+        assert_eq!(fields(&state, &other), ["support_velocity"]);
+    }
 }

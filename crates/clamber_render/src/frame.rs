@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 
 use crate::{Camera, Overlay, RenderMeshId};
 
-/// Everything that a picture shows.
+/// A picture to draw with [`Renderer::draw`](crate::Renderer::draw): the viewpoint, the light, the meshes, and what is
+/// drawn over them.
 #[derive(Clone, Debug)]
 pub struct Frame<'a> {
     /// The viewpoint.

@@ -43,7 +43,7 @@ pub enum Look {
     /// Smooth.
     #[default]
     Plain,
-    /// Rough, in slabs.
+    /// Rough and bumpy, with lighter and darker patches of the surface's colour.
     Stone,
     /// Strands that catch the light at the rim.
     Fur,

@@ -43,7 +43,7 @@ pub struct Contact {
     /// Distance from the query's point, the ray's origin or the capsule's segment, metres. Negative only inside a solid
     /// body, where a translation by its magnitude along `normal` leads out.
     pub distance: f64,
-    /// The same point as a material point of the obstacle.
+    /// The obstacle's material at `point`. [`Obstacle::motion`] tells in later ticks where it has moved to.
     pub material: MaterialPoint,
     /// The obstacle's tag at the point.
     pub tag: SurfaceTag,

@@ -27,7 +27,8 @@ use crate::PointMotion;
 pub struct RigidPose {
     /// Rotation, a unit quaternion.
     pub rotation: DQuat,
-    /// Translation, metres.
+    /// Position of the body's local origin in the space of the pose, metres. [`RigidPose::transform`] rotates a point
+    /// first and then adds this.
     pub translation: DVec3,
 }
 

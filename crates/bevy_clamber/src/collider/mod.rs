@@ -22,8 +22,9 @@ pub use tag::{ColliderTag, SurfaceTagger};
 
 /// Makes the skinned mesh of this entity (its `Mesh3d` and `SkinnedMesh`) a surface.
 ///
-/// Once both assets are loaded, the collider is built off the main thread; entities with the same mesh, number of
-/// joints and tag share it. When it is ready, a [`PosedSurface`](crate::PosedSurface) is inserted on this entity.
+/// Once the mesh and the inverse bind poses are loaded, the collider is built off the main thread. Entities with the
+/// same mesh, number of joints and [`ColliderTag`] share it. When it is ready, a
+/// [`PosedSurface`](crate::PosedSurface) is inserted on this entity.
 /// [`ColliderStatus`] holds the progress, or the error.
 ///
 /// ```

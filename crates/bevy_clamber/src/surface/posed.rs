@@ -20,7 +20,10 @@ pub enum PoseError {
     /// A joint is gone, or its hierarchy cannot be followed.
     #[error(transparent)]
     Hierarchy(#[from] ColliderError),
-    /// A transform is not finite, or has a rotation of no length.
+    /// The transform of a joint, or of an entity between or above the joints, is not finite, or has a rotation of
+    /// length zero. Only for transforms that are sampled each frame ([`PoseTiming::EachFrame`]). With
+    /// [`PoseTiming::EachTick`], a transform that is not finite gives [`PoseError::Palette`] or
+    /// [`PoseError::Placement`].
     #[error(transparent)]
     Transform(#[from] RigError),
     /// The transforms above the joints have a scale of zero, or are not finite.

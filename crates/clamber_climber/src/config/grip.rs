@@ -9,7 +9,7 @@ pub struct GripConfig {
     /// How far from its ball it can grip, metres, not negative. Default 0.35, an arm. Raise it to grab more easily in
     /// flight.
     pub reach: f64,
-    /// Climbing speed under full input, metres a second, not negative. Default 1.5.
+    /// Climbing speed under full input, relative to the hold, metres a second, not negative. Default 1.5.
     pub climb_speed: f64,
     /// Steepest surface that it climbs on, radians from level ground: a vertical wall is 90 degrees, a ceiling 180.
     /// From a steeper one it only hangs. Not negative. Default 180 degrees: it climbs along ceilings. At 120 degrees it
@@ -18,9 +18,9 @@ pub struct GripConfig {
     /// Shake above which it only hangs, metres a second squared, not negative, may be infinite. Default 15. It climbs
     /// again once the shake has stayed below seven tenths of this for `calm_time`.
     pub hang_acceleration: f64,
-    /// How long without a break a hold has to be calm before a hanging climber pulls itself in to climb, seconds, not
-    /// negative. Default 0.4. A hold is calm if its shake is at most seven tenths of `hang_acceleration` and it is not
-    /// steeper than `max_overhang`.
+    /// How long a hold has to stay calm before a climber that hangs from it pulls itself in to climb, seconds, not
+    /// negative. Default 0.4. The time starts anew whenever the hold is not calm. A hold is calm if its shake is at
+    /// most seven tenths of `hang_acceleration` and it is not steeper than `max_overhang`.
     pub calm_time: f64,
     /// Speed at which a jump leaves a hold or a ledge, away from it and upwards, metres a second, not negative. Default
     /// 4. A faster blow takes the climber off its hold.

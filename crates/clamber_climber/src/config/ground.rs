@@ -35,9 +35,11 @@ pub struct GroundConfig {
     /// Factor on gravity while a jump still rises and [`jump_held`](crate::ClimberInput::jump_held) is false, at least
     /// 1 and finite. Default 1: every jump is equally high. At 3 a tap jumps a third as high.
     pub jump_release_gravity: f64,
-    /// Acceleration of the ground away from the feet above which it throws the climber off, metres a second squared
-    /// beyond gravity, not negative. Measured as a shake ([`ClimberState::shake`](crate::ClimberState::shake)). Default
-    /// 20. Lower values throw sooner; at infinity, feet stick to any ground.
+    /// Threshold at which the ground throws the climber off: by how much its acceleration away from the feet exceeds
+    /// gravity, metres a second squared, not negative. Default 20: under a gravity of 9.81, level ground has to
+    /// accelerate downwards at more than 29.81. Both are taken along the ground's normal, and the ground's acceleration
+    /// is low-pass filtered ([`ClimberState::shake`](crate::ClimberState::shake)). Lower values throw sooner; at
+    /// infinity, feet stick to any ground.
     pub throw_acceleration: f64,
 }
 

@@ -9,7 +9,8 @@ pub struct LedgeConfig {
     pub reach_up: f64,
     /// Greatest distance of the wall in front from the ball, metres, not negative. Default 0.35.
     pub reach: f64,
-    /// Depth of the ball's centre below the ledge while the climber hangs from it, metres, not negative. Default 0.6.
+    /// How far the centre of the body's ball, the climber's position, is below the ledge from which it hangs, metres,
+    /// not negative. Default 0.6.
     pub drop: f64,
     /// Speed along a ledge, metres a second, not negative. Default 1.
     pub shimmy_speed: f64,

@@ -6,7 +6,7 @@ pub enum ClimberMode {
     Standing,
     /// Slides down ground that is too steep to stand on.
     Sliding,
-    /// Grips a hold, crouched on it, and can climb.
+    /// Grips a point of an obstacle, its hold, crouched on it, and can climb along the surface.
     Holding,
     /// Hangs by its hands from a grip that shakes or leans over too far to climb on, or swings after a blow. It can
     /// only hold on or let go.
@@ -15,7 +15,8 @@ pub enum ClimberMode {
     LedgeHanging,
     /// In the air, falling or jumping.
     Falling,
-    /// Knocked over: falls, bounces, slides or lies.
+    /// Knocked over: falls, bounces, slides or lies, whatever the input. It gets up by itself after
+    /// [`TumbleConfig::recover_time`](crate::TumbleConfig::recover_time) at rest on ground.
     Tumbling,
     /// A mode of the game's own, with the id of its [`CustomMode`](crate::CustomMode).
     Custom(u16),
@@ -150,8 +151,9 @@ impl ClimberMode {
         matches!(self, Holding | Hanging | LedgeHanging)
     }
 
-    /// True if this mode can change to `other`, or `other` is the same mode. The changes are those that [`TRANSITIONS`]
-    /// lists, and every change to or from a custom mode.
+    /// True if one change can lead from this mode to `other`, or `other` is the same mode. The changes are those that
+    /// [`TRANSITIONS`] lists, and every change to or from a custom mode. A tick can make several changes, so it may be
+    /// false for the modes at the ends of two successive ticks.
     pub fn may_become(self, other: Self) -> bool {
         self == other
             || self.is_custom()

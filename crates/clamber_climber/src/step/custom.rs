@@ -33,7 +33,8 @@ pub trait CustomMode {
     /// tick.
     ///
     /// This is also the place to count down a timer such as a cooldown, kept in [`ModeContext::memory`]. The timer
-    /// misses the ticks in which a mode before this one begins. While the mode itself runs, count in [`CustomMode::step`].
+    /// misses the ticks in which a mode before this one begins. While the mode itself runs, count in
+    /// [`CustomMode::step`].
     fn begins(&self, context: &mut ModeContext<'_, '_>) -> bool;
 
     /// Runs one tick of the mode, and returns what comes next.
@@ -217,7 +218,8 @@ impl<'a> ModeContext<'_, 'a> {
         self.tick.attach(&ground.touch, ground.position);
     }
 
-    /// Attaches the climber to ground and puts it there. Return the result from [`CustomMode::step`] to stand.
+    /// Attaches the climber to ground, and puts it there without a sweep. Return the result from [`CustomMode::step`]
+    /// to stand. If `step` returns something else, this only does what [`ModeContext::attach_to_ground`] does.
     pub fn stand_on(&mut self, ground: &Ground) -> NextMode {
         self.attach_to_ground(ground);
         NextMode::Change(ClimberMode::Standing)

@@ -14,7 +14,8 @@ const BOUNCE: f64 = 0.1;
 /// A tumbling body lies still if its speed relative to the ground is below this share of the speed of a jump.
 const STILL: f64 = 0.1;
 
-/// Memory of a climber that falls or slides.
+/// Memory of a climber that is in the air or slides: whether it rises from a jump. The climber's step sets it; a game
+/// only stores it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlyingMemory {

@@ -30,14 +30,13 @@ const PLACE: DVec3 = DVec3::new(1e5, 40.0, -3e4);
 const SCALE: f64 = 4.0;
 
 /// Plays the run.
-pub(crate) fn run(level: SimdLevel, threads: usize) -> GoldenRun {
+pub(crate) fn play(run: &mut GoldenRun, level: SimdLevel, threads: usize) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build()
-        .unwrap()
-        .install(|| run_on_these_threads(level))
+    let pool = pool.build().unwrap();
+    pool.install(|| play_on_these_threads(run, level));
 }
 
-fn run_on_these_threads(level: SimdLevel) -> GoldenRun {
+fn play_on_these_threads(run: &mut GoldenRun, level: SimdLevel) {
     let (skeleton, clip) = (skeleton(), clip());
     let mut surface = SkinnedSurface::with_simd_level(tube(), level);
     let mut floor = SkinnedSurface::with_simd_level(ground(), level);
@@ -46,7 +45,6 @@ fn run_on_these_threads(level: SimdLevel) -> GoldenRun {
         .place(&Palette::from_matrices([Affine::IDENTITY]), under)
         .unwrap();
     let mut climbers: Vec<Climber> = (0..CLIMBERS).map(climber).collect();
-    let mut run = GoldenRun::default();
     let mut positions = Vec::new();
     let mut carried = 0;
     for tick in 0..TICKS {
@@ -78,6 +76,7 @@ fn run_on_these_threads(level: SimdLevel) -> GoldenRun {
         });
         let states: Vec<_> = states.collect();
         for (index, state) in states.iter().enumerate() {
+            run.field(&format!("climber {index}"), state.fingerprint());
             run.fields(&format!("climber {index}'s "), state);
         }
         let on_tube =
@@ -92,7 +91,6 @@ fn run_on_these_threads(level: SimdLevel) -> GoldenRun {
     }
     // Otherwise the hashes would cover little.
     assert!(carried > 400, "{carried} ticks of climbers on the tube");
-    run
 }
 
 /// Pose of the tube's root, which crawls, turns and rolls.

@@ -13,9 +13,9 @@ use crate::{Core, MovingPair};
 pub enum Kind {
     /// Nothing: a random case.
     Random,
-    /// The triangle has a height of 1e-7.
+    /// The triangle has a height of 1e-7 m.
     Sliver,
-    /// The triangle is nearly a line, with a height of 1e-20 to 1e-3, and the core is close to it.
+    /// The triangle is nearly a line of about a metre, with a height of 1e-20 to 1e-3 m, and the core is close to it.
     Needle,
     /// The core passes a corner, an edge or a face at a distance of about the radius.
     Grazing,

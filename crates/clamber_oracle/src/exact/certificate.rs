@@ -33,7 +33,8 @@ const SHORT: f64 = 1e-9;
 /// More than products lose by underflow.
 const UNDERFLOW: f64 = 1e-300;
 
-/// What is proved about the distance in an interval of time.
+/// What is proved about the distance between a triangle and a core in an interval of time: whether it stays greater
+/// than the radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Apart {
     /// The distance is greater than the radius at all times.

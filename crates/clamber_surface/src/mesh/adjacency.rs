@@ -35,7 +35,10 @@ impl ColliderMesh {
 
     /// The island that a triangle belongs to: all triangles that can be reached from it across shared edges. An
     /// edge connects all triangles that share it; a single shared vertex connects none. `None` if the triangle was
-    /// removed or never existed. Costs the same as [`ColliderMesh::neighbours`].
+    /// removed or never existed. Edits renumber the islands, so an id is only good until the next edit.
+    ///
+    /// The first call after a build or an edit of triangles costs O(n log n) for all n triangles; later calls cost
+    /// O(1).
     pub fn island_of(&self, triangle: TriangleId) -> Option<IslandId> {
         let island_of = self.adjacency().island_of.get(triangle.index());
         island_of.copied().flatten()

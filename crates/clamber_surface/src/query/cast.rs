@@ -47,8 +47,8 @@ pub struct CastOptions {
     /// Largest gap between shape and skin that counts as a contact, in model units; for a cast in world space, in
     /// metres. May be 0; a cast with a negative or infinite tolerance, or NaN, finds nothing.
     ///
-    /// `None` stands for a 4,000th of the shape's radius, or for the spacing of f32 at the mesh's size if that is
-    /// larger. Such a gap is too small to see.
+    /// `None` stands for 1/4,000 of the shape's radius, or for 2^-23 of the mesh's radius (the spacing of f32 at that
+    /// size) if that is larger. Such a gap is too small to see.
     pub tolerance: Option<f64>,
 }
 

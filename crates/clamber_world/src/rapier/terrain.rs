@@ -86,8 +86,8 @@ impl MovedColliders {
 }
 
 impl<'a> RapierTerrain<'a> {
-    /// An obstacle made of rapier's sets. `before` holds the bodies' poses before the last step; if it is empty,
-    /// nothing in the world moves.
+    /// An obstacle made of rapier's sets. `before` holds the bodies' poses before the last step. A body without a pose
+    /// there counts as one that has not moved; if `before` is empty, nothing in the world moves.
     pub fn new(
         bodies: &'a RigidBodySet,
         colliders: &'a ColliderSet,

@@ -1,4 +1,5 @@
-//! The giant and real models pass the inspection; the command line says what is wrong with its arguments.
+//! The giant and real models pass the inspection; recordings are compared; the command line says what is wrong with its
+//! arguments.
 
 #![expect(
     clippy::unwrap_used,
@@ -9,6 +10,8 @@ use std::process::{Command, Output};
 
 use clamber_cli::inspect::{InspectOptions, inspect};
 use clamber_gltf::load;
+use clamber_record::RecordOptions;
+use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::{giant, test_data};
 
 #[test]
@@ -97,6 +100,45 @@ fn errors_name_what_is_wrong() {
         let ended = clamber(arguments);
         let text = String::from_utf8(ended.stderr).unwrap();
         assert_eq!(ended.status.code(), Some(2), "{text}");
+        assert!(text.contains(told), "{text}");
+    }
+}
+
+/// A recording of a ride, made of this seed, as a file of the target folder.
+fn recorded(name: &str, seed: u64, ticks: u64) -> String {
+    let options = BattleOptions::ride(0, seed);
+    let creature = giant::giant().unwrap();
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    let how = RecordOptions::default();
+    let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+    for tick in 0..ticks {
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+    }
+    let file = format!("{}/{name}.mcap", env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(&file, recorder.finish().unwrap()).unwrap();
+    file
+}
+
+#[test]
+fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
+    let first = recorded("first", 1, 60);
+    for (other, code, told) in [
+        (recorded("again", 1, 60), 0, "all 60 ticks are equal"),
+        (
+            recorded("shorter", 1, 40),
+            1,
+            "40 ticks are equal in every bit; then",
+        ),
+        (
+            recorded("other", 2, 60),
+            1,
+            "the climber's state differs in",
+        ),
+    ] {
+        let ended = clamber(&["compare", &first, &other]);
+        let text = String::from_utf8(ended.stdout).unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{text}");
         assert!(text.contains(told), "{text}");
     }
 }
