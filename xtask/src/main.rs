@@ -36,15 +36,12 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks; goes on after a failure and lists them all at the end. What only checks runs in a
-    /// process of its own, beside what builds and runs. Takes some twenty minutes on a cold target.
+    /// Everything that CI checks; goes on after a failure and lists them all at the end. Takes some twenty minutes on a
+    /// cold target.
     Ci {
-        /// Run only the steps whose name contains this, one after the other.
+        /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
-        /// Run only what checks.
-        #[arg(long, hide = true)]
-        checks: bool,
     },
     /// What takes too long for CI: every case of tests that have short forms, golden runs in other builds, other
     /// libraries, the app on all of Bevy, a soak of half an hour. Takes some two hours on a cold target.
@@ -78,8 +75,7 @@ enum Task {
     },
 }
 
-/// What runs programs.
-const BUILDS: [Step; 4] = [
+const STEPS: [Step; 12] = [
     ("tests", |_| {
         // The command of the front page; then all that it leaves out.
         cargo(&["test"])?;
@@ -88,10 +84,6 @@ const BUILDS: [Step; 4] = [
     ("golden", golden::run),
     ("examples", examples::run),
     ("benches", benches::run),
-];
-
-/// What only reads, and shares no build with the others.
-const CHECKS: [Step; 8] = [
     ("format", |_| cargo(&["fmt", "--all", "--check"])),
     ("arrows", |metadata| {
         arrows::check(metadata)?;
@@ -104,7 +96,6 @@ const CHECKS: [Step; 8] = [
         let all = ["--all-features", IGNORE_RUST_VERSION];
         cargo(&[&lint[..], &all, &["--", "-D", "warnings"]].concat())
     }),
-    ("features", features::check),
     ("documentation", |_| {
         let doc = [
             "doc",
@@ -117,6 +108,7 @@ const CHECKS: [Step; 8] = [
         run::cargo_with(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
     }),
     ("face", face::check),
+    ("features", features::check),
 ];
 
 fn main() -> ExitCode {
@@ -138,17 +130,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     match task {
-        Task::Ci {
-            only: None,
-            checks: true,
-        } => steps::run(&CHECKS, &metadata, None),
-        Task::Ci { only: None, .. } => steps::beside(&["ci", "--checks"], &metadata, || {
-            steps::run(&BUILDS, &metadata, None)
-        }),
-        Task::Ci { only, .. } => {
-            let all: Vec<Step> = BUILDS.into_iter().chain(CHECKS).collect();
-            steps::run(&all, &metadata, only.as_deref())
-        }
+        Task::Ci { only } => steps::run(&STEPS, &metadata, only.as_deref()),
         Task::Nightly { only } => steps::run(&nightly::STEPS, &metadata, only.as_deref()),
         Task::App => ended(app::check()),
         Task::Face => ended(face::store(&metadata)),

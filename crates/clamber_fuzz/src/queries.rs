@@ -174,31 +174,15 @@ fn questions(bytes: &mut Bytes<'_>, positions: &[Vec3], size: f32, all: &mut Vec
         to - origin
     };
     check_ray(origin, direction);
-    *all = vec![
-        Question::CastRay {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::IntersectsRay {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::CastRayAll {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::ClosestPoint {
-            point: origin,
-            max_distance,
-        },
-        Question::VisitBox {
-            low: origin.min(to),
-            high: to,
-        },
-    ];
+    *all = Question::along_ray(origin, direction, max_distance).to_vec();
+    all.push(Question::ClosestPoint {
+        point: origin,
+        max_distance,
+    });
+    all.push(Question::VisitBox {
+        low: origin.min(to),
+        high: to,
+    });
     // A shape's radius must be finite.
     let radius = if max_distance == f32::INFINITY {
         f32::MAX

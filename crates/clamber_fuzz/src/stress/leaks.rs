@@ -88,23 +88,7 @@ fn origin(posed: &Posed<'_>, rng: &mut fastrand::Rng) -> Vec3 {
 }
 
 fn must_hit(posed: &Posed<'_>, [origin, direction]: [Vec3; 2], max_distance: f32) {
-    for question in [
-        Question::CastRay {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::IntersectsRay {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::CastRayAll {
-            origin,
-            direction,
-            max_distance,
-        },
-    ] {
+    for question in Question::along_ray(origin, direction, max_distance) {
         let mut found = Vec::new();
         posed.surface.in_model().answer(&question, &mut found);
         assert!(!found.is_empty(), "a leak: {question:?} finds nothing");

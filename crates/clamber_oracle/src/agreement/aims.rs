@@ -169,27 +169,11 @@ impl<'a> Aims<'a> {
             _ => self.vertex() - origin,
         };
         let max_distance = self.unit * [0.0, 0.05, 0.5, f32::INFINITY][self.rng.usize(0..4)];
-        questions.extend([
-            Question::CastRay {
-                origin,
-                direction,
-                max_distance,
-            },
-            Question::IntersectsRay {
-                origin,
-                direction,
-                max_distance,
-            },
-            Question::CastRayAll {
-                origin,
-                direction,
-                max_distance,
-            },
-            Question::ClosestPoint {
-                point: origin,
-                max_distance,
-            },
-        ]);
+        questions.extend(Question::along_ray(origin, direction, max_distance));
+        questions.push(Question::ClosestPoint {
+            point: origin,
+            max_distance,
+        });
         let radius = if max_distance.is_finite() {
             max_distance
         } else {

@@ -104,6 +104,29 @@ pub enum Among {
     EveryThirdTriangle,
 }
 
+impl Question {
+    /// The three questions about one ray: its first hit, whether there is one, and all of them.
+    pub fn along_ray(origin: Vec3, direction: Vec3, max_distance: f32) -> [Self; 3] {
+        [
+            Self::CastRay {
+                origin,
+                direction,
+                max_distance,
+            },
+            Self::IntersectsRay {
+                origin,
+                direction,
+                max_distance,
+            },
+            Self::CastRayAll {
+                origin,
+                direction,
+                max_distance,
+            },
+        ]
+    }
+}
+
 impl Shape {
     /// A ball.
     pub fn ball(center: Vec3, radius: f32) -> Self {

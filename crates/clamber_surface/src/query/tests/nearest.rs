@@ -44,18 +44,7 @@ struct Count {
 fn assert_one_order(surface: &SkinnedSurface, ray: &Ray, count: &mut Count) {
     let (origin, direction, max_distance) = (ray.origin(), ray.direction(), f32::INFINITY);
     let brute_force = BruteForce::new(surface.in_model());
-    let questions = [
-        Question::CastRay {
-            origin,
-            direction,
-            max_distance,
-        },
-        Question::CastRayAll {
-            origin,
-            direction,
-            max_distance,
-        },
-    ];
+    let questions = Question::along_ray(origin, direction, max_distance);
     assert_same_answers(surface, &brute_force, &questions);
     let mut all = Vec::new();
     surface.in_model().cast_ray_all(ray, max_distance, &mut all);
