@@ -173,7 +173,7 @@ fn fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f 
         wrap = 0.35;
         rim = 0.5;
     } else if (in.look > 0.5) {
-        // Stone: slabs with darker seams, weathered in patches.
+        // Stone: smooth lighter and darker patches, and bumps.
         let patches = noise(in.rest * 0.9) * 0.5 + noise(in.rest * 3.1) * 0.3 + noise(in.rest * 11.0) * 0.2;
         albedo *= 0.70 + 0.6 * patches;
         n = normalize(n + 0.30 * (vec3f(noise(in.rest * 5.0), noise(in.rest.yzx * 5.0), noise(in.rest.zxy * 5.0)) - 0.5));
