@@ -18,8 +18,8 @@ const NEWER_RUST: [&str; 3] = [
     "bevy_clamber/rapier",
 ];
 
-/// Crates whose features build other parts of Bevy, rapier or wgpu for each. All of these features together are linted,
-/// and none of them is checked here; each alone nightly.
+/// Crates whose features each build other parts of Bevy, rapier or wgpu. Here they are checked without features, and
+/// nightly with each feature alone. The lints have all features on.
 const HEAVY: [&str; 2] = ["bevy_clamber", "clamber"];
 
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {

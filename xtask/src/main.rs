@@ -36,8 +36,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that CI checks; goes on after a failure and lists them all at the end. Takes some twenty minutes on a
-    /// cold target.
+    /// Everything that CI checks; goes on after a failure and lists them all at the end. Takes half an hour on a cold
+    /// target.
     Ci {
         /// Run only the steps whose name contains this.
         #[arg(long, value_name = "NAME")]

@@ -1,5 +1,4 @@
-//! The giant and real models pass the inspection; recordings are compared; the command line says what is wrong with its
-//! arguments.
+//! The giant and real models pass the inspection. Recordings are compared. Wrong arguments are told.
 
 #![expect(
     clippy::unwrap_used,

@@ -79,8 +79,4 @@ fn compare(surface: &SkinnedSurface) {
     if let Err(disagreement) = comparison.hold(&space) {
         panic!("{disagreement}");
     }
-    assert!(
-        !comparison.found().is_empty(),
-        "nothing within {radius} of {center}"
-    );
 }

@@ -314,7 +314,7 @@ impl Queries {
     }
 }
 
-/// True if brute force leaves undecided what it has to compare.
+/// True if the answers may differ, since brute force could not decide a contact: see [`Queries::ask`].
 fn is_undecided(brute_force: &BruteForce<'_>, asked: &Comparison, question: &Question) -> bool {
     let any = |rows: &[Found]| rows.iter().any(Found::is_undecided);
     let Question::CastCapsule { cast, .. } = *question else {

@@ -136,7 +136,7 @@ impl GoldenRun {
         let text = format!("{value:#?}");
         let mut current: Option<(&str, Hash)> = None;
         for line in text.lines() {
-            // A field of the struct itself is indented once, what it holds is indented deeper.
+            // The struct's own fields are indented once. Whatever they hold is indented deeper.
             let own = line.strip_prefix("    ");
             let own = own.filter(|rest| !rest.starts_with([' ', '}', ')', ']']));
             if let Some((name, _)) = own.and_then(|rest| rest.split_once(':')) {

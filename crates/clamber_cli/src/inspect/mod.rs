@@ -132,8 +132,8 @@ pub fn inspect(rig: &Rig, options: &InspectOptions) -> Result<Inspection, Inspec
     Ok(inspection)
 }
 
-/// Asks one question of every kind and aim, of the surface as it is, which skins only what it touches, and of a copy
-/// with everything skinned ahead; compares the answers with brute force.
+/// Compares answers with brute force, for one question of every kind and aim. Each is put twice: to the surface, which
+/// skins only what a query touches, and to a copy with everything skinned ahead.
 pub fn compare_queries(
     surface: &SkinnedSurface,
     rng: &mut fastrand::Rng,

@@ -43,6 +43,8 @@ pub enum Found {
 /// A point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
+    /// The mesh that the hit names, as any number that tells meshes apart.
+    pub mesh: u64,
     /// The triangle's id.
     pub triangle: u32,
     /// The part that the triangle belongs to.
@@ -170,11 +172,11 @@ impl Found {
 }
 
 /// The numbers of a row as bits, each with its field; as many as the longest row has.
-struct Bits([(&'static str, u64); 20], usize);
+struct Bits([(&'static str, u64); 21], usize);
 
 impl Default for Bits {
     fn default() -> Self {
-        Self([("kind", 0); 20], 0)
+        Self([("kind", 0); 21], 0)
     }
 }
 
@@ -209,6 +211,7 @@ impl Hit {
     }
 
     fn bits(&self, bits: &mut Bits) {
+        bits.push("mesh", [self.mesh]);
         bits.push("triangle", [self.triangle.into()]);
         bits.push("part", [self.part.into()]);
         bits.push("tag", [self.tag]);

@@ -166,6 +166,7 @@ mod tests {
     };
 
     const HIT: Hit = Hit {
+        mesh: 7,
         triangle: 3,
         part: 1,
         tag: 0,
@@ -192,6 +193,7 @@ mod tests {
         assert_eq!(wrong(&[hit], &[hit, hit]), Some("number of rows"));
         assert_eq!(wrong(&[hit], &[Found::Any]), Some("kind"));
         let others = [
+            ("mesh", Hit { mesh: 8, ..HIT }),
             ("triangle", Hit { triangle: 4, ..HIT }),
             ("part", Hit { part: 4, ..HIT }),
             ("tag", Hit { tag: 4, ..HIT }),

@@ -137,6 +137,7 @@ fn number(tag: SurfaceTag) -> u64 {
 impl From<&SurfaceHit> for Hit {
     fn from(hit: &SurfaceHit) -> Self {
         Self {
+            mesh: hit.mesh.number(),
             triangle: hit.triangle.0,
             part: hit.part.0,
             tag: number(hit.tag),
@@ -168,6 +169,7 @@ impl From<&SweepHit> for Found {
     fn from(hit: &SweepHit) -> Self {
         Self::Contact {
             hit: Hit {
+                mesh: hit.mesh.number(),
                 triangle: hit.triangle.0,
                 part: hit.part.0,
                 tag: number(hit.tag),
