@@ -29,9 +29,9 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
-use bevy_clamber::core::geometry::Similarity;
-use bevy_clamber::core::rig::{Palette, Playback, Pose};
-use bevy_clamber::core::surface::SkinnedSurface;
+use bevy_clamber::clamber_surface::geometry::Similarity;
+use bevy_clamber::clamber_surface::rig::{Palette, Playback, Pose};
+use bevy_clamber::clamber_surface::surface::SkinnedSurface;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{ScheduleLabel, SingleThreadedExecutor};

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod anchor;
+mod climber;
 mod collider;
 #[cfg(feature = "clamber_gltf")]
 mod creature;
@@ -18,6 +19,10 @@ mod query;
 mod surface;
 
 pub use anchor::{AnchorError, AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
+pub use climber::{
+    Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
+    ClimberState, CustomObstacle, Grip, GripRule, events,
+};
 pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
@@ -35,8 +40,15 @@ pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{EntityHit, EntitySweepHit, SurfaceFilter, SurfaceQuery};
-pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin};
+pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin, WorldOrigin};
 
+/// The character.
+pub use clamber_climber;
 #[cfg(feature = "clamber_gltf")]
 pub use clamber_gltf;
-pub use clamber_surface as core;
+/// Surfaces, their queries and meshes.
+pub use clamber_surface;
+/// What a climber can touch.
+pub use clamber_world;
+/// Vectors and rotations; the same as in `bevy_math`.
+pub use glam;

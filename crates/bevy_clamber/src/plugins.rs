@@ -54,8 +54,14 @@ pub enum ClamberSystems {
     Animate,
     /// In the schedule of [`ClamberPlugins`], `FixedPostUpdate` by default: surfaces take this tick's pose.
     Pose,
+    /// In the schedule of `ClimberPlugin`, `FixedPostUpdate` by default, after [`ClamberSystems::Pose`] and after the
+    /// physics engine: climbers are stepped, and their events triggered.
+    Climb,
     /// In `PostUpdate`, after `AnimationSystems`: the poses that this frame draws are recorded.
     Sample,
+    /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: climbers are moved to
+    /// where this frame draws them.
+    Draw,
     /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: anchored
     /// entities are moved to the skin as it is drawn.
     Anchor,

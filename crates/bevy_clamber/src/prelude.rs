@@ -3,8 +3,10 @@
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
-    AnchorLost, ClamberPlugins, ClamberSystems, ColliderStatus, ColliderTag, EntityHit, PoseTiming,
-    PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, SurfaceTagger,
+    AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberFilter,
+    ClimberInput, ClimberModes, ClimberPlugin, ClimberState, ColliderStatus, ColliderTag,
+    CustomObstacle, EntityHit, GripRule, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor,
+    SurfaceFilter, SurfaceQuery, SurfaceTagger,
 };
 #[cfg(feature = "clamber_gltf")]
 pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bevy_app::App;
 use bevy_asset::{Assets, Handle, RenderAssetUsages};
 use bevy_clamber::ColliderError;
-use bevy_clamber::core::mesh::{ColliderMesh, MeshError};
+use bevy_clamber::clamber_surface::mesh::{ColliderMesh, MeshError};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
@@ -210,7 +210,7 @@ fn changed_inverse_bind_poses_pose_the_surface() {
     let lifted = |app: &App| {
         let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
         let top = surface.mesh().positions().len() as u32 - 1;
-        let top = bevy_clamber::core::mesh::VertexId(top);
+        let top = bevy_clamber::clamber_surface::mesh::VertexId(top);
         surface.in_model().position(top).unwrap().y - surface.mesh().positions()[top.index()].y
     };
     assert_eq!(lifted(&app), 0.0);

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
 use bevy_asset::Assets;
-use bevy_clamber::core::rig::{Joint, Playback, Skeleton};
-use bevy_clamber::core::skin::skin;
+use bevy_clamber::clamber_surface::rig::{Joint, Playback, Skeleton};
+use bevy_clamber::clamber_surface::skin::skin;
 use bevy_clamber::prelude::*;
 use bevy_clamber::{RigAssets, TooManyJoints};
 use bevy_ecs::prelude::*;

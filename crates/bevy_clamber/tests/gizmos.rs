@@ -8,7 +8,7 @@ use std::any::TypeId;
 
 use bevy_app::{AnimationSystems, App, FixedUpdate, PostUpdate};
 use bevy_asset::Assets;
-use bevy_clamber::core::geometry::Capsule;
+use bevy_clamber::clamber_surface::geometry::Capsule;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
@@ -51,16 +51,16 @@ fn scene() -> (App, Limb, Entity) {
 }
 
 /// The highest triangle in the rest pose.
-fn tip(app: &App, limb: &Limb) -> bevy_clamber::core::mesh::TriangleId {
+fn tip(app: &App, limb: &Limb) -> bevy_clamber::clamber_surface::mesh::TriangleId {
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();
     let mesh = surface.mesh();
-    let height = |corners: &[bevy_clamber::core::mesh::VertexId; 3]| {
+    let height = |corners: &[bevy_clamber::clamber_surface::mesh::VertexId; 3]| {
         let heights = corners.map(|corner| mesh.positions()[corner.index()].y);
         heights.iter().sum::<f32>()
     };
     let triangles = mesh.triangles().iter().zip(0..);
     let highest = triangles.max_by(|a, b| height(a.0).total_cmp(&height(b.0)));
-    bevy_clamber::core::mesh::TriangleId(highest.unwrap().1)
+    bevy_clamber::clamber_surface::mesh::TriangleId(highest.unwrap().1)
 }
 
 fn show(app: &mut App, show: SurfaceGizmos) {

@@ -11,7 +11,7 @@ use std::time::Instant;
 use bevy_app::{App, PreUpdate};
 use bevy_asset::{Assets, RenderAssetUsages};
 use bevy_clamber::ColliderError;
-use bevy_clamber::core::mesh::VertexId;
+use bevy_clamber::clamber_surface::mesh::VertexId;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
@@ -25,12 +25,14 @@ use common::{Limb, add_bindposes, add_mesh, app, bend, limb, limb_mesh, spawn_li
 const EACH_TICK: SkinnedCollider = SkinnedCollider {
     joints: PoseTiming::EachTick,
     root: PoseTiming::EachTick,
+    ..SkinnedCollider::each_frame()
 };
 const BOTH: [SkinnedCollider; 2] = [
     EACH_TICK,
     SkinnedCollider {
         joints: PoseTiming::EachFrame,
         root: PoseTiming::EachFrame,
+        ..SkinnedCollider::each_frame()
     },
 ];
 

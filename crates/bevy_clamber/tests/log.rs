@@ -85,6 +85,7 @@ fn each_failure_is_logged_once() {
         let collider = SkinnedCollider {
             joints: timing,
             root: timing,
+            ..SkinnedCollider::each_frame()
         };
         // A joint that is gone, and a root with a scale of zero.
         let gone = limb(&mut app, Transform::IDENTITY, collider);

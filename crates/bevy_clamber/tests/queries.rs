@@ -8,7 +8,7 @@ mod posed;
 
 use bevy_app::{App, FixedPostUpdate};
 use bevy_clamber::EntitySweepHit;
-use bevy_clamber::core::geometry::Capsule;
+use bevy_clamber::clamber_surface::geometry::Capsule;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;

@@ -78,6 +78,7 @@ fn check_ticks(rate: f64, timing: PoseTiming) {
     let collider = SkinnedCollider {
         joints: timing,
         root: timing,
+        ..SkinnedCollider::each_frame()
     };
     limb(&mut app, Transform::IDENTITY, collider);
     for _ in 0..3 {

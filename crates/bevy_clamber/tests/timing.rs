@@ -7,7 +7,7 @@ mod common;
 use std::time::Duration;
 
 use bevy_app::{AnimationSystems, App, FixedPostUpdate, FixedUpdate, PostUpdate, Update};
-use bevy_clamber::core::mesh::VertexId;
+use bevy_clamber::clamber_surface::mesh::VertexId;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -15,14 +15,8 @@ use bevy_time::{Fixed, Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use common::{Limb, app, bend, limb};
 
-const FRAME: SkinnedCollider = SkinnedCollider {
-    joints: PoseTiming::EachFrame,
-    root: PoseTiming::EachFrame,
-};
-const TICK: SkinnedCollider = SkinnedCollider {
-    joints: PoseTiming::EachTick,
-    root: PoseTiming::EachTick,
-};
+const FRAME: SkinnedCollider = SkinnedCollider::each_frame();
+const TICK: SkinnedCollider = SkinnedCollider::each_tick();
 
 /// Metres a second that the root moves along X.
 const SPEED: f64 = 3.0;
@@ -78,12 +72,16 @@ fn frame(app: &mut App, milliseconds: u64) {
     app.update();
 }
 
-/// Checks that each tick begins where the last one ended and does not move back. Returns the number of ticks.
+/// Checks that each tick begins where the last one ended, unless it is a placement, and does not move back. Returns the
+/// number of ticks.
 fn check(app: &App, what: &str) -> usize {
     let ticks = &app.world().resource::<Ticks>().0;
     for pair in ticks.windows(2) {
         let [[_, last, _], [_, now, before]] = [pair[0], pair[1]];
-        assert!((before - last).abs() < 1e-5, "{what}: {pair:?}");
+        assert!(
+            (before - last).abs() < 1e-5 || before == now,
+            "{what}: {pair:?}"
+        );
         assert!(now > last - 1e-6, "{what}: {pair:?}");
     }
     ticks.len()
@@ -141,8 +139,11 @@ fn ticks_follow_scaled_and_paused_time() {
             let ticks = app.world().resource::<Ticks>().0.len() - before;
             assert_eq!(ticks == 0, paused || speed == 0.0, "{speed} {paused}");
         }
+        for _ in 0..100 {
+            frame(&mut app, 16);
+        }
         check(&app, "scaled");
-        // In the end it keeps up. With frame timing it lags by one frame, less than 0.1 s.
+        // In the end it keeps up. With frame timing it lags by the longer frames.
         let [time, now, _] = *app.world().resource::<Ticks>().0.last().unwrap();
         let lag = SPEED * time - now;
         assert!((-1e-4..SPEED * 0.1).contains(&lag), "{lag}");
@@ -175,10 +176,13 @@ fn ticks_move_evenly_after_the_fixed_clock_has_discarded_time() {
     for _ in 0..30 {
         frame(&mut app, 40);
     }
-    // All ticks move equally far.
+    // All ticks move equally far, but for a slow change of the lag.
     let ticks = &app.world().resource::<Ticks>().0;
     for [_, now, before] in ticks {
-        assert!((now - before - SPEED / 64.0).abs() < 1e-4, "{now} {before}");
+        assert!(
+            (now - before - SPEED / 64.0).abs() < 0.01 * SPEED / 64.0 + 1e-5,
+            "{now} {before}"
+        );
     }
 }
 
@@ -247,7 +251,11 @@ fn joints_and_root_may_have_different_timings() {
         (PoseTiming::EachTick, PoseTiming::EachFrame),
         (PoseTiming::EachFrame, PoseTiming::EachTick),
     ] {
-        let (mut app, limb) = walker(SkinnedCollider { joints, root });
+        let (mut app, limb) = walker(SkinnedCollider {
+            joints,
+            root,
+            ..SkinnedCollider::each_frame()
+        });
         match joints {
             PoseTiming::EachTick => app.add_systems(FixedUpdate, common::animate),
             PoseTiming::EachFrame => {
@@ -255,7 +263,7 @@ fn joints_and_root_may_have_different_timings() {
             }
         };
         let rate = 40.0;
-        for _ in 0..60 {
+        for _ in 0..300 {
             frame(&mut app, 25);
         }
         check(&app, "mixed");
@@ -359,10 +367,11 @@ fn a_pose_that_is_set_by_hand_lasts_until_the_next_tick() {
         app.update();
     }
     let mut surface = app.world_mut().get_mut::<PosedSurface>(limb.mesh).unwrap();
-    let palette = bevy_clamber::core::rig::Palette::from_matrices(
-        [bevy_clamber::core::geometry::Affine::IDENTITY; 2],
+    let palette = bevy_clamber::clamber_surface::rig::Palette::from_matrices(
+        [bevy_clamber::clamber_surface::geometry::Affine::IDENTITY; 2],
     );
-    let far = bevy_clamber::core::geometry::Similarity::from_translation(glam::DVec3::X * 9.0);
+    let far =
+        bevy_clamber::clamber_surface::geometry::Similarity::from_translation(glam::DVec3::X * 9.0);
     surface.surface_mut().place(&palette, far).unwrap();
     app.update();
     let surface = app.world().get::<PosedSurface>(limb.mesh).unwrap();

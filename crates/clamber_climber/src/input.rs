@@ -6,6 +6,7 @@ use crate::ClimberError;
 /// The player's input to a climber for one tick, and the blow that struck it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberInput {
     /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
     /// The component along up is ignored. On a hold, the direction is rotated with the hold from level ground: pushing
@@ -35,6 +36,7 @@ pub struct ClimberInput {
 /// A blow that strikes a climber.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct Blow {
     /// Change of the climber's velocity, in world space, metres a second.
     pub velocity: DVec3,

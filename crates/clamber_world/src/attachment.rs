@@ -55,6 +55,7 @@ const ROUNDING: f64 = 0.02;
 /// [`ColliderMesh::continues`]: clamber_surface::mesh::ColliderMesh::continues
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct Attachment {
     /// Id of the obstacle.
     pub obstacle: ObstacleId,
@@ -71,6 +72,7 @@ pub struct Attachment {
 /// How the material got to its current position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 #[non_exhaustive]
 pub enum Continuity {
     /// It moved there from its position when last followed.
@@ -85,6 +87,7 @@ pub enum Continuity {
 /// The result of [`Attachment::follow`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 #[non_exhaustive]
 pub struct Followed {
     /// Motion of the material point, from where it was last followed to where it is now. For [`Continuity::Placed`], it

@@ -18,6 +18,7 @@ fn farthest(bounds: Option<(DVec3, f64)>, from: DVec3) -> f64 {
 /// the upper 32 bits, as in the bits of Bevy's `Entity`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ObstacleId(pub u64);
 
 /// A point of an obstacle's material. Only the obstacle that it belongs to can interpret it.
@@ -25,6 +26,7 @@ pub struct ObstacleId(pub u64);
 /// A small plain value. Two values from one obstacle are the same point if their bits are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct MaterialPoint {
     /// The part of the obstacle that the point lies on: a triangle of a surface, a collider of a rapier world.
     pub key: u64,
@@ -78,6 +80,7 @@ pub struct SweepContact {
 /// Motion of a material point over the tick that ends now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct PointMotion {
     /// Current position, in world space.
     pub position: DVec3,

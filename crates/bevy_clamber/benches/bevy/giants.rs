@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
 use bevy_asset::{Assets, RenderAssetUsages};
-use bevy_clamber::core::mesh::{ColliderMesh, VertexId};
-use bevy_clamber::core::rig::Pose;
+use bevy_clamber::clamber_surface::mesh::{ColliderMesh, VertexId};
+use bevy_clamber::clamber_surface::rig::Pose;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::SingleThreadedExecutor;

@@ -3,10 +3,12 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use bevy_clamber::core::geometry::{Capsule, Ray, Similarity};
-use bevy_clamber::core::mesh::{ColliderMesh, TriangleId};
-use bevy_clamber::core::rig::Pose;
-use bevy_clamber::core::surface::{Anchor, CastOptions, SkinnedSurface, SurfaceHit, TargetMotion};
+use bevy_clamber::clamber_surface::geometry::{Capsule, Ray, Similarity};
+use bevy_clamber::clamber_surface::mesh::{ColliderMesh, TriangleId};
+use bevy_clamber::clamber_surface::rig::Pose;
+use bevy_clamber::clamber_surface::surface::{
+    Anchor, CastOptions, SkinnedSurface, SurfaceHit, TargetMotion,
+};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Dir3, Quat, Vec3};

@@ -9,8 +9,8 @@ use glam::DAffine3;
 
 use super::meshes::ColliderKey;
 use super::{ColliderError, ColliderMeshes, ColliderStatus, ColliderTag, SkinnedCollider};
-use crate::PosedSurface;
-use crate::surface::{Hierarchy, Rig};
+use crate::surface::{Hierarchy, PoseClock, Rig, Scene};
+use crate::{PosedSurface, WorldOrigin};
 
 /// Restarts the build of colliders whose assets changed, and removes surfaces whose assets are gone.
 pub(crate) fn forget_changed_assets(
@@ -78,8 +78,13 @@ pub(crate) fn build_colliders(
     bindposes: Res<Assets<SkinnedMeshInverseBindposes>>,
     mut colliders: ResMut<ColliderMeshes>,
     hierarchy: Hierarchy<'_, '_>,
+    (clock, origin): (Res<PoseClock>, Res<WorldOrigin>),
     mut commands: Commands,
 ) {
+    let scene = Scene {
+        hierarchy: &hierarchy,
+        origin: origin.0,
+    };
     for (entity, collider, tag, mesh, skin, mut status, surface) in &mut sources {
         let (Some(mesh), Some(skin)) = (mesh, skin) else {
             if surface.is_some() {
@@ -130,7 +135,8 @@ pub(crate) fn build_colliders(
                 built,
                 rig.map_err(Arc::new)?,
                 *collider,
-                &hierarchy,
+                &scene,
+                &clock,
             ))
         });
         match surface {

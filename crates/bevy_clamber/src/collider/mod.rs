@@ -36,7 +36,7 @@ pub use tag::{ColliderTag, SurfaceTagger};
 ///     commands.entity(added.entity).insert(SkinnedCollider::default());
 /// }
 /// ```
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]
 #[require(ColliderStatus)]
 pub struct SkinnedCollider {
@@ -44,14 +44,33 @@ pub struct SkinnedCollider {
     pub joints: PoseTiming,
     /// When the entities above the joints are moved, such as the root of a scene. Default: once a frame.
     pub root: PoseTiming,
+    /// The highest plausible speed of a joint, metres a second. Default: 100. What moves faster was teleported: the
+    /// skin has no velocity in that tick, and a warning is logged once.
+    pub max_speed: f32,
+}
+
+impl Default for SkinnedCollider {
+    fn default() -> Self {
+        Self::each_frame()
+    }
 }
 
 impl SkinnedCollider {
+    /// For a creature that is animated and moved once a frame, as Bevy's `AnimationPlugin` does. The default.
+    pub const fn each_frame() -> Self {
+        Self {
+            joints: PoseTiming::EachFrame,
+            root: PoseTiming::EachFrame,
+            max_speed: 100.0,
+        }
+    }
+
     /// For a creature that is animated and moved in the fixed loop. Ticks see its pose without lag.
     pub const fn each_tick() -> Self {
         Self {
             joints: PoseTiming::EachTick,
             root: PoseTiming::EachTick,
+            ..Self::each_frame()
         }
     }
 }

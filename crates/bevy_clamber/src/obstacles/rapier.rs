@@ -4,7 +4,7 @@ use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_ecs::system::SystemParam;
 use bevy_rapier3d::prelude::{DefaultRapierContext, PhysicsSet, RapierRigidBodySet};
 use bevy_rapier3d::prelude::{RapierContext, ReadRapierContext};
-use clamber_world::{BodyPoses, RapierTerrain};
+use clamber_world::{BodyPoses, MaterialPoint, RapierTerrain};
 
 /// Records the poses of rapier's bodies before each step, so that climbers on them can be carried.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +74,15 @@ impl RapierObstacles<'_, '_> {
             &simulation.broad_phase,
             &self.poses.before,
         ))
+    }
+}
+
+impl RapierObstacles<'_, '_> {
+    /// The entity of the collider that a point belongs to.
+    pub(crate) fn entity(&self, point: &MaterialPoint) -> Option<Entity> {
+        let colliders = &self.context.single().ok()?.colliders.colliders;
+        let collider = colliders.get(RapierTerrain::collider_of(point))?;
+        Entity::try_from_bits(u64::try_from(collider.user_data).ok()?)
     }
 }
 

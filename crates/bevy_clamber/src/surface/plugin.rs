@@ -7,7 +7,7 @@ use super::clock::{tell_frame, tell_tick};
 use super::pose::{pose_surfaces, sample_poses};
 use super::{PoseClock, PoseTiming, PosedSurface};
 use crate::collider::{ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders};
-use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider};
+use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider, WorldOrigin};
 
 /// Builds colliders and poses surfaces; part of [`ClamberPlugins`](crate::ClamberPlugins).
 ///
@@ -36,6 +36,8 @@ impl Plugin for SurfacePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ColliderMeshes>()
             .init_resource::<PoseClock>()
+            .init_resource::<WorldOrigin>()
+            .register_type::<WorldOrigin>()
             .register_type::<SkinnedCollider>()
             .register_type::<PoseTiming>()
             .register_type::<ColliderTag>()
@@ -43,7 +45,11 @@ impl Plugin for SurfacePlugin {
             .add_observer(remove_surface)
             .configure_sets(
                 PostUpdate,
-                (ClamberSystems::Sample, ClamberSystems::Anchor)
+                (
+                    ClamberSystems::Sample,
+                    ClamberSystems::Draw,
+                    ClamberSystems::Anchor,
+                )
                     .chain()
                     .after(AnimationSystems)
                     .before(TransformSystems::Propagate),
@@ -62,7 +68,9 @@ impl Plugin for SurfacePlugin {
             )
             .add_systems(
                 PostUpdate,
-                (sample_poses, tell_frame).in_set(ClamberSystems::Sample),
+                (tell_frame, sample_poses)
+                    .chain()
+                    .in_set(ClamberSystems::Sample),
             );
     }
 }

@@ -1,7 +1,9 @@
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 
-use super::rig::Hierarchy;
+use super::rig::{Hierarchy, Scene};
 use super::{PoseClock, PosedSurface};
+use crate::WorldOrigin;
 
 /// Up to this number, one thread poses all surfaces sooner than other threads wake up.
 const FEW: usize = 4;
@@ -9,22 +11,38 @@ const FEW: usize = 4;
 /// Runs once a tick.
 pub(crate) fn pose_surfaces(
     clock: Res<PoseClock>,
+    tick: Res<Time>,
+    origin: Res<WorldOrigin>,
     surfaces: Query<&mut PosedSurface>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
-    let fraction = clock.fraction();
+    let scene = Scene {
+        hierarchy: &hierarchy,
+        origin: origin.0,
+    };
+    let dt = tick.delta_secs_f64();
     each(surfaces, |mut surface| {
         let posed = surface.bypass_change_detection();
-        if posed.pose(fraction, &hierarchy) {
+        if posed.pose(&scene, &clock, dt) {
             surface.set_changed();
         }
     });
 }
 
 /// Runs once a frame.
-pub(crate) fn sample_poses(surfaces: Query<&mut PosedSurface>, hierarchy: Hierarchy<'_, '_>) {
+pub(crate) fn sample_poses(
+    clock: Res<PoseClock>,
+    origin: Res<WorldOrigin>,
+    surfaces: Query<&mut PosedSurface>,
+    hierarchy: Hierarchy<'_, '_>,
+) {
+    let scene = Scene {
+        hierarchy: &hierarchy,
+        origin: origin.0,
+    };
+    let time = clock.drawn();
     each(surfaces, |mut surface| {
-        surface.bypass_change_detection().sample(&hierarchy);
+        surface.bypass_change_detection().sample(&scene, time);
     });
 }
 

@@ -1,15 +1,19 @@
 use std::ops::Deref;
 use std::sync::Arc;
+use std::time::Duration;
 
 use bevy_ecs::prelude::*;
+use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Palette, RigError};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use thiserror::Error;
 
 use super::PoseTiming;
-use super::rig::{Hierarchy, Locals, Rig};
+use super::clock::PoseClock;
+use super::history::{Between, History};
+use super::rig::{Locals, Rig, Scene};
 use crate::collider::BuiltCollider;
 use crate::{ColliderError, SkinnedCollider};
 
@@ -47,11 +51,8 @@ pub struct PosedSurface {
     collider: Arc<BuiltCollider>,
     rig: Rig,
     timing: SkinnedCollider,
-    /// Transforms as the last two frames drew them.
-    drawn: Locals,
-    drawn_before: Locals,
-    /// `drawn` and `drawn_before` are equal.
-    drawn_is_still: bool,
+    /// Transforms as the last frames drew them.
+    history: History,
     /// Why the last frame's pose is not known.
     drawn_error: Option<ColliderError>,
     /// Transforms and palette of the last tick's pose.
@@ -65,8 +66,12 @@ pub struct PosedSurface {
     posed_anew: bool,
     /// The next pose is placed, without motion.
     restart: bool,
-    /// The pose of the next frame has no motion.
+    /// The pose of the next frame is where the creature was teleported to.
     restart_drawn: bool,
+    /// The last tick placed a creature that had a pose before, and so did the one before: nobody knows how it moved.
+    has_jumped: [bool; 2],
+    /// An implausible speed was logged.
+    told_jump: bool,
     /// Somebody may have changed the surface since the last tick.
     edited: bool,
     /// The surface in a drawn pose; made on demand.
@@ -81,6 +86,8 @@ pub struct PosedSurface {
 #[derive(Debug, Default)]
 struct Scratch {
     next: Locals,
+    /// Where the nodes were in the last tick, in world space.
+    places: Vec<DVec3>,
     model_from_node: Vec<DAffine3>,
     palette: Palette,
 }
@@ -91,7 +98,8 @@ impl PosedSurface {
         collider: Arc<BuiltCollider>,
         rig: Rig,
         timing: SkinnedCollider,
-        hierarchy: &Hierarchy<'_, '_>,
+        scene: &Scene<'_, '_, '_>,
+        clock: &PoseClock,
     ) -> Self {
         let mut posed = Self {
             entity,
@@ -99,9 +107,7 @@ impl PosedSurface {
             collider,
             rig,
             timing,
-            drawn: Locals::default(),
-            drawn_before: Locals::default(),
-            drawn_is_still: false,
+            history: History::default(),
             drawn_error: None,
             posed: Locals::default(),
             palette: Palette::default(),
@@ -110,15 +116,16 @@ impl PosedSurface {
             posed_anew: false,
             restart: true,
             restart_drawn: false,
+            has_jumped: [false; 2],
+            told_jump: false,
             edited: false,
             as_drawn: None,
             as_drawn_is_fresh: false,
             error: None,
             scratch: Scratch::default(),
         };
-        posed.sample(hierarchy);
-        posed.drawn_before.clone_from(&posed.drawn);
-        posed.pose(1.0, hierarchy);
+        posed.sample(scene, clock.drawn());
+        posed.pose(scene, clock, 0.0);
         posed
     }
 
@@ -176,30 +183,64 @@ impl PosedSurface {
         self.is_placed
     }
 
-    /// Records the pose that a frame draws.
-    pub(crate) fn sample(&mut self, hierarchy: &Hierarchy<'_, '_>) {
-        std::mem::swap(&mut self.drawn, &mut self.drawn_before);
+    /// True if the tick, or the one before, placed a surface that had a pose before: the skin's velocity says nothing
+    /// then about what a rider feels.
+    pub(crate) fn has_jumped(&self) -> bool {
+        self.has_jumped.contains(&true)
+    }
+
+    /// Records the pose that a frame draws, at the frame's time.
+    pub(crate) fn sample(&mut self, scene: &Scene<'_, '_, '_>, time: Duration) {
         self.drawn_error = None;
-        if self.rig.read(hierarchy, &mut self.drawn).is_err()
-            && let Err(error) = self.follow(hierarchy)
+        let mut drawn = self.history.buffer();
+        if self.rig.read(scene, &mut drawn).is_err()
+            && let Err(error) = self.follow(scene, time, &mut drawn)
         {
             // The previous pose stays.
-            self.drawn.clone_from(&self.drawn_before);
+            if let Some(last) = self.history.last() {
+                drawn.clone_from(last);
+            }
             self.drawn_error = Some(error);
         }
-        self.drawn_is_still = self.drawn == self.drawn_before;
-        self.as_drawn_is_fresh &= self.drawn_is_still;
-        if std::mem::take(&mut self.restart_drawn) {
-            self.drawn_before.clone_from(&self.drawn);
-            self.drawn_is_still = true;
+        self.as_drawn_is_fresh &= self.history.last() == Some(&drawn);
+        let is_cut = std::mem::take(&mut self.restart_drawn) || self.is_teleport(&drawn, time);
+        self.history.record(time, drawn, is_cut);
+    }
+
+    /// True if the topmost entity is too far from its place in the last frame to have moved there.
+    fn is_teleport(&mut self, drawn: &Locals, time: Duration) -> bool {
+        let Some((last, before)) = self.history.last_timed() else {
+            return false;
+        };
+        let (Some(from), Some(to)) = (last.place(), drawn.place()) else {
+            return false;
+        };
+        let time = time.saturating_sub(before).as_secs_f64();
+        let speed = from.distance(to) / time;
+        let is_teleport = time > 0.0 && speed > f64::from(self.timing.max_speed);
+        if is_teleport {
+            self.tell_jump(speed);
+        }
+        is_teleport
+    }
+
+    /// Logs an implausible speed, once.
+    fn tell_jump(&mut self, speed: f64) {
+        if !std::mem::replace(&mut self.told_jump, true) {
+            let entity = self.entity;
+            tracing::warn!(
+                "the surface of {entity} moved at {speed:.0} m/s, which is taken for a teleport: its skin has no \
+                 velocity in that tick. If it was one, call PosedSurface::forget_motion beside it; if not, raise \
+                 SkinnedCollider::max_speed"
+            );
         }
     }
 
-    /// Takes the pose of a tick at a fraction of the time from the last frame to this one. Returns true if anything
-    /// changed.
-    pub(crate) fn pose(&mut self, fraction: f64, hierarchy: &Hierarchy<'_, '_>) -> bool {
+    /// Takes the pose of a tick of `dt` seconds. Returns true if anything changed.
+    pub(crate) fn pose(&mut self, scene: &Scene<'_, '_, '_>, clock: &PoseClock, dt: f64) -> bool {
+        self.has_jumped = [false, self.has_jumped[0]];
         let mut next = std::mem::take(&mut self.scratch.next);
-        let posed = self.try_pose(fraction, hierarchy, &mut next);
+        let posed = self.try_pose(scene, clock, dt, &mut next);
         self.scratch.next = next;
         let moved = match &posed {
             Ok(moved) => *moved,
@@ -214,12 +255,17 @@ impl PosedSurface {
         self.tell(posed.err()) || moved
     }
 
-    /// Reads a hierarchy that has changed. Both drawn poses become the current one.
-    fn follow(&mut self, hierarchy: &Hierarchy<'_, '_>) -> Result<(), ColliderError> {
-        self.rig.follow(hierarchy)?;
-        let read = self.rig.read(hierarchy, &mut self.drawn);
+    /// Reads a hierarchy that has changed. Only its current pose is known then.
+    fn follow(
+        &mut self,
+        scene: &Scene<'_, '_, '_>,
+        time: Duration,
+        drawn: &mut Locals,
+    ) -> Result<(), ColliderError> {
+        self.rig.follow(scene.hierarchy)?;
+        let read = self.rig.read(scene, drawn);
         read.map_err(|_| ColliderError::Joint { joint: 0 })?;
-        self.drawn_before.clone_from(&self.drawn);
+        self.history.restart(time, drawn.clone());
         self.as_drawn_is_fresh = false;
         // The same transforms in another order are another pose.
         self.still = false;
@@ -227,19 +273,20 @@ impl PosedSurface {
     }
 
     fn follows_frames(&self) -> bool {
-        let SkinnedCollider { joints, root } = self.timing;
+        let SkinnedCollider { joints, root, .. } = self.timing;
         [joints, root].contains(&PoseTiming::EachFrame)
     }
 
     fn follows_ticks(&self) -> bool {
-        let SkinnedCollider { joints, root } = self.timing;
+        let SkinnedCollider { joints, root, .. } = self.timing;
         [joints, root].contains(&PoseTiming::EachTick)
     }
 
     fn try_pose(
         &mut self,
-        fraction: f64,
-        hierarchy: &Hierarchy<'_, '_>,
+        scene: &Scene<'_, '_, '_>,
+        clock: &PoseClock,
+        dt: f64,
         next: &mut Locals,
     ) -> Result<bool, PoseError> {
         if let Some(error) = &self.drawn_error
@@ -247,13 +294,17 @@ impl PosedSurface {
         {
             return Err(error.clone().into());
         }
+        let at = self.history.advance(clock.at());
         let at_rest = self.still && !self.restart && !self.edited;
-        if at_rest && self.drawn_is_still && !self.follows_ticks() && self.posed == self.drawn {
+        if at_rest
+            && self.history.is_still()
+            && !self.follows_ticks()
+            && self.history.last() == Some(&self.posed)
+        {
             return Ok(false);
         }
-        if self.read_tick(fraction, hierarchy, next)?.is_err() {
-            self.follow(hierarchy)?;
-            next.clone_from(&self.drawn);
+        if self.read_tick(scene, at, next)?.is_err() {
+            self.follow(scene, clock.drawn(), next)?;
         }
         let same = self.posed == *next;
         if same && at_rest {
@@ -264,19 +315,44 @@ impl PosedSurface {
             .rig
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
-        if self.restart {
-            self.surface.place(&scratch.palette, world_from_model)?;
-        } else {
-            self.surface.advance(&scratch.palette, world_from_model)?;
+        let jumps = self.follows_frames() && (clock.jumped() || at.is_cut);
+        let fastest = self.farthest(&world_from_model) / dt;
+        let is_teleport = fastest > f64::from(self.timing.max_speed) && dt > 0.0;
+        if is_teleport && !self.restart && !jumps {
+            self.tell_jump(fastest);
         }
-        std::mem::swap(&mut self.palette, &mut scratch.palette);
+        let restart = self.restart || jumps || is_teleport;
+        if restart {
+            self.surface
+                .place(&self.scratch.palette, world_from_model)?;
+        } else {
+            self.surface
+                .advance(&self.scratch.palette, world_from_model)?;
+        }
+        self.has_jumped[0] = restart && self.is_placed;
+        std::mem::swap(&mut self.palette, &mut self.scratch.palette);
         std::mem::swap(&mut self.posed, next);
         self.is_placed = true;
         self.edited = false;
-        self.still = same || self.restart;
-        // The teleport may not be drawn yet.
-        self.restart = self.restart_drawn && self.follows_frames();
+        self.still = same || restart;
+        self.restart = false;
         Ok(true)
+    }
+
+    /// How far a node has moved at most since the last tick, metres. Keeps their places for the next tick.
+    fn farthest(&mut self, world_from_model: &Similarity) -> f64 {
+        let scratch = &mut self.scratch;
+        let is_known = scratch.places.len() == scratch.model_from_node.len();
+        scratch
+            .places
+            .resize(scratch.model_from_node.len(), DVec3::ZERO);
+        let mut farthest = 0.0;
+        for (place, node) in scratch.places.iter_mut().zip(&scratch.model_from_node) {
+            let now = world_from_model.transform_point(node.translation);
+            farthest = f64::max(farthest, now.distance_squared(*place));
+            *place = now;
+        }
+        if is_known { farthest.sqrt() } else { 0.0 }
     }
 
     /// Repeats the last pose, so that the surface stands still. True if it moved until now.
@@ -296,24 +372,21 @@ impl PosedSurface {
     /// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
     fn read_tick(
         &self,
-        fraction: f64,
-        hierarchy: &Hierarchy<'_, '_>,
+        scene: &Scene<'_, '_, '_>,
+        at: Between,
         into: &mut Locals,
     ) -> Result<Result<(), super::rig::Changed>, PoseError> {
-        let (before, drawn) = (&self.drawn_before, &self.drawn);
         let joints = match self.timing.joints {
-            PoseTiming::EachTick => self.rig.read_joints(hierarchy, &mut into.nodes),
+            PoseTiming::EachTick => self.rig.read_joints(scene, into),
             PoseTiming::EachFrame => {
-                into.nodes.clone_from(&before.nodes);
-                into.nodes.blend_in(&drawn.nodes, fraction)?;
+                self.history.joints(at, into)?;
                 Ok(())
             }
         };
         let root = match self.timing.root {
-            PoseTiming::EachTick => self.rig.read_root(hierarchy, &mut into.above),
+            PoseTiming::EachTick => self.rig.read_root(scene, into),
             PoseTiming::EachFrame => {
-                into.above.clone_from(&before.above);
-                into.above.blend_in(&drawn.above, fraction)?;
+                self.history.root(at, into)?;
                 Ok(())
             }
         };
@@ -326,7 +399,7 @@ impl PosedSurface {
             self.as_drawn_is_fresh = false;
             let scratch = &mut self.scratch;
             let placed = self.rig.compose(
-                &self.drawn,
+                self.history.last()?,
                 &mut scratch.model_from_node,
                 &mut scratch.palette,
             )?;

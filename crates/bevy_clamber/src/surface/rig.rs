@@ -5,7 +5,7 @@ use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 use clamber_surface::geometry::{Affine, Similarity};
-use clamber_surface::rig::{self, Palette, Pose};
+use clamber_surface::rig::{self, Palette, Pose, RigError};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::ColliderError;
@@ -16,6 +16,14 @@ const MAX_DEPTH: usize = 4096;
 /// Largest deviation from a similarity, relative to its scale, at which a creature's placement is taken for one:
 /// rotations in f32 are no more accurate.
 const SIMILAR: f64 = 1e-6;
+
+/// What poses are read from.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a, 'w, 's> {
+    pub(crate) hierarchy: &'a Hierarchy<'w, 's>,
+    /// The [`WorldOrigin`](crate::WorldOrigin).
+    pub(crate) origin: DVec3,
+}
 
 /// Transforms of entities, and their parents.
 pub(crate) type Hierarchy<'w, 's> = Query<'w, 's, (&'static Transform, Option<&'static ChildOf>)>;
@@ -55,9 +63,84 @@ struct Node {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Locals {
     /// Of the joints and the entities between them.
-    pub(crate) nodes: Pose,
+    nodes: Pose,
     /// Of the entities above them.
-    pub(crate) above: Pose,
+    above: Pose,
+    /// The [`WorldOrigin`](crate::WorldOrigin), which the topmost of these transforms is relative to.
+    origin: DVec3,
+}
+
+impl Locals {
+    /// The topmost transform: of the last entity above the joints, or of the first joint.
+    fn top(&self) -> Option<&rig::Transform> {
+        self.above
+            .transforms
+            .last()
+            .or(self.nodes.transforms.first())
+    }
+
+    /// Where the topmost entity is, in world space.
+    pub(crate) fn place(&self) -> Option<DVec3> {
+        Some(self.origin + self.top()?.translation.as_dvec3())
+    }
+
+    pub(crate) fn copy_joints(&mut self, from: &Self) -> Result<(), RigError> {
+        self.nodes.clone_from(&from.nodes);
+        if from.above.transforms.is_empty() {
+            self.origin = from.origin;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn copy_root(&mut self, from: &Self) -> Result<(), RigError> {
+        self.above.clone_from(&from.above);
+        if !from.above.transforms.is_empty() {
+            self.origin = from.origin;
+        }
+        Ok(())
+    }
+
+    /// The joints between two poses.
+    pub(crate) fn blend_joints(
+        &mut self,
+        from: &Self,
+        to: &Self,
+        fraction: f64,
+    ) -> Result<(), RigError> {
+        self.copy_joints(from)?;
+        if to.origin == from.origin {
+            return self.nodes.blend_in(&to.nodes, fraction);
+        }
+        self.nodes
+            .blend_in(&to.relative_to(from.origin).nodes, fraction)
+    }
+
+    /// What is above the joints, between two poses.
+    pub(crate) fn blend_root(
+        &mut self,
+        from: &Self,
+        to: &Self,
+        fraction: f64,
+    ) -> Result<(), RigError> {
+        self.copy_root(from)?;
+        if to.origin == from.origin {
+            return self.above.blend_in(&to.above, fraction);
+        }
+        self.above
+            .blend_in(&to.relative_to(from.origin).above, fraction)
+    }
+
+    /// The same pose relative to another origin.
+    fn relative_to(&self, origin: DVec3) -> Self {
+        let mut moved = self.clone();
+        let top = moved.above.transforms.last_mut();
+        if let Some(top) = top.or(moved.nodes.transforms.first_mut()) {
+            let place = self.origin + top.translation.as_dvec3() - origin;
+            top.translation = place.as_vec3();
+        }
+        moved.origin = origin;
+        moved
+    }
 }
 
 /// A transform that should be read is gone, or its entity has another parent now.
@@ -90,21 +173,22 @@ impl Rig {
     }
 
     /// Reads all transforms.
-    pub(crate) fn read(
-        &self,
-        hierarchy: &Hierarchy<'_, '_>,
-        into: &mut Locals,
-    ) -> Result<(), Changed> {
-        self.read_joints(hierarchy, &mut into.nodes)?;
-        self.read_root(hierarchy, &mut into.above)
+    pub(crate) fn read(&self, scene: &Scene<'_, '_, '_>, into: &mut Locals) -> Result<(), Changed> {
+        self.read_joints(scene, into)?;
+        self.read_root(scene, into)
     }
 
     /// Reads the joints and the entities between them.
     pub(crate) fn read_joints(
         &self,
-        hierarchy: &Hierarchy<'_, '_>,
-        into: &mut Pose,
+        scene: &Scene<'_, '_, '_>,
+        into: &mut Locals,
     ) -> Result<(), Changed> {
+        let hierarchy = scene.hierarchy;
+        if self.tree.above.is_empty() {
+            into.origin = scene.origin;
+        }
+        let into = &mut into.nodes;
         into.transforms.clear();
         for node in &self.tree.nodes {
             let parent = match node.parent {
@@ -119,9 +203,14 @@ impl Rig {
     /// Reads the entities above the joints.
     pub(crate) fn read_root(
         &self,
-        hierarchy: &Hierarchy<'_, '_>,
-        into: &mut Pose,
+        scene: &Scene<'_, '_, '_>,
+        into: &mut Locals,
     ) -> Result<(), Changed> {
+        let hierarchy = scene.hierarchy;
+        if !self.tree.above.is_empty() {
+            into.origin = scene.origin;
+        }
+        let into = &mut into.above;
         into.transforms.clear();
         for (index, entity) in self.tree.above.iter().enumerate() {
             let parent = self.tree.above.get(index + 1).copied();
@@ -151,6 +240,7 @@ impl Rig {
             similarity.translation = topmost.translation.as_dvec3();
             rest.translation = -similarity.translation;
         }
+        similarity.translation += locals.origin;
         if locals.nodes.transforms.len() != self.tree.nodes.len() || !similarity.is_valid() {
             return None;
         }

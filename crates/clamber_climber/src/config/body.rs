@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// Shape, mass and strength of a climber's body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct BodyConfig {
     /// Radius of the body's ball, metres, positive. The climber's position is the ball's centre. Default 0.4. Raise it
     /// to bridge rougher skin, lower it to reach into folds.

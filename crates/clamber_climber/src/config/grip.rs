@@ -5,6 +5,7 @@ use crate::ClimberError;
 /// Settings for gripping and climbing: [`ClimberConfig::grip`](crate::ClimberConfig::grip).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GripConfig {
     /// How far from its ball it can grip, metres, not negative. Default 0.35, an arm. Raise it to grab more easily in
     /// flight.

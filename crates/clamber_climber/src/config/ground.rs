@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// Settings for standing, walking and jumping: [`ClimberConfig::ground`](crate::ClimberConfig::ground).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct GroundConfig {
     /// Steepest slope to stand on, radians from level, from 0 to below a right angle. Default 50 degrees. A climber
     /// that stands already stays on slopes up to 2 degrees steeper.

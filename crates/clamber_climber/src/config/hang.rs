@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// Settings for hanging by the hands from a grip, as a pendulum: [`ClimberConfig::hang`](crate::ClimberConfig::hang).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HangConfig {
     /// Distance from the hands to the centre of the ball at full stretch, metres, positive. Default 0.9.
     pub arm_length: f64,

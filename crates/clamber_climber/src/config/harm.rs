@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// When a climber is knocked over, and how it tumbles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct TumbleConfig {
     /// Shake above which a standing climber is knocked down, metres a second squared, not negative. Default 30.
     /// Infinite: never.
@@ -48,6 +49,7 @@ impl TumbleConfig {
 /// Hit points are 1 for an unhurt climber. Nothing happens by itself at 0: death is up to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HealthConfig {
     /// Fastest landing that does no damage, metres a second towards the ground, not negative, may be infinite. Default
     /// 10, a fall of five metres.

@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// Settings for hanging from ledges and climbing over them: [`ClimberConfig::ledge`](crate::ClimberConfig::ledge).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct LedgeConfig {
     /// Greatest height of a ledge above the ball's centre, metres, not negative. Default 0.9.
     pub reach_up: f64,

@@ -27,6 +27,7 @@ use crate::ClimberError;
 /// that is `None` is off, and costs nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberConfig {
     /// Gravity in world space, metres a second squared. Any direction and size; up is opposite to it, or +Y if it is
     /// zero. Default 9.81 along -Y.

@@ -4,6 +4,7 @@ use crate::ClimberError;
 /// How much stamina holding on costs. Stamina is 1 for a rested climber; at 0 its grip opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct StaminaConfig {
     /// Stamina spent per second of holding on, not negative. Default 1/40: forty seconds on a creature that keeps
     /// still.

@@ -18,6 +18,7 @@ use crate::step::{
 /// bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct ClimberState {
     /// Centre of its ball, in world space, metres. For a capsule, centre of the lower ball.
     pub position: DVec3,

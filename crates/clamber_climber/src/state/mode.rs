@@ -1,6 +1,7 @@
 /// What a climber is doing: one of seven modes of this crate, or a custom mode of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub enum ClimberMode {
     /// Stands or walks, carried by its ground.
     Standing,

@@ -4,6 +4,7 @@ use glam::DVec3;
 /// The material point that a climber stands on, grips or hangs from, and that carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct Support {
     /// The material point, with the climber's position attached to it. The point stays the same until the climber moves
     /// on its own, is pushed onto other ground, or takes a new support.

@@ -18,6 +18,7 @@ const STILL: f64 = 0.1;
 /// only stores it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct FlyingMemory {
     /// True while it rises from a jump.
     pub jumping: bool,
@@ -26,6 +27,7 @@ pub struct FlyingMemory {
 /// Memory of a climber that tumbles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct TumblingMemory {
     /// How long it has lain still, seconds.
     pub still: f64,

@@ -30,6 +30,7 @@ const CLOSE: f64 = 1.27;
 /// Memory of a climber that hangs by its hands from a grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct HangingMemory {
     /// Length of its arms, metres. Shorter than at full stretch while it pulls itself in.
     pub arm: f64,

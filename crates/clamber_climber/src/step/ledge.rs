@@ -29,6 +29,7 @@ const OUT_OF_PLACE: f64 = 0.1;
 /// Memory of a climber that hangs from a ledge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct LedgeHangingMemory {
     /// Progress of a pull-up, 0 (hangs) to 1 (stands on top).
     pub pull_up: f64,

@@ -27,6 +27,7 @@ const EXCESS: f64 = 1.05;
 /// Memory of a climber that stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct StandingMemory {
     /// True while it slides along the ground after a blow, braked by friction instead of its feet.
     pub shoved: bool,

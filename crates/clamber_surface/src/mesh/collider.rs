@@ -19,6 +19,7 @@ macro_rules! id {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
         pub struct $name(pub u32);
 
         impl $name {

@@ -17,6 +17,7 @@ use crate::rig::JointId;
 /// As text, and so in save games, an id is 16 hexadecimal digits. After edits that added something, `+` and the
 /// number of added vertices and triangles follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct MeshId {
     /// Number of vertices and triangles added since the build.
     added: u64,

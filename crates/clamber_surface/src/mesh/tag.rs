@@ -1,6 +1,7 @@
 /// The material of a surface, as far as climbing depends on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub enum SurfaceKind {
     /// Bare skin: a climber can stand or slide on it.
     #[default]
@@ -15,6 +16,7 @@ pub enum SurfaceKind {
 /// The tag of a triangle: its material, and data for the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
 pub struct SurfaceTag {
     /// The material.
     pub kind: SurfaceKind,

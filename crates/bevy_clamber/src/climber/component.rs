@@ -1,0 +1,145 @@
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_platform::collections::HashSet;
+use bevy_reflect::prelude::*;
+use bevy_transform::components::Transform;
+use clamber_climber::{ClimberConfig, ClimberContact, StepReport};
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::mesh::MeshId;
+use clamber_world::ObstacleId;
+use std::ops::Deref;
+
+use super::ClimberInput;
+use super::input::LatchedInput;
+
+/// A character that stands on, climbs, grips and hangs from everything that it can touch: skin, other climbers, the
+/// physics engine's world, and [`CustomObstacle`](crate::CustomObstacle)s.
+///
+/// Insert it with a `Transform` where the character starts; [`ClimberPlugin`](crate::ClimberPlugin) does the rest. The
+/// entity must not have a parent. Its `Transform` is the centre of the body's ball, [`BodyConfig::radius`] above the
+/// feet, as this frame should draw it; its -Z looks where the climber is heading. To teleport the climber, write
+/// another translation into it.
+///
+/// The configuration can be changed at any time. One that is refused is logged, and the last one stays.
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_transform::components::Transform;
+/// # use bevy_clamber::prelude::*;
+/// fn spawn(mut commands: Commands) {
+///     commands.spawn((Climber::colossus_climber(), Transform::from_xyz(0.0, 1.0, 8.0)));
+/// }
+/// ```
+///
+/// [`BodyConfig::radius`]: clamber_climber::BodyConfig::radius
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+#[require(Transform, ClimberInput, LatchedInput)]
+pub struct Climber {
+    /// Its body and abilities.
+    pub config: ClimberConfig,
+}
+
+impl Climber {
+    /// A climber with a body and abilities of its own.
+    pub const fn new(config: ClimberConfig) -> Self {
+        Self { config }
+    }
+
+    /// [`ClimberConfig::colossus_climber`]: a person with every ability, for creatures of 5 to 50 m.
+    pub const fn colossus_climber() -> Self {
+        Self::new(ClimberConfig::colossus_climber())
+    }
+
+    /// [`ClimberConfig::walker`]: stands, walks, jumps, slides and falls, and never tires.
+    pub const fn walker() -> Self {
+        Self::new(ClimberConfig::walker())
+    }
+}
+
+impl Default for Climber {
+    /// [`Climber::colossus_climber`].
+    fn default() -> Self {
+        Self::colossus_climber()
+    }
+}
+
+/// All that a [`Climber`] remembers, as of the last tick: position, velocity, mode, support, stamina and more. Inserted
+/// by its first tick.
+///
+/// To load a saved state, or to roll back, write it: the next tick goes on from there. A state that is refused is
+/// logged, and the last one stays. An entity that is spawned with a state starts with it.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Clone, Debug, PartialEq)]
+pub struct ClimberState(pub clamber_climber::ClimberState);
+
+impl ClimberState {
+    /// Velocity, in world space, metres a second.
+    pub fn velocity(&self) -> Vec3 {
+        self.0.velocity.as_vec3()
+    }
+}
+
+impl Deref for ClimberState {
+    type Target = clamber_climber::ClimberState;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+/// What a [`Climber`] touches. Without this component, it touches everything.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+pub struct ClimberFilter {
+    /// Entities that it passes through: surfaces, climbers, [`CustomObstacle`](crate::CustomObstacle)s, and colliders of
+    /// avian.
+    pub ignored: HashSet<Entity>,
+    /// The layers of the physics engine that it touches, one bit each: avian's `LayerMask`, rapier's `Group`. All by
+    /// default.
+    pub layers: u32,
+}
+
+impl Default for ClimberFilter {
+    fn default() -> Self {
+        Self {
+            ignored: HashSet::default(),
+            layers: u32::MAX,
+        }
+    }
+}
+
+/// A [`Climber`]'s body, as of the last tick: what it touched, and how much room it takes. Inserted by its first tick.
+#[derive(Component, Clone, Debug)]
+pub struct ClimberBody {
+    pub(super) climber: clamber_climber::Climber,
+    /// The state of the tick before.
+    pub(super) before: clamber_climber::ClimberState,
+    pub(super) report: StepReport,
+    /// The mesh of the surface that supports it.
+    pub(super) support_mesh: Option<(ObstacleId, MeshId)>,
+    /// What was drawn last: the transform that this crate has written.
+    pub(super) drawn: Transform,
+}
+
+impl ClimberBody {
+    /// The contacts of the last tick, in the order in which they were found.
+    pub fn contacts(&self) -> &[ClimberContact] {
+        self.climber.contacts()
+    }
+
+    /// The report of the last tick.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// The body's capsule in world space.
+    pub fn capsule(&self) -> WorldCapsule {
+        self.climber.body()
+    }
+
+    /// The configuration that the last tick used.
+    pub fn config(&self) -> &ClimberConfig {
+        self.climber.config()
+    }
+}

@@ -1,0 +1,121 @@
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::prelude::*;
+use bevy_time::{Time, Virtual};
+use clamber_climber::Blow;
+use clamber_world::ObstacleId;
+
+/// What the player of a [`Climber`](crate::Climber) asks for. Any input crate, network or bot can fill it, in any
+/// schedule; [`ClimberControlsPlugin`](crate::ClimberControlsPlugin) does so from keyboard, mouse and gamepad.
+///
+/// Directions are used as they are at each tick. A press of `jump` is kept until a tick comes, and only that tick gets
+/// it, however many frames there are in a tick, or ticks in a frame; it is then set to false. A button that is down in
+/// any frame since the last tick counts as down in the next one, so that a short tap is not lost. What was pressed while
+/// the game was paused is forgotten.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+pub struct ClimberInput {
+    /// Direction to walk or climb in, in world space. Its length is the share of full speed; more than 1 counts as 1.
+    /// On a hold, the direction is rotated with the hold from level ground: pushing against a wall climbs up, pulling
+    /// away climbs down.
+    pub walk: Vec3,
+    /// Direction to climb in, in world space, on holds and ledges. Zero: `walk` is used instead.
+    pub climb: Vec3,
+    /// Set it to true when the jump button is pressed.
+    pub jump: bool,
+    /// True as long as the jump button is down. Used only with
+    /// [`GroundConfig::jump_release_gravity`](clamber_climber::GroundConfig::jump_release_gravity) above 1.
+    pub jump_held: bool,
+    /// True as long as the grip button is down: grips what is in reach and holds on. False lets go.
+    pub grip: bool,
+    /// The game's own buttons, one bit each, for its [`ClimberModes`](crate::ClimberModes).
+    pub actions: u32,
+    /// Where the player aims: a direction in world space, for the game's [`ClimberModes`](crate::ClimberModes).
+    pub aim: Vec3,
+    /// What struck the climber since the last tick; see [`ClimberInput::strike`].
+    pub blow: Option<ClimberBlow>,
+}
+
+/// A blow that strikes a climber.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Default, Clone, Debug, PartialEq)]
+pub struct ClimberBlow {
+    /// Change of the climber's velocity, in world space, metres a second.
+    pub velocity: Vec3,
+    /// Hit points that it costs, 0 to 1. Ignored without
+    /// [`ClimberConfig::health`](clamber_climber::ClimberConfig::health).
+    pub damage: f32,
+    /// Who dealt the blow. Events repeat it.
+    pub by: Option<Entity>,
+}
+
+impl ClimberInput {
+    /// Strikes the climber in the next tick. Several blows before it add up; the last one's dealer counts.
+    pub fn strike(&mut self, blow: ClimberBlow) {
+        self.blow = Some(sum(self.blow, blow));
+    }
+}
+
+/// Two blows in one tick.
+fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
+    earlier.map_or(later, |earlier| ClimberBlow {
+        velocity: earlier.velocity + later.velocity,
+        damage: (earlier.damage + later.damage).min(1.0),
+        by: later.by.or(earlier.by),
+    })
+}
+
+/// What was pressed since the last tick.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(super) struct LatchedInput {
+    jump: bool,
+    jump_held: bool,
+    grip: bool,
+    actions: u32,
+    blow: Option<ClimberBlow>,
+}
+
+impl LatchedInput {
+    fn latch(&mut self, input: &mut ClimberInput) {
+        self.jump |= std::mem::take(&mut input.jump);
+        self.jump_held |= input.jump_held;
+        self.grip |= input.grip;
+        self.actions |= input.actions;
+        if let Some(blow) = input.blow.take() {
+            self.blow = Some(sum(self.blow, blow));
+        }
+    }
+
+    /// The input of a tick. Presses and blows are used up.
+    pub(super) fn take(&mut self, input: &mut ClimberInput) -> clamber_climber::ClimberInput {
+        self.latch(input);
+        let latched = std::mem::take(self);
+        clamber_climber::ClimberInput {
+            walk: input.walk.as_dvec3(),
+            climb: input.climb.as_dvec3(),
+            jump: latched.jump,
+            jump_held: latched.jump_held,
+            grip: latched.grip,
+            blow: latched.blow.map(|blow| Blow {
+                velocity: blow.velocity.as_dvec3(),
+                damage: blow.damage.into(),
+                by: blow.by.map(|by| ObstacleId(by.to_bits())),
+            }),
+            actions: latched.actions,
+            aim: input.aim.as_dvec3(),
+        }
+    }
+}
+
+/// Runs once a frame, before the fixed loop.
+pub(super) fn latch(
+    time: Res<Time<Virtual>>,
+    mut climbers: Query<(&mut ClimberInput, &mut LatchedInput)>,
+) {
+    for (mut input, mut latched) in &mut climbers {
+        latched.latch(input.bypass_change_detection());
+        if time.is_paused() {
+            *latched = LatchedInput::default();
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Climbers on entities: what they touch, their ticks, their events, and where they are drawn.
+
+mod component;
+mod draw;
+pub mod events;
+mod input;
+mod obstacles;
+mod plugin;
+mod rules;
+mod step;
+
+pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
+pub use input::{ClimberBlow, ClimberInput};
+pub use obstacles::CustomObstacle;
+pub use plugin::ClimberPlugin;
+pub use rules::{ClimberModes, Grip, GripRule};

@@ -1,0 +1,252 @@
+//! What climbers can touch, found in the world.
+
+use std::any::Any;
+
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemParam;
+#[cfg(any(feature = "avian", feature = "rapier"))]
+use bevy_ecs::system::SystemParamValidationError;
+use clamber_climber::{ClimberContact, ClimberObstacle};
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::TargetMotion;
+use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
+use glam::DVec3;
+
+use super::component::ClimberFilter;
+use crate::PosedSurface;
+#[cfg(feature = "rapier")]
+use crate::obstacles::RapierObstacles;
+#[cfg(feature = "avian")]
+use crate::obstacles::{AvianObstacles, AvianTerrain};
+
+/// An obstacle of the app's own: terrain without a physics engine, a moving platform, anything that implements
+/// [`Obstacle`]. Climbers touch it from the tick after it was inserted on an entity.
+///
+/// Bring it up to date once a tick, before [`ClamberSystems::Climb`](crate::ClamberSystems::Climb).
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_clamber::prelude::*;
+/// # use bevy_clamber::clamber_climber::{Climber as Character, ClimberConfig, ClimberObstacle};
+/// # use bevy_math::DVec3;
+/// fn spawn(mut commands: Commands) {
+///     # let character = Character::new(ClimberConfig::walker(), DVec3::ZERO).unwrap();
+///     # let my_terrain = ClimberObstacle::new(&character, 0.1);
+///     commands.spawn(CustomObstacle::new(my_terrain));
+/// }
+/// ```
+#[derive(Component)]
+pub struct CustomObstacle(Box<dyn AnyObstacle>);
+
+/// An obstacle that can be taken back out of its box.
+trait AnyObstacle: Obstacle + Any + Send + Sync {}
+
+impl<T: Obstacle + Any + Send + Sync> AnyObstacle for T {}
+
+impl CustomObstacle {
+    /// Makes an obstacle a component.
+    pub fn new(obstacle: impl Obstacle + Send + Sync + 'static) -> Self {
+        Self(Box::new(obstacle))
+    }
+
+    /// The obstacle, if it is of this type.
+    pub fn get<T: 'static>(&self) -> Option<&T> {
+        let any: &dyn Any = &*self.0;
+        any.downcast_ref()
+    }
+
+    /// The obstacle, to change it, if it is of this type.
+    pub fn get_mut<T: 'static>(&mut self) -> Option<&mut T> {
+        let any: &mut dyn Any = &mut *self.0;
+        any.downcast_mut()
+    }
+}
+
+/// The id of an engine's whole world. No entity has these bits.
+#[cfg(feature = "avian")]
+const AVIAN: ObstacleId = ObstacleId(u64::MAX);
+#[cfg(feature = "rapier")]
+const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
+
+/// All that climbers can touch, beside each other.
+#[derive(SystemParam)]
+pub(super) struct Touchable<'w, 's> {
+    surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
+    custom: Query<'w, 's, (Entity, &'static CustomObstacle)>,
+    #[cfg(feature = "avian")]
+    avian: Result<AvianObstacles<'w, 's>, SystemParamValidationError>,
+    #[cfg(feature = "rapier")]
+    rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
+}
+
+impl Touchable<'_, '_> {
+    /// The surface of an obstacle, if it is one.
+    pub(super) fn surface(&self, id: ObstacleId) -> Option<&PosedSurface> {
+        let entity = Entity::try_from_bits(id.0)?;
+        let (_, surface) = self.surfaces.get(entity).ok()?;
+        surface.is_placed().then_some(surface)
+    }
+
+    /// Calls `step` with all obstacles of one climber.
+    pub(super) fn around<T>(
+        &self,
+        climber: Entity,
+        filter: Option<&ClimberFilter>,
+        climbers: &[(Entity, ClimberObstacle)],
+        gone: Option<(ObstacleId, MaterialPoint)>,
+        step: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T,
+    ) -> T {
+        let touches = |entity: Entity| {
+            entity != climber && filter.is_none_or(|filter| !filter.ignored.contains(&entity))
+        };
+        let id = |entity: Entity| ObstacleId(entity.to_bits());
+        let mut all: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
+        #[cfg(feature = "avian")]
+        let avian = self
+            .avian
+            .as_ref()
+            .ok()
+            .map(|avian| in_avian(avian, climber, filter));
+        #[cfg(feature = "avian")]
+        all.extend(avian.as_ref().map(|avian| (AVIAN, avian as &dyn Obstacle)));
+        #[cfg(feature = "rapier")]
+        let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
+        #[cfg(feature = "rapier")]
+        let rapier = rapier.map(|rapier| match filter {
+            Some(filter) => rapier.with_filter(in_rapier(filter)),
+            None => rapier,
+        });
+        #[cfg(feature = "rapier")]
+        all.extend(
+            rapier
+                .as_ref()
+                .map(|rapier| (RAPIER, rapier as &dyn Obstacle)),
+        );
+
+        let lost = gone.and_then(|(id, point)| {
+            let surface = self.surface(id)?;
+            Some((id, WithoutPoint { surface, point }))
+        });
+        for (entity, surface) in &self.surfaces {
+            if surface.is_placed() && touches(entity) {
+                let seen: &dyn Obstacle = match &lost {
+                    Some((lost, without)) if *lost == id(entity) => without,
+                    _ => &**surface,
+                };
+                all.push((id(entity), seen));
+            }
+        }
+        for (entity, custom) in &self.custom {
+            if touches(entity) {
+                all.push((id(entity), &*custom.0));
+            }
+        }
+        for (entity, body) in climbers {
+            if touches(*entity) {
+                all.push((id(*entity), body));
+            }
+        }
+        step(&all)
+    }
+
+    /// The entity of a material point: a collider's, for an engine's world.
+    pub(super) fn entity(&self, id: ObstacleId, point: Option<&MaterialPoint>) -> Option<Entity> {
+        #[cfg(feature = "avian")]
+        if id == AVIAN {
+            return Entity::try_from_bits(point?.key);
+        }
+        #[cfg(feature = "rapier")]
+        if id == RAPIER {
+            return self.rapier.as_ref().ok()?.entity(point?);
+        }
+        let _ = point;
+        Entity::try_from_bits(id.0)
+    }
+}
+
+/// The point of an obstacle that was touched in a tick, if any was.
+pub(super) fn touched(contacts: &[ClimberContact], id: ObstacleId) -> Option<&MaterialPoint> {
+    let of_it = contacts.iter().filter(|contact| contact.obstacle == id);
+    of_it.map(|contact| &contact.material).next_back()
+}
+
+#[cfg(feature = "avian")]
+fn in_avian<'a>(
+    avian: &'a AvianObstacles<'_, '_>,
+    climber: Entity,
+    filter: Option<&ClimberFilter>,
+) -> AvianTerrain<'a> {
+    use avian3d::prelude::{LayerMask, SpatialQueryFilter};
+    let mut wanted = SpatialQueryFilter::from_excluded_entities([climber]);
+    if let Some(filter) = filter {
+        wanted.mask = LayerMask(filter.layers);
+        wanted
+            .excluded_entities
+            .extend(filter.ignored.iter().copied());
+    }
+    avian.terrain().with_filter(wanted)
+}
+
+#[cfg(feature = "rapier")]
+fn in_rapier(filter: &ClimberFilter) -> bevy_rapier3d::rapier::prelude::QueryFilter<'static> {
+    use bevy_rapier3d::rapier::prelude::{
+        Group, InteractionGroups, InteractionTestMode, QueryFilter,
+    };
+    let layers = Group::from_bits_retain(filter.layers);
+    QueryFilter::new().groups(InteractionGroups::new(
+        Group::ALL,
+        layers,
+        InteractionTestMode::default(),
+    ))
+}
+
+/// A surface whose mesh is another one by now, so that a point which was made on the old mesh is gone.
+struct WithoutPoint<'a> {
+    surface: &'a PosedSurface,
+    point: MaterialPoint,
+}
+
+impl Obstacle for WithoutPoint<'_> {
+    fn bounds(&self) -> Option<(DVec3, f64)> {
+        self.surface.bounds()
+    }
+
+    fn cast_ray(&self, origin: DVec3, direction: DVec3, max_distance: f64) -> Option<Contact> {
+        Obstacle::cast_ray(&**self.surface, origin, direction, max_distance)
+    }
+
+    fn closest_point(&self, point: DVec3, max_distance: f64) -> Option<Contact> {
+        Obstacle::closest_point(&**self.surface, point, max_distance)
+    }
+
+    fn overlap_capsule(&self, capsule: &WorldCapsule, contacts: &mut Vec<Contact>) {
+        Obstacle::overlap_capsule(&**self.surface, capsule, contacts);
+    }
+
+    fn cast_capsule(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+    ) -> Option<SweepContact> {
+        Obstacle::cast_capsule(&**self.surface, capsule, displacements, target)
+    }
+
+    fn cast_capsule_where(
+        &self,
+        capsule: &WorldCapsule,
+        displacements: [DVec3; 2],
+        target: TargetMotion,
+        counts: &mut dyn FnMut(&SweepContact) -> bool,
+    ) -> Option<SweepContact> {
+        self.surface
+            .cast_capsule_where(capsule, displacements, target, counts)
+    }
+
+    fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
+        if *point == self.point {
+            return None;
+        }
+        Obstacle::motion(&**self.surface, point, dt)
+    }
+}

@@ -1,0 +1,257 @@
+//! The tick of all climbers.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_time::Time;
+use bevy_transform::components::Transform;
+use clamber_climber::{ClimberConfig, ClimberObstacle, CustomMode, StepReport, StepRules};
+use clamber_surface::mesh::MeshId;
+use clamber_world::{Attachment, Contact, MaterialPoint, ObstacleId, SurfaceKind};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
+use super::events::{Told, tell_event};
+use super::input::{ClimberInput, LatchedInput};
+use super::obstacles::{Touchable, touched};
+use super::rules::{ClimberModes, Grip, GripRule};
+use crate::PosedSurface;
+
+/// Up to this number, one thread steps all climbers sooner than other threads wake up.
+const FEW: usize = 4;
+
+/// Makes the bodies of new climbers, and takes over what the app changed: configurations, states, transforms.
+pub(super) fn follow_changes(
+    mut climbers: Query<(
+        Entity,
+        Ref<Climber>,
+        &Transform,
+        Option<&ClimberState>,
+        Option<&mut ClimberBody>,
+    )>,
+    mut commands: Commands,
+) {
+    for (entity, climber, transform, state, body) in &mut climbers {
+        let Some(mut body) = body else {
+            if !climber.is_changed() && state.is_none() {
+                // Refused and logged already.
+                continue;
+            }
+            match new_body(&climber.config, transform, state) {
+                Ok(body) => {
+                    let state = ClimberState(*body.climber.state());
+                    commands.entity(entity).try_insert((body, state));
+                }
+                Err(error) => tracing::error!("no climber for {entity}: {error}"),
+            }
+            continue;
+        };
+        if *body.climber.config() != climber.config
+            && let Err(error) = body.climber.set_config(climber.config)
+            && climber.is_changed()
+        {
+            tracing::error!("climber {entity} keeps its configuration: {error}");
+        }
+        if let Some(state) = state
+            && state.0 != *body.climber.state()
+        {
+            match body.climber.restore(state.0) {
+                Ok(()) => body.forget_motion(),
+                Err(error) => tracing::error!("climber {entity} keeps its state: {error}"),
+            }
+        }
+        if transform.translation != body.drawn.translation {
+            body.teleport(transform);
+        }
+    }
+}
+
+fn new_body(
+    config: &ClimberConfig,
+    transform: &Transform,
+    state: Option<&ClimberState>,
+) -> Result<ClimberBody, clamber_climber::ClimberError> {
+    let position = transform.translation.as_dvec3();
+    let mut climber = clamber_climber::Climber::new(*config, position)?;
+    let mut begin = *climber.state();
+    begin.heading = level(transform.rotation, config.up(), begin.heading);
+    climber.restore(state.map_or(begin, |state| state.0))?;
+    Ok(ClimberBody {
+        before: *climber.state(),
+        climber,
+        report: StepReport::default(),
+        support_mesh: None,
+        drawn: *transform,
+    })
+}
+
+/// The direction of a rotation's -Z, made level.
+fn level(rotation: Quat, up: DVec3, otherwise: DVec3) -> DVec3 {
+    let ahead = (rotation * Vec3::NEG_Z).as_dvec3();
+    (ahead - up * ahead.dot(up)).normalize_or(otherwise)
+}
+
+impl ClimberBody {
+    /// The next frames do not draw how it got here.
+    fn forget_motion(&mut self) {
+        self.before = *self.climber.state();
+        self.support_mesh = None;
+    }
+
+    /// Lets the climber fall from where the app has put its transform.
+    fn teleport(&mut self, to: &Transform) {
+        let was = *self.climber.state();
+        let config = *self.climber.config();
+        let Ok(new) = clamber_climber::Climber::new(config, to.translation.as_dvec3()) else {
+            return;
+        };
+        let begin = clamber_climber::ClimberState {
+            heading: level(to.rotation, config.up(), was.heading),
+            stamina: was.stamina,
+            hit_points: was.hit_points,
+            memory: was.memory,
+            ..*new.state()
+        };
+        if self.climber.restore(begin).is_ok() {
+            self.drawn = *to;
+            self.forget_motion();
+        }
+    }
+}
+
+/// A climber that is stepped.
+type Stepped = (
+    Entity,
+    &'static mut ClimberBody,
+    &'static mut ClimberState,
+    &'static mut ClimberInput,
+    &'static mut LatchedInput,
+    Option<&'static ClimberFilter>,
+    Option<&'static GripRule>,
+);
+
+/// Steps all climbers.
+pub(super) fn step_climbers(
+    time: Res<Time>,
+    touchable: Touchable<'_, '_>,
+    grip_rule: Option<Res<GripRule>>,
+    modes: Option<Res<ClimberModes>>,
+    mut climbers: Query<Stepped, With<Climber>>,
+) {
+    let dt = time.delta_secs_f64();
+    if dt <= 0.0 {
+        return;
+    }
+    let bodies = climbers.iter();
+    let bodies = bodies.map(|(entity, body, ..)| (entity, ClimberObstacle::new(&body.climber, dt)));
+    let bodies: Vec<(Entity, ClimberObstacle)> = bodies.collect();
+    let modes = modes.as_ref().map_or(&[][..], |modes| &modes.0[..]);
+    let step = |(entity, mut body, mut state, mut input, mut latched, filter, rule): (
+        Entity,
+        Mut<'_, ClimberBody>,
+        Mut<'_, ClimberState>,
+        Mut<'_, ClimberInput>,
+        Mut<'_, LatchedInput>,
+        Option<&ClimberFilter>,
+        Option<&GripRule>,
+    )| {
+        let body = &mut *body;
+        body.before = *body.climber.state();
+        let input = latched.take(input.bypass_change_detection());
+        let rule = rule.or(grip_rule.as_deref());
+        let can_grip = |id: ObstacleId, contact: &Contact| match rule {
+            None => contact.tag.kind == SurfaceKind::Fur,
+            Some(rule) => rule.allows(&Grip {
+                climber: entity,
+                entity: touchable.entity(id, Some(&contact.material)),
+                contact,
+            }),
+        };
+        let modes: Vec<&dyn CustomMode> = modes.iter().map(|mode| &**mode as _).collect();
+        let rules = StepRules {
+            can_grip: &can_grip,
+            modes: &modes,
+        };
+        let gone = body.lost_point(&touchable);
+        body.forget_jump(&touchable);
+        let climber = &mut body.climber;
+        let stepped = touchable.around(entity, filter, &bodies, gone, |obstacles| {
+            climber.step_with(&input, obstacles, &rules, dt)
+        });
+        match stepped {
+            Ok(report) => body.report = report,
+            Err(error) => {
+                tracing::warn!("climber {entity} stood still for a tick: {error}");
+                body.report = StepReport::default();
+            }
+        }
+        body.support_mesh = body.mesh_below(&touchable);
+        state.set_if_neq(ClimberState(*body.climber.state()));
+    };
+    if bodies.len() <= FEW {
+        climbers.iter_mut().for_each(step);
+    } else {
+        climbers.par_iter_mut().for_each(step);
+    }
+}
+
+impl ClimberBody {
+    /// The point of its support, if the surface there has another mesh than in the last tick.
+    fn lost_point(&self, touchable: &Touchable<'_, '_>) -> Option<(ObstacleId, MaterialPoint)> {
+        let support = self.climber.state().support?.attachment;
+        let (id, mesh) = self.support_mesh?;
+        let surface = touchable.surface(id)?;
+        let is_another = id == support.obstacle && !surface.mesh().continues(mesh);
+        is_another.then_some((id, support.material))
+    }
+
+    /// Forgets how fast its support was, if nobody knows how that got where it is: the climber would feel a jolt.
+    fn forget_jump(&mut self, touchable: &Touchable<'_, '_>) {
+        let state = *self.climber.state();
+        let surface = state
+            .support
+            .and_then(|on| touchable.surface(on.attachment.obstacle));
+        if surface.is_some_and(PosedSurface::has_jumped) && state.support_velocity.is_some() {
+            // A state that only knows less is never refused.
+            let _ = self.climber.restore(clamber_climber::ClimberState {
+                support_velocity: None,
+                ..state
+            });
+        }
+    }
+
+    fn mesh_below(&self, touchable: &Touchable<'_, '_>) -> Option<(ObstacleId, MeshId)> {
+        let id = self.climber.state().support?.attachment.obstacle;
+        Some((id, touchable.surface(id)?.mesh().id()))
+    }
+}
+
+/// Tells what happened to the climbers, in the order of their entities.
+pub(super) fn tell(
+    climbers: Query<(Entity, &ClimberBody), With<Climber>>,
+    touchable: Touchable<'_, '_>,
+    mut commands: Commands,
+) {
+    let mut eventful: Vec<_> = climbers
+        .iter()
+        .filter(|(_, body)| !body.report.events.is_empty())
+        .collect();
+    eventful.sort_unstable_by_key(|(entity, _)| *entity);
+    for (entity, body) in eventful {
+        let told = Told {
+            entity,
+            hit_points: body.climber.state().hit_points,
+            touched: &|id| touchable.entity(id, touched(body.contacts(), id)),
+            supports: &|from: &Attachment| touchable.entity(from.obstacle, Some(&from.material)),
+        };
+        for event in &body.report.events {
+            tell_event(event, &told, &mut commands);
+        }
+    }
+}
+
+/// The rotation whose -Z is a heading, and whose +Y is up.
+pub(super) fn facing(heading: DVec3, up: DVec3) -> Option<DQuat> {
+    let right = heading.cross(up).try_normalize()?;
+    let back = right.cross(up);
+    Some(DQuat::from_mat3(&DMat3::from_cols(right, up, back)).normalize())
+}
