@@ -10,7 +10,7 @@ use clamber_surface::surface::{Anchor, SkinnedSurface, SurfaceError};
 use clamber_world::{Attachment, MaterialPoint, ObstacleId};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::{ClamberSystems, PosedSurface};
+use crate::{ClamberSystems, DrawnSurface, PosedSurface, WorldOrigin};
 
 /// Maximum number of ancestors of an anchored entity that are followed.
 const MAX_DEPTH: usize = 4096;
@@ -25,7 +25,6 @@ const MAX_DEPTH: usize = 4096;
 ///
 /// Under a parent with a non-uniform scale no rotation is exact. The position and the direction of +Y are exact there.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(opaque)]
 #[reflect(Component, Clone, Debug, PartialEq)]
 #[require(Transform)]
 pub struct SurfaceAnchor {
@@ -136,28 +135,16 @@ pub struct SurfaceAnchorPlugin;
 
 impl Plugin for SurfaceAnchorPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<SurfaceAnchor>().add_systems(
-            PostUpdate,
-            (pose_anchored_surfaces, follow)
-                .chain()
-                .in_set(ClamberSystems::Anchor),
-        );
-    }
-}
-
-/// Poses the surfaces that have anchors as this frame draws them.
-fn pose_anchored_surfaces(anchors: Query<&SurfaceAnchor>, mut surfaces: Query<&mut PosedSurface>) {
-    for anchor in &anchors {
-        if let Ok(mut surface) = surfaces.get_mut(anchor.surface) {
-            surface.bypass_change_detection().pose_as_drawn();
-        }
+        app.register_type::<SurfaceAnchor>()
+            .add_systems(PostUpdate, follow.in_set(ClamberSystems::Anchor));
     }
 }
 
 /// Moves parents before children, so that an anchored child sees the current transform of an anchored parent.
 fn follow(
     mut anchors: Query<(Entity, &mut SurfaceAnchor, Option<&ChildOf>)>,
-    surfaces: Query<&PosedSurface>,
+    surfaces: Query<(&PosedSurface, &DrawnSurface)>,
+    origin: Res<WorldOrigin>,
     mut transforms: Query<(&mut Transform, Option<&ChildOf>)>,
     mut order: Local<Vec<(usize, Entity)>>,
     mut commands: Commands,
@@ -187,6 +174,7 @@ fn follow(
             // The surface has no pose for this frame: the entity stays where it is.
             continue;
         };
+        let world = DAffine3::from_translation(-origin.0) * world;
         let local = match child_of {
             None => world,
             Some(child_of) => parent(child_of.parent(), &transforms).inverse() * world,
@@ -207,12 +195,15 @@ fn follow(
 
 /// The transform of an anchored entity in world space; `None` if the point is gone, `Some(None)` if the surface has no
 /// pose of this frame.
-fn place(anchor: &mut SurfaceAnchor, surfaces: &Query<&PosedSurface>) -> Option<Option<DAffine3>> {
-    let surface = surfaces.get(anchor.surface).ok()?;
+fn place(
+    anchor: &mut SurfaceAnchor,
+    surfaces: &Query<(&PosedSurface, &DrawnSurface)>,
+) -> Option<Option<DAffine3>> {
+    let (surface, drawn) = surfaces.get(anchor.surface).ok()?;
     surface
         .mesh()
         .part_of(anchor.attachment.material.triangle()?)?;
-    let Some(drawn) = surface.as_drawn() else {
+    let Some(drawn) = drawn.pose(surface) else {
         return Some(None);
     };
     anchor.follow(drawn).map(Some)

@@ -23,7 +23,9 @@ pub use climber::{
     Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
     ClimberState, CustomObstacle, Grip, GripRule, events,
 };
-pub use collider::{ColliderError, ColliderStatus, ColliderTag, SkinnedCollider, SurfaceTagger};
+pub use collider::{
+    ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,
+};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
     RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,
@@ -39,8 +41,11 @@ pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};
-pub use query::{EntityHit, EntitySweepHit, SurfaceFilter, SurfaceQuery};
-pub use surface::{PoseError, PoseTiming, PosedSurface, SurfacePlugin, WorldOrigin};
+pub use query::{
+    DrawnPose, DrawnSurfaceQuery, EntityHit, EntitySweepHit, SurfaceFilter, SurfacePose,
+    SurfaceQuery, TickPose,
+};
+pub use surface::{DrawnSurface, PoseError, PoseTiming, PosedSurface, SurfacePlugin, WorldOrigin};
 
 /// The character.
 pub use clamber_climber;

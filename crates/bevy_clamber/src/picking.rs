@@ -11,9 +11,10 @@ use bevy_picking::{Pickable, PickingSystems};
 use bevy_reflect::prelude::*;
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
+use glam::DVec3;
 
 use crate::query::{in_f64, world_hit};
-use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
+use crate::{ClamberSystems, DrawnSurface, EntityHit, PosedSurface, SurfaceAnchor, WorldOrigin};
 
 /// The point of skin that a pointer hits: the extra data of a `HitData`, whose position and outward unit normal are in
 /// world space.
@@ -21,7 +22,6 @@ use crate::{ClamberSystems, EntityHit, PosedSurface, SurfaceAnchor};
 /// It is a material point, so it stays valid when the skin moves in later frames. A click, for example, has the hit of
 /// the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(opaque)]
 #[reflect(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SurfacePick {
@@ -94,7 +94,8 @@ impl Plugin for SurfacePickingPlugin {
 /// An entity that a pointer may hit.
 type Target = (
     Entity,
-    &'static mut PosedSurface,
+    &'static PosedSurface,
+    &'static DrawnSurface,
     Option<&'static Pickable>,
     Option<&'static RenderLayers>,
     Option<&'static ViewVisibility>,
@@ -103,7 +104,8 @@ type Target = (
 fn pick(
     rays: Res<RayMap>,
     cameras: Query<(&Camera, Option<&RenderLayers>)>,
-    mut targets: Query<Target>,
+    targets: Query<Target>,
+    origin: Res<WorldOrigin>,
     mut hits: MessageWriter<PointerHits>,
 ) {
     for (id, ray) in rays.iter() {
@@ -113,14 +115,15 @@ fn pick(
         let seen_layers = seen_layers.unwrap_or_default();
         let mut picks = Vec::new();
         let mut nearest_blocking = f32::INFINITY;
-        for (entity, mut surface, pickable, layers, visibility) in &mut targets {
-            let surface = surface.bypass_change_detection();
+        for (entity, surface, drawn, pickable, layers, visibility) in &targets {
             let ignored = pickable == Some(&Pickable::IGNORE);
             let hidden = visibility.is_some_and(|visibility| !visibility.get());
             if ignored || hidden || !seen_layers.intersects(layers.unwrap_or_default()) {
                 continue;
             }
-            let Some((hit, pick)) = cast(entity, surface, *ray, nearest_blocking) else {
+            let Some((hit, pick)) =
+                cast(entity, (surface, drawn), *ray, nearest_blocking, origin.0)
+            else {
                 continue;
             };
             if pickable.is_none_or(|pickable| pickable.should_block_lower) {
@@ -140,18 +143,17 @@ fn pick(
 /// The first point of skin along a ray, in the pose that the last frame drew.
 fn cast(
     entity: Entity,
-    surface: &mut PosedSurface,
+    (surface, drawn): (&PosedSurface, &DrawnSurface),
     ray: Ray3d,
     max_distance: f32,
+    world: DVec3,
 ) -> Option<(EntityHit, SurfacePick)> {
-    surface.pose_as_drawn()?;
-    let surface = &*surface;
-    let drawn = surface.as_drawn()?;
-    let (origin, along) = in_f64(ray);
+    let drawn = drawn.pose(surface)?;
+    let (origin, along) = in_f64(ray, world);
     let hit = drawn
         .in_world()
         .cast_ray(origin, along, max_distance.into())?;
-    let world = world_hit(entity, &hit);
+    let world = world_hit(entity, &hit, world);
     let normal = world.normal.try_normalize().unwrap_or(Vec3::Y);
     let outward = Quat::from_rotation_arc(Vec3::Y, normal);
     let pick = SurfacePick {

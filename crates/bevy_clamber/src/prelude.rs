@@ -5,8 +5,8 @@ pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
     AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberFilter,
     ClimberInput, ClimberModes, ClimberPlugin, ClimberState, ColliderStatus, ColliderTag,
-    CustomObstacle, EntityHit, GripRule, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor,
-    SurfaceFilter, SurfaceQuery, SurfaceTagger,
+    CustomObstacle, DrawnSurfaceQuery, EntityHit, GripRule, PoseTiming, PosedSurface,
+    SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldOrigin,
 };
 #[cfg(feature = "clamber_gltf")]
 pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};

@@ -1,13 +1,16 @@
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::{IterQueryData, QueryData, ReadOnlyQueryData};
 use bevy_ecs::system::SystemParam;
 use bevy_math::{Quat, Vec3};
 use bevy_shape::Ray3d;
 use clamber_surface::geometry::{Capsule, WorldCapsule};
 use clamber_surface::mesh::{MeshId, PartId, SurfaceTag, TriangleId};
-use clamber_surface::surface::{self, CastOptions, SurfacePoint, TargetMotion, WorldMotion};
+use clamber_surface::surface::{
+    self, CastOptions, SkinnedSurface, SurfacePoint, TargetMotion, WorldMotion,
+};
 use glam::DVec3;
 
-use crate::{AnchorError, PosedSurface, SurfaceAnchor};
+use crate::{AnchorError, DrawnSurface, PosedSurface, SurfaceAnchor, WorldOrigin};
 
 /// Factor on the nearest distance so far that limits the search on the other surfaces. It keeps equal distances in
 /// reach: converting a distance to a surface's units and back rounds to f32 once or twice each way.
@@ -34,9 +37,63 @@ const EQUAL: f64 = 1.0 + 8.0 * f32::EPSILON as f64;
 ///     }
 /// }
 /// ```
+///
+/// [`DrawnSurfaceQuery`] asks the same of the skin as the last frame drew it.
 #[derive(SystemParam)]
-pub struct SurfaceQuery<'w, 's> {
-    surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
+pub struct SurfaceQuery<'w, 's, P: SurfacePose = TickPose> {
+    surfaces: Query<'w, 's, (Entity, <P as SurfacePose>::Data)>,
+    origin: Res<'w, WorldOrigin>,
+}
+
+/// A [`SurfaceQuery`] on the skin as the last frame drew it: for what has to fit to the picture, such as cameras, lasers
+/// and cursors. What it finds can be anchored.
+///
+/// In `PostUpdate`, order systems with it after [`ClamberSystems::Sample`](crate::ClamberSystems::Sample): they then see
+/// the pose of this frame.
+pub type DrawnSurfaceQuery<'w, 's> = SurfaceQuery<'w, 's, DrawnPose>;
+
+/// The pose in which a [`SurfaceQuery`] sees skin: [`TickPose`] or [`DrawnPose`].
+pub trait SurfacePose: sealed::Sealed + 'static {
+    /// The components that are read.
+    type Data: IterQueryData + ReadOnlyQueryData + 'static;
+
+    /// The surface in that pose, if it has one.
+    fn surface<'w, 's>(data: <Self::Data as QueryData>::Item<'w, 's>)
+    -> Option<&'w SkinnedSurface>;
+}
+
+/// The pose of the last tick.
+#[derive(Clone, Copy, Debug)]
+pub struct TickPose;
+
+/// The pose of the last frame.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnPose;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::TickPose {}
+    impl Sealed for super::DrawnPose {}
+}
+
+impl SurfacePose for TickPose {
+    type Data = &'static PosedSurface;
+
+    fn surface<'w, 's>(
+        surface: <Self::Data as QueryData>::Item<'w, 's>,
+    ) -> Option<&'w SkinnedSurface> {
+        surface.is_placed().then_some(surface)
+    }
+}
+
+impl SurfacePose for DrawnPose {
+    type Data = (&'static PosedSurface, &'static DrawnSurface);
+
+    fn surface<'w, 's>(
+        (surface, drawn): <Self::Data as QueryData>::Item<'w, 's>,
+    ) -> Option<&'w SkinnedSurface> {
+        drawn.pose(surface)
+    }
 }
 
 /// Selects the surfaces that a query sees. Default: all.
@@ -111,7 +168,7 @@ pub struct EntitySweepHit {
     pub undecided: bool,
 }
 
-impl SurfaceQuery<'_, '_> {
+impl<P: SurfacePose> SurfaceQuery<'_, '_, P> {
     /// The first point of skin that a ray hits, from either side, up to `max_distance` metres.
     pub fn cast_ray(
         &self,
@@ -119,7 +176,7 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> Option<EntityHit> {
-        let (origin, along) = in_f64(ray);
+        let (origin, along) = in_f64(ray, self.origin.0);
         self.nearest(filter, max_distance, |surface, max_distance| {
             surface.in_world().cast_ray(origin, along, max_distance)
         })
@@ -133,7 +190,7 @@ impl SurfaceQuery<'_, '_> {
         max_distance: f32,
         filter: &SurfaceFilter<'_>,
     ) -> bool {
-        let (origin, along) = in_f64(ray);
+        let (origin, along) = in_f64(ray, self.origin.0);
         self.seen(filter).any(|(_, surface)| {
             let space = surface.in_world();
             space.intersects_ray(origin, along, max_distance.into())
@@ -149,13 +206,13 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         hits: &mut Vec<EntityHit>,
     ) {
-        let (origin, along) = in_f64(ray);
+        let (origin, along) = in_f64(ray, self.origin.0);
         let mut found = Vec::new();
         hits.clear();
         for (entity, surface) in self.seen(filter) {
             let space = surface.in_world();
             space.cast_ray_all(origin, along, max_distance.into(), &mut found);
-            hits.extend(found.drain(..).map(|hit| world_hit(entity, &hit)));
+            hits.extend(found.drain(..).map(|hit| self.hit(entity, &hit)));
         }
         // A stable sort keeps the core's order within a surface.
         hits.sort_by(by_distance);
@@ -171,7 +228,7 @@ impl SurfaceQuery<'_, '_> {
         self.nearest(filter, max_distance, |surface, max_distance| {
             surface
                 .in_world()
-                .closest_point(point.as_dvec3(), max_distance)
+                .closest_point(self.origin.0 + point.as_dvec3(), max_distance)
         })
     }
 
@@ -183,11 +240,11 @@ impl SurfaceQuery<'_, '_> {
         filter: &SurfaceFilter<'_>,
         hits: &mut Vec<EntityHit>,
     ) {
-        let capsule = WorldCapsule::from(capsule);
+        let capsule = WorldCapsule::from(capsule).moved(self.origin.0);
         hits.clear();
         for (entity, surface) in self.seen(filter) {
             let space = surface.in_world();
-            space.visit_overlap_capsule(&capsule, |hit| hits.push(world_hit(entity, &hit)));
+            space.visit_overlap_capsule(&capsule, |hit| hits.push(self.hit(entity, &hit)));
         }
         hits.sort_unstable_by(by_distance_and_triangle);
     }
@@ -203,14 +260,21 @@ impl SurfaceQuery<'_, '_> {
         target: TargetMotion,
         filter: &SurfaceFilter<'_>,
     ) -> Option<EntitySweepHit> {
-        let capsule = WorldCapsule::from(capsule);
+        let capsule = WorldCapsule::from(capsule).moved(self.origin.0);
         let displacements = displacements.map(|displacement| displacement.as_dvec3());
         // The tolerance of a cast at an obstacle, so that a climber and its game get the same contact.
         let options = CastOptions::from(target).with_tolerance(capsule.sweep_tolerance());
         let hits = self.seen(filter).filter_map(|(entity, surface)| {
             let space = surface.in_world();
             let hit = space.cast_capsule(&capsule, displacements, &options)?;
-            Some((hit.time, world_sweep_hit(entity, &hit)))
+            let found = EntitySweepHit {
+                hit: self.hit(entity, &hit.hit),
+                separation_normal: hit.separation_normal.as_vec3(),
+                time: hit.time as f32,
+                started_inside: hit.started_inside,
+                undecided: hit.undecided,
+            };
+            Some((hit.time, found))
         });
         let earlier = hits.min_by(|(time, a), (other, b)| {
             let by_time = time.total_cmp(other);
@@ -257,26 +321,22 @@ impl SurfaceQuery<'_, '_> {
         Ok(surface.in_world().motion(&anchor.anchor()?, dt)?)
     }
 
-    /// The surface of an entity; `None` if there is none, or if it has not had a valid pose yet.
-    pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
-        let (_, surface) = self.surfaces.get(entity).ok()?;
-        surface.is_placed().then_some(surface)
+    fn surface(&self, entity: Entity) -> Result<&SkinnedSurface, AnchorError> {
+        let found = self.surfaces.get(entity).ok();
+        let found = found.and_then(|(_, data)| P::surface(data));
+        found.ok_or(AnchorError::NoSurface(entity))
     }
 
-    /// All surfaces that have had a valid pose, in no promised order.
-    pub fn iter(&self) -> impl Iterator<Item = (Entity, &PosedSurface)> {
-        let all = self.surfaces.iter();
-        all.filter(|(_, surface)| surface.is_placed())
+    fn hit(&self, entity: Entity, hit: &surface::WorldHit) -> EntityHit {
+        world_hit(entity, hit, self.origin.0)
     }
 
-    fn surface(&self, entity: Entity) -> Result<&PosedSurface, AnchorError> {
-        let found = self.surfaces.get(entity);
-        let (_, surface) = found.map_err(|_| AnchorError::NoSurface(entity))?;
-        Ok(surface)
-    }
-
-    fn seen(&self, filter: &SurfaceFilter<'_>) -> impl Iterator<Item = (Entity, &PosedSurface)> {
-        self.iter().filter(|(entity, _)| filter.sees(*entity))
+    fn seen(&self, filter: &SurfaceFilter<'_>) -> impl Iterator<Item = (Entity, &SkinnedSurface)> {
+        let seen = self
+            .surfaces
+            .iter()
+            .filter(|(entity, _)| filter.sees(*entity));
+        seen.filter_map(|(entity, data)| Some((entity, P::surface(data)?)))
     }
 
     /// The nearest hit of `find` on any surface. The maximum distance shrinks with each nearer hit.
@@ -284,7 +344,7 @@ impl SurfaceQuery<'_, '_> {
         &self,
         filter: &SurfaceFilter<'_>,
         max_distance: f32,
-        find: impl Fn(&PosedSurface, f64) -> Option<surface::WorldHit>,
+        find: impl Fn(&SkinnedSurface, f64) -> Option<surface::WorldHit>,
     ) -> Option<EntityHit> {
         let mut max_distance = f64::from(max_distance);
         let mut nearest: Option<(f64, EntityHit)> = None;
@@ -299,10 +359,31 @@ impl SurfaceQuery<'_, '_> {
             if nearer {
                 let least = f64::from(f32::MIN_POSITIVE);
                 max_distance = max_distance.min(hit.distance * EQUAL + least);
-                nearest = Some((hit.distance, world_hit(entity, &hit)));
+                nearest = Some((hit.distance, self.hit(entity, &hit)));
             }
         }
         nearest.map(|(_, hit)| hit)
+    }
+}
+
+impl SurfaceQuery<'_, '_> {
+    /// The surface of an entity; `None` if there is none, or if it has not had a valid pose yet.
+    pub fn get(&self, entity: Entity) -> Option<&PosedSurface> {
+        let (_, surface) = self.surfaces.get(entity).ok()?;
+        surface.is_placed().then_some(surface)
+    }
+
+    /// All surfaces that have had a valid pose, in no promised order.
+    pub fn iter(&self) -> impl Iterator<Item = (Entity, &PosedSurface)> {
+        let all = self.surfaces.iter();
+        all.filter(|(_, surface)| surface.is_placed())
+    }
+}
+
+impl DrawnSurfaceQuery<'_, '_> {
+    /// The surface of an entity; `None` if there is none, or if it cannot take the pose that was drawn.
+    pub fn get(&self, entity: Entity) -> Option<&SkinnedSurface> {
+        self.surface(entity).ok()
     }
 }
 
@@ -315,15 +396,19 @@ fn by_distance_and_triangle(a: &EntityHit, b: &EntityHit) -> std::cmp::Ordering 
     by_distance(a, b).then_with(|| a.triangle.cmp(&b.triangle))
 }
 
-/// Origin and direction of a ray, in f64.
-pub(crate) fn in_f64(ray: Ray3d) -> (DVec3, DVec3) {
-    (ray.origin.as_dvec3(), ray.direction.as_vec3().as_dvec3())
+/// Origin and direction of a ray, in world space.
+pub(crate) fn in_f64(ray: Ray3d, origin: DVec3) -> (DVec3, DVec3) {
+    (
+        origin + ray.origin.as_dvec3(),
+        ray.direction.as_vec3().as_dvec3(),
+    )
 }
 
-pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> EntityHit {
+/// A hit relative to Bevy's origin.
+pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit, origin: DVec3) -> EntityHit {
     EntityHit {
         entity,
-        point: hit.point.as_vec3(),
+        point: (hit.point - origin).as_vec3(),
         normal: hit.normal.as_vec3(),
         distance: hit.distance as f32,
         mesh: hit.mesh,
@@ -331,15 +416,5 @@ pub(crate) fn world_hit(entity: Entity, hit: &surface::WorldHit) -> EntityHit {
         barycentric: hit.barycentric,
         part: hit.part,
         tag: hit.tag,
-    }
-}
-
-fn world_sweep_hit(entity: Entity, hit: &surface::WorldSweepHit) -> EntitySweepHit {
-    EntitySweepHit {
-        hit: world_hit(entity, &hit.hit),
-        separation_normal: hit.separation_normal.as_vec3(),
-        time: hit.time as f32,
-        started_inside: hit.started_inside,
-        undecided: hit.undecided,
     }
 }

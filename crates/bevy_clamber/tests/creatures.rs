@@ -231,7 +231,7 @@ fn a_missing_clip_or_a_time_that_is_not_finite_moves_nothing() {
 }
 
 #[test]
-fn a_despawned_joint_is_an_error_and_a_despawned_root_leaves_nothing() {
+fn a_despawned_joint_ends_the_surface_and_a_despawned_root_leaves_nothing() {
     let mut app = app_with(
         60.0,
         (ClamberPlugins::default(), RigPlayerPlugin::default()),
@@ -247,8 +247,11 @@ fn a_despawned_joint_is_an_error_and_a_despawned_root_leaves_nothing() {
     for _ in 0..5 {
         app.update();
     }
-    let surface = app.world().get::<PosedSurface>(spawned.meshes[0]).unwrap();
-    assert!(surface.error().is_some());
+    for mesh in &spawned.meshes {
+        assert!(app.world().get::<PosedSurface>(*mesh).is_none());
+        let status = app.world().get::<ColliderStatus>(*mesh).unwrap();
+        assert!(matches!(status, ColliderStatus::Failed(_)), "{status:?}");
+    }
     app.world_mut().entity_mut(spawned.root).despawn();
     app.update();
     let left = |joints: Query<&Transform>| joints.iter().count();

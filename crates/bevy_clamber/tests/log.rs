@@ -101,5 +101,25 @@ fn each_failure_is_logged_once() {
             app.update();
         }
         assert_eq!(lines(), 1, "{timing:?}");
+        // A teleport that nobody told of, three times.
+        let jumping = limb(&mut app, Transform::IDENTITY, collider);
+        for _ in 0..3 {
+            let mut root = app.world_mut().get_mut::<Transform>(jumping.root).unwrap();
+            root.translation.x += 50.0;
+            for _ in 0..9 {
+                app.update();
+            }
+        }
+        assert_eq!(lines(), 1, "{timing:?}");
     }
+    // A collider on an entity without a mesh says what it waits for, after a while.
+    app.world_mut().spawn(SkinnedCollider::default());
+    for _ in 0..64 * 4 {
+        app.update();
+    }
+    assert_eq!(lines(), 0);
+    for _ in 0..64 * 9 {
+        app.update();
+    }
+    assert_eq!(lines(), 1);
 }

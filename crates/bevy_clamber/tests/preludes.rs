@@ -26,8 +26,9 @@ macro_rules! use_each {
 }
 
 use_each! { ALWAYS, cfg(all()),
-    AnchorLost ClamberPlugins ClamberSystems ColliderStatus ColliderTag PoseTiming PosedSurface SkinnedCollider
-    SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag SurfaceTagger TargetMotion EntityHit
+    AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberFilter ClimberInput ClimberModes
+    ClimberPlugin ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery EntityHit GripRule PoseTiming
+    PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }

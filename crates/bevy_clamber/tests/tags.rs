@@ -1,4 +1,4 @@
-//! Surface tags of meshes: from a component, from a function, and changed later.
+//! Surface tags of meshes: from a component, from an observer, and changed later.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
@@ -37,14 +37,24 @@ fn tag_at(app: &mut App, x: f32) -> SurfaceTag {
     app.world_mut().run_system_once(ask).unwrap().unwrap().tag
 }
 
-fn by_name(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
-    mesh.get::<Name>()?.contains("fur").then_some(FUR)
+/// Tags colliders by the names of their meshes, when they are inserted.
+fn tag_by_name(
+    added: On<Add<SkinnedCollider>>,
+    names: Query<&Name, Without<ColliderTag>>,
+    mut commands: Commands,
+) {
+    if names
+        .get(added.entity)
+        .is_ok_and(|name| name.contains("fur"))
+    {
+        commands.entity(added.entity).insert(ColliderTag(FUR));
+    }
 }
 
 #[test]
-fn a_function_tags_meshes_that_have_no_tag() {
+fn an_observer_tags_meshes_that_have_no_tag() {
     let mut app = app(60.0);
-    app.insert_resource(SurfaceTagger::new(by_name));
+    app.add_observer(tag_by_name);
     let collider = SkinnedCollider::default();
     let furry = named(&mut app, "furry", 0.0);
     let bald = named(&mut app, "bald", 5.0);
@@ -66,7 +76,7 @@ fn a_function_tags_meshes_that_have_no_tag() {
 }
 
 #[test]
-fn without_a_function_the_tag_is_the_default_until_it_is_changed() {
+fn without_one_the_tag_is_the_default_until_it_is_changed() {
     let mut app = app(60.0);
     let limb = named(&mut app, "furry", 0.0);
     app.world_mut()
@@ -79,31 +89,5 @@ fn without_a_function_the_tag_is_the_default_until_it_is_changed() {
         .insert(ColliderTag(FUR));
     app.update();
     wait(&mut app, limb.mesh);
-    assert_eq!(tag_at(&mut app, 0.0), FUR);
-}
-
-#[test]
-fn a_mesh_that_is_inserted_after_its_collider_is_tagged_by_its_name() {
-    let mut app = app(60.0);
-    app.insert_resource(SurfaceTagger::new(by_name));
-    let early = app.world_mut().spawn(SkinnedCollider::default()).id();
-    app.update();
-    assert!(app.world().get::<ColliderTag>(early).is_none());
-    let limb = named(&mut app, "furry", 0.0);
-    let world = app.world_mut();
-    let mesh = world
-        .entity(limb.mesh)
-        .get::<bevy_mesh::Mesh3d>()
-        .unwrap()
-        .clone();
-    let skin = world
-        .entity(limb.mesh)
-        .get::<bevy_mesh::skinning::SkinnedMesh>()
-        .unwrap()
-        .clone();
-    world
-        .entity_mut(early)
-        .insert((mesh, skin, Name::new("fur")));
-    wait(&mut app, early);
     assert_eq!(tag_at(&mut app, 0.0), FUR);
 }

@@ -8,31 +8,14 @@ use glam::{DQuat, DVec3};
 
 use super::component::{Climber, ClimberBody};
 use super::step::facing;
-use crate::PosedSurface;
-
-/// Poses the surfaces that climbers are on as this frame draws them.
-pub(super) fn pose_below(
-    climbers: Query<&ClimberBody, With<Climber>>,
-    mut surfaces: Query<&mut PosedSurface>,
-) {
-    for body in &climbers {
-        for state in [&body.before, body.climber.state()] {
-            let support = state.support.map(|support| support.attachment);
-            let entity = support.and_then(|on| Entity::try_from_bits(on.obstacle.0));
-            if let Some(entity) = entity
-                && let Ok(mut surface) = surfaces.get_mut(entity)
-            {
-                surface.bypass_change_detection().pose_as_drawn();
-            }
-        }
-    }
-}
+use crate::{DrawnSurface, PosedSurface, WorldOrigin};
 
 /// Writes the transforms of climbers.
 pub(super) fn draw(
     time: Res<Time<Fixed>>,
     mut climbers: Query<(&mut ClimberBody, &mut Transform), With<Climber>>,
-    surfaces: Query<&PosedSurface>,
+    surfaces: Query<(&PosedSurface, &DrawnSurface)>,
+    origin: Res<WorldOrigin>,
 ) {
     let fraction = time.overstep_fraction_f64();
     for (mut body, mut transform) in &mut climbers {
@@ -52,7 +35,7 @@ pub(super) fn draw(
             continue;
         };
         body.drawn = Transform {
-            translation: position.as_vec3(),
+            translation: (position - origin.0).as_vec3(),
             rotation: rotation.as_quat(),
             scale: transform.scale,
         };
@@ -63,7 +46,7 @@ pub(super) fn draw(
 /// Position and heading of a state: on skin, as the frame draws it.
 fn on_drawn_skin(
     state: &clamber_climber::ClimberState,
-    surfaces: &Query<&PosedSurface>,
+    surfaces: &Query<(&PosedSurface, &DrawnSurface)>,
 ) -> (DVec3, DVec3) {
     let on_skin = state.support.and_then(|support| {
         let (place, turn) = followed(&support.attachment, surfaces)?;
@@ -73,9 +56,13 @@ fn on_drawn_skin(
 }
 
 /// Where something attached to skin is drawn, and how much it is turned there from where the tick has it.
-fn followed(attachment: &Attachment, surfaces: &Query<&PosedSurface>) -> Option<(DVec3, DQuat)> {
+fn followed(
+    attachment: &Attachment,
+    surfaces: &Query<(&PosedSurface, &DrawnSurface)>,
+) -> Option<(DVec3, DQuat)> {
     let entity = Entity::try_from_bits(attachment.obstacle.0)?;
-    let skin = surfaces.get(entity).ok()?.as_drawn()?;
+    let (surface, drawn) = surfaces.get(entity).ok()?;
+    let skin = drawn.pose(surface)?;
     let motion = Obstacle::motion(skin, &attachment.material, 1.0)?;
     let frame = motion.frame.unwrap_or(attachment.frame);
     Some((

@@ -53,12 +53,7 @@ impl Plugin for ClimberPlugin {
                     .chain()
                     .in_set(ClamberSystems::Climb),
             )
-            .add_systems(
-                PostUpdate,
-                (draw::pose_below, draw::draw)
-                    .chain()
-                    .in_set(ClamberSystems::Draw),
-            );
+            .add_systems(PostUpdate, draw::draw.in_set(ClamberSystems::Draw));
     }
 }
 

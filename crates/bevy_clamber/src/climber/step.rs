@@ -14,7 +14,7 @@ use super::events::{Told, tell_event};
 use super::input::{ClimberInput, LatchedInput};
 use super::obstacles::{Touchable, touched};
 use super::rules::{ClimberModes, Grip, GripRule};
-use crate::PosedSurface;
+use crate::{PosedSurface, WorldOrigin};
 
 /// Up to this number, one thread steps all climbers sooner than other threads wake up.
 const FEW: usize = 4;
@@ -28,6 +28,7 @@ pub(super) fn follow_changes(
         Option<&ClimberState>,
         Option<&mut ClimberBody>,
     )>,
+    origin: Res<WorldOrigin>,
     mut commands: Commands,
 ) {
     for (entity, climber, transform, state, body) in &mut climbers {
@@ -36,7 +37,7 @@ pub(super) fn follow_changes(
                 // Refused and logged already.
                 continue;
             }
-            match new_body(&climber.config, transform, state) {
+            match new_body(&climber.config, transform, origin.0, state) {
                 Ok(body) => {
                     let state = ClimberState(*body.climber.state());
                     commands.entity(entity).try_insert((body, state));
@@ -60,7 +61,7 @@ pub(super) fn follow_changes(
             }
         }
         if transform.translation != body.drawn.translation {
-            body.teleport(transform);
+            body.teleport(transform, origin.0);
         }
     }
 }
@@ -68,9 +69,10 @@ pub(super) fn follow_changes(
 fn new_body(
     config: &ClimberConfig,
     transform: &Transform,
+    origin: DVec3,
     state: Option<&ClimberState>,
 ) -> Result<ClimberBody, clamber_climber::ClimberError> {
-    let position = transform.translation.as_dvec3();
+    let position = origin + transform.translation.as_dvec3();
     let mut climber = clamber_climber::Climber::new(*config, position)?;
     let mut begin = *climber.state();
     begin.heading = level(transform.rotation, config.up(), begin.heading);
@@ -98,10 +100,11 @@ impl ClimberBody {
     }
 
     /// Lets the climber fall from where the app has put its transform.
-    fn teleport(&mut self, to: &Transform) {
+    fn teleport(&mut self, to: &Transform, origin: DVec3) {
         let was = *self.climber.state();
         let config = *self.climber.config();
-        let Ok(new) = clamber_climber::Climber::new(config, to.translation.as_dvec3()) else {
+        let position = origin + to.translation.as_dvec3();
+        let Ok(new) = clamber_climber::Climber::new(config, position) else {
             return;
         };
         let begin = clamber_climber::ClimberState {

@@ -1,16 +1,22 @@
 use std::sync::Arc;
+use std::time::Duration;
 
 use bevy_asset::{AssetEvent, Assets};
+use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Mesh, Mesh3d};
+use bevy_time::{Real, Time};
 use clamber_surface::geometry::Affine;
 use glam::DAffine3;
 
 use super::meshes::ColliderKey;
-use super::{ColliderError, ColliderMeshes, ColliderStatus, ColliderTag, SkinnedCollider};
+use super::{
+    ColliderError, ColliderFailure, ColliderMeshes, ColliderNeeds, ColliderStatus, ColliderTag,
+    SkinnedCollider,
+};
 use crate::surface::{Hierarchy, PoseClock, Rig, Scene};
-use crate::{PosedSurface, WorldOrigin};
+use crate::{DrawnSurface, PosedSurface, WorldOrigin};
 
 /// Restarts the build of colliders whose assets changed, and removes surfaces whose assets are gone.
 pub(crate) fn forget_changed_assets(
@@ -54,24 +60,29 @@ fn begin_anew(
     gone: bool,
     commands: &mut Commands<'_, '_>,
 ) {
-    wait(status);
+    set(status, ColliderStatus::default());
     if gone {
-        commands.entity(entity).try_remove::<PosedSurface>();
+        remove_surface(entity, commands);
     }
+}
+
+fn remove_surface(entity: Entity, commands: &mut Commands<'_, '_>) {
+    let mut entity = commands.entity(entity);
+    entity.try_remove::<(PosedSurface, DrawnSurface)>();
 }
 
 /// Components that a collider is built from.
 type Source = (
     Entity,
     Ref<'static, SkinnedCollider>,
-    Ref<'static, ColliderTag>,
+    Option<Ref<'static, ColliderTag>>,
     Option<Ref<'static, Mesh3d>>,
     Option<Ref<'static, SkinnedMesh>>,
     &'static mut ColliderStatus,
-    Option<&'static mut PosedSurface>,
+    Option<(&'static mut PosedSurface, &'static mut DrawnSurface)>,
 );
 
-/// Builds surfaces whose assets are loaded, and removes those whose components are gone.
+/// Builds surfaces whose assets are loaded, and removes those whose components or joints are gone.
 pub(crate) fn build_colliders(
     mut sources: Query<Source>,
     meshes: Res<Assets<Mesh>>,
@@ -86,84 +97,133 @@ pub(crate) fn build_colliders(
         origin: origin.0,
     };
     for (entity, collider, tag, mesh, skin, mut status, surface) in &mut sources {
+        let has_surface = surface.is_some();
+        let mut lost = None;
+        if let Some((mut surface, mut drawn)) = surface {
+            if collider.is_changed() {
+                surface.set_timing(*collider);
+            }
+            drawn.bypass_change_detection().follow_edits(&surface);
+            lost = surface.lost_joints().cloned();
+        }
+        let needs = if mesh.is_none() {
+            ColliderNeeds::Mesh
+        } else {
+            ColliderNeeds::Skin
+        };
         let (Some(mesh), Some(skin)) = (mesh, skin) else {
-            if surface.is_some() {
-                commands.entity(entity).try_remove::<PosedSurface>();
+            if has_surface {
+                remove_surface(entity, &mut commands);
             }
-            wait(&mut status);
+            set(&mut status, ColliderStatus::Waiting(needs));
             continue;
         };
-        if tag.is_changed() || mesh.is_changed() || skin.is_changed() {
-            wait(&mut status);
-        }
-        if let Some(mut surface) = surface
-            && collider.is_changed()
-        {
-            surface.set_timing(*collider);
-        }
-        let wanted = match &*status {
-            ColliderStatus::Waiting | ColliderStatus::Building => true,
+        // Inserted as soon as there are mesh and skin.
+        let Some(tag) = tag else {
+            continue;
+        };
+        let has_changed = tag.is_changed() || mesh.is_changed() || skin.is_changed();
+        let is_wanted = match &*status {
+            ColliderStatus::Waiting(_) | ColliderStatus::Building => true,
             // Parents and transforms may be added after the mesh, and no asset event reports it.
-            ColliderStatus::Failed(error) => error.is_of_hierarchy(),
-            ColliderStatus::Ready => false,
-        };
-        if !wanted {
-            continue;
-        }
-        let (Some(asset), Some(inverse_bindposes)) = (
-            meshes.get(mesh.id()),
-            bindposes.get(&skin.inverse_bindposes),
-        ) else {
-            continue;
-        };
-        let key = ColliderKey {
-            mesh: mesh.id(),
-            joint_count: skin.joints.len(),
-            tag: tag.0,
-        };
-        let Some(built) = colliders.get_or_build(key, asset) else {
-            if !matches!(*status, ColliderStatus::Building) {
-                *status = ColliderStatus::Building;
+            ColliderStatus::Failed(failure) => {
+                failure.error().is_some_and(ColliderError::is_of_hierarchy)
             }
-            continue;
+            ColliderStatus::Ready => !has_surface,
         };
-        let surface = built.and_then(|built| {
-            let inverse = inverse_bindposes.iter().map(|m| widen(&m.to_cols_array()));
-            let rig = Rig::new(skin.joints.clone(), inverse.collect(), &hierarchy);
-            Ok(PosedSurface::new(
-                entity,
-                built,
-                rig.map_err(Arc::new)?,
-                *collider,
-                &scene,
-                &clock,
-            ))
-        });
+        let surface = if let (Some(error), false) = (lost, has_changed) {
+            Err(Arc::new(error))
+        } else if !(is_wanted || has_changed) {
+            continue;
+        } else {
+            let Some(asset) = meshes.get(mesh.id()) else {
+                set(
+                    &mut status,
+                    ColliderStatus::Waiting(ColliderNeeds::MeshAsset),
+                );
+                continue;
+            };
+            let Some(inverse_bindposes) = bindposes.get(&skin.inverse_bindposes) else {
+                let needs = ColliderNeeds::InverseBindposes;
+                set(&mut status, ColliderStatus::Waiting(needs));
+                continue;
+            };
+            let key = ColliderKey {
+                mesh: mesh.id(),
+                joint_count: skin.joints.len(),
+                tag: tag.0,
+            };
+            let Some(built) = colliders.get_or_build(key, asset) else {
+                set(&mut status, ColliderStatus::Building);
+                continue;
+            };
+            built.and_then(|built| {
+                let inverse = inverse_bindposes.iter().map(|m| widen(&m.to_cols_array()));
+                let rig = Rig::new(skin.joints.clone(), inverse.collect(), &hierarchy);
+                let mut drawn = DrawnSurface::new(rig.map_err(Arc::new)?);
+                let posed = PosedSurface::new(entity, built, *collider, &mut drawn, &scene, &clock);
+                Ok((posed, drawn))
+            })
+        };
         match surface {
             Ok(surface) => {
                 commands.entity(entity).try_insert(surface);
-                *status = ColliderStatus::Ready;
+                set(&mut status, ColliderStatus::Ready);
             }
-            // The same error as before: logged already.
-            Err(error) if matches!(&*status, ColliderStatus::Failed(known) if *known == error) => {}
             Err(error) => {
-                if error.is_of_hierarchy()
-                    || matches!(*error, ColliderError::InverseBindposes { .. })
-                {
-                    tracing::error!("no surface for {entity}: {error}");
+                if has_surface {
+                    remove_surface(entity, &mut commands);
                 }
-                commands.entity(entity).try_remove::<PosedSurface>();
-                *status = ColliderStatus::Failed(error);
+                let failure = ColliderStatus::Failed(ColliderFailure::new(error));
+                if *status != failure {
+                    // What a mesh lacks is logged once for all its entities.
+                    if let ColliderStatus::Failed(failure) = &failure
+                        && failure.error().is_some_and(ColliderError::is_of_entity)
+                    {
+                        tracing::error!("no surface for {entity}: {failure}");
+                    }
+                    *status = failure;
+                }
             }
         }
     }
 }
 
-/// Sets a status to waiting; marks it as changed only if it was not.
-fn wait(status: &mut Mut<'_, ColliderStatus>) {
-    if !matches!(**status, ColliderStatus::Waiting) {
-        **status = ColliderStatus::Waiting;
+/// Sets a status; marks it as changed only if it was another.
+fn set(status: &mut Mut<'_, ColliderStatus>, to: ColliderStatus) {
+    status.set_if_neq(to);
+}
+
+/// How long a collider may wait before what it waits for is logged.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Logs once for what a collider waits that does so for long.
+pub(crate) fn tell_waiting(
+    colliders: Query<(Entity, Ref<ColliderStatus>)>,
+    time: Res<Time<Real>>,
+    mut waiting: Local<EntityHashMap<Duration>>,
+) {
+    for (entity, status) in &colliders {
+        if status.is_changed() {
+            waiting.remove(&entity);
+            if matches!(*status, ColliderStatus::Waiting(_)) {
+                waiting.insert(entity, time.elapsed());
+            }
+        }
     }
+    waiting.retain(|entity, since| {
+        let Ok((_, status)) = colliders.get(*entity) else {
+            return false;
+        };
+        let ColliderStatus::Waiting(needs) = &*status else {
+            return false;
+        };
+        let is_long = time.elapsed().saturating_sub(*since) >= PATIENCE;
+        if is_long {
+            tracing::warn!("the SkinnedCollider of {entity} waits for {needs}");
+        }
+        !is_long
+    });
 }
 
 /// An affine map from a matrix by columns; its last row is ignored.

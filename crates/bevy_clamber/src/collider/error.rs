@@ -68,4 +68,9 @@ impl ColliderError {
     pub(crate) fn is_of_hierarchy(&self) -> bool {
         matches!(self, Self::Joint { .. } | Self::Hierarchies { .. })
     }
+
+    /// True for an error that not all entities with the same mesh have.
+    pub(crate) fn is_of_entity(&self) -> bool {
+        self.is_of_hierarchy() || matches!(self, Self::InverseBindposes { .. })
+    }
 }

@@ -6,10 +6,9 @@ use clamber_surface::mesh::SurfaceTag;
 
 /// The tag in the extras of a mesh's material, with the keys and words that `clamber_gltf` reads. A misspelt tag is
 /// logged as an error and ignored.
-pub(super) fn tag_of(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
-    let extras = mesh.get::<GltfMaterialExtras>()?;
+pub(super) fn tag_in(mesh: Entity, extras: &GltfMaterialExtras) -> Option<SurfaceTag> {
     clamber_gltf::tag_in_extras(&extras.value).unwrap_or_else(|error| {
-        tracing::error!("no tag for {}: {error}", mesh.id());
+        tracing::error!("no tag for {mesh}: {error}");
         None
     })
 }
@@ -17,9 +16,9 @@ pub(super) fn tag_of(mesh: EntityRef<'_>) -> Option<SurfaceTag> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::collider::{ColliderTag, SkinnedCollider, SurfaceTagger, tag_colliders};
+    use crate::collider::{ColliderTag, SkinnedCollider, tag_colliders};
     use bevy_ecs::system::RunSystemOnce;
-    use bevy_gltf::{GltfExtras, GltfMaterialName};
+    use bevy_gltf::GltfExtras;
     use bevy_mesh::Mesh3d;
     use bevy_mesh::skinning::SkinnedMesh;
     use clamber_surface::mesh::SurfaceKind;
@@ -53,18 +52,5 @@ mod tests {
             let other = tag(&mut world, extras(text));
             assert_eq!(other, SurfaceTag::default(), "{text}");
         }
-    }
-
-    #[test]
-    fn a_function_of_the_materials_name_wins_over_extras() {
-        let mut world = World::new();
-        world.insert_resource(SurfaceTagger::new(|mesh| {
-            let name = mesh.get::<GltfMaterialName>()?;
-            (name.0 == "ledge").then_some(LEDGE)
-        }));
-        let fur = r#"{"clamber": {"surface": "fur"}}"#;
-        let named = |name: &str| (GltfMaterialName(name.to_owned()), extras(fur));
-        assert_eq!(tag(&mut world, named("ledge")), LEDGE);
-        assert_eq!(tag(&mut world, named("belly")).kind, SurfaceKind::Fur);
     }
 }

@@ -10,15 +10,16 @@ mod tag;
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::prelude::*;
+use std::fmt;
 use std::sync::Arc;
 
 use crate::PoseTiming;
 
-pub(crate) use build::{build_colliders, forget_changed_assets};
+pub(crate) use build::{build_colliders, forget_changed_assets, tell_waiting};
 pub use error::ColliderError;
 pub(crate) use meshes::{BuiltCollider, ColliderMeshes};
+pub use tag::ColliderTag;
 pub(crate) use tag::tag_colliders;
-pub use tag::{ColliderTag, SurfaceTagger};
 
 /// Makes the skinned mesh of this entity (its `Mesh3d` and `SkinnedMesh`) a surface.
 ///
@@ -76,19 +77,76 @@ impl SkinnedCollider {
 }
 
 /// The build state of a [`SkinnedCollider`].
-#[derive(Component, Clone, Debug, Default, Reflect)]
-#[reflect(opaque)]
-#[reflect(Component, Default, Clone, Debug)]
+///
+/// A collider that has waited for 5 seconds logs once what for.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ColliderStatus {
-    /// Waits for the mesh, the inverse bind poses, `Mesh3d` or `SkinnedMesh`.
-    #[default]
-    Waiting,
+    /// Waits for something that is not there yet.
+    Waiting(ColliderNeeds),
     /// The collider is being built.
     Building,
     /// The entity has a [`PosedSurface`](crate::PosedSurface).
     Ready,
-    /// The surface cannot be built. The build is tried again when one of its assets or components changes, and each
-    /// frame after [`ColliderError::Joint`] and [`ColliderError::Hierarchies`].
-    Failed(Arc<ColliderError>),
+    /// The surface cannot be built, or it has lost its joints. The build is tried again when one of its assets or
+    /// components changes, and each frame after [`ColliderError::Joint`] and [`ColliderError::Hierarchies`].
+    Failed(ColliderFailure),
+}
+
+impl Default for ColliderStatus {
+    fn default() -> Self {
+        Self::Waiting(ColliderNeeds::Mesh)
+    }
+}
+
+/// What a [`SkinnedCollider`] waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect, thiserror::Error)]
+#[reflect(Clone, Debug, PartialEq, Hash)]
+#[non_exhaustive]
+pub enum ColliderNeeds {
+    /// The component `Mesh3d`.
+    #[error(
+        "a `Mesh3d` on its entity; put `SkinnedCollider` on the entity that has `Mesh3d` and `SkinnedMesh`"
+    )]
+    Mesh,
+    /// The component `SkinnedMesh`.
+    #[error("a `SkinnedMesh` on its entity; meshes without a skin cannot be surfaces")]
+    Skin,
+    /// The mesh asset, which is not loaded.
+    #[error("its mesh asset to be loaded")]
+    MeshAsset,
+    /// The asset of inverse bind poses, which is not loaded.
+    #[error("its asset `SkinnedMeshInverseBindposes` to be loaded")]
+    InverseBindposes,
+}
+
+/// Why a collider has failed.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Clone, Debug, PartialEq)]
+pub struct ColliderFailure {
+    /// The error, in words.
+    reason: String,
+    #[reflect(ignore, clone)]
+    error: Option<Arc<ColliderError>>,
+}
+
+impl ColliderFailure {
+    pub(crate) fn new(error: Arc<ColliderError>) -> Self {
+        Self {
+            reason: error.to_string(),
+            error: Some(error),
+        }
+    }
+
+    /// The error; `None` for a failure that was made by reflection.
+    pub fn error(&self) -> Option<&ColliderError> {
+        self.error.as_deref()
+    }
+}
+
+impl fmt::Display for ColliderFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.reason)
+    }
 }

@@ -1,6 +1,8 @@
-//! Surface tags of meshes, set by a component, by a function, or by the file.
+//! Surface tags of meshes, set by a component or by the file.
 
 use bevy_ecs::prelude::*;
+#[cfg(feature = "gltf")]
+use bevy_gltf::GltfMaterialExtras;
 use bevy_mesh::Mesh3d;
 use bevy_mesh::skinning::SkinnedMesh;
 use bevy_reflect::prelude::*;
@@ -10,17 +12,8 @@ use super::SkinnedCollider;
 
 /// The surface tag of all triangles of a mesh. Changing it rebuilds the collider.
 ///
-/// A [`SkinnedCollider`] without a tag gets one: from the [`SurfaceTagger`], else, with the feature `gltf`, from the
-/// extras of its glTF material, else the default.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(opaque)]
-#[reflect(Component, Default, Clone, Debug, PartialEq)]
-pub struct ColliderTag(pub SurfaceTag);
-
-/// A resource with a function that tags meshes from the components of their entity.
-///
-/// It is called once for each entity with a [`SkinnedCollider`] and no [`ColliderTag`], as soon as the entity has
-/// `Mesh3d` and `SkinnedMesh`. If it returns `None`, the file's tag or the default is used.
+/// A [`SkinnedCollider`] without a tag gets one: with the feature `gltf` from the extras of its glTF material, else the
+/// default. To tag meshes by a rule of your own, insert the tag where you insert the collider, or in an observer:
 ///
 /// ```
 /// # use bevy_app::App;
@@ -28,37 +21,41 @@ pub struct ColliderTag(pub SurfaceTag);
 /// # use bevy_clamber::prelude::*;
 /// # let mut app = App::new();
 /// // On meshes that `bevy_gltf` spawns, `GltfMaterialName` holds the material's name alone.
-/// app.insert_resource(SurfaceTagger::new(|mesh| {
-///     let name = mesh.get::<Name>()?;
-///     let fur = SurfaceTag::new(SurfaceKind::Fur);
-///     name.contains("fur").then_some(fur)
-/// }));
+/// app.add_observer(
+///     |added: On<Add<SkinnedCollider>>, names: Query<&Name>, mut commands: Commands| {
+///         if names.get(added.entity).is_ok_and(|name| name.contains("fur")) {
+///             let fur = SurfaceTag::new(SurfaceKind::Fur);
+///             commands.entity(added.entity).insert(ColliderTag(fur));
+///         }
+///     },
+/// );
 /// ```
-#[derive(Resource)]
-pub struct SurfaceTagger(Box<dyn Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync>);
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default, Clone, Debug, PartialEq)]
+pub struct ColliderTag(pub SurfaceTag);
 
-impl SurfaceTagger {
-    /// Tags meshes by a function of their entity.
-    pub fn new(
-        tag_of: impl Fn(EntityRef<'_>) -> Option<SurfaceTag> + Send + Sync + 'static,
-    ) -> Self {
-        Self(Box::new(tag_of))
-    }
-}
-
-type Untagged = (With<SkinnedCollider>, Without<ColliderTag>);
+type Untagged = (
+    With<SkinnedCollider>,
+    Without<ColliderTag>,
+    With<Mesh3d>,
+    With<SkinnedMesh>,
+);
 
 /// Gives every collider a tag.
 pub(crate) fn tag_colliders(
-    untagged: Query<EntityRef, (Untagged, With<Mesh3d>, With<SkinnedMesh>)>,
-    tagger: Option<Res<SurfaceTagger>>,
+    #[cfg(feature = "gltf")] untagged: Query<(Entity, Option<&GltfMaterialExtras>), Untagged>,
+    #[cfg(not(feature = "gltf"))] untagged: Query<(Entity, ()), Untagged>,
     mut commands: Commands,
 ) {
-    for mesh in &untagged {
-        let said = tagger.as_ref().and_then(|tagger| (tagger.0)(mesh));
+    for (mesh, extras) in &untagged {
         #[cfg(feature = "gltf")]
-        let said = said.or_else(|| super::gltf_tag::tag_of(mesh));
-        let tag = ColliderTag(said.unwrap_or_default());
-        commands.entity(mesh.id()).try_insert_if_new(tag);
+        let tag = extras.and_then(|extras| super::gltf_tag::tag_in(mesh, extras));
+        #[cfg(not(feature = "gltf"))]
+        let tag = {
+            let () = extras;
+            None
+        };
+        let tag = ColliderTag(tag.unwrap_or_default());
+        commands.entity(mesh).try_insert_if_new(tag);
     }
 }

@@ -9,9 +9,11 @@ use bevy_transform::components::Transform;
 use clamber_surface::mesh::{ColliderMesh, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 
+use glam::DVec3;
+
 use super::SurfaceGizmos;
 use super::touched::TouchedClusters;
-use crate::{PosedSurface, SurfaceAnchor};
+use crate::{DrawnSurface, PosedSurface, SurfaceAnchor, WorldOrigin};
 
 // Colours by Okabe and Ito, which colour-blind people can tell apart.
 const PART: Color = Color::srgba(0.34, 0.71, 0.91, 0.5);
@@ -29,31 +31,33 @@ const ANCHOR_AXES: f64 = 0.03;
 
 /// Draws parts, clusters and contacts.
 pub(super) fn draw_surfaces(
-    mut surfaces: Query<(Entity, &mut PosedSurface)>,
+    surfaces: Query<(Entity, &PosedSurface, &DrawnSurface)>,
     touched: Res<TouchedClusters>,
+    origin: Res<WorldOrigin>,
     mut gizmos: Gizmos<SurfaceGizmos>,
 ) {
     let show = *gizmos.config_ext;
     if gizmos.config.enabled {
-        for (entity, mut surface) in &mut surfaces {
-            let surface = surface.bypass_change_detection();
-            if show.parts {
-                draw_parts(surface, &mut gizmos);
-            }
-            if !(show.clusters || show.contacts) || surface.pose_as_drawn().is_none() {
+        for (entity, surface, drawn) in &surfaces {
+            if !(show.parts || show.clusters || show.contacts) {
                 continue;
             }
-            let surface = &*surface;
-            let Some(drawn) = surface.as_drawn() else {
+            let Some(drawn) = drawn.pose(surface) else {
                 continue;
             };
+            if show.parts {
+                draw_parts(drawn, origin.0, &mut gizmos);
+            }
+            if !(show.clusters || show.contacts) {
+                continue;
+            }
             let clusters = surface.clusters().zip(touched.of(entity, surface));
             for (cluster, _) in clusters.filter(|(_, touched)| *touched) {
                 if show.contacts {
-                    draw_triangles(drawn, cluster.triangles, &mut gizmos);
+                    draw_triangles(drawn, origin.0, cluster.triangles, &mut gizmos);
                 }
                 if show.clusters {
-                    draw_border(drawn, cluster.triangles, &mut gizmos);
+                    draw_border(drawn, origin.0, cluster.triangles, &mut gizmos);
                 }
             }
         }
@@ -63,8 +67,9 @@ pub(super) fn draw_surfaces(
 /// Draws anchors and velocities.
 pub(super) fn draw_anchors(
     anchors: Query<&SurfaceAnchor>,
-    mut surfaces: Query<&mut PosedSurface>,
+    surfaces: Query<(&PosedSurface, &DrawnSurface)>,
     tick: Res<Time<Fixed>>,
+    origin: Res<WorldOrigin>,
     mut gizmos: Gizmos<SurfaceGizmos>,
 ) {
     let show = *gizmos.config_ext;
@@ -72,11 +77,10 @@ pub(super) fn draw_anchors(
         return;
     }
     for anchor in &anchors {
-        let Ok(mut surface) = surfaces.get_mut(anchor.surface) else {
+        let Ok((surface, drawn)) = surfaces.get(anchor.surface) else {
             continue;
         };
-        let surface = surface.bypass_change_detection();
-        let Some(drawn) = surface.pose_as_drawn() else {
+        let Some(drawn) = drawn.pose(surface) else {
             continue;
         };
         let mut here = *anchor;
@@ -85,7 +89,7 @@ pub(super) fn draw_anchors(
         };
         let size = f64::from(drawn.mesh().radius()) * drawn.world_from_model().scale;
         let (_, rotation, position) = world_from_anchor.to_scale_rotation_translation();
-        let start = position.as_vec3();
+        let start = (position - origin.0).as_vec3();
         if show.anchors {
             let axes = Transform::from_translation(start).with_rotation(rotation.as_quat());
             gizmos.axes(axes, (size * ANCHOR_AXES) as f32);
@@ -103,27 +107,25 @@ pub(super) fn draw_anchors(
     }
 }
 
-fn draw_parts(surface: &mut PosedSurface, gizmos: &mut Gizmos<SurfaceGizmos>) {
-    let Some(drawn) = surface.pose_as_drawn() else {
-        return;
-    };
+fn draw_parts(drawn: &SkinnedSurface, origin: DVec3, gizmos: &mut Gizmos<SurfaceGizmos>) {
     let world_from_model = drawn.world_from_model();
     for (_, sphere) in drawn.in_model().part_spheres() {
         let center = world_from_model.transform_point_f32(sphere.center);
         let radius = f64::from(sphere.radius) * world_from_model.scale;
-        let place = Isometry3d::from_translation(center.as_vec3());
+        let place = Isometry3d::from_translation((center - origin).as_vec3());
         gizmos.sphere(place, radius as f32, PART);
     }
 }
 
 fn draw_triangles(
     drawn: &SkinnedSurface,
+    origin: DVec3,
     triangles: &[TriangleId],
     gizmos: &mut Gizmos<SurfaceGizmos>,
 ) {
     for triangle in triangles {
         let corners = corners(drawn.mesh(), *triangle);
-        if let Some([a, b, c]) = corners.and_then(|corners| positions(drawn, corners)) {
+        if let Some([a, b, c]) = corners.and_then(|corners| positions(drawn, origin, corners)) {
             gizmos.linestrip([a, b, c, a], CONTACT);
         }
     }
@@ -132,6 +134,7 @@ fn draw_triangles(
 /// Draws the edges that belong to only one of the given triangles.
 fn draw_border(
     drawn: &SkinnedSurface,
+    origin: DVec3,
     triangles: &[TriangleId],
     gizmos: &mut Gizmos<SurfaceGizmos>,
 ) {
@@ -145,7 +148,7 @@ fn draw_border(
         }
     }
     for (edge, _) in counts.into_iter().filter(|(_, count)| *count == 1) {
-        if let Some([from, to]) = positions(drawn, edge) {
+        if let Some([from, to]) = positions(drawn, origin, edge) {
             gizmos.line(from, to, CLUSTER);
         }
     }
@@ -155,13 +158,17 @@ fn corners(mesh: &ColliderMesh, triangle: TriangleId) -> Option<[VertexId; 3]> {
     mesh.triangles().get(triangle.index()).copied()
 }
 
-/// Positions of vertices in world space.
-fn positions<const N: usize>(drawn: &SkinnedSurface, vertices: [VertexId; N]) -> Option<[Vec3; N]> {
+/// Positions of vertices, relative to Bevy's origin.
+fn positions<const N: usize>(
+    drawn: &SkinnedSurface,
+    origin: DVec3,
+    vertices: [VertexId; N],
+) -> Option<[Vec3; N]> {
     let mut positions = [Vec3::ZERO; N];
     for (position, vertex) in positions.iter_mut().zip(vertices) {
         let in_model = drawn.in_model().position(vertex)?;
         let in_world = drawn.world_from_model().transform_point_f32(in_model);
-        *position = in_world.as_vec3();
+        *position = (in_world - origin).as_vec3();
     }
     Some(positions)
 }

@@ -1,6 +1,7 @@
 //! Surfaces on entities: the entities that pose them, when their transforms are read, and the pose of each tick.
 
 mod clock;
+mod drawn;
 mod history;
 mod origin;
 mod plugin;
@@ -11,6 +12,7 @@ mod rig;
 use bevy_reflect::prelude::*;
 
 pub(crate) use clock::PoseClock;
+pub use drawn::DrawnSurface;
 pub use origin::WorldOrigin;
 pub use plugin::SurfacePlugin;
 pub use posed::PoseError;

@@ -5,8 +5,10 @@ use bevy_transform::TransformSystems;
 
 use super::clock::{tell_frame, tell_tick};
 use super::pose::{pose_surfaces, sample_poses};
-use super::{PoseClock, PoseTiming, PosedSurface};
-use crate::collider::{ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders};
+use super::{DrawnSurface, PoseClock, PoseTiming, PosedSurface};
+use crate::collider::{
+    ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders, tell_waiting,
+};
 use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider, WorldOrigin};
 
 /// Builds colliders and poses surfaces; part of [`ClamberPlugins`](crate::ClamberPlugins).
@@ -56,7 +58,12 @@ impl Plugin for SurfacePlugin {
             )
             .add_systems(
                 PreUpdate,
-                (forget_changed_assets, tag_colliders, build_colliders)
+                (
+                    forget_changed_assets,
+                    tag_colliders,
+                    build_colliders,
+                    tell_waiting,
+                )
                     .chain()
                     .in_set(ClamberSystems::Build),
             )
@@ -78,6 +85,6 @@ impl Plugin for SurfacePlugin {
 /// Removes the surface of a removed collider.
 fn remove_surface(removed: On<Remove<SkinnedCollider>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
-        entity.try_remove::<(PosedSurface, ColliderStatus)>();
+        entity.try_remove::<(PosedSurface, DrawnSurface, ColliderStatus)>();
     }
 }

@@ -1,8 +1,9 @@
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::{ArchetypeQueryData, IterQueryData};
 use bevy_time::Time;
 
 use super::rig::{Hierarchy, Scene};
-use super::{PoseClock, PosedSurface};
+use super::{DrawnSurface, PoseClock, PosedSurface};
 use crate::WorldOrigin;
 
 /// Up to this number, one thread poses all surfaces sooner than other threads wake up.
@@ -13,7 +14,7 @@ pub(crate) fn pose_surfaces(
     clock: Res<PoseClock>,
     tick: Res<Time>,
     origin: Res<WorldOrigin>,
-    surfaces: Query<&mut PosedSurface>,
+    surfaces: Query<(&mut PosedSurface, &mut DrawnSurface)>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
     let scene = Scene {
@@ -21,9 +22,9 @@ pub(crate) fn pose_surfaces(
         origin: origin.0,
     };
     let dt = tick.delta_secs_f64();
-    each(surfaces, |mut surface| {
+    each(surfaces, |(mut surface, mut drawn)| {
         let posed = surface.bypass_change_detection();
-        if posed.pose(&scene, &clock, dt) {
+        if posed.pose(drawn.bypass_change_detection(), &scene, &clock, dt) {
             surface.set_changed();
         }
     });
@@ -33,7 +34,7 @@ pub(crate) fn pose_surfaces(
 pub(crate) fn sample_poses(
     clock: Res<PoseClock>,
     origin: Res<WorldOrigin>,
-    surfaces: Query<&mut PosedSurface>,
+    surfaces: Query<(&PosedSurface, &mut DrawnSurface)>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
     let scene = Scene {
@@ -41,15 +42,17 @@ pub(crate) fn sample_poses(
         origin: origin.0,
     };
     let time = clock.drawn();
-    each(surfaces, |mut surface| {
-        surface.bypass_change_detection().sample(&scene, time);
+    each(surfaces, |(surface, mut drawn)| {
+        drawn
+            .bypass_change_detection()
+            .sample(surface, &scene, time);
     });
 }
 
 /// Runs on all cores if there are more than [`FEW`] surfaces.
-fn each(
-    mut surfaces: Query<&mut PosedSurface>,
-    run: impl Fn(Mut<'_, PosedSurface>) + Send + Sync + Clone,
+fn each<D: IterQueryData<ReadOnly: ArchetypeQueryData>>(
+    mut surfaces: Query<D>,
+    run: impl Fn(D::Item<'_, '_>) + Send + Sync + Clone,
 ) {
     if surfaces.iter().len() <= FEW {
         surfaces.iter_mut().for_each(run);

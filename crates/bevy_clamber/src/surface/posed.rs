@@ -1,6 +1,5 @@
 use std::ops::Deref;
 use std::sync::Arc;
-use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 use clamber_surface::geometry::Similarity;
@@ -12,8 +11,9 @@ use thiserror::Error;
 
 use super::PoseTiming;
 use super::clock::PoseClock;
-use super::history::{Between, History};
-use super::rig::{Locals, Rig, Scene};
+use super::drawn::DrawnSurface;
+use super::history::Between;
+use super::rig::{Changed, Locals, Scene};
 use crate::collider::BuiltCollider;
 use crate::{ColliderError, SkinnedCollider};
 
@@ -21,7 +21,7 @@ use crate::{ColliderError, SkinnedCollider};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PoseError {
-    /// A joint is gone, or its hierarchy cannot be followed.
+    /// A joint is gone, or its hierarchy cannot be followed. The next frame removes the surface.
     #[error(transparent)]
     Hierarchy(#[from] ColliderError),
     /// The transform of a joint, or of an entity between or above the joints, is not finite, or has a rotation of
@@ -49,12 +49,7 @@ pub struct PosedSurface {
     entity: Entity,
     surface: SkinnedSurface,
     collider: Arc<BuiltCollider>,
-    rig: Rig,
     timing: SkinnedCollider,
-    /// Transforms as the last frames drew them.
-    history: History,
-    /// Why the last frame's pose is not known.
-    drawn_error: Option<ColliderError>,
     /// Transforms and palette of the last tick's pose.
     posed: Locals,
     palette: Palette,
@@ -66,18 +61,16 @@ pub struct PosedSurface {
     posed_anew: bool,
     /// The next pose is placed, without motion.
     restart: bool,
-    /// The pose of the next frame is where the creature was teleported to.
-    restart_drawn: bool,
+    /// [`DrawnSurface::hierarchies`] in the last tick.
+    hierarchies: u32,
+    /// Counts teleports, for [`DrawnSurface`].
+    teleports: u32,
+    /// Counts times at which somebody may have changed the surface, for [`DrawnSurface`].
+    edits: u32,
     /// The last tick placed a creature that had a pose before, and so did the one before: nobody knows how it moved.
     has_jumped: [bool; 2],
-    /// An implausible speed was logged.
-    told_jump: bool,
     /// Somebody may have changed the surface since the last tick.
     edited: bool,
-    /// The surface in a drawn pose; made on demand.
-    as_drawn: Option<SkinnedSurface>,
-    /// `as_drawn` has the last frame's pose.
-    as_drawn_is_fresh: bool,
     error: Option<PoseError>,
     scratch: Scratch,
 }
@@ -93,11 +86,12 @@ struct Scratch {
 }
 
 impl PosedSurface {
+    /// The surface in the pose of `drawn`.
     pub(crate) fn new(
         entity: Entity,
         collider: Arc<BuiltCollider>,
-        rig: Rig,
         timing: SkinnedCollider,
+        drawn: &mut DrawnSurface,
         scene: &Scene<'_, '_, '_>,
         clock: &PoseClock,
     ) -> Self {
@@ -105,27 +99,23 @@ impl PosedSurface {
             entity,
             surface: SkinnedSurface::new(Arc::clone(&collider.mesh)),
             collider,
-            rig,
             timing,
-            history: History::default(),
-            drawn_error: None,
             posed: Locals::default(),
             palette: Palette::default(),
             is_placed: false,
             still: false,
             posed_anew: false,
             restart: true,
-            restart_drawn: false,
+            hierarchies: 0,
+            teleports: 0,
+            edits: 0,
             has_jumped: [false; 2],
-            told_jump: false,
             edited: false,
-            as_drawn: None,
-            as_drawn_is_fresh: false,
             error: None,
             scratch: Scratch::default(),
         };
-        posed.sample(scene, clock.drawn());
-        posed.pose(scene, clock, 0.0);
+        drawn.sample(&posed, scene, clock.drawn());
+        posed.pose(drawn, scene, clock, 0.0);
         posed
     }
 
@@ -134,12 +124,20 @@ impl PosedSurface {
         self.error.as_ref()
     }
 
+    /// Why the surface has lost its joints, if it has.
+    pub(crate) fn lost_joints(&self) -> Option<&ColliderError> {
+        match &self.error {
+            Some(PoseError::Hierarchy(error)) => Some(error),
+            _ => None,
+        }
+    }
+
     /// Marks the motion until the next tick and the next drawn frame as a teleport, which gives the skin no velocity.
     ///
     /// Otherwise a teleport would be a very fast motion. Call this in the schedule that moves the creature.
     pub fn forget_motion(&mut self) {
         self.restart = true;
-        self.restart_drawn = true;
+        self.teleports = self.teleports.wrapping_add(1);
     }
 
     /// Access for edits: disabling parts and triangles, cutting holes. The next tick overwrites a pose that is set
@@ -149,11 +147,11 @@ impl PosedSurface {
     /// [`ColliderTag`](crate::ColliderTag). A new component is inserted then, so an observer of
     /// `On<Insert<PosedSurface>>` can repeat them.
     ///
-    /// Anchors, picking and gizmos keep the drawn pose in a second surface. After each call it is copied anew when one
-    /// of them needs it.
+    /// Anchors, picking, gizmos and [`DrawnSurfaceQuery`](crate::DrawnSurfaceQuery) see the drawn pose in a second
+    /// surface. After the frame of each call, it is copied anew when one of them needs it.
     pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
         self.edited = true;
-        self.as_drawn = None;
+        self.edits = self.edits.wrapping_add(1);
         &mut self.surface
     }
 
@@ -174,6 +172,22 @@ impl PosedSurface {
         self.posed_anew
     }
 
+    pub(super) fn entity(&self) -> Entity {
+        self.entity
+    }
+
+    pub(super) fn timing(&self) -> &SkinnedCollider {
+        &self.timing
+    }
+
+    pub(super) fn teleports(&self) -> u32 {
+        self.teleports
+    }
+
+    pub(super) fn edits(&self) -> u32 {
+        self.edits
+    }
+
     pub(crate) fn set_timing(&mut self, timing: SkinnedCollider) {
         self.timing = timing;
     }
@@ -189,58 +203,17 @@ impl PosedSurface {
         self.has_jumped.contains(&true)
     }
 
-    /// Records the pose that a frame draws, at the frame's time.
-    pub(crate) fn sample(&mut self, scene: &Scene<'_, '_, '_>, time: Duration) {
-        self.drawn_error = None;
-        let mut drawn = self.history.buffer();
-        if self.rig.read(scene, &mut drawn).is_err()
-            && let Err(error) = self.follow(scene, time, &mut drawn)
-        {
-            // The previous pose stays.
-            if let Some(last) = self.history.last() {
-                drawn.clone_from(last);
-            }
-            self.drawn_error = Some(error);
-        }
-        self.as_drawn_is_fresh &= self.history.last() == Some(&drawn);
-        let is_cut = std::mem::take(&mut self.restart_drawn) || self.is_teleport(&drawn, time);
-        self.history.record(time, drawn, is_cut);
-    }
-
-    /// True if the topmost entity is too far from its place in the last frame to have moved there.
-    fn is_teleport(&mut self, drawn: &Locals, time: Duration) -> bool {
-        let Some((last, before)) = self.history.last_timed() else {
-            return false;
-        };
-        let (Some(from), Some(to)) = (last.place(), drawn.place()) else {
-            return false;
-        };
-        let time = time.saturating_sub(before).as_secs_f64();
-        let speed = from.distance(to) / time;
-        let is_teleport = time > 0.0 && speed > f64::from(self.timing.max_speed);
-        if is_teleport {
-            self.tell_jump(speed);
-        }
-        is_teleport
-    }
-
-    /// Logs an implausible speed, once.
-    fn tell_jump(&mut self, speed: f64) {
-        if !std::mem::replace(&mut self.told_jump, true) {
-            let entity = self.entity;
-            tracing::warn!(
-                "the surface of {entity} moved at {speed:.0} m/s, which is taken for a teleport: its skin has no \
-                 velocity in that tick. If it was one, call PosedSurface::forget_motion beside it; if not, raise \
-                 SkinnedCollider::max_speed"
-            );
-        }
-    }
-
     /// Takes the pose of a tick of `dt` seconds. Returns true if anything changed.
-    pub(crate) fn pose(&mut self, scene: &Scene<'_, '_, '_>, clock: &PoseClock, dt: f64) -> bool {
+    pub(crate) fn pose(
+        &mut self,
+        drawn: &mut DrawnSurface,
+        scene: &Scene<'_, '_, '_>,
+        clock: &PoseClock,
+        dt: f64,
+    ) -> bool {
         self.has_jumped = [false, self.has_jumped[0]];
         let mut next = std::mem::take(&mut self.scratch.next);
-        let posed = self.try_pose(scene, clock, dt, &mut next);
+        let posed = self.try_pose(drawn, scene, clock, dt, &mut next);
         self.scratch.next = next;
         let moved = match &posed {
             Ok(moved) => *moved,
@@ -255,23 +228,6 @@ impl PosedSurface {
         self.tell(posed.err()) || moved
     }
 
-    /// Reads a hierarchy that has changed. Only its current pose is known then.
-    fn follow(
-        &mut self,
-        scene: &Scene<'_, '_, '_>,
-        time: Duration,
-        drawn: &mut Locals,
-    ) -> Result<(), ColliderError> {
-        self.rig.follow(scene.hierarchy)?;
-        let read = self.rig.read(scene, drawn);
-        read.map_err(|_| ColliderError::Joint { joint: 0 })?;
-        self.history.restart(time, drawn.clone());
-        self.as_drawn_is_fresh = false;
-        // The same transforms in another order are another pose.
-        self.still = false;
-        Ok(())
-    }
-
     fn follows_frames(&self) -> bool {
         let SkinnedCollider { joints, root, .. } = self.timing;
         [joints, root].contains(&PoseTiming::EachFrame)
@@ -284,34 +240,33 @@ impl PosedSurface {
 
     fn try_pose(
         &mut self,
+        drawn: &mut DrawnSurface,
         scene: &Scene<'_, '_, '_>,
         clock: &PoseClock,
         dt: f64,
         next: &mut Locals,
     ) -> Result<bool, PoseError> {
-        if let Some(error) = &self.drawn_error
-            && self.follows_frames()
-        {
-            return Err(error.clone().into());
+        if self.follows_frames() {
+            drawn.check()?;
         }
-        let at = self.history.advance(clock.at());
+        let at = drawn.history.advance(clock.at());
+        // The same transforms in another order are another pose.
+        self.still &= self.hierarchies == drawn.hierarchies;
         let at_rest = self.still && !self.restart && !self.edited;
-        if at_rest
-            && self.history.is_still()
-            && !self.follows_ticks()
-            && self.history.last() == Some(&self.posed)
-        {
+        let is_still = drawn.history.is_still() && !self.follows_ticks();
+        if at_rest && is_still && drawn.history.last() == Some(&self.posed) {
             return Ok(false);
         }
-        if self.read_tick(scene, at, next)?.is_err() {
-            self.follow(scene, clock.drawn(), next)?;
+        if self.read_tick(drawn, scene, at, next)?.is_err() {
+            drawn.follow(scene, clock.drawn(), next)?;
         }
-        let same = self.posed == *next;
+        let same = self.posed == *next && self.hierarchies == drawn.hierarchies;
+        self.hierarchies = drawn.hierarchies;
         if same && at_rest {
             return Ok(false);
         }
         let scratch = &mut self.scratch;
-        let placed = self
+        let placed = drawn
             .rig
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
@@ -319,7 +274,7 @@ impl PosedSurface {
         let fastest = self.farthest(&world_from_model) / dt;
         let is_teleport = fastest > f64::from(self.timing.max_speed) && dt > 0.0;
         if is_teleport && !self.restart && !jumps {
-            self.tell_jump(fastest);
+            drawn.tell_teleport(self, fastest);
         }
         let restart = self.restart || jumps || is_teleport;
         if restart {
@@ -372,47 +327,26 @@ impl PosedSurface {
     /// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
     fn read_tick(
         &self,
+        drawn: &DrawnSurface,
         scene: &Scene<'_, '_, '_>,
         at: Between,
         into: &mut Locals,
-    ) -> Result<Result<(), super::rig::Changed>, PoseError> {
+    ) -> Result<Result<(), Changed>, PoseError> {
         let joints = match self.timing.joints {
-            PoseTiming::EachTick => self.rig.read_joints(scene, into),
+            PoseTiming::EachTick => drawn.rig.read_joints(scene, into),
             PoseTiming::EachFrame => {
-                self.history.joints(at, into)?;
+                drawn.history.joints(at, into)?;
                 Ok(())
             }
         };
         let root = match self.timing.root {
-            PoseTiming::EachTick => self.rig.read_root(scene, into),
+            PoseTiming::EachTick => drawn.rig.read_root(scene, into),
             PoseTiming::EachFrame => {
-                self.history.root(at, into)?;
+                drawn.history.root(at, into)?;
                 Ok(())
             }
         };
         Ok(joints.and(root))
-    }
-
-    /// Poses the surface as the last frame drew it.
-    pub(crate) fn pose_as_drawn(&mut self) -> Option<&SkinnedSurface> {
-        if self.as_drawn.is_none() || !self.as_drawn_is_fresh {
-            self.as_drawn_is_fresh = false;
-            let scratch = &mut self.scratch;
-            let placed = self.rig.compose(
-                self.history.last()?,
-                &mut scratch.model_from_node,
-                &mut scratch.palette,
-            )?;
-            let surface = self.as_drawn.get_or_insert_with(|| self.surface.clone());
-            surface.place(&self.scratch.palette, placed).ok()?;
-            self.as_drawn_is_fresh = true;
-        }
-        self.as_drawn.as_ref()
-    }
-
-    /// The surface in the last frame's pose, if `pose_as_drawn` was called since.
-    pub(crate) fn as_drawn(&self) -> Option<&SkinnedSurface> {
-        self.as_drawn.as_ref().filter(|_| self.as_drawn_is_fresh)
     }
 
     /// Stores an error, and logs it if there was none before. True if the error has changed.
@@ -420,8 +354,10 @@ impl PosedSurface {
         if self.error == error {
             return false;
         }
+        // Where joints are lost, the surface will be removed, and that is logged.
         if let Some(error) = &error
             && self.error.is_none()
+            && !matches!(error, PoseError::Hierarchy(_))
         {
             let entity = self.entity;
             tracing::warn!("the surface of {entity} keeps its last pose: {error}");

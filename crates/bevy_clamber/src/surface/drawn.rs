@@ -1,0 +1,173 @@
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+use bevy_ecs::prelude::*;
+use clamber_surface::rig::Palette;
+use clamber_surface::surface::SkinnedSurface;
+use glam::DAffine3;
+
+use super::PosedSurface;
+use super::history::History;
+use super::rig::{Locals, Rig, Scene};
+use crate::ColliderError;
+
+/// The poses in which the last frames drew a surface. Inserted beside [`PosedSurface`].
+///
+/// [`DrawnSurfaceQuery`](crate::DrawnSurfaceQuery) queries surfaces in the pose of the last frame.
+#[derive(Component, Debug)]
+pub struct DrawnSurface {
+    pub(super) rig: Rig,
+    pub(super) history: History,
+    /// Counts changes of the hierarchy.
+    pub(super) hierarchies: u32,
+    /// Why the last frame's pose is not known.
+    error: Option<ColliderError>,
+    /// An implausible speed was logged.
+    has_told: bool,
+    /// The counts of [`PosedSurface`] at the last frame.
+    teleports: u32,
+    edits: u32,
+    /// The surface in the last frame's pose, made on demand; `None` if it cannot take that pose.
+    surface: OnceLock<Option<SkinnedSurface>>,
+    spare: Mutex<Spare>,
+}
+
+/// Kept to reuse its memory.
+#[derive(Debug, Default)]
+struct Spare {
+    surface: Option<SkinnedSurface>,
+    model_from_node: Vec<DAffine3>,
+    palette: Palette,
+}
+
+impl DrawnSurface {
+    pub(crate) fn new(rig: Rig) -> Self {
+        Self {
+            rig,
+            history: History::default(),
+            hierarchies: 0,
+            error: None,
+            has_told: false,
+            teleports: 0,
+            edits: 0,
+            surface: OnceLock::new(),
+            spare: Mutex::default(),
+        }
+    }
+
+    /// The surface as the last frame drew it.
+    pub(crate) fn pose(&self, surface: &PosedSurface) -> Option<&SkinnedSurface> {
+        let posed = self.surface.get_or_init(|| {
+            let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+            let Spare {
+                surface: known,
+                model_from_node,
+                palette,
+            } = &mut *spare;
+            let placed = self
+                .rig
+                .compose(self.history.last()?, model_from_node, palette)?;
+            let mut posed = known
+                .take()
+                .unwrap_or_else(|| SkinnedSurface::clone(surface));
+            posed.place(palette, placed).ok()?;
+            Some(posed)
+        });
+        posed.as_ref()
+    }
+
+    /// Records the pose that a frame draws, at the frame's time.
+    pub(crate) fn sample(
+        &mut self,
+        surface: &PosedSurface,
+        scene: &Scene<'_, '_, '_>,
+        time: Duration,
+    ) {
+        self.error = None;
+        let mut drawn = self.history.buffer();
+        if self.rig.read(scene, &mut drawn).is_err()
+            && let Err(error) = self.follow(scene, time, &mut drawn)
+        {
+            // The previous pose stays.
+            if let Some(last) = self.history.last() {
+                drawn.clone_from(last);
+            }
+            self.error = Some(error);
+        }
+        self.follow_edits(surface);
+        if self.history.last() != Some(&drawn) {
+            self.forget_pose();
+        }
+        let was_teleported = self.teleports != surface.teleports();
+        self.teleports = surface.teleports();
+        let is_cut = was_teleported || self.is_teleport(surface, &drawn, time);
+        self.history.record(time, drawn, is_cut);
+    }
+
+    /// Copies a surface anew that was edited.
+    pub(crate) fn follow_edits(&mut self, surface: &PosedSurface) {
+        if self.edits != surface.edits() {
+            self.edits = surface.edits();
+            self.surface.take();
+            self.spare = Mutex::default();
+        }
+    }
+
+    /// The error of the last frame.
+    pub(super) fn check(&self) -> Result<(), ColliderError> {
+        self.error.clone().map_or(Ok(()), Err)
+    }
+
+    /// Reads a hierarchy that has changed. Only its current pose is known then.
+    pub(super) fn follow(
+        &mut self,
+        scene: &Scene<'_, '_, '_>,
+        time: Duration,
+        drawn: &mut Locals,
+    ) -> Result<(), ColliderError> {
+        self.rig.follow(scene.hierarchy)?;
+        let read = self.rig.read(scene, drawn);
+        read.map_err(|_| ColliderError::Joint { joint: 0 })?;
+        self.history.restart(time, drawn.clone());
+        self.hierarchies = self.hierarchies.wrapping_add(1);
+        self.forget_pose();
+        Ok(())
+    }
+
+    /// Logs an implausible speed, metres a second, once.
+    pub(super) fn tell_teleport(&mut self, surface: &PosedSurface, speed: f64) {
+        if !std::mem::replace(&mut self.has_told, true) {
+            let entity = surface.entity();
+            tracing::warn!(
+                "the surface of {entity} moved at {speed:.0} m/s, which is taken for a teleport: its skin has no \
+                 velocity in that tick. If it was one, call PosedSurface::forget_motion beside it; if not, raise \
+                 SkinnedCollider::max_speed"
+            );
+        }
+    }
+
+    /// True if the topmost entity is too far from its place in the last frame to have moved there.
+    fn is_teleport(&mut self, surface: &PosedSurface, drawn: &Locals, time: Duration) -> bool {
+        let Some((last, before)) = self.history.last_timed() else {
+            return false;
+        };
+        let (Some(from), Some(to)) = (last.place(), drawn.place()) else {
+            return false;
+        };
+        let time = time.saturating_sub(before).as_secs_f64();
+        let speed = from.distance(to) / time;
+        let is_teleport = time > 0.0 && speed > f64::from(surface.timing().max_speed);
+        if is_teleport {
+            self.tell_teleport(surface, speed);
+        }
+        is_teleport
+    }
+
+    /// The next query poses the surface anew.
+    fn forget_pose(&mut self) {
+        if let Some(posed) = self.surface.take() {
+            let spare = self.spare.get_mut().unwrap_or_else(PoisonError::into_inner);
+            spare.surface = posed;
+        }
+    }
+}
