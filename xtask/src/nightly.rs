@@ -36,6 +36,8 @@ fn engines() -> Result<(), String> {
         IGNORE_RUST_VERSION,
         "--test",
         "obstacles",
+        "--test",
+        "climbers_on_engines",
     ])
 }
 

@@ -5,7 +5,8 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_platform::time::Instant;
 
-use crate::{ClamberSystems, PosedSurface};
+use crate::needs::need_plugin;
+use crate::{ClamberSystems, PosedSurface, SurfacePlugin};
 
 /// Reports the work of surfaces in each tick to Bevy's diagnostics. Add it beside
 /// [`ClamberPlugins`](crate::ClamberPlugins), with the same schedule.
@@ -72,6 +73,11 @@ impl Plugin for SurfaceDiagnosticsPlugin {
                     stop_clock.after(ClamberSystems::Pose),
                 ),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let me = "clamber's SurfaceDiagnosticsPlugin";
+        need_plugin::<SurfacePlugin>(app, me, "ClamberPlugins");
     }
 }
 

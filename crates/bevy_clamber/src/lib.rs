@@ -9,6 +9,7 @@ mod creature;
 mod diagnostics;
 #[cfg(feature = "gizmos")]
 mod gizmos;
+mod needs;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 mod obstacles;
 #[cfg(feature = "picking")]

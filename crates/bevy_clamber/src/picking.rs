@@ -7,14 +7,18 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_picking::backend::ray::RayMap;
 use bevy_picking::backend::{HitData, PointerHits};
-use bevy_picking::{Pickable, PickingSystems};
+use bevy_picking::{Pickable, PickingPlugin, PickingSystems};
 use bevy_reflect::prelude::*;
 use bevy_shape::Ray3d;
 use clamber_surface::mesh::{PartId, SurfaceTag, TriangleId};
 use glam::DVec3;
 
+use crate::needs::need_plugin;
 use crate::query::{in_f64, world_hit};
-use crate::{ClamberSystems, DrawnSurface, EntityHit, PosedSurface, SurfaceAnchor, WorldOrigin};
+use crate::{
+    ClamberSystems, DrawnSurface, EntityHit, PosedSurface, SurfaceAnchor, SurfacePlugin,
+    WorldOrigin,
+};
 
 /// The point of skin that a pointer hits: the extra data of a `HitData`, whose position and outward unit normal are in
 /// world space.
@@ -88,6 +92,16 @@ impl Plugin for SurfacePickingPlugin {
                 pick.in_set(PickingSystems::Backend)
                     .after(ClamberSystems::Build),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let me = "clamber's SurfacePickingPlugin";
+        need_plugin::<SurfacePlugin>(app, me, "ClamberPlugins");
+        need_plugin::<PickingPlugin>(
+            app,
+            me,
+            "PickingPlugin of bevy_picking (DefaultPickingPlugins)",
+        );
     }
 }
 

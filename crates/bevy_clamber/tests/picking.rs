@@ -254,6 +254,8 @@ fn skin_that_is_hidden_ignored_on_other_layers_or_disabled_is_not_hit() {
         .surface_mut()
         .disable_triangle(front.triangle)
         .unwrap();
+    // The drawn skin is edited at the end of the frame.
+    app.update();
     let hits = point_at(&mut app, viewer, MODELLED);
     let back = hits[0].1.extra_as::<SurfacePick>().unwrap();
     assert_ne!(back.triangle, front.triangle);

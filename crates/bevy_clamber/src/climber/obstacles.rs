@@ -6,6 +6,8 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use bevy_ecs::system::SystemParamValidationError;
+#[cfg(feature = "rapier")]
+use bevy_rapier3d::rapier::geometry::Collider as RapierCollider;
 use clamber_climber::{ClimberContact, ClimberObstacle};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
@@ -14,10 +16,10 @@ use glam::DVec3;
 
 use super::component::ClimberFilter;
 use crate::PosedSurface;
-#[cfg(feature = "rapier")]
-use crate::obstacles::RapierObstacles;
 #[cfg(feature = "avian")]
-use crate::obstacles::{AvianObstacles, AvianTerrain};
+use crate::obstacles::{AvianObstacles, AvianPushes, AvianTerrain};
+#[cfg(feature = "rapier")]
+use crate::obstacles::{RapierObstacles, RapierPushes};
 
 /// An obstacle of the app's own: terrain without a physics engine, a moving platform, anything that implements
 /// [`Obstacle`]. Climbers touch it from the tick after it was inserted on an entity.
@@ -79,6 +81,30 @@ pub(super) struct Touchable<'w, 's> {
     rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
 }
 
+/// Pushes bodies of physics engines.
+#[cfg(any(feature = "avian", feature = "rapier"))]
+#[derive(SystemParam)]
+pub(super) struct Pushes<'w, 's> {
+    #[cfg(feature = "avian")]
+    avian: Result<AvianPushes<'w, 's>, SystemParamValidationError>,
+    #[cfg(feature = "rapier")]
+    rapier: RapierPushes<'w, 's>,
+}
+
+#[cfg(any(feature = "avian", feature = "rapier"))]
+impl Pushes<'_, '_> {
+    pub(super) fn push(&mut self, push: &clamber_climber::Push) {
+        #[cfg(feature = "avian")]
+        if let (AVIAN, Ok(avian)) = (push.obstacle, &mut self.avian) {
+            avian.push(&push.material, push.impulse);
+        }
+        #[cfg(feature = "rapier")]
+        if push.obstacle == RAPIER {
+            self.rapier.push(&push.material, push.impulse);
+        }
+    }
+}
+
 impl Touchable<'_, '_> {
     /// The surface of an obstacle, if it is one.
     pub(super) fn surface(&self, id: ObstacleId) -> Option<&PosedSurface> {
@@ -112,10 +138,9 @@ impl Touchable<'_, '_> {
         #[cfg(feature = "rapier")]
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
-        let rapier = rapier.map(|rapier| match filter {
-            Some(filter) => rapier.with_filter(in_rapier(filter)),
-            None => rapier,
-        });
+        let wanted = |_, collider: &RapierCollider| is_wanted(filter, climber, collider);
+        #[cfg(feature = "rapier")]
+        let rapier = rapier.map(|rapier| rapier.with_filter(&wanted));
         #[cfg(feature = "rapier")]
         all.extend(
             rapier
@@ -187,17 +212,19 @@ fn in_avian<'a>(
     avian.terrain().with_filter(wanted)
 }
 
+/// True for a collider of rapier that a climber touches: of its layers, and neither its own nor ignored.
 #[cfg(feature = "rapier")]
-fn in_rapier(filter: &ClimberFilter) -> bevy_rapier3d::rapier::prelude::QueryFilter<'static> {
-    use bevy_rapier3d::rapier::prelude::{
-        Group, InteractionGroups, InteractionTestMode, QueryFilter,
-    };
-    let layers = Group::from_bits_retain(filter.layers);
-    QueryFilter::new().groups(InteractionGroups::new(
-        Group::ALL,
-        layers,
-        InteractionTestMode::default(),
-    ))
+fn is_wanted(filter: Option<&ClimberFilter>, climber: Entity, collider: &RapierCollider) -> bool {
+    let entity = u64::try_from(collider.user_data).ok();
+    let entity = entity.and_then(Entity::try_from_bits);
+    if entity == Some(climber) {
+        return false;
+    }
+    filter.is_none_or(|filter| {
+        let layers = collider.collision_groups().memberships.bits();
+        let is_ignored = entity.is_some_and(|entity| filter.ignored.contains(&entity));
+        layers & filter.layers != 0 && !is_ignored
+    })
 }
 
 /// A surface whose mesh is another one by now, so that a point which was made on the old mesh is gone.

@@ -7,7 +7,12 @@ use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use super::component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 use super::input::{ClimberInput, LatchedInput, latch};
 use super::{draw, events, step};
-use crate::ClamberSystems;
+use crate::needs::need_plugin;
+#[cfg(feature = "avian")]
+use crate::obstacles::AvianObstaclesPlugin;
+#[cfg(feature = "rapier")]
+use crate::obstacles::RapierObstaclesPlugin;
+use crate::{ClamberSystems, SurfacePlugin};
 
 /// Steps [`Climber`]s. Needs [`ClamberPlugins`](crate::ClamberPlugins) as well.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +59,31 @@ impl Plugin for ClimberPlugin {
                     .in_set(ClamberSystems::Climb),
             )
             .add_systems(PostUpdate, draw::draw.in_set(ClamberSystems::Draw));
+    }
+
+    fn finish(&self, app: &mut App) {
+        need_plugin::<SurfacePlugin>(app, "clamber's ClimberPlugin", "ClamberPlugins");
+        #[cfg(any(feature = "avian", feature = "rapier"))]
+        app.add_systems(
+            self.schedule,
+            step::push
+                .in_set(ClamberSystems::Climb)
+                .after(step::tell),
+        );
+        #[cfg(feature = "avian")]
+        if app.is_plugin_added::<avian3d::schedule::PhysicsSchedulePlugin>()
+            && !app.is_plugin_added::<AvianObstaclesPlugin>()
+        {
+            AvianObstaclesPlugin::in_schedule(self.schedule).build(app);
+        }
+        #[cfg(feature = "rapier")]
+        if app
+            .world()
+            .contains_resource::<bevy_rapier3d::plugin::TimestepMode>()
+            && !app.is_plugin_added::<RapierObstaclesPlugin>()
+        {
+            RapierObstaclesPlugin::default().build(app);
+        }
     }
 }
 

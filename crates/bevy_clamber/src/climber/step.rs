@@ -252,6 +252,24 @@ pub(super) fn tell(
     }
 }
 
+/// Pushes the bodies of physics engines that climbers have pushed.
+#[cfg(any(feature = "avian", feature = "rapier"))]
+pub(super) fn push(
+    climbers: Query<(Entity, &ClimberBody), With<Climber>>,
+    mut engines: super::obstacles::Pushes<'_, '_>,
+) {
+    let mut pushing: Vec<_> = climbers
+        .iter()
+        .filter(|(_, body)| !body.report.pushes.is_empty())
+        .collect();
+    pushing.sort_unstable_by_key(|(entity, _)| *entity);
+    for (_, body) in pushing {
+        for push in &body.report.pushes {
+            engines.push(push);
+        }
+    }
+}
+
 /// The rotation whose -Z is a heading, and whose +Y is up.
 pub(super) fn facing(heading: DVec3, up: DVec3) -> Option<DQuat> {
     let right = heading.cross(up).try_normalize()?;

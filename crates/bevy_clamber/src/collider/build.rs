@@ -74,12 +74,12 @@ fn remove_surface(entity: Entity, commands: &mut Commands<'_, '_>) {
 /// Components that a collider is built from.
 type Source = (
     Entity,
-    Ref<'static, SkinnedCollider>,
+    &'static SkinnedCollider,
     Option<Ref<'static, ColliderTag>>,
     Option<Ref<'static, Mesh3d>>,
     Option<Ref<'static, SkinnedMesh>>,
     &'static mut ColliderStatus,
-    Option<(&'static mut PosedSurface, &'static mut DrawnSurface)>,
+    Option<&'static PosedSurface>,
 );
 
 /// Builds surfaces whose assets are loaded, and removes those whose components or joints are gone.
@@ -98,14 +98,7 @@ pub(crate) fn build_colliders(
     };
     for (entity, collider, tag, mesh, skin, mut status, surface) in &mut sources {
         let has_surface = surface.is_some();
-        let mut lost = None;
-        if let Some((mut surface, mut drawn)) = surface {
-            if collider.is_changed() {
-                surface.set_timing(*collider);
-            }
-            drawn.bypass_change_detection().follow_edits(&surface);
-            lost = surface.lost_joints().cloned();
-        }
+        let lost = surface.and_then(PosedSurface::lost_joints).cloned();
         let needs = if mesh.is_none() {
             ColliderNeeds::Mesh
         } else {
@@ -161,7 +154,7 @@ pub(crate) fn build_colliders(
                 let inverse = inverse_bindposes.iter().map(|m| widen(&m.to_cols_array()));
                 let rig = Rig::new(skin.joints.clone(), inverse.collect(), &hierarchy);
                 let mut drawn = DrawnSurface::new(rig.map_err(Arc::new)?);
-                let posed = PosedSurface::new(entity, built, *collider, &mut drawn, &scene, &clock);
+                let posed = PosedSurface::new(entity, built, collider, &mut drawn, &scene, &clock);
                 Ok((posed, drawn))
             })
         };

@@ -74,6 +74,14 @@ impl SkinnedCollider {
             ..Self::each_frame()
         }
     }
+
+    pub(crate) fn follows_frames(&self) -> bool {
+        [self.joints, self.root].contains(&PoseTiming::EachFrame)
+    }
+
+    pub(crate) fn follows_ticks(&self) -> bool {
+        [self.joints, self.root].contains(&PoseTiming::EachTick)
+    }
 }
 
 /// The build state of a [`SkinnedCollider`].

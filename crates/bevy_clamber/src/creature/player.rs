@@ -2,13 +2,14 @@ use bevy_app::{AnimationSystems, App, FixedUpdate, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_reflect::prelude::*;
-use bevy_time::Time;
+use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
 use clamber_surface::rig::{Playback, RigError};
 use thiserror::Error;
 
 use super::assets::{RigJoints, transform};
 use crate::ClamberSystems;
+use crate::needs::need_resource;
 
 /// Plays a clip on the joints of a spawned rig. Insert it on the root, beside [`RigJoints`].
 ///
@@ -74,6 +75,11 @@ impl Plugin for RigPlayerPlugin {
                     .before(ClamberSystems::Pose),
             )
             .add_systems(self.schedule, play.in_set(ClamberSystems::Animate));
+    }
+
+    fn finish(&self, app: &mut App) {
+        let me = "clamber's RigPlayerPlugin";
+        need_resource::<Time<Fixed>>(app, me, "TimePlugin of bevy_time");
     }
 }
 

@@ -6,11 +6,12 @@ mod touched;
 use bevy_app::{App, FixedPostUpdate, Plugin, PostUpdate};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
-use bevy_gizmos::AppGizmoBuilder;
 use bevy_gizmos::config::GizmoConfigGroup;
+use bevy_gizmos::{AppGizmoBuilder, GizmoPlugin};
 use bevy_reflect::prelude::*;
 
-use crate::ClamberSystems;
+use crate::needs::need_plugin;
+use crate::{ClamberSystems, SurfacePlugin};
 use draw::{draw_anchors, draw_surfaces};
 use touched::{TouchedClusters, note_touched};
 
@@ -91,5 +92,11 @@ impl Plugin for SurfaceGizmosPlugin {
                     .chain()
                     .after(ClamberSystems::Anchor),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let me = "clamber's SurfaceGizmosPlugin";
+        need_plugin::<SurfacePlugin>(app, me, "ClamberPlugins");
+        need_plugin::<GizmoPlugin>(app, me, "GizmoPlugin of bevy_gizmos");
     }
 }

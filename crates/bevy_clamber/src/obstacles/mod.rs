@@ -6,6 +6,10 @@ mod avian;
 mod rapier;
 
 #[cfg(feature = "avian")]
+pub(crate) use avian::AvianPushes;
+#[cfg(feature = "avian")]
 pub use avian::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
+#[cfg(feature = "rapier")]
+pub(crate) use rapier::RapierPushes;
 #[cfg(feature = "rapier")]
 pub use rapier::{RapierObstacles, RapierObstaclesPlugin};

@@ -3,10 +3,14 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_ecs::system::SystemParam;
 use bevy_rapier3d::prelude::{DefaultRapierContext, PhysicsSet, RapierRigidBodySet};
-use bevy_rapier3d::prelude::{RapierContext, ReadRapierContext};
-use clamber_world::{BodyPoses, MaterialPoint, RapierTerrain};
+use bevy_rapier3d::prelude::{RapierContext, RapierContextColliders, ReadRapierContext};
+use clamber_world::{BodyPoses, MaterialPoint, RapierTerrain, apply_push};
+use glam::DVec3;
 
-/// Records the poses of rapier's bodies before each step, so that climbers on them can be carried.
+use crate::ClamberSystems;
+
+/// Records the poses of rapier's bodies before each step, so that climbers on them can be carried. `ClimberPlugin` adds
+/// it by itself.
 #[derive(Clone, Copy, Debug)]
 pub struct RapierObstaclesPlugin {
     schedule: InternedScheduleLabel,
@@ -30,8 +34,11 @@ impl Default for RapierObstaclesPlugin {
 
 impl Plugin for RapierObstaclesPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<StepPoses>()
-            .add_systems(self.schedule, note.after(PhysicsSet::Writeback));
+        app.init_resource::<StepPoses>().add_systems(
+            self.schedule,
+            note.after(PhysicsSet::Writeback)
+                .before(ClamberSystems::Climb),
+        );
     }
 }
 
@@ -83,6 +90,29 @@ impl RapierObstacles<'_, '_> {
         let colliders = &self.context.single().ok()?.colliders.colliders;
         let collider = colliders.get(RapierTerrain::collider_of(point))?;
         Entity::try_from_bits(u64::try_from(collider.user_data).ok()?)
+    }
+}
+
+/// Applies the impulses of climbers to rapier's bodies.
+#[derive(SystemParam)]
+pub(crate) struct RapierPushes<'w, 's> {
+    worlds: Query<
+        'w,
+        's,
+        (
+            &'static mut RapierRigidBodySet,
+            &'static RapierContextColliders,
+        ),
+        With<DefaultRapierContext>,
+    >,
+}
+
+impl RapierPushes<'_, '_> {
+    /// Applies an impulse, newton seconds, to a point of a collider.
+    pub(crate) fn push(&mut self, point: &MaterialPoint, impulse: DVec3) {
+        if let Ok((mut bodies, colliders)) = self.worlds.single_mut() {
+            apply_push(&mut bodies.bodies, &colliders.colliders, point, impulse);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use glam::DAffine3;
 use super::PosedSurface;
 use super::history::History;
 use super::rig::{Locals, Rig, Scene};
-use crate::ColliderError;
+use crate::{ColliderError, SkinnedCollider};
 
 /// The poses in which the last frames drew a surface. Inserted beside [`PosedSurface`].
 ///
@@ -80,6 +80,7 @@ impl DrawnSurface {
     pub(crate) fn sample(
         &mut self,
         surface: &PosedSurface,
+        timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
         time: Duration,
     ) {
@@ -94,23 +95,18 @@ impl DrawnSurface {
             }
             self.error = Some(error);
         }
-        self.follow_edits(surface);
-        if self.history.last() != Some(&drawn) {
-            self.forget_pose();
-        }
-        let was_teleported = self.teleports != surface.teleports();
-        self.teleports = surface.teleports();
-        let is_cut = was_teleported || self.is_teleport(surface, &drawn, time);
-        self.history.record(time, drawn, is_cut);
-    }
-
-    /// Copies a surface anew that was edited.
-    pub(crate) fn follow_edits(&mut self, surface: &PosedSurface) {
         if self.edits != surface.edits() {
             self.edits = surface.edits();
             self.surface.take();
             self.spare = Mutex::default();
         }
+        if self.history.last() != Some(&drawn) {
+            self.forget_pose();
+        }
+        let was_teleported = self.teleports != surface.teleports();
+        self.teleports = surface.teleports();
+        let is_cut = was_teleported || self.is_teleport(surface, timing, &drawn, time);
+        self.history.record(time, drawn, is_cut);
     }
 
     /// The error of the last frame.
@@ -147,7 +143,13 @@ impl DrawnSurface {
     }
 
     /// True if the topmost entity is too far from its place in the last frame to have moved there.
-    fn is_teleport(&mut self, surface: &PosedSurface, drawn: &Locals, time: Duration) -> bool {
+    fn is_teleport(
+        &mut self,
+        surface: &PosedSurface,
+        timing: &SkinnedCollider,
+        drawn: &Locals,
+        time: Duration,
+    ) -> bool {
         let Some((last, before)) = self.history.last_timed() else {
             return false;
         };
@@ -156,7 +158,7 @@ impl DrawnSurface {
         };
         let time = time.saturating_sub(before).as_secs_f64();
         let speed = from.distance(to) / time;
-        let is_teleport = time > 0.0 && speed > f64::from(surface.timing().max_speed);
+        let is_teleport = time > 0.0 && speed > f64::from(timing.max_speed);
         if is_teleport {
             self.tell_teleport(surface, speed);
         }

@@ -1,7 +1,12 @@
 use bevy_app::{AnimationSystems, App, FixedPostUpdate, Plugin, PostUpdate, PreUpdate};
+use bevy_asset::{AssetServer, Assets};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
-use bevy_transform::TransformSystems;
+use bevy_mesh::Mesh;
+use bevy_mesh::skinning::SkinnedMeshInverseBindposes;
+use bevy_tasks::AsyncComputeTaskPool;
+use bevy_time::{Fixed, Time};
+use bevy_transform::{TransformPlugin, TransformSystems};
 
 use super::clock::{tell_frame, tell_tick};
 use super::pose::{pose_surfaces, sample_poses};
@@ -9,6 +14,7 @@ use super::{DrawnSurface, PoseClock, PoseTiming, PosedSurface};
 use crate::collider::{
     ColliderMeshes, build_colliders, forget_changed_assets, tag_colliders, tell_waiting,
 };
+use crate::needs::{need, need_resource};
 use crate::{ClamberSystems, ColliderStatus, ColliderTag, SkinnedCollider, WorldOrigin};
 
 /// Builds colliders and poses surfaces; part of [`ClamberPlugins`](crate::ClamberPlugins).
@@ -79,6 +85,22 @@ impl Plugin for SurfacePlugin {
                     .chain()
                     .in_set(ClamberSystems::Sample),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let me = "clamber's SurfacePlugin (of ClamberPlugins)";
+        let has_tasks = AsyncComputeTaskPool::try_get().is_some();
+        need(has_tasks, me, "TaskPoolPlugin of bevy_app");
+        need_resource::<Time<Fixed>>(app, me, "TimePlugin of bevy_time");
+        need_resource::<AssetServer>(app, me, "AssetPlugin of bevy_asset");
+        need_resource::<Assets<Mesh>>(app, me, "MeshPlugin of bevy_mesh");
+        need_resource::<Assets<SkinnedMeshInverseBindposes>>(app, me, "MeshPlugin of bevy_mesh");
+        if !app.is_plugin_added::<TransformPlugin>() {
+            tracing::warn!(
+                "the app has no TransformPlugin (bevy_transform): surfaces and climbers work without it, but nothing \
+                 that reads a GlobalTransform, such as a renderer, sees them move"
+            );
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use bevy_time::Time;
 
 use super::rig::{Hierarchy, Scene};
 use super::{DrawnSurface, PoseClock, PosedSurface};
-use crate::WorldOrigin;
+use crate::{SkinnedCollider, WorldOrigin};
 
 /// Up to this number, one thread poses all surfaces sooner than other threads wake up.
 const FEW: usize = 4;
@@ -14,7 +14,7 @@ pub(crate) fn pose_surfaces(
     clock: Res<PoseClock>,
     tick: Res<Time>,
     origin: Res<WorldOrigin>,
-    surfaces: Query<(&mut PosedSurface, &mut DrawnSurface)>,
+    surfaces: Query<(&mut PosedSurface, &mut DrawnSurface, &SkinnedCollider)>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
     let scene = Scene {
@@ -22,9 +22,9 @@ pub(crate) fn pose_surfaces(
         origin: origin.0,
     };
     let dt = tick.delta_secs_f64();
-    each(surfaces, |(mut surface, mut drawn)| {
+    each(surfaces, |(mut surface, mut drawn, timing)| {
         let posed = surface.bypass_change_detection();
-        if posed.pose(drawn.bypass_change_detection(), &scene, &clock, dt) {
+        if posed.pose(drawn.bypass_change_detection(), timing, &scene, &clock, dt) {
             surface.set_changed();
         }
     });
@@ -34,7 +34,7 @@ pub(crate) fn pose_surfaces(
 pub(crate) fn sample_poses(
     clock: Res<PoseClock>,
     origin: Res<WorldOrigin>,
-    surfaces: Query<(&PosedSurface, &mut DrawnSurface)>,
+    surfaces: Query<(&PosedSurface, &mut DrawnSurface, &SkinnedCollider)>,
     hierarchy: Hierarchy<'_, '_>,
 ) {
     let scene = Scene {
@@ -42,10 +42,10 @@ pub(crate) fn sample_poses(
         origin: origin.0,
     };
     let time = clock.drawn();
-    each(surfaces, |(surface, mut drawn)| {
+    each(surfaces, |(surface, mut drawn, timing)| {
         drawn
             .bypass_change_detection()
-            .sample(surface, &scene, time);
+            .sample(surface, timing, &scene, time);
     });
 }
 

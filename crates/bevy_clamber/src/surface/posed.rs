@@ -49,7 +49,6 @@ pub struct PosedSurface {
     entity: Entity,
     surface: SkinnedSurface,
     collider: Arc<BuiltCollider>,
-    timing: SkinnedCollider,
     /// Transforms and palette of the last tick's pose.
     posed: Locals,
     palette: Palette,
@@ -90,7 +89,7 @@ impl PosedSurface {
     pub(crate) fn new(
         entity: Entity,
         collider: Arc<BuiltCollider>,
-        timing: SkinnedCollider,
+        timing: &SkinnedCollider,
         drawn: &mut DrawnSurface,
         scene: &Scene<'_, '_, '_>,
         clock: &PoseClock,
@@ -99,7 +98,6 @@ impl PosedSurface {
             entity,
             surface: SkinnedSurface::new(Arc::clone(&collider.mesh)),
             collider,
-            timing,
             posed: Locals::default(),
             palette: Palette::default(),
             is_placed: false,
@@ -114,8 +112,8 @@ impl PosedSurface {
             error: None,
             scratch: Scratch::default(),
         };
-        drawn.sample(&posed, scene, clock.drawn());
-        posed.pose(drawn, scene, clock, 0.0);
+        drawn.sample(&posed, timing, scene, clock.drawn());
+        posed.pose(drawn, timing, scene, clock, 0.0);
         posed
     }
 
@@ -176,20 +174,12 @@ impl PosedSurface {
         self.entity
     }
 
-    pub(super) fn timing(&self) -> &SkinnedCollider {
-        &self.timing
-    }
-
     pub(super) fn teleports(&self) -> u32 {
         self.teleports
     }
 
     pub(super) fn edits(&self) -> u32 {
         self.edits
-    }
-
-    pub(crate) fn set_timing(&mut self, timing: SkinnedCollider) {
-        self.timing = timing;
     }
 
     /// True once the surface has had a valid pose.
@@ -207,13 +197,14 @@ impl PosedSurface {
     pub(crate) fn pose(
         &mut self,
         drawn: &mut DrawnSurface,
+        timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
         clock: &PoseClock,
         dt: f64,
     ) -> bool {
         self.has_jumped = [false, self.has_jumped[0]];
         let mut next = std::mem::take(&mut self.scratch.next);
-        let posed = self.try_pose(drawn, scene, clock, dt, &mut next);
+        let posed = self.try_pose(drawn, timing, scene, clock, dt, &mut next);
         self.scratch.next = next;
         let moved = match &posed {
             Ok(moved) => *moved,
@@ -228,36 +219,27 @@ impl PosedSurface {
         self.tell(posed.err()) || moved
     }
 
-    fn follows_frames(&self) -> bool {
-        let SkinnedCollider { joints, root, .. } = self.timing;
-        [joints, root].contains(&PoseTiming::EachFrame)
-    }
-
-    fn follows_ticks(&self) -> bool {
-        let SkinnedCollider { joints, root, .. } = self.timing;
-        [joints, root].contains(&PoseTiming::EachTick)
-    }
-
     fn try_pose(
         &mut self,
         drawn: &mut DrawnSurface,
+        timing: &SkinnedCollider,
         scene: &Scene<'_, '_, '_>,
         clock: &PoseClock,
         dt: f64,
         next: &mut Locals,
     ) -> Result<bool, PoseError> {
-        if self.follows_frames() {
+        if timing.follows_frames() {
             drawn.check()?;
         }
         let at = drawn.history.advance(clock.at());
         // The same transforms in another order are another pose.
         self.still &= self.hierarchies == drawn.hierarchies;
         let at_rest = self.still && !self.restart && !self.edited;
-        let is_still = drawn.history.is_still() && !self.follows_ticks();
+        let is_still = drawn.history.is_still() && !timing.follows_ticks();
         if at_rest && is_still && drawn.history.last() == Some(&self.posed) {
             return Ok(false);
         }
-        if self.read_tick(drawn, scene, at, next)?.is_err() {
+        if read_tick(drawn, timing, scene, at, next)?.is_err() {
             drawn.follow(scene, clock.drawn(), next)?;
         }
         let same = self.posed == *next && self.hierarchies == drawn.hierarchies;
@@ -270,9 +252,9 @@ impl PosedSurface {
             .rig
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
-        let jumps = self.follows_frames() && (clock.jumped() || at.is_cut);
+        let jumps = timing.follows_frames() && (clock.jumped() || at.is_cut);
         let fastest = self.farthest(&world_from_model) / dt;
-        let is_teleport = fastest > f64::from(self.timing.max_speed) && dt > 0.0;
+        let is_teleport = fastest > f64::from(timing.max_speed) && dt > 0.0;
         if is_teleport && !self.restart && !jumps {
             drawn.tell_teleport(self, fastest);
         }
@@ -324,31 +306,6 @@ impl PosedSurface {
         self.still
     }
 
-    /// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
-    fn read_tick(
-        &self,
-        drawn: &DrawnSurface,
-        scene: &Scene<'_, '_, '_>,
-        at: Between,
-        into: &mut Locals,
-    ) -> Result<Result<(), Changed>, PoseError> {
-        let joints = match self.timing.joints {
-            PoseTiming::EachTick => drawn.rig.read_joints(scene, into),
-            PoseTiming::EachFrame => {
-                drawn.history.joints(at, into)?;
-                Ok(())
-            }
-        };
-        let root = match self.timing.root {
-            PoseTiming::EachTick => drawn.rig.read_root(scene, into),
-            PoseTiming::EachFrame => {
-                drawn.history.root(at, into)?;
-                Ok(())
-            }
-        };
-        Ok(joints.and(root))
-    }
-
     /// Stores an error, and logs it if there was none before. True if the error has changed.
     fn tell(&mut self, error: Option<PoseError>) -> bool {
         if self.error == error {
@@ -365,6 +322,31 @@ impl PosedSurface {
         self.error = error;
         true
     }
+}
+
+/// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
+fn read_tick(
+    drawn: &DrawnSurface,
+    timing: &SkinnedCollider,
+    scene: &Scene<'_, '_, '_>,
+    at: Between,
+    into: &mut Locals,
+) -> Result<Result<(), Changed>, PoseError> {
+    let joints = match timing.joints {
+        PoseTiming::EachTick => drawn.rig.read_joints(scene, into),
+        PoseTiming::EachFrame => {
+            drawn.history.joints(at, into)?;
+            Ok(())
+        }
+    };
+    let root = match timing.root {
+        PoseTiming::EachTick => drawn.rig.read_root(scene, into),
+        PoseTiming::EachFrame => {
+            drawn.history.root(at, into)?;
+            Ok(())
+        }
+    };
+    Ok(joints.and(root))
 }
 
 impl Deref for PosedSurface {

@@ -1,6 +1,7 @@
 //! Avian's world as an obstacle.
 
 mod moving;
+mod push;
 mod terrain;
 
 use avian3d::collider_tree::ColliderTrees;
@@ -15,9 +16,11 @@ use bevy_ecs::system::SystemParam;
 
 use crate::ClamberSystems;
 use moving::{MovingColliders, note};
+pub(crate) use push::AvianPushes;
+use push::Masses;
 pub use terrain::AvianTerrain;
 
-/// Records the poses of avian's moving colliders after each step and before it.
+/// Records the poses of avian's moving colliders after each step and before it. `ClimberPlugin` adds it by itself.
 #[derive(Clone, Copy, Debug)]
 pub struct AvianObstaclesPlugin {
     schedule: InternedScheduleLabel,
@@ -42,7 +45,11 @@ impl Default for AvianObstaclesPlugin {
 impl Plugin for AvianObstaclesPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<MovingColliders>()
-            .add_systems(self.schedule, note.after(PhysicsSystems::Last))
+            .add_systems(
+                self.schedule,
+                note.after(PhysicsSystems::Last)
+                    .before(ClamberSystems::Climb),
+            )
             // If a creature's root is a body, its surface is posed where the step has put it.
             .configure_sets(
                 self.schedule,
@@ -83,6 +90,7 @@ pub struct AvianObstacles<'w, 's> {
     solids: Solids<'w, 's>,
     trees: Res<'w, ColliderTrees>,
     moving: Res<'w, MovingColliders>,
+    masses: Masses<'w, 's>,
 }
 
 impl AvianObstacles<'_, '_> {

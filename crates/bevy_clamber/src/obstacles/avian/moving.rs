@@ -3,6 +3,8 @@
 
 use avian3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use avian3d::parry::math::Pose;
+use avian3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+use avian3d::parry::query::{Ray, RayCast};
 use avian3d::prelude::{Collider, ColliderOf, ColliderTransform, Position, RigidBody, Rotation};
 use bevy_ecs::prelude::*;
 use clamber_world::RigidPose;
@@ -24,15 +26,34 @@ pub(super) struct MovingBody {
 }
 
 /// Colliders of bodies that are not static, after the last step and before it, both sorted by entity.
-#[derive(Resource, Debug, Default)]
+#[derive(Resource, Default)]
 pub(super) struct MovingColliders {
     now: Vec<MovingBody>,
     before: Vec<MovingBody>,
+    /// Over the swept bounds of `now`, by index.
+    tree: Bvh,
 }
 
 impl MovingColliders {
     pub(super) fn iter(&self) -> impl Iterator<Item = &MovingBody> {
         self.now.iter()
+    }
+
+    /// The colliders whose swept bounds meet a box.
+    pub(super) fn near<'a>(&'a self, bounds: &'a Aabb) -> impl Iterator<Item = &'a MovingBody> {
+        let near = self.tree.intersect_aabb(bounds);
+        near.filter_map(|index| self.now.get(index as usize))
+    }
+
+    /// The colliders whose swept bounds meet a ray, up to a distance.
+    pub(super) fn along<'a>(
+        &'a self,
+        ray: &'a Ray,
+        max_distance: f32,
+    ) -> impl Iterator<Item = &'a MovingBody> {
+        let meets = move |node: &BvhNode| node.aabb().intersects_local_ray(ray, max_distance);
+        let met = self.tree.leaves(meets);
+        met.filter_map(|index| self.now.get(index as usize))
     }
 
     /// The current pose of a collider; `None` if it is not a moving one.
@@ -58,7 +79,7 @@ pub(super) fn note(
     colliders: Query<(Entity, &Collider, &ColliderOf, Option<&ColliderTransform>)>,
     bodies: Query<(&RigidBody, &Position, &Rotation)>,
 ) {
-    let MovingColliders { now, before } = &mut *moving;
+    let MovingColliders { now, before, tree } = &mut *moving;
     std::mem::swap(now, before);
     now.clear();
     for (entity, collider, of, on_body) in &colliders {
@@ -84,6 +105,8 @@ pub(super) fn note(
         });
     }
     now.sort_unstable_by_key(|moving| moving.entity);
+    let bounds = now.iter().map(|moving| moving.swept).enumerate();
+    *tree = Bvh::from_iter(BvhBuildStrategy::Binned, bounds);
 }
 
 /// A pose of parry, in f32.

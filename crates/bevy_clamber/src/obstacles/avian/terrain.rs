@@ -27,8 +27,8 @@ const LOOSE: f32 = 1e-4;
 /// Convex shapes are solid. `RapierTerrain` gives the same answers for the same shapes. Rays are cast by parry: a ray
 /// that hits exactly an edge between two triangles may pass through.
 ///
-/// Colliders that stand still are found through avian's trees. Those that can move are tried one after the other, by
-/// their bounds.
+/// Colliders that stand still are found through avian's trees. Those that can move are found through a tree of their
+/// own, over their bounds in the last tick.
 pub struct AvianTerrain<'a> {
     world: &'a AvianObstacles<'a, 'a>,
     filter: SpatialQueryFilter,
@@ -86,7 +86,7 @@ impl<'a> AvianTerrain<'a> {
     /// Calls `visit` with the colliders that may lie in a box.
     fn near(&self, bounds: &Aabb, visit: &mut dyn FnMut(Entity)) {
         self.near_still(bounds, visit);
-        for moving in self.world.moving.iter() {
+        for moving in self.world.moving.near(bounds) {
             if moving.bounds.intersects(bounds) {
                 visit(moving.entity);
             }
@@ -121,7 +121,8 @@ impl<'a> AvianTerrain<'a> {
                 meet(&mut first, collider, &Tick::still(pose), entity.to_bits());
             }
         });
-        for body in self.world.moving.iter() {
+        let reach = first.bounds();
+        for body in self.world.moving.near(&reach) {
             let (bounds, tick) = moving(body);
             if first.may_meet(&bounds)
                 && let Some((collider, _)) = self.solid(body.entity)
@@ -214,7 +215,7 @@ impl Obstacle for AvianTerrain<'_> {
                 })
             });
         }
-        for moving in self.world.moving.iter() {
+        for moving in self.world.moving.along(&ray, search) {
             if moving.bounds.intersects_local_ray(&ray, search) {
                 self.meet(moving.entity, &ray, limit, &mut best);
             }
@@ -281,6 +282,17 @@ impl Obstacle for AvianTerrain<'_> {
 
     fn body_of(&self, point: &MaterialPoint) -> u64 {
         point.key
+    }
+
+    fn push_response(&self, point: &MaterialPoint, direction: DVec3) -> f64 {
+        let Some(entity) = Entity::try_from_bits(point.key) else {
+            return 0.0;
+        };
+        let Some((_, pose)) = self.solid(entity) else {
+            return 0.0;
+        };
+        let place = pose.transform(DVec3::from_array(point.coordinates));
+        self.world.masses.response(entity, place, direction)
     }
 
     fn motion(&self, point: &MaterialPoint, dt: f64) -> Option<PointMotion> {
