@@ -7,10 +7,12 @@ use clamber_climber::{ClimberConfig, ClimberContact, StepReport};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::MeshId;
 use clamber_world::ObstacleId;
+use glam::DVec3;
 use std::ops::Deref;
 
 use super::ClimberInput;
 use super::input::LatchedInput;
+use super::shown::Shown;
 
 /// A character that stands on, climbs, grips and hangs from everything that it can touch: skin, other climbers, the
 /// physics engine's world, and [`CustomObstacle`](crate::CustomObstacle)s.
@@ -113,16 +115,32 @@ impl Default for ClimberFilter {
 #[derive(Component, Clone, Debug)]
 pub struct ClimberBody {
     pub(super) climber: clamber_climber::Climber,
-    /// The state of the tick before.
-    pub(super) before: clamber_climber::ClimberState,
     pub(super) report: StepReport,
     /// The mesh of the surface that supports it.
     pub(super) support_mesh: Option<(ObstacleId, MeshId)>,
-    /// What was drawn last: the transform that this crate has written.
+    pub(super) shown: Shown,
+    /// What was drawn last: the transform that this crate has written, and the origin that it is relative to.
     pub(super) drawn: Transform,
+    pub(super) origin: DVec3,
 }
 
+/// Rounding that an app's move of the origin may add to a translation, as a share of it, and metres.
+const ROUNDING: [f64; 2] = [1e-6, 1e-4];
+
 impl ClimberBody {
+    /// True if somebody else has written the climber's translation since it was drawn. A move of the origin does not
+    /// count.
+    pub(super) fn is_moved(&self, transform: &Transform, origin: DVec3) -> bool {
+        let (found, drawn) = (transform.translation, self.drawn.translation);
+        if found == drawn || self.origin == origin {
+            return found != drawn;
+        }
+        let expected = drawn.as_dvec3() + self.origin - origin;
+        let [share, least] = ROUNDING;
+        let slack = share * expected.length().max(drawn.as_dvec3().length()) + least;
+        found.as_dvec3().distance(expected) > slack
+    }
+
     /// The contacts of the last tick, in the order in which they were found.
     pub fn contacts(&self) -> &[ClimberContact] {
         self.climber.contacts()

@@ -7,6 +7,7 @@ mod input;
 mod obstacles;
 mod plugin;
 mod rules;
+mod shown;
 mod step;
 
 pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};

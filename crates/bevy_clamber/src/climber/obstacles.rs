@@ -16,6 +16,8 @@ use glam::DVec3;
 
 use super::component::ClimberFilter;
 use crate::PosedSurface;
+#[cfg(any(feature = "avian", feature = "rapier"))]
+use crate::WorldOrigin;
 #[cfg(feature = "avian")]
 use crate::obstacles::{AvianObstacles, AvianPushes, AvianTerrain};
 #[cfg(feature = "rapier")]
@@ -75,6 +77,8 @@ const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
 pub(super) struct Touchable<'w, 's> {
     surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
     custom: Query<'w, 's, (Entity, &'static CustomObstacle)>,
+    #[cfg(any(feature = "avian", feature = "rapier"))]
+    origin: Res<'w, WorldOrigin>,
     #[cfg(feature = "avian")]
     avian: Result<AvianObstacles<'w, 's>, SystemParamValidationError>,
     #[cfg(feature = "rapier")]
@@ -132,7 +136,7 @@ impl Touchable<'_, '_> {
             .avian
             .as_ref()
             .ok()
-            .map(|avian| in_avian(avian, climber, filter));
+            .map(|avian| in_avian(avian, climber, filter).with_origin(self.origin.0));
         #[cfg(feature = "avian")]
         all.extend(avian.as_ref().map(|avian| (AVIAN, avian as &dyn Obstacle)));
         #[cfg(feature = "rapier")]
@@ -140,7 +144,7 @@ impl Touchable<'_, '_> {
         #[cfg(feature = "rapier")]
         let wanted = |_, collider: &RapierCollider| is_wanted(filter, climber, collider);
         #[cfg(feature = "rapier")]
-        let rapier = rapier.map(|rapier| rapier.with_filter(&wanted));
+        let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
         #[cfg(feature = "rapier")]
         all.extend(
             rapier

@@ -66,9 +66,7 @@ impl Plugin for ClimberPlugin {
         #[cfg(any(feature = "avian", feature = "rapier"))]
         app.add_systems(
             self.schedule,
-            step::push
-                .in_set(ClamberSystems::Climb)
-                .after(step::tell),
+            step::push.in_set(ClamberSystems::Climb).after(step::tell),
         );
         #[cfg(feature = "avian")]
         if app.is_plugin_added::<avian3d::schedule::PhysicsSchedulePlugin>()

@@ -14,6 +14,7 @@ use super::events::{Told, tell_event};
 use super::input::{ClimberInput, LatchedInput};
 use super::obstacles::{Touchable, touched};
 use super::rules::{ClimberModes, Grip, GripRule};
+use super::shown::Shown;
 use crate::{PosedSurface, WorldOrigin};
 
 /// Up to this number, one thread steps all climbers sooner than other threads wake up.
@@ -60,7 +61,7 @@ pub(super) fn follow_changes(
                 Err(error) => tracing::error!("climber {entity} keeps its state: {error}"),
             }
         }
-        if transform.translation != body.drawn.translation {
+        if body.is_moved(transform, origin.0) {
             body.teleport(transform, origin.0);
         }
     }
@@ -78,11 +79,12 @@ fn new_body(
     begin.heading = level(transform.rotation, config.up(), begin.heading);
     climber.restore(state.map_or(begin, |state| state.0))?;
     Ok(ClimberBody {
-        before: *climber.state(),
+        shown: Shown::new(climber.state()),
         climber,
         report: StepReport::default(),
         support_mesh: None,
         drawn: *transform,
+        origin,
     })
 }
 
@@ -95,7 +97,7 @@ fn level(rotation: Quat, up: DVec3, otherwise: DVec3) -> DVec3 {
 impl ClimberBody {
     /// The next frames do not draw how it got here.
     fn forget_motion(&mut self) {
-        self.before = *self.climber.state();
+        self.shown = Shown::new(self.climber.state());
         self.support_mesh = None;
     }
 
@@ -116,6 +118,7 @@ impl ClimberBody {
         };
         if self.climber.restore(begin).is_ok() {
             self.drawn = *to;
+            self.origin = origin;
             self.forget_motion();
         }
     }
@@ -158,7 +161,6 @@ pub(super) fn step_climbers(
         Option<&GripRule>,
     )| {
         let body = &mut *body;
-        body.before = *body.climber.state();
         let input = latched.take(input.bypass_change_detection());
         let rule = rule.or(grip_rule.as_deref());
         let can_grip = |id: ObstacleId, contact: &Contact| match rule {
@@ -188,6 +190,8 @@ pub(super) fn step_climbers(
             }
         }
         body.support_mesh = body.mesh_below(&touchable);
+        let surface = |on: &Attachment| touchable.surface(on.obstacle).map(|surface| &**surface);
+        body.shown.tick(body.climber.state(), surface, dt);
         state.set_if_neq(ClimberState(*body.climber.state()));
     };
     if bodies.len() <= FEW {

@@ -7,7 +7,7 @@ use bevy_rapier3d::prelude::{RapierContext, RapierContextColliders, ReadRapierCo
 use clamber_world::{BodyPoses, MaterialPoint, RapierTerrain, apply_push};
 use glam::DVec3;
 
-use crate::ClamberSystems;
+use crate::{ClamberSystems, WorldOrigin};
 
 /// Records the poses of rapier's bodies before each step, so that climbers on them can be carried. `ClimberPlugin` adds
 /// it by itself.
@@ -34,11 +34,13 @@ impl Default for RapierObstaclesPlugin {
 
 impl Plugin for RapierObstaclesPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<StepPoses>().add_systems(
-            self.schedule,
-            note.after(PhysicsSet::Writeback)
-                .before(ClamberSystems::Climb),
-        );
+        app.init_resource::<StepPoses>()
+            .init_resource::<WorldOrigin>()
+            .add_systems(
+                self.schedule,
+                note.after(PhysicsSet::Writeback)
+                    .before(ClamberSystems::Climb),
+            );
     }
 }
 
@@ -121,15 +123,23 @@ impl RapierPushes<'_, '_> {
 struct StepPoses {
     before: BodyPoses,
     after: BodyPoses,
+    /// The [`WorldOrigin`] at the last step.
+    origin: DVec3,
 }
 
 /// Records poses after each step, not before it, so that bodies that a game moves between two steps have motion, too.
 fn note(
     mut poses: ResMut<StepPoses>,
+    origin: Res<WorldOrigin>,
     bodies: Query<&RapierRigidBodySet, With<DefaultRapierContext>>,
 ) {
     let poses = &mut *poses;
     std::mem::swap(&mut poses.before, &mut poses.after);
+    if poses.origin != origin.0 {
+        let by = (poses.origin - origin.0).as_vec3();
+        poses.before.translate(by);
+        poses.origin = origin.0;
+    }
     if let Ok(bodies) = bodies.single() {
         poses.after.record(&bodies.bodies);
     }

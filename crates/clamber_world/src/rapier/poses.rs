@@ -1,5 +1,5 @@
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle, RigidBodySet};
-use rapier3d::math::Pose;
+use rapier3d::math::{Pose, Vector};
 
 /// Poses of a rapier world's bodies before a step.
 ///
@@ -39,6 +39,14 @@ impl BodyPoses {
             .extend(moving.map(|(handle, body)| (handle, *body.position())));
         self.poses
             .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
+    }
+
+    /// Moves the recorded poses, metres: for a game that has moved all bodies by as much, because the origin of its world
+    /// is elsewhere now. The bodies have then not moved.
+    pub fn translate(&mut self, by: Vector) {
+        for (_, pose) in &mut self.poses {
+            pose.translation += by;
+        }
     }
 
     /// The recorded pose of a body. `None` if the body was fixed or did not exist when poses were recorded.

@@ -14,7 +14,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_ecs::system::SystemParam;
 
-use crate::ClamberSystems;
+use crate::{ClamberSystems, WorldOrigin};
 use moving::{MovingColliders, note};
 pub(crate) use push::AvianPushes;
 use push::Masses;
@@ -45,6 +45,7 @@ impl Default for AvianObstaclesPlugin {
 impl Plugin for AvianObstaclesPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<MovingColliders>()
+            .init_resource::<WorldOrigin>()
             .add_systems(
                 self.schedule,
                 note.after(PhysicsSystems::Last)

@@ -8,6 +8,9 @@ use avian3d::parry::query::{Ray, RayCast};
 use avian3d::prelude::{Collider, ColliderOf, ColliderTransform, Position, RigidBody, Rotation};
 use bevy_ecs::prelude::*;
 use clamber_world::RigidPose;
+use glam::DVec3;
+
+use crate::WorldOrigin;
 
 /// Margin that is added to bounds, metres, so that rounding misses no collider.
 const LOOSE: f32 = 1e-3;
@@ -30,6 +33,8 @@ pub(super) struct MovingBody {
 pub(super) struct MovingColliders {
     now: Vec<MovingBody>,
     before: Vec<MovingBody>,
+    /// The [`WorldOrigin`] at the last step.
+    origin: DVec3,
     /// Over the swept bounds of `now`, by index.
     tree: Bvh,
 }
@@ -76,11 +81,25 @@ fn find(all: &[MovingBody], entity: Entity) -> Option<&MovingBody> {
 /// steps are compared.
 pub(super) fn note(
     mut moving: ResMut<MovingColliders>,
+    origin: Res<WorldOrigin>,
     colliders: Query<(Entity, &Collider, &ColliderOf, Option<&ColliderTransform>)>,
     bodies: Query<(&RigidBody, &Position, &Rotation)>,
 ) {
-    let MovingColliders { now, before, tree } = &mut *moving;
+    let MovingColliders {
+        now,
+        before,
+        origin: old,
+        tree,
+    } = &mut *moving;
     std::mem::swap(now, before);
+    if *old != origin.0 {
+        let by = *old - origin.0;
+        for moving in before.iter_mut() {
+            moving.pose.translation += by;
+            moving.bounds = moving.bounds.translated(by.as_vec3());
+        }
+        *old = origin.0;
+    }
     now.clear();
     for (entity, collider, of, on_body) in &colliders {
         let Ok((body, position, rotation)) = bodies.get(of.body) else {
