@@ -3,9 +3,8 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
-/// Ends the app if a plugin is missing that `needed_by` cannot do without. Its name would not be in the panic of the
-/// first system that misses a resource.
-#[expect(clippy::panic, reason = "an app without these plugins cannot run")]
+/// Ends the app if a plugin is missing that `needed_by` cannot do without: the panic of the first system that misses a
+/// resource would not name it.
 pub(crate) fn need(is_there: bool, needed_by: &str, missing: &str) {
     assert!(
         is_there,

@@ -4,7 +4,6 @@
 
 mod common;
 
-use std::f32::consts::FRAC_PI_2;
 use std::time::Duration;
 
 use bevy_app::{App, FixedUpdate, PreUpdate, Update};
@@ -19,7 +18,7 @@ use bevy_clamber::prelude::*;
 use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::message::Messages;
 use bevy_ecs::prelude::*;
-use bevy_math::{DVec3, Quat, Vec3};
+use bevy_math::{DVec3, Vec3};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_time::{Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
@@ -49,7 +48,7 @@ fn carry(time: Res<Time>, mut roots: Query<&mut Transform, With<Moving>>) {
 
 /// A limb ten times as large that lies along X, from 0 to 20 m: its upper side is a floor of 4 m, at a height of 2 m.
 fn floor(app: &mut App, collider: SkinnedCollider) -> Limb {
-    let lying = Transform::from_rotation(Quat::from_rotation_z(-FRAC_PI_2));
+    let lying = Transform::from_rotation(common::LYING);
     limb(app, lying.with_scale(Vec3::splat(10.0)), collider)
 }
 

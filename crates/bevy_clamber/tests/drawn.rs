@@ -4,7 +4,6 @@
 
 mod common;
 
-use std::f32::consts::FRAC_PI_2;
 use std::time::Duration;
 
 use bevy_app::{App, PostUpdate, Update};
@@ -36,9 +35,14 @@ fn stride(
     let place = start.0 + DVec3::X * 3.0 * seconds + DVec3::Y * 0.3 * libm::sin(seconds * 4.0);
     for mut root in &mut roots {
         root.translation = (place - origin.0).as_vec3();
-        root.rotation = Quat::from_rotation_y((0.5 * libm::sin(seconds)) as f32)
-            * Quat::from_rotation_z(-FRAC_PI_2);
+        root.rotation = yaw(0.5 * libm::sin(seconds)) * common::LYING;
     }
+}
+
+/// A rotation about +Y, radians.
+fn yaw(angle: f64) -> Quat {
+    let half = 0.5 * angle;
+    Quat::from_xyzw(0.0, libm::sin(half) as f32, 0.0, libm::cos(half) as f32)
 }
 
 /// Where the creature starts, in world space.
@@ -84,7 +88,7 @@ fn app(start: DVec3, collider: SkinnedCollider) -> (App, Entity) {
     app.insert_resource(Start(start))
         .insert_resource(WorldOrigin(start));
     app.init_resource::<Frames>();
-    let lying = Transform::from_rotation(Quat::from_rotation_z(-FRAC_PI_2));
+    let lying = Transform::from_rotation(common::LYING);
     let creature = limb(&mut app, lying.with_scale(Vec3::splat(10.0)), collider);
     app.world_mut().entity_mut(creature.root).insert(Creature);
     app.add_systems(PostUpdate, note.after(ClamberSystems::Draw));

@@ -86,7 +86,7 @@ impl InBevy {
             let world = app.world_mut();
             let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh(&piece.solid));
             let mut bindposes = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>();
-            let inverse_bindposes = bindposes.add(vec![bevy_math::Mat4::IDENTITY]);
+            let inverse_bindposes = bindposes.add(vec![Transform::IDENTITY.to_matrix()]);
             let root = world.spawn(Transform::IDENTITY).id();
             let joint = world.spawn((Transform::IDENTITY, ChildOf(root))).id();
             let skin = SkinnedMesh {

@@ -5,14 +5,13 @@
 
 mod common;
 
-use std::f32::consts::FRAC_PI_2;
 use std::time::Duration;
 
 use bevy_app::{App, FixedPostUpdate, Update};
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
+use bevy_math::Vec3;
 use bevy_time::{Time, TimeUpdateStrategy, Virtual};
 use bevy_transform::components::Transform;
 use common::{app_with, limb};
@@ -56,8 +55,7 @@ fn feel(
 fn ride() -> App {
     let mut app = app_with(60.0, (ClamberPlugins::default(), ClimberPlugin::default()));
     app.add_systems(Update, walk);
-    let lying =
-        Transform::from_rotation(Quat::from_rotation_z(-FRAC_PI_2)).with_scale(Vec3::splat(10.0));
+    let lying = Transform::from_rotation(common::LYING).with_scale(Vec3::splat(10.0));
     let floor = limb(&mut app, lying, SkinnedCollider::default());
     app.world_mut().entity_mut(floor.root).insert(Walking);
     app.update();

@@ -41,6 +41,7 @@ impl Giants {
         let collider = SkinnedCollider {
             joints: timing,
             root: timing,
+            ..SkinnedCollider::each_frame()
         };
         let (mut all_joints, mut surfaces) = (Vec::new(), Vec::new());
         for _ in 0..count {

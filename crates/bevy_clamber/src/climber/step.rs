@@ -1,6 +1,7 @@
 //! The tick of all climbers.
 
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use bevy_math::{Quat, Vec3};
 use bevy_time::Time;
 use bevy_transform::components::Transform;
@@ -20,15 +21,18 @@ use crate::{PosedSurface, WorldOrigin};
 /// Up to this number, one thread steps all climbers sooner than other threads wake up.
 const FEW: usize = 4;
 
+/// A climber that the app may have changed.
+type Followed = (
+    Entity,
+    Ref<'static, Climber>,
+    &'static Transform,
+    Option<&'static ClimberState>,
+    Option<&'static mut ClimberBody>,
+);
+
 /// Makes the bodies of new climbers, and takes over what the app changed: configurations, states, transforms.
 pub(super) fn follow_changes(
-    mut climbers: Query<(
-        Entity,
-        Ref<Climber>,
-        &Transform,
-        Option<&ClimberState>,
-        Option<&mut ClimberBody>,
-    )>,
+    mut climbers: Query<Followed>,
     origin: Res<WorldOrigin>,
     mut commands: Commands,
 ) {
@@ -125,15 +129,17 @@ impl ClimberBody {
 }
 
 /// A climber that is stepped.
-type Stepped = (
-    Entity,
-    &'static mut ClimberBody,
-    &'static mut ClimberState,
-    &'static mut ClimberInput,
-    &'static mut LatchedInput,
-    Option<&'static ClimberFilter>,
-    Option<&'static GripRule>,
-);
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct Stepped {
+    entity: Entity,
+    body: &'static mut ClimberBody,
+    state: &'static mut ClimberState,
+    input: &'static mut ClimberInput,
+    latched: &'static mut LatchedInput,
+    filter: Option<&'static ClimberFilter>,
+    grip_rule: Option<&'static GripRule>,
+}
 
 /// Steps all climbers.
 pub(super) fn step_climbers(
@@ -147,22 +153,19 @@ pub(super) fn step_climbers(
     if dt <= 0.0 {
         return;
     }
-    let bodies = climbers.iter();
-    let bodies = bodies.map(|(entity, body, ..)| (entity, ClimberObstacle::new(&body.climber, dt)));
+    let bodies = climbers.iter().map(|climber| {
+        let body = ClimberObstacle::new(&climber.body.climber, dt);
+        (climber.entity, body)
+    });
     let bodies: Vec<(Entity, ClimberObstacle)> = bodies.collect();
     let modes = modes.as_ref().map_or(&[][..], |modes| &modes.0[..]);
-    let step = |(entity, mut body, mut state, mut input, mut latched, filter, rule): (
-        Entity,
-        Mut<'_, ClimberBody>,
-        Mut<'_, ClimberState>,
-        Mut<'_, ClimberInput>,
-        Mut<'_, LatchedInput>,
-        Option<&ClimberFilter>,
-        Option<&GripRule>,
-    )| {
-        let body = &mut *body;
-        let input = latched.take(input.bypass_change_detection());
-        let rule = rule.or(grip_rule.as_deref());
+    let step = |mut stepped: SteppedItem<'_, '_>| {
+        let entity = stepped.entity;
+        let body = &mut *stepped.body;
+        let input = stepped
+            .latched
+            .take(stepped.input.bypass_change_detection());
+        let rule = stepped.grip_rule.or(grip_rule.as_deref());
         let can_grip = |id: ObstacleId, contact: &Contact| match rule {
             None => contact.tag.kind == SurfaceKind::Fur,
             Some(rule) => rule.allows(&Grip {
@@ -179,10 +182,10 @@ pub(super) fn step_climbers(
         let gone = body.lost_point(&touchable);
         body.forget_jump(&touchable);
         let climber = &mut body.climber;
-        let stepped = touchable.around(entity, filter, &bodies, gone, |obstacles| {
+        let result = touchable.around(entity, stepped.filter, &bodies, gone, |obstacles| {
             climber.step_with(&input, obstacles, &rules, dt)
         });
-        match stepped {
+        match result {
             Ok(report) => body.report = report,
             Err(error) => {
                 tracing::warn!("climber {entity} stood still for a tick: {error}");
@@ -192,7 +195,8 @@ pub(super) fn step_climbers(
         body.support_mesh = body.mesh_below(&touchable);
         let surface = |on: &Attachment| touchable.surface(on.obstacle).map(|surface| &**surface);
         body.shown.tick(body.climber.state(), surface, dt);
-        state.set_if_neq(ClimberState(*body.climber.state()));
+        let state = ClimberState(*body.climber.state());
+        stepped.state.set_if_neq(state);
     };
     if bodies.len() <= FEW {
         climbers.iter_mut().for_each(step);

@@ -59,6 +59,14 @@ pub(crate) fn animate(time: Res<Time>, mut joints: Query<&mut Transform, With<Be
     }
 }
 
+/// A rotation that lays a limb along +X.
+pub(crate) const LYING: Quat = Quat::from_xyzw(
+    0.0,
+    0.0,
+    -core::f32::consts::FRAC_1_SQRT_2,
+    core::f32::consts::FRAC_1_SQRT_2,
+);
+
 /// Entities of a limb.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limb {
