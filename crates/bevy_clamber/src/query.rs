@@ -96,7 +96,20 @@ impl SurfacePose for DrawnPose {
     }
 }
 
-/// Selects the surfaces that a query sees. Default: all.
+/// Selects the surfaces that a query sees. Default: all, hidden ones as well. To leave out what is not shown:
+///
+/// ```
+/// # use bevy_camera::visibility::InheritedVisibility;
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_math::{Dir3, Vec3};
+/// # use bevy_shape::Ray3d;
+/// # use bevy_clamber::prelude::*;
+/// fn shoot(surfaces: SurfaceQuery, visibilities: Query<&InheritedVisibility>) {
+///     let is_shown = |entity| visibilities.get(entity).is_ok_and(|visibility| visibility.get());
+///     let ray = Ray3d::new(Vec3::new(0.0, 1.0, 9.0), Dir3::NEG_Z);
+///     let hit = surfaces.cast_ray(ray, 50.0, &SurfaceFilter::only(&is_shown));
+/// }
+/// ```
 #[derive(Clone, Copy, Default)]
 pub struct SurfaceFilter<'a> {
     except: &'a [Entity],

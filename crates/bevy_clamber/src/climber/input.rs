@@ -6,7 +6,7 @@ use clamber_climber::Blow;
 use clamber_world::ObstacleId;
 
 /// What the player of a [`Climber`](crate::Climber) asks for. Any input crate, network or bot can fill it, in any
-/// schedule; [`ClimberControlsPlugin`](crate::ClimberControlsPlugin) does so from keyboard, mouse and gamepad.
+/// schedule.
 ///
 /// Directions are used as they are at each tick. A press of `jump` is kept until a tick comes, and only that tick gets
 /// it, however many frames there are in a tick, or ticks in a frame; it is then set to false. A button that is down in
