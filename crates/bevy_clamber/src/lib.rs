@@ -1,8 +1,11 @@
 #![doc = include_str!("../README.md")]
 
 mod anchor;
+mod camera;
 mod climber;
 mod collider;
+#[cfg(feature = "input")]
+mod controls;
 #[cfg(feature = "clamber_gltf")]
 mod creature;
 #[cfg(feature = "diagnostics")]
@@ -20,6 +23,7 @@ mod query;
 mod surface;
 
 pub use anchor::{AnchorError, AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
+pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
 pub use climber::{
     Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
     ClimberState, CustomObstacle, Grip, GripRule, events,
@@ -27,6 +31,8 @@ pub use climber::{
 pub use collider::{
     ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,
 };
+#[cfg(feature = "input")]
+pub use controls::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
     RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,

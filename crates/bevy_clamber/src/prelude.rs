@@ -3,11 +3,14 @@
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
-    AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberFilter,
-    ClimberInput, ClimberModes, ClimberPlugin, ClimberState, ColliderStatus, ColliderTag,
-    CustomObstacle, DrawnSurfaceQuery, EntityHit, GripRule, PoseTiming, PosedSurface,
-    SkinnedCollider, SurfaceAnchor, SurfaceFilter, SurfaceQuery, WorldOrigin,
+    AnchorLost, ClamberPlugins, ClamberSystems, Climber, ClimberBlow, ClimberBody, ClimberCamera,
+    ClimberCameraInput, ClimberCameraPlugin, ClimberFilter, ClimberInput, ClimberModes,
+    ClimberPlugin, ClimberState, ColliderStatus, ColliderTag, CustomObstacle, DrawnSurfaceQuery,
+    EntityHit, GripRule, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter,
+    SurfaceQuery, WorldOrigin,
 };
+#[cfg(feature = "input")]
+pub use crate::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
 pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};
 #[cfg(feature = "gizmos")]

@@ -43,6 +43,9 @@ fn no_systems_are_ambiguous_in_any_schedule() {
     let plugins = (
         ClamberPlugins::default(),
         ClimberPlugin::default(),
+        ClimberCameraPlugin,
+        bevy_input::InputPlugin,
+        ClimberControlsPlugin,
         RigPlayerPlugin::default(),
         bevy_gizmos::GizmoPlugin,
         SurfaceGizmosPlugin::default(),
@@ -63,8 +66,13 @@ fn no_systems_are_ambiguous_in_any_schedule() {
         .add_systems(PostUpdate, look_at_drawn.after(ClamberSystems::Sample));
     strict(&mut app);
     limb(&mut app, Transform::IDENTITY, SkinnedCollider::default());
-    app.world_mut()
-        .spawn((Climber::default(), Transform::from_xyz(0.0, 9.0, 0.0)));
+    let hero = (
+        Climber::default(),
+        ClimberControls::default(),
+        Transform::from_xyz(0.0, 9.0, 0.0),
+    );
+    let hero = app.world_mut().spawn(hero).id();
+    app.world_mut().spawn(ClimberCamera::new(hero));
     for _ in 0..9 {
         app.update();
     }

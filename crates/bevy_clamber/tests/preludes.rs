@@ -26,12 +26,13 @@ macro_rules! use_each {
 }
 
 use_each! { ALWAYS, cfg(all()),
-    AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberFilter ClimberInput ClimberModes
-    ClimberPlugin ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery EntityHit GripRule PoseTiming
+    AnchorLost ClamberPlugins ClamberSystems Climber ClimberBlow ClimberBody ClimberCamera ClimberCameraInput
+    ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery EntityHit GripRule PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
+use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
 use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
 use_each! { RIGS, cfg(feature = "clamber_gltf"),
     RigAssets RigJoints RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
@@ -47,7 +48,7 @@ fn every_name_of_the_prelude_is_used() {
         .filter(|w| w.starts_with(char::is_uppercase))
         .collect();
     names.sort_unstable();
-    let mut used = [ALWAYS, DIAGNOSTICS, GIZMOS, PICKING, RIGS].concat();
+    let mut used = [ALWAYS, DIAGNOSTICS, GIZMOS, INPUT, PICKING, RIGS].concat();
     used.sort_unstable();
     assert_eq!(names, used);
 }

@@ -156,6 +156,12 @@ impl ClimberBody {
         self.climber.body()
     }
 
+    /// How far its support has carried it from the last frame to this one, metres, as they are drawn: for what moves with
+    /// it, such as a camera.
+    pub fn carried(&self) -> DVec3 {
+        self.shown.carried()
+    }
+
     /// The configuration that the last tick used.
     pub fn config(&self) -> &ClimberConfig {
         self.climber.config()

@@ -30,7 +30,10 @@ pub(super) fn draw(
             // The app has moved it; the next tick follows.
             continue;
         }
-        let (position, heading) = body.shown.draw(fraction, dt, drawn);
+        let (position, heading) = {
+            let base = body.climber.state().base_velocity;
+            body.shown.draw(fraction, dt, base, drawn)
+        };
         let up = body.climber.config().up();
         let level = heading - up * heading.dot(up);
         let heading = level.normalize_or(body.climber.state().heading);

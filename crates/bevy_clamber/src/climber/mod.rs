@@ -13,5 +13,6 @@ mod step;
 pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 pub use input::{ClimberBlow, ClimberInput};
 pub use obstacles::CustomObstacle;
+pub(crate) use obstacles::DrawnTouchable;
 pub use plugin::ClimberPlugin;
 pub use rules::{ClimberModes, Grip, GripRule};

@@ -15,13 +15,13 @@ use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, S
 use glam::DVec3;
 
 use super::component::ClimberFilter;
-use crate::PosedSurface;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use crate::WorldOrigin;
 #[cfg(feature = "avian")]
 use crate::obstacles::{AvianObstacles, AvianPushes, AvianTerrain};
 #[cfg(feature = "rapier")]
 use crate::obstacles::{RapierObstacles, RapierPushes};
+use crate::{DrawnSurface, PosedSurface};
 
 /// An obstacle of the app's own: terrain without a physics engine, a moving platform, anything that implements
 /// [`Obstacle`]. Climbers touch it from the tick after it was inserted on an entity.
@@ -190,6 +190,65 @@ impl Touchable<'_, '_> {
         }
         let _ = point;
         Entity::try_from_bits(id.0)
+    }
+}
+
+/// What a camera can bump into: skin as it is drawn, and the obstacles of the last tick.
+#[derive(SystemParam)]
+pub(crate) struct DrawnTouchable<'w, 's> {
+    surfaces: Query<'w, 's, (Entity, &'static PosedSurface, &'static DrawnSurface)>,
+    custom: Query<'w, 's, (Entity, &'static CustomObstacle)>,
+    #[cfg(any(feature = "avian", feature = "rapier"))]
+    origin: Res<'w, WorldOrigin>,
+    #[cfg(feature = "avian")]
+    avian: Result<AvianObstacles<'w, 's>, SystemParamValidationError>,
+    #[cfg(feature = "rapier")]
+    rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
+}
+
+impl DrawnTouchable<'_, '_> {
+    /// The share of a way that a ball can go, 0 to 1, up to the first thing that a climber with this filter touches;
+    /// `None` if it can go all of it.
+    pub(crate) fn free_way(
+        &self,
+        filter: Option<&ClimberFilter>,
+        ball: &WorldCapsule,
+        way: DVec3,
+    ) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        let mut meet = |obstacle: &dyn Obstacle| {
+            let left = first.unwrap_or(1.0);
+            if let Some(hit) = obstacle.cast_capsule(ball, [way * left; 2], TargetMotion::Still) {
+                first = Some(left * hit.time);
+            }
+        };
+        let touches =
+            |entity: &Entity| filter.is_none_or(|filter| !filter.ignored.contains(entity));
+        for (entity, surface, drawn) in &self.surfaces {
+            if touches(&entity)
+                && let Some(drawn) = drawn.pose(surface)
+            {
+                meet(drawn);
+            }
+        }
+        for (entity, custom) in &self.custom {
+            if touches(&entity) {
+                meet(&*custom.0);
+            }
+        }
+        #[cfg(feature = "avian")]
+        if let Ok(avian) = &self.avian {
+            let terrain = in_avian(avian, Entity::PLACEHOLDER, filter);
+            meet(&terrain.with_origin(self.origin.0));
+        }
+        #[cfg(feature = "rapier")]
+        if let Some(rapier) = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain) {
+            let wanted =
+                |_, collider: &RapierCollider| is_wanted(filter, Entity::PLACEHOLDER, collider);
+            let terrain = rapier.with_filter(&wanted);
+            meet(&terrain.with_origin(self.origin.0));
+        }
+        first
     }
 }
 

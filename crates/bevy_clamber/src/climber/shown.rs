@@ -36,6 +36,10 @@ pub(super) struct Shown {
     /// What is left of the difference between two ways to draw, metres and metres a second.
     offset: DVec3,
     fading: DVec3,
+    /// A place on skin, and where the last frame drew it.
+    held: Option<(Spot, DVec3)>,
+    /// How far the support has carried the climber from the last frame to this one, metres.
+    carried: DVec3,
 }
 
 impl Spot {
@@ -73,7 +77,14 @@ impl Shown {
             switches: Vec::new(),
             offset: DVec3::ZERO,
             fading: DVec3::ZERO,
+            held: None,
+            carried: DVec3::ZERO,
         }
+    }
+
+    /// How far the support has carried the climber from the last frame to this one, metres.
+    pub(super) fn carried(&self) -> DVec3 {
+        self.carried
     }
 
     /// Takes over a tick of `dt` seconds. `surface` gives the surface of an attachment, as the tick has posed it.
@@ -106,13 +117,20 @@ impl Shown {
     }
 
     /// Position and heading in a frame that lies at a fraction of a tick after the last tick, and `dt` seconds after the
-    /// last frame. `drawn` gives the surface of an attachment, as the frame draws it.
+    /// last frame. `base_velocity` is that of what carries the climber, where that is no skin. `drawn` gives the surface of an attachment, as the frame draws it.
     pub(super) fn draw<'a>(
         &mut self,
         fraction: f64,
         dt: f64,
+        base_velocity: DVec3,
         drawn: impl Fn(&Attachment) -> Option<&'a SkinnedSurface>,
     ) -> (DVec3, DVec3) {
+        self.carried = match &self.held {
+            Some((spot, was)) => spot.draw(&drawn).0 - *was,
+            None => base_velocity * dt,
+        };
+        let held = self.now.on.map(|_| (self.now, self.now.draw(&drawn).0));
+        self.held = held;
         // Critically damped, in closed form: the offset begins to fade without a jerk.
         let pull = (self.fading + self.offset * FADE) * dt;
         let left = libm::exp(-FADE * dt);
@@ -165,7 +183,7 @@ mod tests {
             let mut last = 1.0;
             let mut fastest = 0.0f64;
             for _ in 0..(0.4 * rate) as usize {
-                let (position, _) = shown.draw(0.5, 1.0 / rate, |_| None);
+                let (position, _) = shown.draw(0.5, 1.0 / rate, DVec3::ZERO, |_| None);
                 assert!(position.x < last && position.x >= 0.0, "{rate}: {position}");
                 fastest = fastest.max((last - position.x) * rate);
                 last = position.x;
