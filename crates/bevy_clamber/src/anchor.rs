@@ -1,6 +1,8 @@
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
+use bevy_ecs::world::DeferredWorld;
 use bevy_math::{Quat, Vec3};
 use bevy_reflect::prelude::*;
 use bevy_transform::components::Transform;
@@ -27,6 +29,7 @@ const MAX_DEPTH: usize = 4096;
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Clone, Debug, PartialEq)]
 #[require(Transform)]
+#[component(on_insert = relate, on_discard = unrelate)]
 pub struct SurfaceAnchor {
     /// The entity with the [`PosedSurface`].
     #[entities]
@@ -38,6 +41,35 @@ pub struct SurfaceAnchor {
     pub attachment: Attachment,
     /// Rotation of the entity relative to the frame of the skin around the point.
     pub rotation: Quat,
+}
+
+/// The surface that this entity is anchored to: a relationship, inserted and removed with its [`SurfaceAnchor`].
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Clone, Debug, PartialEq)]
+#[relationship(relationship_target = SurfaceAnchors)]
+pub struct AnchoredTo(pub Entity);
+
+/// The entities that are anchored to this surface, in no promised order; inserted beside the first of them.
+///
+/// They are not despawned with the surface: [`AnchorLost`] is triggered on each.
+#[derive(Component, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Clone, Debug, Default, PartialEq)]
+#[relationship_target(relationship = AnchoredTo)]
+pub struct SurfaceAnchors(Vec<Entity>);
+
+/// Relates an anchored entity to its surface.
+fn relate(mut world: DeferredWorld<'_>, context: HookContext) {
+    if let Some(anchor) = world.get::<SurfaceAnchor>(context.entity).copied() {
+        let mut commands = world.commands();
+        commands
+            .entity(context.entity)
+            .try_insert(AnchoredTo(anchor.surface));
+    }
+}
+
+fn unrelate(mut world: DeferredWorld<'_>, context: HookContext) {
+    let mut commands = world.commands();
+    commands.entity(context.entity).try_remove::<AnchoredTo>();
 }
 
 impl SurfaceAnchor {
@@ -120,13 +152,41 @@ pub enum AnchorError {
     Surface(#[from] SurfaceError),
 }
 
-/// Triggered on an entity whose [`SurfaceAnchor`] was removed because its surface or triangle is gone.
-#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+/// Triggered on an entity whose [`SurfaceAnchor`] was removed because its surface, its mesh or its triangle is gone.
+/// Written as a message as well.
+///
+/// To keep the entity on a creature whose mesh has changed, for example to one with more detail, anchor it anew:
+///
+/// ```
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_transform::components::Transform;
+/// # use bevy_clamber::prelude::*;
+/// fn anchor_anew(
+///     lost: On<AnchorLost>,
+///     places: Query<&Transform>,
+///     surfaces: DrawnSurfaceQuery,
+///     mut commands: Commands,
+/// ) -> Result {
+///     let place = places.get(lost.entity)?;
+///     let is_same = |entity| entity == lost.surface;
+///     let filter = SurfaceFilter::only(&is_same);
+///     if let Some(near) = surfaces.closest_point(place.translation, 0.5, &filter) {
+///         let anchor = surfaces.anchor_with_rotation(&near, place.rotation)?;
+///         commands.entity(lost.entity).insert(anchor);
+///     }
+///     Ok(())
+/// }
+/// # let _ = bevy_app::App::new().add_observer(anchor_anew);
+/// ```
+#[derive(EntityEvent, Message, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Clone, Debug, PartialEq)]
 pub struct AnchorLost {
     /// The entity that was anchored.
     pub entity: Entity,
     /// The entity of the surface that it was anchored to; may be despawned.
     pub surface: Entity,
+    /// The anchor as it was.
+    pub anchor: SurfaceAnchor,
 }
 
 /// Moves anchored entities with the skin; part of [`ClamberPlugins`](crate::ClamberPlugins).
@@ -136,6 +196,9 @@ pub struct SurfaceAnchorPlugin;
 impl Plugin for SurfaceAnchorPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<SurfaceAnchor>()
+            .register_type::<AnchoredTo>()
+            .register_type::<SurfaceAnchors>()
+            .add_message::<AnchorLost>()
             .add_systems(PostUpdate, follow.in_set(ClamberSystems::Anchor));
     }
 }
@@ -160,13 +223,20 @@ fn follow(
             continue;
         };
         let Some(placed) = place(anchor.bypass_change_detection(), &surfaces) else {
-            let surface = anchor.surface;
+            let (surface, anchor) = (anchor.surface, *anchor);
             // Silenced: the entity may be despawned at the same time.
             commands
                 .entity(entity)
                 .queue_silenced(move |mut entity: EntityWorldMut<'_>| {
                     entity.remove::<SurfaceAnchor>();
-                    entity.trigger(|entity| AnchorLost { entity, surface });
+                    let lost = |entity| AnchorLost {
+                        entity,
+                        surface,
+                        anchor,
+                    };
+                    let told = lost(entity.id());
+                    entity.world_scope(|world| world.write_message(told));
+                    entity.trigger(lost);
                 });
             continue;
         };

@@ -22,7 +22,9 @@ pub mod prelude;
 mod query;
 mod surface;
 
-pub use anchor::{AnchorError, AnchorLost, SurfaceAnchor, SurfaceAnchorPlugin};
+pub use anchor::{
+    AnchorError, AnchorLost, AnchoredTo, SurfaceAnchor, SurfaceAnchorPlugin, SurfaceAnchors,
+};
 pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
 pub use climber::{
     Climber, ClimberBlow, ClimberBody, ClimberFilter, ClimberInput, ClimberModes, ClimberPlugin,
