@@ -1,42 +1,56 @@
 //! The programs of the README: it has them word for word, and they run.
 
-/// The first program, as a single frame without a window. Bevy's umbrella crate asks for a newer Rust than this crate,
-/// so its names are those of Bevy's sub-crates here.
-mod app {
-    mod bevy {
-        pub(crate) mod mesh {
-            pub(crate) use bevy_mesh::*;
-        }
+/// Bevy's umbrella crate asks for a newer Rust than this crate, so its names are those of Bevy's sub-crates here.
+mod bevy {
+    pub(crate) mod mesh {
+        pub(crate) use bevy_mesh::*;
+    }
 
-        pub(crate) mod prelude {
-            pub(crate) use bevy_app::prelude::*;
-            pub(crate) use bevy_asset::prelude::*;
-            pub(crate) use bevy_ecs::prelude::*;
-            pub(crate) use bevy_math::prelude::*;
-            pub(crate) use bevy_shape::prelude::*;
-            pub(crate) use bevy_transform::prelude::*;
+    pub(crate) mod prelude {
+        pub(crate) use bevy_app::prelude::*;
+        pub(crate) use bevy_asset::prelude::*;
+        pub(crate) use bevy_ecs::prelude::*;
+        pub(crate) use bevy_math::prelude::*;
+        pub(crate) use bevy_shape::prelude::*;
+        pub(crate) use bevy_transform::prelude::*;
 
-            /// The plugins that surfaces need.
-            pub(crate) struct DefaultPlugins;
+        /// The plugins that surfaces need.
+        pub(crate) struct DefaultPlugins;
 
-            impl Plugin for DefaultPlugins {
-                fn build(&self, app: &mut App) {
-                    app.add_plugins((
-                        TaskPoolPlugin::default(),
-                        bevy_time::TimePlugin,
-                        TransformPlugin,
-                        AssetPlugin::default(),
-                        bevy_mesh::MeshPlugin,
-                    ));
-                }
+        impl Plugin for DefaultPlugins {
+            fn build(&self, app: &mut App) {
+                app.add_plugins((
+                    TaskPoolPlugin::default(),
+                    bevy_time::TimePlugin,
+                    TransformPlugin,
+                    AssetPlugin::default(),
+                    bevy_mesh::MeshPlugin,
+                ));
             }
         }
     }
+}
+
+/// The first program, as a single frame without a window.
+mod app {
+    use super::bevy;
 
     include!("app.rs");
 
     #[test]
     fn the_first_program_runs() {
+        main();
+    }
+}
+
+/// That of the repository's README.
+mod root {
+    use super::bevy;
+
+    include!("root.rs");
+
+    #[test]
+    fn the_program_of_the_repository_runs() {
         main();
     }
 }
@@ -62,4 +76,10 @@ fn the_readme_has_the_programs_word_for_word() {
         let block = format!("```rust,ignore\n{}```\n", text(program));
         assert!(readme.contains(&block), "not in the README:\n{block}");
     }
+    let readme = text(include_str!("../../../../README.md"));
+    let block = format!("```rs\n{}```\n", text(include_str!("root.rs")));
+    assert!(
+        readme.contains(&block),
+        "not in the repository's README:\n{block}"
+    );
 }
