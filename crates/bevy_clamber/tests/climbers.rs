@@ -259,6 +259,47 @@ fn blows_add_up_and_hurt() {
 }
 
 #[test]
+fn blows_that_are_not_finite_are_refused_and_hurt_nobody() {
+    let (mut app, _, climber) = standing(64.0);
+    for damage in [f32::NAN, 0.2] {
+        let blow = ClimberBlow {
+            damage,
+            ..ClimberBlow::default()
+        };
+        input(&mut app, climber).strike(blow);
+    }
+    updates(&mut app, 3);
+    assert_eq!(state(&app, climber).hit_points, 1.0);
+}
+
+#[test]
+fn what_happened_is_told_once_when_input_or_state_are_taken_away() {
+    let (mut app, _, climber) = standing(64.0);
+    let mut cursor = app
+        .world()
+        .resource::<Messages<ClimberJumped>>()
+        .get_cursor();
+    input(&mut app, climber).jump = true;
+    let mut jumps = 0;
+    for tick in 0..20 {
+        app.update();
+        jumps += cursor
+            .read(app.world().resource::<Messages<ClimberJumped>>())
+            .count();
+        if tick == 0 {
+            app.world_mut().entity_mut(climber).remove::<ClimberInput>();
+        }
+    }
+    assert_eq!(jumps, 1);
+    let still = state(&app, climber).position;
+    let given = (ClimberInput::default(), Name::new("again"));
+    app.world_mut().entity_mut(climber).insert(given);
+    app.world_mut().entity_mut(climber).remove::<ClimberState>();
+    updates(&mut app, 20);
+    assert!(state(&app, climber).position != still);
+}
+
+#[test]
 fn a_translation_that_the_app_writes_is_a_teleport() {
     // In a frame's schedule, in a tick's, and outside of both.
     for schedule in 0..3 {

@@ -58,10 +58,14 @@ impl ClimberInput {
 
 /// Two blows in one tick.
 fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
-    earlier.map_or(later, |earlier| ClimberBlow {
-        velocity: earlier.velocity + later.velocity,
-        damage: (earlier.damage + later.damage).min(1.0),
-        by: later.by.or(earlier.by),
+    earlier.map_or(later, |earlier| {
+        let damage = earlier.damage + later.damage;
+        ClimberBlow {
+            velocity: earlier.velocity + later.velocity,
+            // Not `f32::min`, which would make NaN deadly.
+            damage: if damage > 1.0 { 1.0 } else { damage },
+            by: later.by.or(earlier.by),
+        }
     })
 }
 

@@ -51,6 +51,12 @@ pub(super) fn follow_changes(
             }
             continue;
         };
+        // A climber that is not stepped, because the app has taken its input away, tells nothing again.
+        body.bypass_change_detection().report = StepReport::default();
+        if state.is_none() {
+            let state = ClimberState(*body.climber.state());
+            commands.entity(entity).try_insert(state);
+        }
         if *body.climber.config() != climber.config
             && let Err(error) = body.climber.set_config(climber.config)
             && climber.is_changed()
