@@ -1,21 +1,26 @@
 //! What does a tick in Bevy cost, compared with the core alone, and what does an idle surface cost?
 //!
-//! First the giant walks. Climbers on its skin make a climber's queries: triangles within reach of the body, the first
-//! contact on its way, the closest point, a ray, and the motion of the point that it holds. The core alone does the
-//! same work: if the app animates in frames it mixes the poses of two frames; it composes the palette, advances, and
-//! answers in model space. Both take turns, tick by tick, within one process.
+//! First climbers walk and climb on the walking giant, stepped by `ClimberPlugin` and by the core. Both must be in the
+//! same state after each tick, to the bit.
+//!
+//! Then systems of the app make a climber's queries on its skin: triangles within reach of the body, the first contact
+//! on its way, the closest point, a ray, and the motion of the point that it holds. The core alone does the same work:
+//! if the app animates in frames it mixes the poses of two frames; it composes the palette, advances, and answers in
+//! model space. Both take turns, tick by tick, within one process.
 //!
 //! Then a hundred giants stand still, without queries. Their cost is compared with reading their joints' `Transform`s
 //! alone.
 //!
 //! Schedules run on one thread: with Bevy's multi-threaded executor, waking the threads costs more than a climber,
 //! whatever its systems are. Times are medians. Prints a table and writes it to `target/measure/bevy.csv`: name, value,
-//! bound, holds. Fails if the numbers of hits differ.
+//! bound, holds. Fails if states or numbers of hits differ.
 //!
 //! `cargo bench -p bevy_clamber --bench bevy`; brief with `-- --test`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
+#[path = "bevy/climbers.rs"]
+mod climbers;
 #[path = "../tests/common/mod.rs"]
 mod common;
 #[path = "bevy/giants.rs"]
@@ -40,7 +45,7 @@ use bevy_transform::components::Transform;
 use clamber_scenes::Creature;
 use clamber_scenes::giant::giant;
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
-use giants::Giants;
+use giants::{Giants, on_one_thread};
 use riders::{Answers, Asked, Rider, ask};
 
 /// Ticks a second.
@@ -62,6 +67,14 @@ fn main() -> ExitCode {
 fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut cells = Cells::default();
     let creature = giant()?;
+    let ticks = if brief { 20 } else { 2_000 };
+    cells.value(
+        "an empty world's tick in Bevy, us",
+        climbers::nothing(ticks),
+    );
+    for (count, bound) in [(1, 1.1), (24, 1.05)] {
+        climbers::measure(&creature, count, Bound::Most(bound), ticks, &mut cells)?;
+    }
     for timing in [PoseTiming::EachTick, PoseTiming::EachFrame] {
         for riders in [1, 24] {
             walking(&creature, timing, riders, brief, &mut cells)?;
@@ -118,8 +131,7 @@ fn walking(
             between.collect::<Result<_, _>>()?
         }
     };
-    let mut giants = Giants::new(creature, 1, timing);
-    giants.on_one_thread();
+    let mut giants = Giants::new(on_one_thread(common::app(RATE)), creature, 1, timing);
     giants.app.init_resource::<Asked>();
     giants.app.init_resource::<Answers>();
     giants
@@ -233,8 +245,7 @@ fn idle(
     cells: &mut Cells,
 ) -> Result<(), Box<dyn Error>> {
     let (count, ticks) = if brief { (5, 10) } else { (100, 1_000) };
-    let mut giants = Giants::new(creature, count, timing);
-    giants.on_one_thread();
+    let mut giants = Giants::new(on_one_thread(common::app(RATE)), creature, count, timing);
     giants.pose(&creature.skeleton.rest_pose());
     let joints = giants.joints.concat();
     giants.app.insert_resource(Joints(joints, Vec::new()));

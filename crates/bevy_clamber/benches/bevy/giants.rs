@@ -26,8 +26,7 @@ pub(crate) struct Giants {
 }
 
 impl Giants {
-    pub(crate) fn new(creature: &Creature, count: usize, timing: PoseTiming) -> Self {
-        let mut app = common::app(64.0);
+    pub(crate) fn new(mut app: App, creature: &Creature, count: usize, timing: PoseTiming) -> Self {
         let mesh = common::add_mesh(&mut app, mesh(&creature.collider));
         let joints = creature.skeleton.joints();
         let bind = joints
@@ -75,16 +74,6 @@ impl Giants {
         }
     }
 
-    /// Runs the measured schedules on one thread, so that no other threads are woken.
-    pub(crate) fn on_one_thread(&mut self) {
-        self.app.edit_schedule(FixedPostUpdate, |schedule| {
-            schedule.set_executor(SingleThreadedExecutor::new());
-        });
-        self.app.edit_schedule(PostUpdate, |schedule| {
-            schedule.set_executor(SingleThreadedExecutor::new());
-        });
-    }
-
     /// Writes a pose to the joints of all giants, as an animation would.
     pub(crate) fn pose(&mut self, pose: &Pose) {
         for joints in &self.joints {
@@ -104,6 +93,17 @@ impl Giants {
         let surface = self.app.world().get::<PosedSurface>(self.surfaces[0]);
         Arc::clone(surface.unwrap().mesh())
     }
+}
+
+/// The app with the measured schedules on one thread, so that no other threads are woken.
+pub(crate) fn on_one_thread(mut app: App) -> App {
+    app.edit_schedule(FixedPostUpdate, |schedule| {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    });
+    app.edit_schedule(PostUpdate, |schedule| {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    });
+    app
 }
 
 /// A collider as an asset.

@@ -14,6 +14,9 @@ use glam::DVec3;
 /// How fast an offset fades, 1 a second: a tenth is left after 0.16 s.
 const FADE: f64 = 25.0;
 
+/// The most [`Shown::switches`] that are kept: without frames, nobody takes them.
+const MOST: usize = 64;
+
 /// Where a climber was in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spot {
@@ -109,7 +112,7 @@ impl Shown {
             }
             (true, Some(_)) => {}
         }
-        if was.on != before.on {
+        if was.on != before.on && self.switches.len() < MOST {
             self.switches.push([was, before]);
         }
         self.before = before;

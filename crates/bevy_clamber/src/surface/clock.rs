@@ -17,8 +17,8 @@ const JUMP: u32 = 100;
 ///
 /// A tick in frame n runs before frame n is drawn, so it has to look back: by the length of the current frame at least.
 /// Frames differ in length, so the lag is a little longer than all recent frames but the longest, which may be a
-/// hitch. It changes slowly, unless it is more than twice as long as it should be. Where the time that is asked for has not been drawn yet, the last pose stays, and the tick
-/// is a jump: so is the next that is on time again.
+/// hitch. It changes slowly, unless it is more than twice as long as it should be. Where the time that is asked for has
+/// not been drawn yet, the last pose stays, and the tick is a jump: so is the next that is on time again.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct PoseClock {
     /// Time of the last frame whose poses are recorded.
@@ -50,16 +50,18 @@ impl PoseClock {
 
     /// The lag that suits the last frames.
     fn wanted_lag(&self) -> Duration {
-        let mut sorted: Vec<Duration> = self.lengths.iter().copied().collect();
-        sorted.sort_unstable();
-        let shortest = sorted.first().copied().unwrap_or_default();
-        let longest = sorted.len().saturating_sub(2);
-        let longest = sorted
-            .get(longest)
-            .copied()
-            .unwrap_or_default()
-            .max(shortest);
-        longest + ((longest - shortest) / 2).min(longest / 4)
+        let Some(first) = self.lengths.front().copied() else {
+            return Duration::ZERO;
+        };
+        // The longest but one; the only one, if there are no others.
+        let (mut shortest, mut longest, mut second) = (first, first, Duration::ZERO);
+        for length in self.lengths.iter().skip(1).copied() {
+            shortest = shortest.min(length);
+            second = second.max(length.min(longest));
+            longest = longest.max(length);
+        }
+        let long = second.max(shortest);
+        long + ((long - shortest) / 2).min(long / 4)
     }
 
     fn tick(&mut self, now: Duration, dt: Duration) {

@@ -8,7 +8,7 @@ use glam::DAffine3;
 
 use super::PosedSurface;
 use super::history::History;
-use super::rig::{Locals, Rig, Scene};
+use super::rig::{Changed, Locals, Rig, Scene};
 use crate::{ColliderError, SkinnedCollider};
 
 /// The poses in which the last frames drew a surface. Inserted beside [`PosedSurface`].
@@ -66,7 +66,7 @@ impl DrawnSurface {
             } = &mut *spare;
             let placed = self
                 .rig
-                .compose(self.history.last()?, model_from_node, palette)?;
+                .compose(self.history.last(), model_from_node, palette)?;
             let mut posed = known
                 .take()
                 .unwrap_or_else(|| SkinnedSurface::clone(surface));
@@ -86,27 +86,33 @@ impl DrawnSurface {
     ) {
         self.error = None;
         let mut drawn = self.history.buffer();
-        if self.rig.read(scene, &mut drawn).is_err()
-            && let Err(error) = self.follow(scene, time, &mut drawn)
-        {
-            // The previous pose stays.
-            if let Some(last) = self.history.last() {
-                drawn.clone_from(last);
+        let is_same = match self.rig.read(scene, self.history.last(), &mut drawn) {
+            Ok(is_same) => is_same,
+            Err(Changed) => {
+                if let Err(error) = self.follow(scene, time, &mut drawn) {
+                    // The previous pose stays.
+                    drawn.clone_from(self.history.last());
+                    self.error = Some(error);
+                }
+                true
             }
-            self.error = Some(error);
-        }
+        };
         if self.edits != surface.edits() {
             self.edits = surface.edits();
             self.surface.take();
             self.spare = Mutex::default();
         }
-        if self.history.last() != Some(&drawn) {
-            self.forget_pose();
-        }
-        let was_teleported = self.teleports != surface.teleports();
+        let mut is_cut = self.teleports != surface.teleports();
         self.teleports = surface.teleports();
-        let is_cut = was_teleported || self.is_teleport(surface, timing, &drawn, time);
-        self.history.record(time, drawn, is_cut);
+        if !is_same {
+            self.forget_pose();
+            is_cut |= self.is_teleport(surface, timing, &drawn, time);
+        }
+        if is_same && !is_cut {
+            self.history.stay(time, drawn);
+        } else {
+            self.history.record(time, drawn, is_cut);
+        }
     }
 
     /// The error of the last frame.
@@ -122,8 +128,8 @@ impl DrawnSurface {
         drawn: &mut Locals,
     ) -> Result<(), ColliderError> {
         self.rig.follow(scene.hierarchy)?;
-        let read = self.rig.read(scene, drawn);
-        read.map_err(|_| ColliderError::Joint { joint: 0 })?;
+        let read = self.rig.read(scene, &Locals::default(), drawn);
+        read.map_err(|Changed| ColliderError::Joint { joint: 0 })?;
         self.history.restart(time, drawn.clone());
         self.hierarchies = self.hierarchies.wrapping_add(1);
         self.forget_pose();

@@ -16,6 +16,10 @@ pub(crate) struct History {
     samples: VecDeque<Sample>,
     /// Kept to reuse their memory.
     spare: Vec<Locals>,
+    /// Counts poses.
+    poses: u64,
+    /// The last pose while there is none.
+    nothing: Locals,
 }
 
 #[derive(Debug)]
@@ -44,21 +48,28 @@ impl History {
         self.spare.pop().unwrap_or_default()
     }
 
+    /// A frame has drawn the last pose once more.
+    pub(crate) fn stay(&mut self, time: Duration, same: Locals) {
+        match self.samples.back_mut() {
+            Some(last) => {
+                last.until = time;
+                self.spare.push(same);
+            }
+            None => self.record(time, same, false),
+        }
+    }
+
     /// Adds the pose of a frame.
     pub(crate) fn record(&mut self, time: Duration, locals: Locals, is_cut: bool) {
-        if let Some(last) = self.samples.back_mut() {
-            if last.locals == locals && !is_cut {
-                last.until = time;
-                self.spare.push(locals);
-                return;
-            }
-            if last.from == time {
-                // While time stands still, only the last pose counts.
-                let old = std::mem::replace(&mut last.locals, locals);
-                last.is_cut |= is_cut;
-                self.spare.push(old);
-                return;
-            }
+        self.poses += 1;
+        if let Some(last) = self.samples.back_mut()
+            && last.from == time
+        {
+            // While time stands still, only the last pose counts.
+            let old = std::mem::replace(&mut last.locals, locals);
+            last.is_cut |= is_cut;
+            self.spare.push(old);
+            return;
         }
         if self.samples.len() == MOST {
             self.drop_first();
@@ -79,9 +90,15 @@ impl History {
         self.record(time, locals, false);
     }
 
-    /// The pose of the last frame.
-    pub(crate) fn last(&self) -> Option<&Locals> {
-        self.samples.back().map(|sample| &sample.locals)
+    /// The pose of the last frame; an empty one before the first.
+    pub(crate) fn last(&self) -> &Locals {
+        let last = self.samples.back();
+        last.map_or(&self.nothing, |sample| &sample.locals)
+    }
+
+    /// Number of the last pose.
+    pub(crate) fn poses(&self) -> u64 {
+        self.poses
     }
 
     /// The pose of the last frame, and its time.

@@ -6,7 +6,7 @@ use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::TriangleId;
 use clamber_surface::rig::{Palette, RigError};
 use clamber_surface::surface::{SkinnedSurface, SurfaceError};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use thiserror::Error;
 
 use super::PoseTiming;
@@ -51,6 +51,7 @@ pub struct PosedSurface {
     collider: Arc<BuiltCollider>,
     /// Transforms and palette of the last tick's pose.
     posed: Locals,
+    model_from_node: Vec<DAffine3>,
     palette: Palette,
     /// The surface has had a valid pose.
     is_placed: bool,
@@ -62,6 +63,8 @@ pub struct PosedSurface {
     restart: bool,
     /// [`DrawnSurface::hierarchies`] in the last tick.
     hierarchies: u32,
+    /// [`History::poses`](super::history::History::poses) when the surface was at rest last.
+    poses: u64,
     /// Counts teleports, for [`DrawnSurface`].
     teleports: u32,
     /// Counts times at which somebody may have changed the surface, for [`DrawnSurface`].
@@ -78,8 +81,6 @@ pub struct PosedSurface {
 #[derive(Debug, Default)]
 struct Scratch {
     next: Locals,
-    /// Where the nodes were in the last tick, in world space.
-    places: Vec<DVec3>,
     model_from_node: Vec<DAffine3>,
     palette: Palette,
 }
@@ -99,12 +100,14 @@ impl PosedSurface {
             surface: SkinnedSurface::new(Arc::clone(&collider.mesh)),
             collider,
             posed: Locals::default(),
+            model_from_node: Vec::new(),
             palette: Palette::default(),
             is_placed: false,
             still: false,
             posed_anew: false,
             restart: true,
             hierarchies: 0,
+            poses: 0,
             teleports: 0,
             edits: 0,
             has_jumped: [false; 2],
@@ -236,14 +239,22 @@ impl PosedSurface {
         self.still &= self.hierarchies == drawn.hierarchies;
         let at_rest = self.still && !self.restart && !self.edited;
         let is_still = drawn.history.is_still() && !timing.follows_ticks();
-        if at_rest && is_still && drawn.history.last() == Some(&self.posed) {
+        let poses = drawn.history.poses();
+        if at_rest && is_still && std::mem::replace(&mut self.poses, poses) == poses {
             return Ok(false);
         }
-        if read_tick(drawn, timing, scene, at, next)?.is_err() {
-            drawn.follow(scene, clock.drawn(), next)?;
+        let same = match read_tick(drawn, timing, scene, at, &self.posed, next)? {
+            Ok(same) => same && self.hierarchies == drawn.hierarchies,
+            Err(Changed) => {
+                drawn.follow(scene, clock.drawn(), next)?;
+                false
+            }
+        };
+        if self.hierarchies != drawn.hierarchies {
+            // Nodes are others now, or in another order.
+            self.model_from_node.clear();
+            self.hierarchies = drawn.hierarchies;
         }
-        let same = self.posed == *next && self.hierarchies == drawn.hierarchies;
-        self.hierarchies = drawn.hierarchies;
         if same && at_rest {
             return Ok(false);
         }
@@ -253,10 +264,11 @@ impl PosedSurface {
             .compose(next, &mut scratch.model_from_node, &mut scratch.palette);
         let world_from_model = placed.ok_or(PoseError::Placement)?;
         let jumps = timing.follows_frames() && (clock.jumped() || at.is_cut);
-        let fastest = self.farthest(&world_from_model) / dt;
-        let is_teleport = fastest > f64::from(timing.max_speed) && dt > 0.0;
+        let limit = f64::from(timing.max_speed) * dt;
+        let farthest = self.farthest(&world_from_model, limit);
+        let is_teleport = farthest > limit && dt > 0.0;
         if is_teleport && !self.restart && !jumps {
-            drawn.tell_teleport(self, fastest);
+            drawn.tell_teleport(self, farthest / dt);
         }
         let restart = self.restart || jumps || is_teleport;
         if restart {
@@ -268,6 +280,7 @@ impl PosedSurface {
         }
         self.has_jumped[0] = restart && self.is_placed;
         std::mem::swap(&mut self.palette, &mut self.scratch.palette);
+        std::mem::swap(&mut self.model_from_node, &mut self.scratch.model_from_node);
         std::mem::swap(&mut self.posed, next);
         self.is_placed = true;
         self.edited = false;
@@ -276,20 +289,30 @@ impl PosedSurface {
         Ok(true)
     }
 
-    /// How far a node has moved at most since the last tick, metres. Keeps their places for the next tick.
-    fn farthest(&mut self, world_from_model: &Similarity) -> f64 {
-        let scratch = &mut self.scratch;
-        let is_known = scratch.places.len() == scratch.model_from_node.len();
-        scratch
-            .places
-            .resize(scratch.model_from_node.len(), DVec3::ZERO);
-        let mut farthest = 0.0;
-        for (place, node) in scratch.places.iter_mut().zip(&scratch.model_from_node) {
-            let now = world_from_model.transform_point(node.translation);
-            farthest = f64::max(farthest, now.distance_squared(*place));
-            *place = now;
+    /// How far a node has moved at most since the last tick, metres; or less than that and `limit`.
+    fn farthest(&self, world_from_model: &Similarity, limit: f64) -> f64 {
+        let (now, before) = (&self.scratch.model_from_node, &self.model_from_node);
+        if now.len() != before.len() {
+            return 0.0;
         }
-        if is_known { farthest.sqrt() } else { 0.0 }
+        let old = self.surface.world_from_model();
+        // In model space first, which is cheaper.
+        let (mut step, mut reach) = (0.0, 0.0);
+        for (now, before) in now.iter().zip(before) {
+            step = f64::max(step, now.translation.distance_squared(before.translation));
+            reach = f64::max(reach, before.translation.length_squared());
+        }
+        let bound =
+            world_from_model.scale * step.sqrt() + swing(old, world_from_model, reach.sqrt());
+        if bound <= limit {
+            return bound;
+        }
+        let place = |placed: &Similarity, node: &DAffine3| placed.transform_point(node.translation);
+        let moved = now
+            .iter()
+            .zip(before)
+            .map(|(now, before)| place(world_from_model, now).distance_squared(place(old, before)));
+        moved.fold(0.0, f64::max).sqrt()
     }
 
     /// Repeats the last pose, so that the surface stands still. True if it moved until now.
@@ -324,29 +347,47 @@ impl PosedSurface {
     }
 }
 
-/// The transforms of a tick; `Ok(Err(_))` if the hierarchy has changed.
+/// A bound of how far apart two placements take a point, of at most this distance from the origin of model space.
+fn swing(from: &Similarity, to: &Similarity, reach: f64) -> f64 {
+    if from == to {
+        return 0.0;
+    }
+    let axes = |placed: &Similarity| DMat3::from_quat(placed.rotation) * placed.scale;
+    let (from_axes, to_axes) = (axes(from), axes(to));
+    let apart = |a: DVec3, b: DVec3| a.distance_squared(b);
+    let turned = apart(from_axes.x_axis, to_axes.x_axis)
+        + apart(from_axes.y_axis, to_axes.y_axis)
+        + apart(from_axes.z_axis, to_axes.z_axis);
+    from.translation.distance(to.translation) + turned.sqrt() * reach
+}
+
+/// The transforms of a tick. True if they are those of `last`; `Ok(Err(_))` if the hierarchy has changed.
 fn read_tick(
     drawn: &DrawnSurface,
     timing: &SkinnedCollider,
     scene: &Scene<'_, '_, '_>,
     at: Between,
+    last: &Locals,
     into: &mut Locals,
-) -> Result<Result<(), Changed>, PoseError> {
+) -> Result<Result<bool, Changed>, PoseError> {
+    if !timing.follows_frames() {
+        return Ok(drawn.rig.read(scene, last, into));
+    }
     let joints = match timing.joints {
-        PoseTiming::EachTick => drawn.rig.read_joints(scene, into),
+        PoseTiming::EachTick => drawn.rig.read_joints(scene, last, into),
         PoseTiming::EachFrame => {
             drawn.history.joints(at, into)?;
-            Ok(())
+            Ok(true)
         }
     };
     let root = match timing.root {
-        PoseTiming::EachTick => drawn.rig.read_root(scene, into),
+        PoseTiming::EachTick => drawn.rig.read_root(scene, last, into),
         PoseTiming::EachFrame => {
             drawn.history.root(at, into)?;
-            Ok(())
+            Ok(true)
         }
     };
-    Ok(joints.and(root))
+    Ok(joints.and(root).map(|_| into == last))
 }
 
 impl Deref for PosedSurface {
@@ -354,5 +395,44 @@ impl Deref for PosedSurface {
 
     fn deref(&self) -> &SkinnedSurface {
         &self.surface
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DQuat;
+
+    use super::*;
+
+    #[test]
+    fn no_point_moves_farther_than_the_bound() {
+        let mut random = fastrand::Rng::with_seed(5);
+        let mut number = |size: f64| (random.f64() - 0.5) * size;
+        let turn = |v: DVec3| DQuat::from_xyzw(v.x, v.y, v.z, 1.0).normalize();
+        let mut tightest = 0.0f64;
+        for _ in 0..20_000 {
+            let mut vector = |size: f64| DVec3::new(number(size), number(size), number(size));
+            let from = Similarity {
+                rotation: turn(vector(6.0)),
+                scale: 2.0,
+                translation: vector(50.0),
+            };
+            let to = Similarity {
+                rotation: turn(vector(0.1)) * from.rotation,
+                scale: from.scale + vector(0.1).x,
+                translation: from.translation + vector(1.0),
+            };
+            let point = vector(20.0);
+            let moved = to
+                .transform_point(point)
+                .distance(from.transform_point(point));
+            let bound = swing(&from, &to, point.length());
+            assert!(
+                moved <= bound + 1e-12,
+                "{point} moves by {moved}, not {bound}"
+            );
+            tightest = tightest.max(moved / bound);
+        }
+        assert!(tightest > 0.5, "the bound is {tightest} of its use");
     }
 }

@@ -172,51 +172,56 @@ impl Rig {
         Ok(())
     }
 
-    /// Reads all transforms.
-    pub(crate) fn read(&self, scene: &Scene<'_, '_, '_>, into: &mut Locals) -> Result<(), Changed> {
-        self.read_joints(scene, into)?;
-        self.read_root(scene, into)
+    /// Reads all transforms. True if they are those of `last`.
+    pub(crate) fn read(
+        &self,
+        scene: &Scene<'_, '_, '_>,
+        last: &Locals,
+        into: &mut Locals,
+    ) -> Result<bool, Changed> {
+        let joints = self.read_joints(scene, last, into)?;
+        let root = self.read_root(scene, last, into)?;
+        Ok(joints && root)
     }
 
-    /// Reads the joints and the entities between them.
+    /// Reads the joints and the entities between them. True if they are those of `last`.
     pub(crate) fn read_joints(
         &self,
         scene: &Scene<'_, '_, '_>,
+        last: &Locals,
         into: &mut Locals,
-    ) -> Result<(), Changed> {
-        let hierarchy = scene.hierarchy;
-        if self.tree.above.is_empty() {
-            into.origin = scene.origin;
-        }
-        let into = &mut into.nodes;
-        into.transforms.clear();
-        for node in &self.tree.nodes {
+    ) -> Result<bool, Changed> {
+        let nodes = self.tree.nodes.iter().map(|node| {
             let parent = match node.parent {
                 Some(parent) => Some(self.tree.nodes[parent as usize].entity),
                 None => self.tree.above.first().copied(),
             };
-            into.transforms.push(read(node.entity, parent, hierarchy)?);
+            (node.entity, parent)
+        });
+        let same = read_all(nodes, scene.hierarchy, &last.nodes, &mut into.nodes)?;
+        if !self.tree.above.is_empty() {
+            return Ok(same);
         }
-        Ok(())
+        into.origin = scene.origin;
+        Ok(same && into.origin == last.origin)
     }
 
-    /// Reads the entities above the joints.
+    /// Reads the entities above the joints. True if they are those of `last`.
     pub(crate) fn read_root(
         &self,
         scene: &Scene<'_, '_, '_>,
+        last: &Locals,
         into: &mut Locals,
-    ) -> Result<(), Changed> {
-        let hierarchy = scene.hierarchy;
-        if !self.tree.above.is_empty() {
-            into.origin = scene.origin;
+    ) -> Result<bool, Changed> {
+        let above = &self.tree.above;
+        let entities = above.iter().enumerate();
+        let entities = entities.map(|(index, entity)| (*entity, above.get(index + 1).copied()));
+        let same = read_all(entities, scene.hierarchy, &last.above, &mut into.above)?;
+        if above.is_empty() {
+            return Ok(same);
         }
-        let into = &mut into.above;
-        into.transforms.clear();
-        for (index, entity) in self.tree.above.iter().enumerate() {
-            let parent = self.tree.above.get(index + 1).copied();
-            into.transforms.push(read(*entity, parent, hierarchy)?);
-        }
-        Ok(())
+        into.origin = scene.origin;
+        Ok(same && into.origin == last.origin)
     }
 
     /// Computes the creature's placement in the world, and its palette in model space, joint by joint.
@@ -317,6 +322,24 @@ fn above_all(nodes: &[Node], node_of_joint: &[u32]) -> usize {
     let fork = children.iter().position(|children| *children > 1);
     let joint = joint.unwrap_or(0);
     fork.map_or(joint, |fork| joint.min(fork + 1))
+}
+
+/// Reads the transforms of entities that have these parents. True if they are those of `last`.
+fn read_all(
+    entities: impl ExactSizeIterator<Item = (Entity, Option<Entity>)>,
+    hierarchy: &Hierarchy<'_, '_>,
+    last: &Pose,
+    into: &mut Pose,
+) -> Result<bool, Changed> {
+    let mut same = last.transforms.len() == entities.len();
+    into.transforms.clear();
+    into.transforms.reserve(entities.len());
+    for (index, (entity, parent)) in entities.enumerate() {
+        let transform = read(entity, parent, hierarchy)?;
+        same = same && last.transforms[index] == transform;
+        into.transforms.push(transform);
+    }
+    Ok(same)
 }
 
 /// The transform of an entity, if it still has the same parent.
