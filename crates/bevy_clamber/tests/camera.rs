@@ -10,7 +10,7 @@ use bevy_app::{App, PostUpdate, Update};
 use bevy_clamber::clamber_climber::ClimberMode;
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{DVec3, Vec2, Vec3};
+use bevy_math::{DVec3, Quat, Vec2, Vec3};
 use bevy_time::{Time, TimeUpdateStrategy};
 use bevy_transform::components::Transform;
 use common::{LYING, app_with, limb};
@@ -123,6 +123,24 @@ fn a_camera_keeps_its_distance_from_skin_while_it_is_turned_and_the_climber_walk
 }
 
 #[test]
+fn a_camera_begins_behind_its_climber() {
+    let (mut app, _, _, _) = scene(ClimberCamera::new);
+    for degrees in [0.0f32, 50.0, 130.0, 180.0, -100.0] {
+        let half = 0.5 * degrees.to_radians();
+        let turned = Quat::from_xyzw(0.0, libm::sinf(half), 0.0, libm::cosf(half));
+        let place = Transform::from_xyz(10.0, 2.5, 0.0).with_rotation(turned);
+        let climber = app.world_mut().spawn((Climber::default(), place)).id();
+        let camera = app.world_mut().spawn(ClimberCamera::new(climber)).id();
+        frames(&mut app, 6);
+        let looks = app.world().get::<Transform>(camera).unwrap().forward();
+        let (looks, ahead) = (looks.with_y(0.0).normalize(), place.forward());
+        assert!(looks.distance(*ahead) < 1e-3, "{degrees}: {looks} {ahead}");
+        app.world_mut().despawn(climber);
+        app.world_mut().despawn(camera);
+    }
+}
+
+#[test]
 fn a_camera_comes_near_at_once_and_goes_back_over_half_a_second() {
     let (mut app, _, _, _) = scene(ClimberCamera::new);
     let far = frames(&mut app, 1)[0];
@@ -148,6 +166,29 @@ fn a_camera_comes_near_at_once_and_goes_back_over_half_a_second() {
     };
     assert!(reached(0.9) > 0.4 && reached(0.9) < 0.8, "{}", reached(0.9));
     assert!(reached(0.5) > 0.1, "{}", reached(0.5));
+}
+
+#[test]
+fn a_camera_stays_away_from_a_climber_below_an_overhang() {
+    for lean in [10.0f32, 25.0, 40.0] {
+        let (mut app, _, climber, _) = scene(ClimberCamera::new);
+        // Leans over the climber, which runs against it. The camera has free way behind the climber.
+        let half = 0.5 * lean.to_radians();
+        let lean_over = Quat::from_xyzw(libm::sinf(half), 0.0, 0.0, libm::cosf(half));
+        let wall = Transform::from_xyz(10.0, 0.0, -4.0)
+            .with_rotation(lean_over)
+            .with_scale(Vec3::splat(5.0));
+        limb(&mut app, wall, SkinnedCollider::default());
+        let mut input = app.world_mut().get_mut::<ClimberInput>(climber).unwrap();
+        input.walk = Vec3::NEG_Z;
+        frames(&mut app, 288);
+        let seen = frames(&mut app, 144);
+        let nearest = seen
+            .iter()
+            .map(|seen| seen.camera.distance(seen.climber))
+            .fold(f64::MAX, f64::min);
+        assert!(nearest > 5.0, "leaning by {lean} degrees: {nearest}");
+    }
 }
 
 #[test]

@@ -111,6 +111,16 @@ fn each_failure_is_logged_once() {
             }
         }
         assert_eq!(lines(), 1, "{timing:?}");
+        // One that the app tells of.
+        let told = limb(&mut app, Transform::IDENTITY, collider);
+        let mut root = app.world_mut().get_mut::<Transform>(told.root).unwrap();
+        root.translation.x += 50.0;
+        let mut surface = app.world_mut().get_mut::<PosedSurface>(told.mesh).unwrap();
+        surface.forget_motion();
+        for _ in 0..9 {
+            app.update();
+        }
+        assert_eq!(lines(), 0, "{timing:?}");
     }
     // A collider on an entity without a mesh says what it waits for, after a while.
     app.world_mut().spawn(SkinnedCollider::default());

@@ -6,7 +6,7 @@ use bevy::picking::pointer::PointerButton;
 use bevy::prelude::*;
 use bevy_clamber::prelude::*;
 
-use crate::arrows::Bow;
+use crate::arrows::{Arrow, Bow};
 
 pub fn plugin(app: &mut App) {
     app.add_plugins(SurfacePickingPlugin)
@@ -16,7 +16,7 @@ pub fn plugin(app: &mut App) {
 /// A press, not a click: a click would need the button to be released over the same mesh, which walks on.
 fn shoot_where_pressed(
     press: On<PointerPress>,
-    cameras: Query<&GlobalTransform, With<Camera>>,
+    cameras: Query<(&Camera, &GlobalTransform)>,
     mut bow: Bow,
 ) {
     let (Some(pick), Some(point)) = (press.hit.extra_as::<SurfacePick>(), press.hit.position)
@@ -27,9 +27,13 @@ fn shoot_where_pressed(
     if press.button != PointerButton::Primary || press.entity != pick.anchor.surface {
         return;
     }
-    if let Ok(camera) = cameras.get(press.hit.camera)
-        && let Ok(direction) = Dir3::new(point - camera.translation())
+    let Ok((camera, place)) = cameras.get(press.hit.camera) else {
+        return;
+    };
+    if let Ok(direction) = Dir3::new(point - place.translation())
+        && let Ok(seen) = camera.world_to_viewport(place, point)
     {
-        bow.stick(&pick.anchor, point, direction);
+        let missed = seen.distance(press.pointer.position);
+        bow.stick(&pick.anchor, Arrow { hit: point, missed }, direction);
     }
 }

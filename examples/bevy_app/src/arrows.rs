@@ -4,13 +4,8 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_clamber::prelude::*;
 
-use crate::creature::Creature;
-
-/// Length of an arrow, relative to half of the creature's height, so that it can be seen on a giant, too.
-const LENGTH: f32 = 0.26;
-
-/// Least half height that is assumed of a creature, relative to its radius.
-const LOWEST: f32 = 0.3;
+/// Length of an arrow, metres: longer than real ones, to be seen from afar.
+const LENGTH: f32 = 1.4;
 
 /// Meshes of an arrow of length 1, which flies along -Y and whose point is at the origin.
 #[derive(Resource)]
@@ -19,10 +14,13 @@ struct Looks {
     feather: (Mesh3d, MeshMaterial3d<StandardMaterial>),
 }
 
-/// Marks an arrow, and stores the point in the world that it hit.
+/// Marks an arrow.
 #[derive(Component)]
 pub struct Arrow {
+    /// The point in the world that it hit.
     pub hit: Vec3,
+    /// How far that was from the pointer in the picture, pixels.
+    pub missed: f32,
 }
 
 pub fn plugin(app: &mut App) {
@@ -51,43 +49,31 @@ fn make_looks(
     });
 }
 
-/// Shoots arrows.
+/// Sticks arrows.
 #[derive(SystemParam)]
 pub struct Bow<'w, 's> {
     surfaces: SurfaceQuery<'w, 's>,
-    creature: Option<Res<'w, Creature>>,
     looks: Res<'w, Looks>,
     commands: Commands<'w, 's>,
 }
 
 impl Bow<'_, '_> {
-    /// Attaches an arrow to the first point of skin along a ray.
-    pub fn shoot(&mut self, ray: Ray3d) {
-        let anywhere = SurfaceFilter::default();
-        if let Some(hit) = self.surfaces.cast_ray(ray, f32::INFINITY, &anywhere)
-            && let Ok(anchor) = self.surfaces.anchor_at(&hit)
-        {
-            self.stick(&anchor, hit.point, ray.direction);
-        }
-    }
-
     /// Attaches an arrow to a point of skin, which is at `point` in the world. It keeps the direction of its flight.
-    pub fn stick(&mut self, there: &SurfaceAnchor, point: Vec3, direction: Dir3) {
-        let (Some(creature), Some(surface)) = (&self.creature, self.surfaces.get(there.surface))
-        else {
+    pub fn stick(&mut self, there: &SurfaceAnchor, arrow: Arrow, direction: Dir3) {
+        let point = arrow.hit;
+        let Some(surface) = self.surfaces.get(there.surface) else {
             return;
         };
         let Ok(anchor) = there.anchor() else {
             return;
         };
         let rotation = Quat::from_rotation_arc(Vec3::Y, -*direction);
-        let half_height = creature.half_size.y.max(LOWEST * creature.radius());
         let arrow = (
             SurfaceAnchor::new(there.surface, surface, anchor, rotation),
-            Arrow { hit: point },
+            arrow,
             Transform::from_translation(point)
                 .with_rotation(rotation)
-                .with_scale(Vec3::splat(LENGTH * half_height)),
+                .with_scale(Vec3::splat(LENGTH)),
             Visibility::default(),
         );
         self.commands.spawn(arrow).with_children(|parts| {

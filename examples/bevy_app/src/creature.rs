@@ -1,15 +1,16 @@
-//! Loads the creature, makes its skinned meshes surfaces, plays a clip, and measures the creature.
+//! Loads the creature, makes its skinned meshes surfaces, and measures it.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use bevy::asset::{AssetPath, LoadState};
-use bevy::gltf::{Gltf, GltfExtras};
+use bevy::gltf::{Gltf, GltfExtras, GltfMaterialExtras};
 use bevy::mesh::skinning::SkinnedMesh;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
 use bevy_clamber::prelude::*;
 
+use crate::giant;
 use crate::trouble::Trouble;
 
 /// Seconds to wait for the creature before the app gives up. The giant of this project takes some seconds in an
@@ -19,54 +20,54 @@ const PATIENCE: u64 = 120;
 /// Advice that ends an error message.
 const ANOTHER: &str = "give a glTF or GLB file with a skinned mesh";
 
-/// Size and place of the creature; inserted when its surfaces are built.
-#[derive(Resource, Clone, Copy, Debug)]
+/// The creature, which stands on the ground when this is inserted: its surfaces are built, and the game
+/// begins.
+#[derive(Resource, Clone, Debug)]
 pub struct Creature {
-    /// Middle of its bounds in the world.
-    pub center: Vec3,
-    /// Half of the extents of its bounds, metres.
-    pub half_size: Vec3,
+    /// The root of its scene.
+    pub root: Entity,
+    /// Its height, metres.
+    pub height: f32,
+    /// Radius of a circle around it, seen from above, metres.
+    pub radius: f32,
+    /// How much larger it is than in its file.
+    pub scale: f32,
+    /// Its clips by their names.
+    pub clips: Vec<(String, AnimationNodeIndex)>,
 }
 
-impl Creature {
-    /// Height of the floor that it stands on.
-    pub fn floor(&self) -> f32 {
-        self.center.y - self.half_size.y
-    }
-
-    /// Radius of a ball around it.
-    pub fn radius(&self) -> f32 {
-        self.half_size.length()
-    }
-}
-
-/// The file and clip to show.
+/// The file to load, and how high it is made.
 #[derive(Resource)]
 struct Wanted {
     /// Path relative to the folder that assets are loaded from.
     file: PathBuf,
-    clip: String,
+    height: Option<f32>,
 }
 
 /// The file that is being loaded.
 #[derive(Resource)]
 struct Loading(Handle<Gltf>);
 
-pub fn plugin(file: PathBuf, clip: String) -> impl Plugin {
+/// The creature's scene.
+#[derive(Resource)]
+struct Spawned {
+    root: Entity,
+    clips: Vec<(String, AnimationNodeIndex)>,
+}
+
+pub fn plugin(file: PathBuf, height: Option<f32>) -> impl Plugin {
     move |app: &mut App| {
-        app.insert_resource(Wanted {
-            file: file.clone(),
-            clip: clip.clone(),
-        })
-        .add_observer(add_colliders)
-        .add_systems(Startup, load)
-        .add_systems(
-            Update,
-            (
-                spawn.run_if(resource_exists::<Loading>),
-                (measure, give_up).run_if(not(resource_exists::<Creature>)),
-            ),
-        );
+        let file = file.clone();
+        app.insert_resource(Wanted { file, height })
+            .add_observer(add_colliders)
+            .add_systems(Startup, load)
+            .add_systems(
+                Update,
+                (
+                    spawn.run_if(resource_exists::<Loading>),
+                    (measure, give_up).run_if(not(resource_exists::<Creature>)),
+                ),
+            );
     }
 }
 
@@ -79,7 +80,6 @@ fn load(wanted: Res<Wanted>, assets: Res<AssetServer>, mut commands: Commands) {
 /// Spawns the first scene once the file is loaded.
 fn spawn(
     loading: Res<Loading>,
-    wanted: Res<Wanted>,
     assets: Res<AssetServer>,
     files: Res<Assets<Gltf>>,
     mut graphs: ResMut<Assets<AnimationGraph>>,
@@ -102,75 +102,103 @@ fn spawn(
         trouble.end(format_args!("has no scene; {ANOTHER}"));
         return;
     };
-    let mut creature = commands.spawn(WorldAssetRoot(scene.clone()));
-    let clip = file.named_animations.get(wanted.clip.as_str());
-    let Some(clip) = clip.or(file.animations.first()) else {
-        return;
-    };
-    let (graph, clip) = AnimationGraph::from_clip(clip.clone());
+    let (graph, nodes) = AnimationGraph::from_clips(file.animations.iter().cloned());
     let graph = AnimationGraphHandle(graphs.add(graph));
-    let play = move |ready: On<WorldInstanceReady>,
-                     children: Query<&Children>,
-                     mut players: Query<&mut AnimationPlayer>,
-                     mut commands: Commands| {
-        for entity in children.iter_descendants(ready.entity) {
-            if let Ok(mut player) = players.get_mut(entity) {
-                player.play(clip).repeat();
-                commands.entity(entity).insert(graph.clone());
-            }
-        }
+    let name = |clip: &Handle<AnimationClip>| {
+        let names = &mut file.named_animations.iter();
+        let name = names.find(|(_, named)| *named == clip);
+        name.map_or(String::new(), |(name, _)| name.to_lowercase())
     };
-    creature.observe(play);
+    let clips = file.animations.iter().map(name).zip(nodes).collect();
+    let root = commands
+        .spawn((WorldAssetRoot(scene.clone()), Transform::default()))
+        .observe(
+            move |ready: On<WorldInstanceReady>,
+                  children: Query<&Children>,
+                  players: Query<(), With<AnimationPlayer>>,
+                  mut commands: Commands| {
+                for entity in children.iter_descendants(ready.entity) {
+                    if players.contains(entity) {
+                        let play = (graph.clone(), AnimationTransitions::new());
+                        commands.entity(entity).insert(play);
+                    }
+                }
+            },
+        )
+        .id();
+    commands.insert_resource(Spawned { root, clips });
 }
 
-/// Makes visible skinned meshes surfaces, and hides meshes that are for collision only, as in `assets/colossus.glb`:
-/// arrows stick to the visible meshes.
+/// Makes skinned meshes surfaces: those that are for collision only, if the file has any, as `assets/colossus.glb`, else
+/// all. The former are not drawn, but pointers see them.
 fn add_colliders(
     ready: On<WorldInstanceReady>,
     children: Query<&Children>,
-    skins: Query<&ChildOf, With<SkinnedMesh>>,
+    skins: Query<(&ChildOf, Option<&GltfMaterialExtras>), With<SkinnedMesh>>,
     extras: Query<&GltfExtras>,
     mut commands: Commands,
     mut trouble: Trouble,
 ) {
-    let mut surfaces = 0;
+    let (mut all, mut for_collision) = (Vec::new(), Vec::new());
     for entity in children.iter_descendants(ready.entity) {
-        let Ok(child_of) = skins.get(entity) else {
-            continue;
-        };
-        if extras.get(child_of.parent()).is_ok_and(for_collision_only) {
-            commands.entity(entity).insert(Visibility::Hidden);
-        } else {
-            commands.entity(entity).insert(SkinnedCollider::default());
-            surfaces += 1;
+        if let Ok((child_of, material)) = skins.get(entity) {
+            all.push((entity, material));
+            if extras.get(child_of.parent()).is_ok_and(is_for_collision) {
+                for_collision.push((entity, material));
+                commands
+                    .entity(entity)
+                    .remove::<MeshMaterial3d<StandardMaterial>>();
+            }
         }
     }
-    if surfaces == 0 {
+    if all.is_empty() {
         trouble.end(format_args!("its scene shows no skinned mesh; {ANOTHER}"));
+        return;
+    }
+    let are_tagged = all.iter().any(|(_, material)| material.is_some());
+    let surfaces = if for_collision.is_empty() {
+        all
+    } else {
+        for_collision
+    };
+    for (entity, _) in surfaces {
+        let mut surface = commands.entity(entity);
+        surface.insert(SkinnedCollider::default());
+        if !are_tagged {
+            // A file that says nothing of its materials: everything can be gripped.
+            surface.insert(ColliderTag(SurfaceTag::new(SurfaceKind::Fur)));
+        }
     }
 }
 
-fn for_collision_only(extras: &GltfExtras) -> bool {
+fn is_for_collision(extras: &GltfExtras) -> bool {
     let extras: serde_json::Value = serde_json::from_str(&extras.value).unwrap_or_default();
     extras["clamber"]["role"] == "collision"
 }
 
-/// Waits for all surfaces, then takes their bounds.
+/// Waits for all surfaces, takes their bounds, and puts the creature on the ground at the size that is wanted.
 fn measure(
-    colliders: Query<(NameOrEntity, &ColliderStatus, Option<&PosedSurface>)>,
+    colliders: Query<(NameOrEntity, &ColliderStatus, Option<&mut PosedSurface>)>,
+    spawned: Option<Res<Spawned>>,
+    wanted: Res<Wanted>,
+    mut roots: Query<&mut Transform>,
     mut commands: Commands,
     mut trouble: Trouble,
 ) {
     let done = |status: &ColliderStatus| {
         matches!(status, ColliderStatus::Ready | ColliderStatus::Failed(_))
     };
+    let Some(spawned) = spawned else {
+        return;
+    };
     if colliders.is_empty() || !colliders.iter().all(|(_, status, _)| done(status)) {
         return;
     }
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let mut positions = Vec::new();
-    let mut failed = Vec::new();
+    let (mut failed, mut meshes) = (Vec::new(), 0);
     for (mesh, status, surface) in &colliders {
+        meshes += 1;
         if let ColliderStatus::Failed(error) = status {
             failed.push(format!("{mesh}: {error}"));
         }
@@ -184,21 +212,38 @@ fn measure(
             (low, high) = (low.min(in_world), high.max(in_world));
         }
     }
-    let creature = Creature {
-        center: 0.5 * (low + high),
-        half_size: 0.5 * (high - low),
-    };
-    let why = failed.join("; ");
-    if failed.len() == colliders.iter().count() {
+    let size = high - low;
+    if failed.len() == meshes {
+        let why = failed.join("; ");
         trouble.end(format_args!("no mesh can be a surface ({why}); {ANOTHER}"));
-    } else if !(creature.radius().is_finite() && creature.radius() > 0.0) {
-        trouble.end(format_args!("its skin has no size; {ANOTHER}"));
-    } else {
-        if !failed.is_empty() {
-            trouble.go_on(format_args!("arrows do not stick to some meshes ({why})"));
-        }
-        commands.insert_resource(creature);
+        return;
     }
+    if !(size.is_finite() && size.min_element() > 0.0) {
+        trouble.end(format_args!("its skin has no size; {ANOTHER}"));
+        return;
+    }
+    if !failed.is_empty() {
+        let why = failed.join("; ");
+        trouble.go_on(format_args!("some meshes cannot be climbed ({why})"));
+    }
+    let scale = wanted.height.map_or(1.0, |height| height / size.y);
+    if let Ok(mut root) = roots.get_mut(spawned.root) {
+        root.scale *= scale;
+        root.translation.y = (root.translation.y - low.y) * scale;
+        root.translation += giant::start(size.y * scale);
+    }
+    for (.., surface) in colliders {
+        if let Some(mut surface) = surface {
+            surface.forget_motion();
+        }
+    }
+    commands.insert_resource(Creature {
+        root: spawned.root,
+        height: size.y * scale,
+        radius: 0.5 * size.xz().length() * scale,
+        scale,
+        clips: spawned.clips.clone(),
+    });
 }
 
 fn give_up(

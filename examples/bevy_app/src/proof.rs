@@ -1,88 +1,125 @@
-//! Checks the picture: arrows are in the skin, the skin has carried them, and one is where the pointer has pressed.
+//! What a script has achieved: the hero's ride, and whether its arrows are where they should be.
 
 use bevy::ecs::system::SystemParam;
+use bevy::math::DVec3;
 use bevy::prelude::*;
+use bevy_clamber::clamber_climber::ClimberMode;
+use bevy_clamber::events::{ClimberGrabbed, ClimberHurt, ClimberJumped, ClimberShakenOff};
 use bevy_clamber::prelude::*;
 
 use crate::arrows::Arrow;
-use crate::creature::Creature;
+use crate::hero::Hero;
 
-/// Largest distance of an arrow from the skin, relative to the creature's radius. The arrow lies on the skin as this
-/// frame draws it, but a query sees the skin one frame earlier. A swinging foot moves some hundredths in a frame.
-const SKIN: f32 = 0.1;
+/// Largest distance of an arrow from the skin, metres: only rounding counts, since both are as the last frame drew them.
+const SKIN: f32 = 1e-3;
 
-/// Largest distance from the pointer to its arrow, pixels. The scene has stood still since, so only rounding counts. A
-/// hit in the pose of the tick instead of the drawn frame would be off by the motion of a frame.
+/// Largest distance from a pointer to its arrow when it was shot, pixels. A hit in the pose of the tick instead of the
+/// drawn frame would be off by the motion of a frame.
 const POINTER: f32 = 0.5;
 
-/// Least number of visible red pixels per arrow, on average. The giant's picture has about 140.
-const RED: usize = 10;
+/// Least number of visible colours: a picture of nothing has one.
+const COLORS: usize = 1000;
 
-/// The state of the world that the picture is compared with.
+/// The hero's ride.
+#[derive(Resource, Debug, Default)]
+struct Ride {
+    /// Ticks on the creature, and those of them holding on.
+    ridden: u32,
+    held: u32,
+    /// Greatest height on the creature, metres.
+    highest: f64,
+    jumps: u32,
+    grips: u32,
+    throws: u32,
+    /// Hit points lost.
+    hurt: f32,
+    /// Where the hero is, metres.
+    place: DVec3,
+}
+
+pub fn plugin(app: &mut App) {
+    app.init_resource::<Ride>()
+        .add_systems(FixedLast, count)
+        .add_observer(|_: On<ClimberJumped>, mut ride: ResMut<Ride>| ride.jumps += 1)
+        .add_observer(|_: On<ClimberGrabbed>, mut ride: ResMut<Ride>| ride.grips += 1)
+        .add_observer(|_: On<ClimberShakenOff>, mut ride: ResMut<Ride>| ride.throws += 1)
+        .add_observer(|hurt: On<ClimberHurt>, mut ride: ResMut<Ride>| ride.hurt += hurt.damage);
+}
+
+fn count(
+    heroes: Query<&ClimberState, With<Hero>>,
+    surfaces: Query<(), With<PosedSurface>>,
+    mut ride: ResMut<Ride>,
+) {
+    for state in &heroes {
+        ride.place = state.position;
+        let on = state.support.map(|support| support.attachment.obstacle.0);
+        let on = on.and_then(Entity::try_from_bits);
+        if on.is_some_and(|on| surfaces.contains(on)) {
+            ride.ridden += 1;
+            ride.held += u32::from(matches!(
+                state.mode,
+                ClimberMode::Holding | ClimberMode::Hanging
+            ));
+            ride.highest = ride.highest.max(state.position.y);
+        }
+    }
+}
+
+/// The state of the world that is checked.
 #[derive(SystemParam)]
 pub struct Proof<'w, 's> {
-    creature: Res<'w, Creature>,
-    surfaces: SurfaceQuery<'w, 's>,
-    arrows: Query<'w, 's, (Entity, &'static Arrow, &'static GlobalTransform), With<SurfaceAnchor>>,
-    camera: Single<'w, 's, (&'static Camera, &'static GlobalTransform)>,
+    ride: Res<'w, Ride>,
+    heroes: Query<'w, 's, &'static Hero>,
+    surfaces: DrawnSurfaceQuery<'w, 's>,
+    arrows: Query<'w, 's, (&'static Arrow, &'static GlobalTransform), With<SurfaceAnchor>>,
 }
 
 impl Proof<'_, '_> {
-    /// Checks the picture and the arrows, and describes them. `pressed` is where the pointer was, and its arrow.
-    pub fn check(
-        &self,
-        pixels: impl Iterator<Item = [u8; 3]>,
-        pressed: Option<(Vec2, Option<Entity>)>,
-    ) -> Result<String, String> {
-        let count = self.arrows.iter().count();
-        let carried = |(_, arrow, place): (_, &Arrow, &GlobalTransform)| {
-            place.translation().distance(arrow.hit)
-        };
-        let Some(farthest) = self.arrows.iter().map(carried).max_by(f32::total_cmp) else {
-            return Err("no arrow has hit its skin".into());
-        };
-        if farthest == 0.0 {
-            return Err("the skin has moved no arrow; choose another clip with `--clip`".into());
+    /// Checks the last picture and the arrows, and describes the ride.
+    pub fn check(&self, pixels: impl Iterator<Item = [u8; 3]>) -> Result<String, String> {
+        let mut seen: Vec<[u8; 3]> = pixels.collect();
+        seen.sort_unstable();
+        seen.dedup();
+        if seen.len() < COLORS {
+            return Err(format!("the picture has only {} colours", seen.len()));
         }
-        let slack = SKIN * self.creature.radius();
-        let anywhere = SurfaceFilter::default();
-        for (_, _, place) in &self.arrows {
+        let (mut off_skin, mut off_pointer, mut carried) = (0.0f32, 0.0f32, 0.0f32);
+        for (arrow, place) in &self.arrows {
             let point = place.translation();
-            let skin = self.surfaces.closest_point(point, slack, &anywhere);
-            if skin.is_none() {
-                return Err(format!("an arrow, at {point}, is not in the skin"));
-            }
+            let skin = self
+                .surfaces
+                .closest_point(point, 1.0, &SurfaceFilter::default());
+            let skin = skin.ok_or_else(|| format!("an arrow, at {point}, is in no skin"))?;
+            off_skin = off_skin.max(skin.distance);
+            off_pointer = off_pointer.max(arrow.missed);
+            carried = carried.max(point.distance(arrow.hit));
         }
-        let missed = self.missed_by(pressed)?;
-        let red = pixels.filter(|&pixel| is_feather(pixel)).count();
-        if red < RED * count {
-            return Err(format!("{count} arrows, but only {red} visible red pixels"));
+        if off_skin > SKIN || off_pointer > POINTER {
+            return Err(format!(
+                "an arrow is {off_skin} m off the skin, or was {off_pointer} pixels from its pointer"
+            ));
         }
+        let count = self.arrows.iter().count();
+        if count > 0 && carried == 0.0 {
+            return Err("the skin has moved no arrow".into());
+        }
+        let ride = &*self.ride;
+        let seconds = |ticks: u32| f64::from(ticks) / 64.0;
+        let has_won = self.heroes.iter().any(|hero| hero.has_won);
         Ok(format!(
-            "{count} arrows stick, {red} red pixels; the skin carried one by {farthest:.2} m; \
-             the pointer's arrow is {missed:.3} pixels from it"
+            "on the creature for {:.2} s, {:.2} s of them holding on, up to {:.2} m high; {} jumps, {} grips, shaken \
+             off {} times, hurt by {:.2}{}; at {:.1}\n{count} arrows, carried by up to {carried:.2} m, at most {off_skin:.1e} m \
+             off the skin and {off_pointer:.3} pixels from the pointer",
+            seconds(ride.ridden),
+            seconds(ride.held),
+            ride.highest,
+            ride.jumps,
+            ride.grips,
+            ride.throws,
+            ride.hurt,
+            if has_won { ", and has won" } else { "" },
+            ride.place,
         ))
     }
-
-    /// Distance from the pointer to its arrow in the picture, pixels.
-    fn missed_by(&self, pressed: Option<(Vec2, Option<Entity>)>) -> Result<f32, String> {
-        let Some((pointer, Some(arrow))) = pressed else {
-            return Err(format!("the pointer shot no arrow: {pressed:?}"));
-        };
-        let (camera, from) = *self.camera;
-        let missed = self
-            .arrows
-            .get(arrow)
-            .ok()
-            .and_then(|(_, _, place)| camera.world_to_viewport(from, place.translation()).ok())
-            .map_or(f32::INFINITY, |seen| seen.distance(pointer));
-        if missed > POINTER {
-            return Err(format!("the pointer's arrow is {missed} pixels off"));
-        }
-        Ok(missed)
-    }
-}
-
-fn is_feather([red, green, blue]: [u8; 3]) -> bool {
-    red > 50 && u16::from(red) > 2 * u16::from(green.max(blue))
 }

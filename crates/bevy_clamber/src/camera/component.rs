@@ -7,9 +7,10 @@ use glam::DVec3;
 /// Lets a camera orbit a [`Climber`](crate::Climber): insert it on an entity with a camera.
 /// [`ClimberCameraPlugin`](crate::ClimberCameraPlugin) then writes the entity's `Transform` in each frame.
 ///
-/// It moves with what carries the climber, without a lag, and follows the climber's own motion smoothly. It keeps
-/// [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies: where they are in the way, it
-/// comes nearer at once, and goes back over half a second. Fill [`ClimberCameraInput`] to turn it.
+/// It begins behind the climber. It moves with what carries the climber, without a lag, and follows the climber's own
+/// motion smoothly. It keeps [`radius`](Self::radius) away from skin as it is drawn, from terrain and from bodies: where
+/// they are in the way, it comes nearer at once, and goes back over half a second. Fill [`ClimberCameraInput`] to turn
+/// it.
 ///
 /// ```
 /// # use bevy_ecs::prelude::*;
@@ -32,8 +33,8 @@ pub struct ClimberCamera {
     pub distance: f32,
     /// How far above the centre of the climber's ball it looks, metres.
     pub height: f32,
-    /// How far it stays from skin, terrain and bodies, metres: more than the distance of its near plane. Less than the
-    /// radius of the climber's ball.
+    /// How far it stays from skin, terrain and bodies, metres: more than the distance of its near plane. At most three
+    /// quarters of the radius of the climber's ball.
     pub radius: f32,
     /// How fast the stick turns it about up and tilts it, radians a second.
     pub speed: Vec2,

@@ -17,6 +17,9 @@ const BACK: f64 = 0.2;
 /// How far behind a fast climber it looks at most, as a share of its distance.
 const LAG: f64 = 0.25;
 
+/// Largest radius of the camera's ball, as a share of that of the climber's.
+const LARGEST: f64 = 0.75;
+
 /// A climber that is farther away than this many times the camera's distance was teleported.
 const FAR: f64 = 3.0;
 
@@ -42,23 +45,31 @@ pub(super) fn follow(
         };
         let body_place = origin.0 + drawn.translation.as_dvec3();
         let up = body.config().up();
+        let upright = DQuat::from_rotation_arc(DVec3::Y, up);
         let target = body_place + up * f64::from(camera.height);
+        if !state.is_placed {
+            // Behind the climber.
+            let ahead = upright.conjugate() * drawn.forward().as_vec3().as_dvec3();
+            state.angles = Vec2::new(libm::atan2(ahead.x, -ahead.z) as f32, camera.level);
+        }
         state.turn(camera, input.stick, swing, dt as f32);
         state.look_at(camera, target, body.carried(), dt);
 
-        let radius = f64::from(camera.radius).min(body.config().body.radius);
-        let free = |from: DVec3, way: DVec3| {
+        let body_radius = body.config().body.radius;
+        let radius = f64::from(camera.radius).min(LARGEST * body_radius);
+        let free = |radius: f64, from: DVec3, way: DVec3| {
             let ball = WorldCapsule::ball(from, radius);
             touchable.free_way(filter, &ball, way).unwrap_or(1.0)
         };
-        // The body's own place is free. What it looks at need not be.
+        // The body's own place is free. What it looks at need not be: a larger ball goes there, so that the camera's
+        // ball touches nothing where its way begins.
         let rise = state.pivot - body_place;
-        let pivot = body_place + rise * free(body_place, rise);
-        let upright = DQuat::from_rotation_arc(DVec3::Y, up);
+        let larger = 0.5 * (radius + body_radius);
+        let pivot = body_place + rise * free(larger, body_place, rise);
         let [turn, tilt] = state.angles.to_array().map(f64::from);
         let rotation = upright * about(DVec3::Y, -turn) * about(DVec3::X, -tilt);
         let back = rotation * DVec3::Z * f64::from(camera.distance);
-        let distance = back.length() * free(pivot, back);
+        let distance = back.length() * free(radius, pivot, back);
         if !state.is_placed || distance < state.distance {
             state.distance = distance;
         } else {
@@ -83,9 +94,6 @@ fn about(axis: DVec3, angle: f64) -> DQuat {
 impl CameraState {
     /// Turns by the player's input.
     fn turn(&mut self, camera: &ClimberCamera, stick: Vec2, swing: Vec2, dt: f32) {
-        if !self.is_placed {
-            self.angles.y = camera.level;
-        }
         let stick = if stick.is_finite() {
             stick.clamp_length_max(1.0)
         } else {

@@ -106,7 +106,7 @@ impl DrawnSurface {
         self.teleports = surface.teleports();
         if !is_same {
             self.forget_pose();
-            is_cut |= self.is_teleport(surface, timing, &drawn, time);
+            is_cut = is_cut || self.is_teleport(surface, timing, &drawn, time);
         }
         if is_same && !is_cut {
             self.history.stay(time, drawn);
