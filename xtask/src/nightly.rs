@@ -25,7 +25,7 @@ pub(crate) const STEPS: [Step; 8] = [
     ("soak", |_| soak::run(MINUTES, 1, None)),
 ];
 
-/// Climbers on the terrain of avian and of `bevy_rapier3d`, which take minutes to build.
+/// Climbers on the terrain of avian and of `bevy_rapier3d`, and its bodies on skin. They take minutes to build.
 fn engines() -> Result<(), String> {
     cargo(&[
         "test",
@@ -38,6 +38,8 @@ fn engines() -> Result<(), String> {
         "obstacles",
         "--test",
         "climbers_on_engines",
+        "--test",
+        "debris",
     ])
 }
 

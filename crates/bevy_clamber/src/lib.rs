@@ -46,7 +46,9 @@ pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "avian")]
 pub use obstacles::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
 #[cfg(feature = "rapier")]
-pub use obstacles::{RapierObstacles, RapierObstaclesPlugin};
+pub use obstacles::{
+    Debris, DebrisBodies, DebrisHooks, DebrisPlugin, RapierObstacles, RapierObstaclesPlugin,
+};
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
 pub use plugins::{ClamberPlugins, ClamberSystems};

@@ -1,4 +1,6 @@
+use bevy_ecs::entity::{EntityMapper, MapEntities};
 use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::ReflectMapEntities;
 use bevy_math::Vec3;
 use bevy_platform::collections::HashSet;
 use bevy_reflect::prelude::*;
@@ -71,14 +73,27 @@ impl Default for Climber {
 ///
 /// To load a saved state, or to roll back, write it: the next tick goes on from there. A state that is refused is
 /// logged, and the last one stays. An entity that is spawned with a state starts with it.
+///
+/// Its obstacle ids are the bits of entities. Where Bevy maps entities, as when it loads a scene, the support's is mapped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, Clone, Debug, PartialEq)]
+#[component(map_entities)]
+#[reflect(Component, Clone, Debug, PartialEq, MapEntities)]
 pub struct ClimberState(pub clamber_climber::ClimberState);
 
 impl ClimberState {
     /// Velocity, in world space, metres a second.
     pub fn velocity(&self) -> Vec3 {
         self.0.velocity.as_vec3()
+    }
+}
+
+impl MapEntities for ClimberState {
+    fn map_entities<E: EntityMapper>(&mut self, mapper: &mut E) {
+        if let Some(support) = &mut self.0.support
+            && let Some(entity) = Entity::try_from_bits(support.attachment.obstacle.0)
+        {
+            support.attachment.obstacle = ObstacleId(mapper.get_mapped(entity).to_bits());
+        }
     }
 }
 

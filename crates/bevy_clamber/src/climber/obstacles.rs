@@ -7,7 +7,7 @@ use bevy_ecs::system::SystemParam;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use bevy_ecs::system::SystemParamValidationError;
 #[cfg(feature = "rapier")]
-use bevy_rapier3d::rapier::geometry::Collider as RapierCollider;
+use bevy_rapier3d::rapier::geometry::{Collider as RapierCollider, ColliderHandle as RapierHandle};
 use clamber_climber::{ClimberContact, ClimberObstacle};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
@@ -20,7 +20,7 @@ use crate::WorldOrigin;
 #[cfg(feature = "avian")]
 use crate::obstacles::{AvianObstacles, AvianPushes, AvianTerrain};
 #[cfg(feature = "rapier")]
-use crate::obstacles::{RapierObstacles, RapierPushes};
+use crate::obstacles::{DebrisBodies, RapierObstacles, RapierPushes};
 use crate::{DrawnSurface, PosedSurface};
 
 /// An obstacle of the app's own: terrain without a physics engine, a moving platform, anything that implements
@@ -83,6 +83,8 @@ pub(super) struct Touchable<'w, 's> {
     avian: Result<AvianObstacles<'w, 's>, SystemParamValidationError>,
     #[cfg(feature = "rapier")]
     rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
+    #[cfg(feature = "rapier")]
+    debris: Option<Res<'w, DebrisBodies>>,
 }
 
 /// Pushes bodies of physics engines.
@@ -142,7 +144,9 @@ impl Touchable<'_, '_> {
         #[cfg(feature = "rapier")]
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
-        let wanted = |_, collider: &RapierCollider| is_wanted(filter, climber, collider);
+        let wanted = |handle, collider: &RapierCollider| {
+            is_wanted(filter, climber, collider) && !is_skin(self.debris.as_deref(), handle)
+        };
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
         #[cfg(feature = "rapier")]
@@ -204,6 +208,8 @@ pub(crate) struct DrawnTouchable<'w, 's> {
     avian: Result<AvianObstacles<'w, 's>, SystemParamValidationError>,
     #[cfg(feature = "rapier")]
     rapier: Result<RapierObstacles<'w, 's>, SystemParamValidationError>,
+    #[cfg(feature = "rapier")]
+    debris: Option<Res<'w, DebrisBodies>>,
 }
 
 impl DrawnTouchable<'_, '_> {
@@ -243,8 +249,10 @@ impl DrawnTouchable<'_, '_> {
         }
         #[cfg(feature = "rapier")]
         if let Some(rapier) = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain) {
-            let wanted =
-                |_, collider: &RapierCollider| is_wanted(filter, Entity::PLACEHOLDER, collider);
+            let wanted = |handle, collider: &RapierCollider| {
+                is_wanted(filter, Entity::PLACEHOLDER, collider)
+                    && !is_skin(self.debris.as_deref(), handle)
+            };
             let terrain = rapier.with_filter(&wanted);
             meet(&terrain.with_origin(self.origin.0));
         }
@@ -273,6 +281,12 @@ fn in_avian<'a>(
             .extend(filter.ignored.iter().copied());
     }
     avian.terrain().with_filter(wanted)
+}
+
+/// True for a collider of rapier that stands for skin: climbers touch the skin itself.
+#[cfg(feature = "rapier")]
+fn is_skin(debris: Option<&DebrisBodies>, collider: RapierHandle) -> bool {
+    debris.is_some_and(|debris| debris.is_skin(collider))
 }
 
 /// True for a collider of rapier that a climber touches: of its layers, and neither its own nor ignored.

@@ -3,12 +3,16 @@
 #[cfg(feature = "avian")]
 mod avian;
 #[cfg(feature = "rapier")]
+mod debris;
+#[cfg(feature = "rapier")]
 mod rapier;
 
 #[cfg(feature = "avian")]
 pub(crate) use avian::AvianPushes;
 #[cfg(feature = "avian")]
 pub use avian::{AvianObstacles, AvianObstaclesPlugin, AvianTerrain};
+#[cfg(feature = "rapier")]
+pub use debris::{Debris, DebrisBodies, DebrisHooks, DebrisPlugin};
 #[cfg(feature = "rapier")]
 pub(crate) use rapier::RapierPushes;
 #[cfg(feature = "rapier")]

@@ -29,7 +29,8 @@ use crate::ObstacleId;
 /// tick to tick. The order of the list does not change any result. The state of a creature that leaves the list is
 /// dropped.
 ///
-/// Skin patches are ordinary colliders of the rapier world. If a climber gets both the creature and a
+/// Skin patches are ordinary colliders of the rapier world. Their `user_data`, and that of their bodies, is their
+/// creature's [`ObstacleId`]. If a climber gets both the creature and a
 /// [`RapierTerrain`](crate::RapierTerrain) without a filter, it touches that skin twice. Leave the patches out with
 /// [`RapierTerrain::with_filter`](crate::RapierTerrain::with_filter): by [`DebrisConfig::groups`], or by
 /// [`Debris::triangle_at`], which gives `Some` for subshape 0 of a patch.
@@ -233,7 +234,13 @@ impl Debris {
                 }
                 let had = patch.handles();
                 patch
-                    .update(surfaces[*index].1, &place, &self.config, bodies, colliders)
+                    .update(
+                        (*obstacle, surfaces[*index].1),
+                        &place,
+                        &self.config,
+                        bodies,
+                        colliders,
+                    )
                     .ok_or(DebrisError::OutOfReach {
                         body: piece.body,
                         obstacle: *obstacle,

@@ -14,6 +14,7 @@ use super::DebrisConfig;
 use super::fit::RigidMotion;
 use super::hull::Reach;
 use super::patch_mesh::{move_trimesh, trimesh};
+use crate::ObstacleId;
 
 /// A new patch is filled this far beyond the box that the body may reach, as a fraction of half the box's longest side.
 /// A larger margin rebuilds patches less often, but gives rapier more triangles in every tick.
@@ -60,7 +61,7 @@ impl SkinPatch {
     /// Updates the patch to the skin near a place in this tick. `None` if the place is out of reach.
     pub(super) fn update(
         &mut self,
-        surface: &SkinnedSurface,
+        (obstacle, surface): (ObstacleId, &SkinnedSurface),
         place: &Place,
         config: &DebrisConfig,
         bodies: &mut RigidBodySet,
@@ -90,6 +91,20 @@ impl SkinPatch {
         self.place_vertices(surface, place);
         self.fit(place);
         self.show(change, place, config, bodies, colliders);
+        // The patch may have been another creature's.
+        let id = u128::from(obstacle.0);
+        if let Some((body, collider)) = self.handles
+            && colliders
+                .get(collider)
+                .is_some_and(|known| known.user_data != id)
+        {
+            if let Some(collider) = colliders.get_mut(collider) {
+                collider.user_data = id;
+            }
+            if let Some(body) = bodies.get_mut(body) {
+                body.user_data = id;
+            }
+        }
         Some(())
     }
 
