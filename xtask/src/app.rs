@@ -38,7 +38,7 @@ const LINES: &str = r#"{
 pub(crate) fn check() -> Result<(), String> {
     cargo(&[&["fmt", "--check"][..], &MANIFEST].concat())?;
     let test = ["test", "--locked", IGNORE_RUST_VERSION, "--quiet"];
-    cargo(&[&test[..], &MANIFEST].concat())?;
+    cargo(&[&test[..], &MANIFEST, &["--all-targets"]].concat())?;
     std::fs::create_dir_all("target").map_err(|error| format!("target: {error}"))?;
     play()?;
     film()?;

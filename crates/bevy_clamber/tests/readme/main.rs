@@ -10,8 +10,6 @@ mod bevy {
         pub(crate) use bevy_app::prelude::*;
         pub(crate) use bevy_asset::prelude::*;
         pub(crate) use bevy_ecs::prelude::*;
-        pub(crate) use bevy_math::prelude::*;
-        pub(crate) use bevy_shape::prelude::*;
         pub(crate) use bevy_transform::prelude::*;
 
         /// The plugins that surfaces need.
@@ -28,18 +26,6 @@ mod bevy {
                 ));
             }
         }
-    }
-}
-
-/// The first program, as a single frame without a window.
-mod app {
-    use super::bevy;
-
-    include!("app.rs");
-
-    #[test]
-    fn the_first_program_runs() {
-        main();
     }
 }
 
@@ -72,7 +58,9 @@ fn the_readme_has_the_programs_word_for_word() {
     // A checkout may have other line ends.
     let text = |text: &str| text.replace("\r\n", "\n");
     let readme = text(include_str!("../../README.md"));
-    for program in [include_str!("app.rs"), include_str!("headless.rs")] {
+    // The first one needs a renderer; it is built with the game.
+    let first = include_str!("../../../../examples/bevy_app/examples/first.rs");
+    for program in [first, include_str!("headless.rs")] {
         let block = format!("```rust,ignore\n{}```\n", text(program));
         assert!(readme.contains(&block), "not in the README:\n{block}");
     }
