@@ -1,7 +1,5 @@
 //! The items that most apps need: `use bevy_clamber::prelude::*;`.
 
-#[cfg(feature = "rapier")]
-pub use crate::Debris;
 #[cfg(feature = "diagnostics")]
 pub use crate::SurfaceDiagnosticsPlugin;
 pub use crate::{
