@@ -14,6 +14,7 @@ use std::ops::Deref;
 
 use super::ClimberInput;
 use super::input::LatchedInput;
+use super::obstacles::map_entities;
 use super::shown::Shown;
 
 /// A character that stands on, climbs, grips and hangs from everything that it can touch: skin, other climbers, the
@@ -74,7 +75,8 @@ impl Default for Climber {
 /// To load a saved state, or to roll back, write it: the next tick goes on from there. A state that is refused is
 /// logged, and the last one stays. An entity that is spawned with a state starts with it.
 ///
-/// Its obstacle ids are the bits of entities. Where Bevy maps entities, as when it loads a scene, the support's is mapped.
+/// The support's obstacle id is the bits of an entity. Where Bevy maps entities, as when it loads a scene, it is mapped. On
+/// a physics engine's world, avian's colliders are mapped; rapier numbers its own anew, so that support may be lost.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[component(map_entities)]
 #[reflect(Component, Clone, Debug, PartialEq, MapEntities)]
@@ -89,10 +91,8 @@ impl ClimberState {
 
 impl MapEntities for ClimberState {
     fn map_entities<E: EntityMapper>(&mut self, mapper: &mut E) {
-        if let Some(support) = &mut self.0.support
-            && let Some(entity) = Entity::try_from_bits(support.attachment.obstacle.0)
-        {
-            support.attachment.obstacle = ObstacleId(mapper.get_mapped(entity).to_bits());
+        if let Some(support) = &mut self.0.support {
+            map_entities(&mut support.attachment, mapper);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 
+use bevy_ecs::entity::EntityMapper;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 #[cfg(any(feature = "avian", feature = "rapier"))]
@@ -11,7 +12,9 @@ use bevy_rapier3d::rapier::geometry::{Collider as RapierCollider, ColliderHandle
 use clamber_climber::{ClimberContact, ClimberObstacle};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::surface::TargetMotion;
-use clamber_world::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
+use clamber_world::{
+    Attachment, Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact,
+};
 use glam::DVec3;
 
 use super::component::ClimberFilter;
@@ -66,11 +69,22 @@ impl CustomObstacle {
     }
 }
 
-/// The id of an engine's whole world. No entity has these bits.
-#[cfg(feature = "avian")]
+/// The id of an engine's whole world. No living entity has these bits.
 const AVIAN: ObstacleId = ObstacleId(u64::MAX);
-#[cfg(feature = "rapier")]
 const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
+
+/// Maps the entities of an attachment. An engine's world is none: the points of avian's are on entities, those of
+/// rapier's on handles.
+pub(super) fn map_entities(on: &mut Attachment, mapper: &mut impl EntityMapper) {
+    let bits = match on.obstacle {
+        RAPIER => return,
+        AVIAN => &mut on.material.key,
+        ObstacleId(_) => &mut on.obstacle.0,
+    };
+    if let Some(entity) = Entity::try_from_bits(*bits) {
+        *bits = mapper.get_mapped(entity).to_bits();
+    }
+}
 
 /// All that climbers can touch, beside each other.
 #[derive(SystemParam)]
@@ -352,5 +366,44 @@ impl Obstacle for WithoutPoint<'_> {
             return None;
         }
         Obstacle::motion(&**self.surface, point, dt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_ecs::entity::EntityHashMap;
+    use glam::DQuat;
+
+    use super::*;
+
+    #[test]
+    fn entities_are_mapped_and_engines_are_not() {
+        let [old, new] = [7, 900].map(|index| Entity::from_raw_u32(index).unwrap());
+        let mut mapped = EntityHashMap::default();
+        mapped.insert(old, new);
+        let key = 5;
+        for (obstacle, key, expected) in [
+            (
+                ObstacleId(old.to_bits()),
+                key,
+                (ObstacleId(new.to_bits()), key),
+            ),
+            (AVIAN, old.to_bits(), (AVIAN, new.to_bits())),
+            (RAPIER, old.to_bits(), (RAPIER, old.to_bits())),
+        ] {
+            let material = MaterialPoint {
+                key,
+                coordinates: [0.0; 3],
+            };
+            let mut on = Attachment {
+                obstacle,
+                material,
+                point: DVec3::ZERO,
+                frame: DQuat::IDENTITY,
+                offset: DVec3::ZERO,
+            };
+            map_entities(&mut on, &mut mapped);
+            assert_eq!((on.obstacle, on.material.key), expected);
+        }
     }
 }
