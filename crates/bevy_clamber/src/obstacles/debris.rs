@@ -229,6 +229,13 @@ impl DebrisBodies {
         bodies: &mut RapierRigidBodySet,
         colliders: &mut RapierContextColliders,
     ) {
+        let is_known = |(_, body, debris): (_, &RapierRigidBodyHandle, Ref<'_, Debris>)| {
+            !debris.is_changed() && self.debris.contains(body.0)
+        };
+        let count = wanted.iter().len();
+        if count == self.debris.bodies().len() && wanted.iter().all(is_known) {
+            return;
+        }
         let handles: BTreeSet<_> = wanted.iter().map(|(_, body, _)| parts(body.0)).collect();
         let gone = self
             .debris
@@ -238,9 +245,8 @@ impl DebrisBodies {
             self.debris.remove(body, &mut colliders.colliders);
         }
         self.refused.retain(|body| handles.contains(body));
-        let known: BTreeSet<_> = self.debris.bodies().map(parts).collect();
         for (entity, body, debris) in wanted {
-            if !debris.is_changed() && known.contains(&parts(body.0)) {
+            if !debris.is_changed() && self.debris.contains(body.0) {
                 continue;
             }
             let added = self
@@ -287,7 +293,9 @@ fn before_step(
     };
     if bodies.origin != origin.0 {
         bodies.origin = origin.0;
-        bodies.debris = bodies.debris.clone().with_origin(origin.0);
+        let known = clamber_world::Debris::new(DebrisConfig::default());
+        let known = std::mem::replace(&mut bodies.debris, known);
+        bodies.debris = known.with_origin(origin.0);
     }
     let skin = skin(&surfaces);
     let shown = bodies

@@ -164,6 +164,11 @@ impl Debris {
         self.pieces.iter().map(|piece| piece.body)
     }
 
+    /// True if a body collides with skin.
+    pub fn contains(&self, body: RigidBodyHandle) -> bool {
+        self.place_of(body).is_ok()
+    }
+
     /// True while skin passes through a body because it was caught between skin and something immovable.
     pub fn is_let_through(&self, body: RigidBodyHandle) -> bool {
         let piece = self.place_of(body).map(|index| &self.pieces[index]);
