@@ -10,7 +10,7 @@ use crate::run::{IGNORE_RUST_VERSION, cargo, cargo_output, program};
 const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /// What a package's files may be called, apart from its sources.
-const TOP_LEVEL: [&str; 8] = [
+const TOP_LEVEL: [&str; 9] = [
     ".cargo_vcs_info.json",
     "CHANGELOG.md",
     "Cargo.lock",
@@ -19,6 +19,7 @@ const TOP_LEVEL: [&str; 8] = [
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
+    "build.rs",
 ];
 
 pub(crate) fn check(metadata: &Metadata) -> Result<(), String> {

@@ -122,7 +122,7 @@ struct Points<S: Simd> {
     z: f32x8<S>,
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn evaluate<S: Simd>(
     simd: S,
     node: &Node,
@@ -184,7 +184,7 @@ fn evaluate<S: Simd>(
 }
 
 /// The images of eight points under the matrix of a joint, in the order of the skinning contract.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn image<S: Simd>(joint: &Joint, p: Points<S>) -> Points<S> {
     let [x, y, z] = &joint.rows;
     Points {
@@ -194,18 +194,18 @@ fn image<S: Simd>(joint: &Joint, p: Points<S>) -> Points<S> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn row<S: Simd>(m: &[f32; 4], p: Points<S>) -> f32x8<S> {
     (p.x * m[0] + p.y * m[1]) + (p.z * m[2] + m[3])
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn load<S: Simd>(simd: S, lanes: &[f32; LANES]) -> f32x8<S> {
     f32x8::simd_from(simd, *lanes)
 }
 
 /// The larger number of each lane, by comparison, because `max` differs between instruction sets.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn larger<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
     b.simd_gt(a).select(b, a)
 }

@@ -5,8 +5,9 @@
 //! lane has the bits of the scalar run at every SIMD level. SIMD levels differ in minimum, maximum, clamp, sums across
 //! lanes and fused products, so the trait has none of these.
 //!
-//! Everything is `#[inline(always)]`, since SIMD instructions are emitted only within the function that enables them
-//! (fearless_simd, MANUAL_INLINING.md). A closure that is not inlined would leave that function.
+//! Everything is `inline(always)`, since SIMD instructions are emitted only within the function that enables them
+//! (fearless_simd, MANUAL_INLINING.md). A closure that is not inlined would leave that function. The package's `build.rs`
+//! tells why this does not hold for builds without optimisation.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
@@ -36,19 +37,19 @@ pub(crate) trait Lanes:
     fn any(mask: Self::Mask) -> bool;
 
     /// The larger number, by comparison; `self` where either is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn or_larger(self, other: Self) -> Self {
         Self::select(self.less(other), other, self)
     }
 
     /// The smaller number, by comparison; `self` where either is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn or_smaller(self, other: Self) -> Self {
         Self::select(other.less(self), other, self)
     }
 
     /// Clamps to 0..=1 like [`f64::clamp`]: keeps NaN and -0.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn clamp_to_unit(self) -> Self {
         let (zero, one) = (self.splat(0.0), self.splat(1.0));
         let raised = Self::select(self.less(zero), zero, self);
@@ -59,37 +60,37 @@ pub(crate) trait Lanes:
 impl Lanes for f64 {
     type Mask = bool;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn splat(self, value: f64) -> Self {
         value
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn less(self, other: Self) -> bool {
         self < other
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn at_most(self, other: Self) -> bool {
         self <= other
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn equals(self, other: Self) -> bool {
         self == other
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn any(mask: bool) -> bool {
         mask
     }
@@ -102,7 +103,7 @@ pub(crate) struct Wide<S: Simd>(pub(crate) S::f64s);
 impl<S: Simd> Add for Wide<S> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
@@ -111,7 +112,7 @@ impl<S: Simd> Add for Wide<S> {
 impl<S: Simd> Sub for Wide<S> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self(self.0 - other.0)
     }
@@ -120,7 +121,7 @@ impl<S: Simd> Sub for Wide<S> {
 impl<S: Simd> Mul for Wide<S> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn mul(self, other: Self) -> Self {
         Self(self.0 * other.0)
     }
@@ -129,7 +130,7 @@ impl<S: Simd> Mul for Wide<S> {
 impl<S: Simd> Div for Wide<S> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn div(self, other: Self) -> Self {
         Self(self.0 / other.0)
     }
@@ -138,7 +139,7 @@ impl<S: Simd> Div for Wide<S> {
 impl<S: Simd> Neg for Wide<S> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn neg(self) -> Self {
         Self(-self.0)
     }
@@ -147,37 +148,37 @@ impl<S: Simd> Neg for Wide<S> {
 impl<S: Simd> Lanes for Wide<S> {
     type Mask = S::mask64s;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn splat(self, value: f64) -> Self {
         Self(S::f64s::splat(self.0.token(), value))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn less(self, other: Self) -> S::mask64s {
         self.0.simd_lt(other.0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn at_most(self, other: Self) -> S::mask64s {
         self.0.simd_le(other.0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn equals(self, other: Self) -> S::mask64s {
         self.0.simd_eq(other.0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn select(mask: S::mask64s, if_true: Self, if_false: Self) -> Self {
         Self(mask.select(if_true.0, if_false.0))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn any(mask: S::mask64s) -> bool {
         mask.any_true()
     }

@@ -36,7 +36,7 @@ pub(crate) struct TrianglePoint {
 }
 
 /// Corners in f64. Without an array's `map`: that goes through memory here, and stalls queries with many hits.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn widened([a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
     [widen(a), widen(b), widen(c)]
 }

@@ -13,12 +13,12 @@ pub(crate) struct Vector3<L> {
 }
 
 impl<L: Lanes> Vector3<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn dot(self, other: Self) -> L {
         (self.x * other.x) + (self.y * other.y) + (self.z * other.z)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn cross(self, other: Self) -> Self {
         Self {
             x: self.y * other.z - other.y * self.z,
@@ -27,17 +27,17 @@ impl<L: Lanes> Vector3<L> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn length_squared(self) -> L {
         self.dot(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn length(self) -> L {
         self.length_squared().sqrt()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn select(mask: L::Mask, if_true: Self, if_false: Self) -> Self {
         Self {
             x: L::select(mask, if_true.x, if_false.x),
@@ -47,7 +47,7 @@ impl<L: Lanes> Vector3<L> {
     }
 
     /// True where `self` comes before `other` when x is compared first, then y, then z.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn precedes(self, other: Self) -> L::Mask {
         let by_z = self.z.less(other.z);
         let by_y = self.y.less(other.y) | (self.y.equals(other.y) & by_z);
@@ -58,7 +58,7 @@ impl<L: Lanes> Vector3<L> {
 impl<L: Lanes> Add for Vector3<L> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn add(self, other: Self) -> Self {
         Self {
             x: self.x + other.x,
@@ -71,7 +71,7 @@ impl<L: Lanes> Add for Vector3<L> {
 impl<L: Lanes> Sub for Vector3<L> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self {
             x: self.x - other.x,
@@ -84,7 +84,7 @@ impl<L: Lanes> Sub for Vector3<L> {
 impl<L: Lanes> Mul<L> for Vector3<L> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn mul(self, factor: L) -> Self {
         Self {
             x: self.x * factor,
@@ -95,7 +95,7 @@ impl<L: Lanes> Mul<L> for Vector3<L> {
 }
 
 impl From<DVec3> for Vector3<f64> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn from(v: DVec3) -> Self {
         Self {
             x: v.x,

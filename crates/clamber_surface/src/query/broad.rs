@@ -24,7 +24,7 @@ const LONG: f32 = (1u64 << 60) as f32;
 /// One bit per lane.
 pub(super) type LaneMask = u8;
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn lanes(test: impl Fn(usize) -> bool) -> LaneMask {
     // Integers as wide as the numbers compared: otherwise the compiler splits the vectors.
     let mut bits = [0u32; LANES];
@@ -67,7 +67,7 @@ pub(super) fn distances<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> 
 
 /// Squared distances of the centres from a probe's core, before it moves, and the allowance for rounding in the
 /// distances: infinite from [`LONG`] on.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn from_core<const N: usize>(spheres: &Spheres, probe: &Probe<N>) -> ([f32; LANES], [f32; LANES]) {
     let [a, b] = probe.segment();
     let axis = b - a;

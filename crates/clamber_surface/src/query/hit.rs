@@ -224,7 +224,7 @@ impl Instance {
     /// Completes a hit on a triangle with the given posed corners. `origin` is the query's origin: the normal of a
     /// collapsed triangle points to it.
     // Inlined: a call would pass its arguments through memory, once for every hit of an overlap.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn hit(
         &self,
         nearest: FoundPoint,

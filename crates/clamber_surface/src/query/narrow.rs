@@ -97,7 +97,7 @@ pub(super) fn nearest_vertex(
         + f32::MIN_POSITIVE.sqrt()
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn nearest_square<S: Simd>(
     simd: S,
     positions: &ClusterPositions,
@@ -119,7 +119,7 @@ fn nearest_square<S: Simd>(
     least
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn vectors<S: Simd>(simd: S, positions: &ClusterPositions, slot: usize) -> [S::f32s; 3] {
     let vector =
         |axis: &[f32; MAX_SLOTS]| S::f32s::from_slice(simd, &axis[slot..slot + S::f32s::LEN]);
@@ -130,7 +130,7 @@ fn vectors<S: Simd>(simd: S, positions: &ClusterPositions, slot: usize) -> [S::f
     ]
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn plane_codes<S: Simd, const P: usize>(
     simd: S,
     positions: [&ClusterPositions; P],
@@ -144,7 +144,7 @@ fn plane_codes<S: Simd, const P: usize>(
     each_code(
         simd,
         rows,
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         |slot| {
             let p = vectors::<S>(simd, positions[0], slot);
             let p = [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]];
@@ -174,7 +174,7 @@ fn plane_codes<S: Simd, const P: usize>(
 
 /// Which points lie beyond a plane by more than the allowance `lost` for rounding; moving points have to at both ends
 /// of their paths. Points are relative to the planes' origin.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn beyond<S: Simd, const P: usize>(
     simd: S,
     planes: &Planes<P>,
@@ -197,12 +197,12 @@ fn beyond<S: Simd, const P: usize>(
     starts & (nx * q[0] + ny * q[1] + nz * q[2]).simd_gt(limit)
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn taxicab<S: Simd>([x, y, z]: [S::f32s; 3]) -> S::f32s {
     x.abs() + y.abs() + z.abs()
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn box_codes<S: Simd>(
     simd: S,
     [start, end]: [&ClusterPositions; 2],
@@ -214,7 +214,7 @@ fn box_codes<S: Simd>(
     each_code(
         simd,
         rows,
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         |slot| {
             let (p, q) = (
                 vectors::<S>(simd, start, slot),
@@ -232,7 +232,7 @@ fn box_codes<S: Simd>(
     )
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn ray_codes<S: Simd>(
     simd: S,
     positions: &ClusterPositions,
@@ -250,7 +250,7 @@ fn ray_codes<S: Simd>(
     each_code(
         simd,
         rows,
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         |slot| {
             let p = vectors::<S>(simd, positions, slot);
             let (x, y, z) = (
@@ -276,7 +276,7 @@ fn ray_codes<S: Simd>(
 
 /// A code for every slot. For each vector of slots, `outside` returns which of them lie in each of up to eight
 /// half-spaces.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn each_code<S: Simd, const N: usize>(
     simd: S,
     rows: usize,
@@ -296,7 +296,7 @@ fn each_code<S: Simd, const N: usize>(
 
 /// Triangles whose corners share no bit. The padding after a cluster's last triangle repeats one corner three times, so
 /// it may survive: callers stop before it.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Survivors {
     let mut found = Survivors([0; MAX_TRIANGLES / BLOCK]);
     for (bits, CornerBlock(slots)) in found.0.iter_mut().zip(corners) {
@@ -317,7 +317,7 @@ fn survivors<S: Simd>(simd: S, corners: &[CornerBlock], codes: &Codes) -> Surviv
     found
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn lacks_shuffle(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return matches!(level, Level::Sse2(_));
@@ -325,7 +325,7 @@ fn lacks_shuffle(level: Level) -> bool {
     return false;
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn one_by_one(slots: &[[u8; BLOCK]; 3], codes: &Codes) -> u32 {
     let mut bits = 0;
     for triangle in 0..BLOCK {
@@ -369,7 +369,7 @@ const LEAST_RADIUS: f32 = 1.0 / (1u64 << 50) as f32;
 /// Fourth powers of larger lengths overflow.
 const LARGEST_SIZE: f32 = 1e9;
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn earliest<S: Simd, const P: usize>(
     simd: S,
     positions: [&ClusterPositions; P],
@@ -421,7 +421,7 @@ fn earliest<S: Simd, const P: usize>(
     earliest
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn dot<S: Simd>(p: [S::f32s; 3], q: [S::f32s; 3]) -> S::f32s {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }

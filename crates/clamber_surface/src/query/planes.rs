@@ -73,7 +73,7 @@ impl<const P: usize> Planes<P> {
 }
 
 /// The product of a vector with each normal.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn along(normals: &[[f32; PLANES]; 3], v: Vec3) -> [f32; PLANES] {
     let mut found = [0.0; PLANES];
     for (plane, found) in found.iter_mut().enumerate() {
@@ -82,7 +82,7 @@ fn along(normals: &[[f32; PLANES]; 3], v: Vec3) -> [f32; PLANES] {
     found
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn larger(a: [f32; PLANES], b: [f32; PLANES]) -> [f32; PLANES] {
     let mut found = a;
     for (found, b) in found.iter_mut().zip(b) {

@@ -43,7 +43,7 @@ pub(crate) fn skin_owned(
     dispatch!(level.level(), simd => skin_rows(simd, rest, joints, palette, positions));
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn skin_rows<S: Simd>(
     simd: S,
     rest: &[Row],
@@ -76,7 +76,7 @@ fn skin_rows<S: Simd>(
 }
 
 /// Skins `N` vectors of slots: reads from `lane` of a row on, writes to `positions` from slot `to` on.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn skin_vectors<'a, S: Simd, const N: usize>(
     simd: S,
     place: &[Row],

@@ -16,7 +16,7 @@ pub(super) struct Candidate<L> {
 
 impl<L: Lanes> Candidate<L> {
     /// The nearer of the two; `self` if both are equally near.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn or_nearer(self, other: Self) -> Self {
         let nearer = other.distance.less(self.distance);
         let [a, b, c] = self.weights;
@@ -32,7 +32,7 @@ impl<L: Lanes> Candidate<L> {
     }
 
     /// Sets the distance to infinity where not `valid`, so that every other candidate is nearer.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn only_where(self, valid: L::Mask) -> Self {
         let infinity = self.distance.splat(f64::INFINITY);
         Self {
@@ -52,7 +52,7 @@ impl From<Candidate<f64>> for TrianglePoint {
 }
 
 /// `numerator / denominator` clamped to 0..1; 0 where the denominator is not positive.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn fraction<L: Lanes>(numerator: L, denominator: L) -> L {
     let zero = numerator.splat(0.0);
     let positive = zero.less(denominator);
@@ -61,7 +61,7 @@ pub(super) fn fraction<L: Lanes>(numerator: L, denominator: L) -> L {
 
 /// The point at `t` between two ends. For `t` above 0.5 it is computed from the second end, so that t = 1 gives that
 /// end exactly.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn between<L: Lanes>(ends: [Vector3<L>; 2], t: L) -> Vector3<L> {
     let [start, end] = ends;
     let along = end - start;

@@ -25,7 +25,7 @@ pub(crate) struct Corners8 {
 }
 
 impl Corners8 {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn set(&mut self, lane: usize, corners: [Vec3; 3]) {
         for (corner, position) in corners.into_iter().enumerate() {
             self.x[corner][lane] = position.x;
@@ -76,7 +76,7 @@ pub(crate) fn closest_to_segments(
     dispatch!(level.level(), simd => closest_to_segments_simd(simd, corners, a, b))
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn closest_points_simd<S: Simd>(simd: S, corners: &Corners8, p: Vec3) -> Points8 {
     let corners = Corners8Wide::new(corners);
     let p = splat(simd, widen(p));
@@ -88,7 +88,7 @@ fn closest_points_simd<S: Simd>(simd: S, corners: &Corners8, p: Vec3) -> Points8
     points
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn closest_to_segments_simd<S: Simd>(simd: S, corners: &Corners8, a: Vec3, b: Vec3) -> Points8 {
     let corners = Corners8Wide::new(corners);
     let [a, b] = ordered(a, b);
@@ -116,7 +116,7 @@ pub(super) struct Corners8Wide {
 }
 
 impl Corners8Wide {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn new(corners: &Corners8) -> Self {
         Self {
             x: widen_rows(&corners.x),
@@ -126,7 +126,7 @@ impl Corners8Wide {
     }
 
     /// The corners in the lanes from `first` on, minus `origin`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn relative_to<S: Simd>(
         &self,
         simd: S,
@@ -140,7 +140,7 @@ impl Corners8Wide {
         ]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn corner<S: Simd>(&self, simd: S, corner: usize, first: usize) -> Vector3<Wide<S>> {
         let end = first + S::f64s::LEN;
         Vector3 {
@@ -151,7 +151,7 @@ impl Corners8Wide {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn widen_rows(rows: &[[f32; EIGHT]; 3]) -> [[f64; EIGHT]; 3] {
     let mut wide = [[0.0; EIGHT]; 3];
     for corner in 0..3 {
@@ -162,7 +162,7 @@ fn widen_rows(rows: &[[f32; EIGHT]; 3]) -> [[f64; EIGHT]; 3] {
     wide
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn splat<S: Simd>(simd: S, v: DVec3) -> Vector3<Wide<S>> {
     Vector3 {
         x: Wide(S::f64s::splat(simd, v.x)),
@@ -171,7 +171,7 @@ pub(super) fn splat<S: Simd>(simd: S, v: DVec3) -> Vector3<Wide<S>> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn store<S: Simd>(found: Candidate<Wide<S>>, first: usize, points: &mut Points8) {
     let end = first + S::f64s::LEN;
     for corner in 0..3 {

@@ -22,7 +22,7 @@ pub(crate) fn closest_point(corners: [Vec3; 3], p: Vec3) -> TrianglePoint {
 
 /// The point of a triangle nearest to the origin. Callers subtract the query's point first, before anything is
 /// multiplied.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn nearest_to_origin<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
     let [ab, bc, ca] = edges(corners);
     let [ab, bc, ca] = [ab.nearest(), bc.nearest(), ca.nearest()];
@@ -37,7 +37,7 @@ pub(super) struct OnEdge<L> {
 }
 
 /// The nearest of three points, one on each edge.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn on_edges<L: Lanes>([ab, bc, ca]: [OnEdge<L>; 3]) -> Candidate<L> {
     let (zero, one) = (ab.t.splat(0.0), ab.t.splat(1.0));
     let ab = Candidate {
@@ -56,7 +56,7 @@ pub(super) fn on_edges<L: Lanes>([ab, bc, ca]: [OnEdge<L>; 3]) -> Candidate<L> {
 }
 
 /// Edges a to b, b to c, c to a.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn edges<L: Lanes>([a, b, c]: [Vector3<L>; 3]) -> [Edge<L>; 3] {
     [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)]
 }
@@ -71,7 +71,7 @@ pub(super) struct Edge<L: Lanes> {
 }
 
 impl<L: Lanes> Edge<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn new(a: Vector3<L>, b: Vector3<L>) -> Self {
         let swapped = b.precedes(a);
         Self {
@@ -84,7 +84,7 @@ impl<L: Lanes> Edge<L> {
     }
 
     /// The edge's point nearest to the origin.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn nearest(self) -> OnEdge<L> {
         let [low, high] = self.ends;
         let along = high - low;
@@ -97,7 +97,7 @@ impl<L: Lanes> Edge<L> {
 }
 
 /// The foot of the perpendicular from the origin, if it falls inside; else a candidate at infinite distance.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn foot<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);
@@ -114,7 +114,7 @@ pub(super) fn foot<L: Lanes>(corners: [Vector3<L>; 3]) -> Candidate<L> {
 }
 
 /// Corner weights of the foot of the perpendicular from the origin, each times the sum of all three.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn volumes<L: Lanes>([a, b, c]: [Vector3<L>; 3], normal: Vector3<L>) -> [L; 3] {
     [
         normal.dot(b.cross(c)),
@@ -124,7 +124,7 @@ pub(super) fn volumes<L: Lanes>([a, b, c]: [Vector3<L>; 3], normal: Vector3<L>) 
 }
 
 /// The point with the given weights.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn weighted<L: Lanes>([a, b, c]: [Vector3<L>; 3], [x, y, z]: [L; 3]) -> Vector3<L> {
     a * x + b * y + c * z
 }

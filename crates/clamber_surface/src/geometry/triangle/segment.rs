@@ -52,7 +52,7 @@ pub(super) fn ordered(a: Vec3, b: Vec3) -> [Vec3; 2] {
 
 /// The point nearest to a segment from the origin to `axis`, given the corners relative to the
 /// segment's start and to its end.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn nearest_to_segment<L: Lanes>(
     from_start: [Vector3<L>; 3],
     from_end: [Vector3<L>; 3],
@@ -74,7 +74,7 @@ pub(super) fn nearest_to_segment<L: Lanes>(
 /// Three steps, each clamped: the edge's point nearest to the segment's line, the segment's point nearest to that
 /// point, and the edge's point nearest to that. Unless the lines are nearly parallel, the first step finds the result.
 /// For nearly parallel lines it may be far off *along* both, which the other two steps correct.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn edge_to_segment<L: Lanes>(edge: Edge<L>, axis: Vector3<L>) -> OnEdge<L> {
     let [low, high] = edge.ends;
     // From the cross product: a difference of squares would keep only half the digits.
@@ -94,7 +94,7 @@ fn edge_to_segment<L: Lanes>(edge: Edge<L>, axis: Vector3<L>) -> OnEdge<L> {
 ///
 /// The normal of a sliver of height h and length 1 is off by 2^-53 / h, and so is the first guess. One step of Newton's
 /// method from that guess squares the error.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn on_face<L: Lanes>(
     corners: [Vector3<L>; 3],
     from_end: [Vector3<L>; 3],
@@ -133,7 +133,7 @@ fn on_face<L: Lanes>(
 }
 
 /// Clamps weights to the face: none negative, sum 1.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
     let zero = x.splat(0.0);
     let x = L::select(zero.less(x), x, zero);
@@ -144,12 +144,12 @@ fn to_face<L: Lanes>([x, y, z]: [L; 3]) -> [L; 3] {
 }
 
 /// Position, 0..=1, of the point nearest to `p` on the segment from the origin to `axis`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn nearest_on_axis<L: Lanes>(axis: Vector3<L>, p: Vector3<L>) -> L {
     fraction(p.dot(axis), axis.length_squared())
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn point_of_axis<L: Lanes>(axis: Vector3<L>, s: L) -> Vector3<L> {
     let zero = s.splat(0.0);
     let origin = Vector3 {

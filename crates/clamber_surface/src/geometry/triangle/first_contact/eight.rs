@@ -46,7 +46,7 @@ pub(crate) fn first_contact_of_eight<const N: usize, const P: usize>(
     dispatch!(level.level(), simd => first_contact_simd(simd, corners, core, limit))
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn first_contact_simd<S: Simd, const N: usize, const P: usize>(
     simd: S,
     corners: &[Corners8; P],

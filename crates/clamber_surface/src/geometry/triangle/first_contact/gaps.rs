@@ -24,7 +24,7 @@ pub(super) struct Floors<L, const N: usize, const P: usize> {
 }
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn floors(&self) -> Floors<L, N, P> {
         let zero = self.radius.splat(0.0);
         let (mut core_start, mut core_end) = ([zero; N], [zero; N]);
@@ -47,7 +47,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     }
 
     /// The interval in which the gap along `n` is large enough, and whether the gap falls at `time`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn gaps(&self, n: Vector3<L>, floors: &Floors<L, N, P>, time: L) -> Gaps<L> {
         let zero = time.splat(0.0);
         let never = zero.splat(NEVER);
@@ -90,7 +90,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     ///
     /// The gap of each end and corner is then quadratic in time, and never less than the least of its coefficients in
     /// the Bernstein basis.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn holds_turning(
         &self,
         n: [Vector3<L>; 2],
@@ -99,18 +99,18 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     ) -> L::Mask {
         let zero = self.radius.splat(0.0);
         let corners = [0, 1, 2].map(
-            #[inline(always)]
+            #[cfg_attr(not(unoptimized), inline(always))]
             |k| {
                 let floor = floors.corners[0][k].or_larger(floors.corners[P - 1][k]);
                 along_turning(
                     n,
                     times.map(
-                        #[inline(always)]
+                        #[cfg_attr(not(unoptimized), inline(always))]
                         |time| self.corner(k, time),
                     ),
                 )
                 .map(
-                    #[inline(always)]
+                    #[cfg_attr(not(unoptimized), inline(always))]
                     |part| part + floor,
                 )
             },
@@ -121,7 +121,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
             let core = along_turning(
                 n,
                 times.map(
-                    #[inline(always)]
+                    #[cfg_attr(not(unoptimized), inline(always))]
                     |time| between(self.core_start[end], self.core_end[end], time),
                 ),
             );
@@ -137,14 +137,14 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 
 /// Coefficients, in the Bernstein basis, of the product of a direction and a point that both change linearly from the
 /// first to the second.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn along_turning<L: Lanes>([n, m]: [Vector3<L>; 2], [p, q]: [Vector3<L>; 2]) -> [L; 3] {
     let between = (n.dot(q) + m.dot(p)) * p.x.splat(0.5);
     [n.dot(p), between, m.dot(q)]
 }
 
 /// The sum of absolute coordinates.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn taxicab<L: Lanes>(v: Vector3<L>) -> L {
     let absolute = |x: L| x.or_larger(-x);
     absolute(v.x) + absolute(v.y) + absolute(v.z)

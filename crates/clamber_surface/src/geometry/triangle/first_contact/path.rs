@@ -47,7 +47,7 @@ struct Progress<L> {
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     /// The result of each lane, and the number of steps of the slowest lane.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn first_contact(&self, limit: L) -> (Found<L>, u32) {
         let zero = limit.splat(0.0);
         let terms = self.terms(limit);
@@ -90,7 +90,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn terms(&self, limit: L) -> Terms<L, N, P> {
         let lost = self.size() * limit.splat(LOST);
         let least_tolerance = lost * limit.splat(4.0);
@@ -104,7 +104,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 
     /// The time until which the gap is large enough, and whether the gap falls now. If the gap is too small now, that
     /// time is not later than now.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn certified(
         &self,
         nearest: &Separation<L>,
@@ -127,7 +127,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
         (until, gaps.approaching)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn verdict(
         &self,
         [time, until, distance]: [L; 3],
@@ -153,7 +153,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     /// Goes on from `found.time` with a direction from a later time: that of the probe time, shortly before the gap
     /// would close at the rate of the last step. If that fails, tries a direction that turns from that of `nearest`, at
     /// the beginning of this step, to that of the probe time.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn look_ahead(
         &self,
         [begin, distance]: [L; 2],
@@ -190,7 +190,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     }
 
     /// The largest sum of absolute coordinates, plus the radius.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn size(&self) -> L {
         let mut size = self.radius.splat(0.0);
         for corner in 0..3 {
@@ -207,7 +207,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 }
 
 impl<L: Lanes> Found<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn is_going(&self) -> L::Mask {
         self.verdict.equals(self.verdict.splat(GOING))
     }
@@ -216,7 +216,7 @@ impl<L: Lanes> Found<L> {
 impl<L: Lanes, const N: usize, const P: usize> Terms<L, N, P> {
     /// The distance between the nearest points; 0 if it is no more than rounding error, as where the core crosses the
     /// triangle.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn measured(&self, nearest: &Separation<L>) -> L {
         let distance = nearest.apart.length();
         let touching = distance.at_most(self.lost);

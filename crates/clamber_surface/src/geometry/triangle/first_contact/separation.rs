@@ -24,7 +24,7 @@ pub(super) struct Separation<L> {
 }
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn separation(&self, time: L) -> Separation<L> {
         let (a, b, c) = (
             self.corner(0, time),
@@ -67,7 +67,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 
 impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
     /// The position of a corner at a time.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn corner(&self, corner: usize, time: L) -> Vector3<L> {
         let start = self.corners[0][corner];
         if P == 1 {
@@ -85,7 +85,7 @@ impl<L: Lanes, const N: usize, const P: usize> Path<L, N, P> {
 
 impl<L: Lanes> Separation<L> {
     /// Size of the numbers that the nearest points are computed from.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn size(&self) -> L {
         let ([x, y, z], [a, b, c]) = (self.weights, self.corners);
         let on_axis = taxicab(self.axis) * self.along;
@@ -99,7 +99,7 @@ impl<L: Lanes> Separation<L> {
     /// length, and the direction by that error over the distance, so an end far away seems to lie on the wrong side. A
     /// vector that is perpendicular to the edge has no such error. The projection runs twice, since the first one
     /// leaves the rounding error of the part that it removes.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn upright(&self) -> Vector3<L> {
         let [a, b, c] = self.corners;
         let zero = self.along.splat(0.0);
@@ -120,7 +120,7 @@ impl<L: Lanes> Separation<L> {
 
     /// `direction`, if the nearest point lies within it, or if it is nearly perpendicular to the vector between the
     /// nearest points; else zero.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn where_upright(&self, direction: Vector3<L>, within: L::Mask) -> Vector3<L> {
         let zero = self.along.splat(0.0);
         let along = direction.dot(self.apart);
@@ -135,7 +135,7 @@ impl<L: Lanes> Separation<L> {
 const ALL_BUT_UPRIGHT: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// `v` without its component along `direction`; zero if hardly more than rounding error is left.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn without<L: Lanes>(v: Vector3<L>, direction: Vector3<L>) -> Vector3<L> {
     let zero = v.x.splat(0.0);
     let length_sq = direction.length_squared();
@@ -146,7 +146,7 @@ fn without<L: Lanes>(v: Vector3<L>, direction: Vector3<L>) -> Vector3<L> {
 }
 
 /// The direction of `apart`, with a length of at most 1 despite rounding; zero if the distance is zero.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> {
     let zero = distance.splat(0.0);
     let shrink = zero.splat(ROUNDED_DOWN) / distance;
@@ -154,7 +154,7 @@ pub(super) fn direction<L: Lanes>(apart: Vector3<L>, distance: L) -> Vector3<L> 
 }
 
 /// Linear interpolation from `start` at time 0 to `end` at time 1; exact at time 0.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn between<L: Lanes>(start: Vector3<L>, end: Vector3<L>, time: L) -> Vector3<L> {
     start + (end - start) * time
 }
