@@ -3,6 +3,7 @@
 mod attachment;
 #[cfg(feature = "rapier")]
 mod debris;
+mod half_space;
 mod obstacle;
 #[cfg(feature = "rapier")]
 mod rapier;
@@ -22,6 +23,7 @@ pub use clamber_surface::surface::TargetMotion;
 pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
 /// The version of glam that this crate's API uses.
 pub use glam;
+pub use half_space::HalfSpace;
 pub use obstacle::{Contact, MaterialPoint, Obstacle, ObstacleId, PointMotion, SweepContact};
 /// The version of parry that [`shapes`] uses.
 #[cfg(feature = "parry")]

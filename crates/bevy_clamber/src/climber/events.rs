@@ -81,7 +81,7 @@ events! {
     ClimberMantled {}
     /// A climber let go, because [`ClimberInput::grip`](crate::ClimberInput::grip) ended.
     ClimberReleased {}
-    /// A climber's stamina was used up, and its grip opened.
+    /// A climber's stamina was used up, and its grip opened. It may still lie on the creature, and grip it again.
     ClimberShakenOff {
         /// The shake at that time, metres a second squared.
         shake: f32,

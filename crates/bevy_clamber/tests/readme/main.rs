@@ -36,8 +36,22 @@ mod root {
     include!("root.rs");
 
     #[test]
-    fn the_program_of_the_repository_runs() {
-        main();
+    fn the_climber_of_the_repositorys_readme_lands() {
+        use bevy::prelude::*;
+        use bevy_clamber::prelude::ClimberState;
+        use bevy_time::TimeUpdateStrategy;
+
+        let mut app = App::new();
+        app.add_plugins((bevy::prelude::DefaultPlugins, climbing))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        app.finish();
+        app.cleanup();
+        for _ in 0..3 * 64 {
+            app.update();
+        }
+        let mut climbers = app.world_mut().query::<&ClimberState>();
+        let state = climbers.single(app.world()).unwrap();
+        assert!((state.position.y - 0.4).abs() < 0.02, "{state:?}");
     }
 }
 
