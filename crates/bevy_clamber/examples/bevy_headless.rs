@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_asset::{AssetApp, AssetPlugin, Assets};
@@ -167,7 +168,6 @@ fn app() -> App {
     ))
     .init_asset::<Mesh>()
     .init_asset::<SkinnedMeshInverseBindposes>()
-    .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
     .insert_resource(GripRule::new(|_| true))
     .init_resource::<Happened>()
     .add_observer(|what: On<ClimberLanded>, mut happened: ResMut<Happened>| {
@@ -210,8 +210,10 @@ fn spawn(app: &mut App, rig: Rig, clip: Option<String>, scale: f32) -> Result<Sp
     Ok(app.world_mut().run_system_once(add).map_err(not_run)??)
 }
 
-/// Updates the app until every surface is built.
+/// Updates the app until every surface is built, and then for one tick, which poses them. No time passes before, so
+/// that the creature is at the start of its clip however long this takes.
 fn wait(app: &mut App, creature: &SpawnedRig) -> Result<(), Error> {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     for _ in 0..PATIENCE {
         app.update();
         let mut built = 0;
@@ -223,6 +225,8 @@ fn wait(app: &mut App, creature: &SpawnedRig) -> Result<(), Error> {
             }
         }
         if built == creature.meshes.len() {
+            app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+            app.update();
             return Ok(());
         }
         std::thread::yield_now();

@@ -32,16 +32,9 @@ fn walk(time: Res<Time>, mut roots: Query<&mut Transform, With<Walking>>) {
 #[derive(Resource, Default)]
 struct Felt(Vec<Option<(f64, f64)>>);
 
-fn feel(
-    climbers: Query<(&ClimberState, &ClimberBody)>,
-    surfaces: Query<&PosedSurface>,
-    mut felt: ResMut<Felt>,
-) {
-    for (state, body) in &climbers {
-        let _ = body;
+fn feel(climbers: Query<&ClimberState>, mut felt: ResMut<Felt>) {
+    for state in &climbers {
         let on = state.support.is_some() && state.mode == ClimberMode::Standing;
-        let moved = surfaces.iter().next().unwrap();
-        let _ = moved;
         felt.0.push(on.then(|| {
             (
                 state.support_velocity.map_or(f64::NAN, |v| v.x),
@@ -130,7 +123,7 @@ fn with_jitter_the_skin_is_within_a_hundredth_of_its_speed() {
 fn hitches_are_not_felt() {
     for hitch in [34.0, 50.0, 100.0, 250.0, 2000.0] {
         let mut app = ride();
-        for _ in 0..5 {
+        for _ in 0..15 {
             frame(&mut app, hitch);
             for _ in 0..50 {
                 frame(&mut app, 1000.0 / 60.0);
@@ -140,9 +133,19 @@ fn hitches_are_not_felt() {
     }
 }
 
+/// Frames and ticks meet in any phase: of 60 frames and 64 ticks a second there are 15.
 #[test]
 fn pauses_and_changes_of_speed_are_not_felt() {
-    let mut app = ride();
+    for phase in 0..15 {
+        let mut app = ride();
+        for _ in 0..phase {
+            frame(&mut app, 1000.0 / 60.0);
+        }
+        change_speed(&mut app);
+    }
+}
+
+fn change_speed(app: &mut App) {
     for (speed, paused) in [
         (1.0, true),
         (1.0, false),
@@ -160,10 +163,10 @@ fn pauses_and_changes_of_speed_are_not_felt() {
             time.unpause();
         }
         for _ in 0..60 {
-            frame(&mut app, 1000.0 / 60.0);
+            frame(app, 1000.0 / 60.0);
         }
         if !paused && speed > 0.0 {
-            check(&mut app, &format!("{speed} times as fast"), 1.0, 0.01);
+            check(app, &format!("{speed} times as fast"), 1.0, 0.01);
         }
     }
 }

@@ -69,7 +69,8 @@ pub struct PosedSurface {
     teleports: u32,
     /// Counts times at which somebody may have changed the surface, for [`DrawnSurface`].
     edits: u32,
-    /// The last tick placed a creature that had a pose before, and so did the one before: nobody knows how it moved.
+    /// In the last tick, and in the one before, nobody knew how a creature moved that had a pose before: it was placed, or
+    /// its pose had not been drawn yet.
     has_jumped: [bool; 2],
     /// Somebody may have changed the surface since the last tick.
     edited: bool,
@@ -190,8 +191,8 @@ impl PosedSurface {
         self.is_placed
     }
 
-    /// True if the tick, or the one before, placed a surface that had a pose before: the skin's velocity says nothing
-    /// then about what a rider feels.
+    /// True if the tick, or the one before, did not know how a surface moved that had a pose before: the skin's velocity
+    /// says nothing then about what a rider feels.
     pub(crate) fn has_jumped(&self) -> bool {
         self.has_jumped.contains(&true)
     }
@@ -240,6 +241,8 @@ impl PosedSurface {
         let at_rest = self.still && !self.restart && !self.edited;
         let is_still = drawn.history.is_still() && !timing.follows_ticks();
         let poses = drawn.history.poses();
+        // The pose of a jump is not known, even if it looks as if the skin stood still.
+        self.has_jumped[0] = self.is_placed && timing.follows_frames() && clock.jumped();
         if at_rest && is_still && std::mem::replace(&mut self.poses, poses) == poses {
             return Ok(false);
         }
