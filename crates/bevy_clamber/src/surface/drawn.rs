@@ -22,6 +22,8 @@ pub struct DrawnSurface {
     pub(super) hierarchies: u32,
     /// Why the last frame's pose is not known.
     error: Option<ColliderError>,
+    /// Frames that have drawn it, up to [`FIRST_FRAMES`].
+    frames: u8,
     /// An implausible speed was logged.
     has_told: bool,
     /// The counts of [`PosedSurface`] at the last frame.
@@ -40,6 +42,9 @@ struct Spare {
     palette: Palette,
 }
 
+/// Frames in which a creature may jump without a word: those of its rest, and of the start of its animation.
+const FIRST_FRAMES: u8 = 8;
+
 impl DrawnSurface {
     pub(crate) fn new(rig: Rig) -> Self {
         Self {
@@ -47,6 +52,7 @@ impl DrawnSurface {
             history: History::default(),
             hierarchies: 0,
             error: None,
+            frames: 0,
             has_told: false,
             teleports: 0,
             edits: 0,
@@ -85,6 +91,7 @@ impl DrawnSurface {
         time: Duration,
     ) {
         self.error = None;
+        self.frames = FIRST_FRAMES.min(self.frames + 1);
         let mut drawn = self.history.buffer();
         let is_same = match self.rig.read(scene, self.history.last(), &mut drawn) {
             Ok(is_same) => is_same,
@@ -136,9 +143,10 @@ impl DrawnSurface {
         Ok(())
     }
 
-    /// Logs an implausible speed, metres a second, once.
+    /// Logs an implausible speed, metres a second, once. An animation that begins is no fault: it takes the creature from
+    /// its rest to the clip's first pose.
     pub(super) fn tell_teleport(&mut self, surface: &PosedSurface, speed: f64) {
-        if !std::mem::replace(&mut self.has_told, true) {
+        if self.frames >= FIRST_FRAMES && !std::mem::replace(&mut self.has_told, true) {
             let entity = surface.entity();
             tracing::warn!(
                 "the surface of {entity} moved at {speed:.0} m/s, which is taken for a teleport: its skin has no \
