@@ -8,6 +8,7 @@ use gltf::animation::{self, Property};
 
 use crate::accessor::Reader;
 use crate::contents::Contents;
+use crate::extras;
 use crate::{GltfErrorKind, ImportWarning};
 
 /// Loads all animations that move the skeleton, each with only the channels that move it.
@@ -48,7 +49,7 @@ pub(crate) fn load(
                 channels: passed_over,
             });
         }
-        clips.push(Clip::new(name, channels));
+        clips.push(extras::with_markers(&animation, Clip::new(name, channels))?);
     }
     Ok(clips)
 }

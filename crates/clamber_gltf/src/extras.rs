@@ -2,10 +2,12 @@
 //!
 //! - a material: `{"clamber": {"surface": "fur", "ledge": true}}`,
 //! - a node with a mesh: `{"clamber": {"role": "collision"}}`,
-//! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "radius": 0.4, "major": true}}}`.
+//! - a node under a joint: `{"clamber": {"weak_point": {"hit_points": 3.0, "radius": 0.4, "major": true}}}`,
+//! - an animation: `{"clamber": {"speed": 1.4, "markers": [{"name": "step_left", "time": 0.5}]}}`.
 
 use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
-use gltf::{Material, Node};
+use clamber_surface::rig::{Clip, Marker};
+use gltf::{Animation, Material, Node};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -105,6 +107,29 @@ impl WeakPointExtras {
     }
 }
 
+/// How much later than the end of its clip a marker may be written, seconds.
+const ROUNDED: f64 = 1e-3;
+
+#[derive(Debug, Default, PartialEq, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object such as {\"markers\": [{\"name\": \"hit\", \"time\": 0.4}]}"
+)]
+struct AnimationExtras {
+    /// Metres a second over ground.
+    speed: Option<f64>,
+    #[serde(default)]
+    markers: Vec<MarkerExtras>,
+}
+
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MarkerExtras {
+    name: String,
+    /// Seconds after the clip's first key frame.
+    time: f64,
+}
+
 /// A boolean, which may also be written as 1 or 0: some tools have no checkbox for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "serde_json::Value")]
@@ -201,6 +226,27 @@ fn of_node(node: &Node<'_>) -> Result<NodeExtras, GltfErrorKind> {
     }
 }
 
+/// A clip with the markers and the speed in its animation's extras.
+pub(crate) fn with_markers(animation: &Animation<'_>, clip: Clip) -> Result<Clip, GltfErrorKind> {
+    let object = || format!("extras of animation {:?}", clip.name);
+    let extras: AnimationExtras = ours(animation.extras(), object)?;
+    let duration = clip.duration();
+    let marker = |MarkerExtras { name, time }| Marker {
+        name,
+        // The times of key frames are rounded to f32, this one is not.
+        time: if time < duration + ROUNDED {
+            time.min(duration)
+        } else {
+            time
+        },
+    };
+    let markers = extras.markers.into_iter().map(marker).collect();
+    let object = object();
+    clip.with_markers(markers)
+        .and_then(|clip| clip.with_ground_speed(extras.speed))
+        .map_err(|reason| GltfErrorKind::invalid(object, reason))
+}
+
 fn ours<T: DeserializeOwned + Default>(
     extras: &gltf::json::Extras,
     object: impl Fn() -> String,
@@ -275,6 +321,22 @@ mod tests {
             "{role}"
         );
         assert!(parse::<NodeExtras>(r#"{"clamber": {"weak_point": {}}}"#).is_err());
+    }
+
+    #[test]
+    fn an_animation_has_a_speed_and_markers() {
+        let text = r#"{"clamber": {"speed": 1.5, "markers": [{"name": "hit", "time": 0.4}]}}"#;
+        let extras: AnimationExtras = parse(text).unwrap();
+        let (name, time) = ("hit".to_owned(), 0.4);
+        assert_eq!(extras.markers, [MarkerExtras { name, time }]);
+        assert_eq!(extras.speed, Some(1.5));
+        for text in [
+            r#"{"clamber": {"markers": [{"name": "hit"}]}}"#,
+            r#"{"clamber": {"marker": []}}"#,
+            r#"{"clamber": [0.4]}"#,
+        ] {
+            assert!(parse::<AnimationExtras>(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Scales a creature to a height.
 //!
 //! One factor multiplies every length: positions of vertices; translations of joints, of inverse bind matrices and of
-//! clips, tangents included; positions and radii of weak points. Rotations and scales are kept, so every pose is the
-//! unscaled one times the factor. Each number is multiplied in f64 and rounded once.
+//! clips, tangents included; speeds of clips; positions and radii of weak points. Rotations and scales are kept, so every
+//! pose is the unscaled one times the factor. Each number is multiplied in f64 and rounded once.
 
 use clamber_surface::mesh::ColliderMesh;
 use clamber_surface::rig::{Channel, Clip, Keyframes, RigError, Skeleton};
@@ -110,7 +110,9 @@ fn clip(clip: &Clip, factor: f64) -> Result<Clip, RigError> {
         Channel::new(channel.joint(), channel.interpolation(), times, values)
     });
     let channels: Result<Vec<Channel>, RigError> = scaled.collect();
-    Ok(Clip::new(clip.name.clone(), channels?))
+    Clip::new(clip.name.clone(), channels?)
+        .with_markers(clip.markers().to_vec())?
+        .with_ground_speed(clip.ground_speed().map(|speed| speed * factor))
 }
 
 fn times(point: Vec3, factor: f64) -> Vec3 {

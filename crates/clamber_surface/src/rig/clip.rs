@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::transform::{lerp, rotation_f32, rotation_f64, unit_rotation};
-use super::{JointId, Pose, RigError};
+use super::{JointId, Marker, Pose, RigError, Transform};
 use crate::geometry::{round_to_f32, slerp, widen};
 
 /// How a channel interpolates between key frames.
@@ -119,9 +119,8 @@ impl Channel {
         (self.times[0], self.times[self.times.len() - 1])
     }
 
-    /// Writes the value at `time` (clamped to the channel's own key frames) into the pose.
-    fn sample_into(&self, time: f64, pose: &mut Pose) {
-        let transform = &mut pose.transforms[self.joint.0 as usize];
+    /// Writes the value at `time` (clamped to the channel's own key frames) into its joint's transform.
+    fn sample_into(&self, time: f64, transform: &mut Transform) {
         let at = self.locate(time);
         match &self.values {
             Keyframes::Translation(values) => {
@@ -242,6 +241,8 @@ pub struct Clip {
     /// Name of the clip, as its file or the caller gives it.
     pub name: String,
     channels: Vec<Channel>,
+    markers: Vec<Marker>,
+    ground_speed: Option<f64>,
     start: f64,
     end: f64,
 }
@@ -262,9 +263,56 @@ impl Clip {
         Self {
             name: name.into(),
             channels,
+            markers: Vec::new(),
+            ground_speed: None,
             start,
             end,
         }
+    }
+
+    /// The same clip with markers in place of those that it has. They are sorted by time; those of the same time keep
+    /// their order.
+    ///
+    /// # Errors
+    /// [`RigError::MarkerOutOfRange`] if a marker's time is not from 0 to the clip's duration.
+    pub fn with_markers(mut self, mut markers: Vec<Marker>) -> Result<Self, RigError> {
+        let duration = self.duration();
+        let is_out = |marker: &&Marker| !(0.0..=duration).contains(&marker.time);
+        if let Some(Marker { name, time }) = markers.iter().find(is_out).cloned() {
+            return Err(RigError::MarkerOutOfRange {
+                name,
+                time,
+                duration,
+            });
+        }
+        markers.sort_by(|a, b| a.time.total_cmp(&b.time));
+        self.markers = markers;
+        Ok(self)
+    }
+
+    /// The same clip with another [ground speed](Self::ground_speed); `None` if it has none.
+    ///
+    /// # Errors
+    /// [`RigError::NotFinite`] if the speed is not finite.
+    pub fn with_ground_speed(mut self, speed: Option<f64>) -> Result<Self, RigError> {
+        if speed.is_some_and(|speed| !speed.is_finite()) {
+            return Err(RigError::NotFinite {
+                what: format!("the ground speed of clip {}", self.name),
+            });
+        }
+        self.ground_speed = speed;
+        Ok(self)
+    }
+
+    /// Named moments, by ascending time.
+    pub fn markers(&self) -> &[Marker] {
+        &self.markers
+    }
+
+    /// The speed over ground for which the clip was made, in the units of the model a second, so that feet on the ground
+    /// do not slide. `None` if the clip does not say.
+    pub fn ground_speed(&self) -> Option<f64> {
+        self.ground_speed
     }
 
     /// The channels, in the order in which the clip was given them.
@@ -299,11 +347,7 @@ impl Clip {
         playback: Playback,
         pose: &mut Pose,
     ) -> Result<(), RigError> {
-        if !time.is_finite() {
-            return Err(RigError::NotFinite {
-                what: format!("time {time} in clip {}", self.name),
-            });
-        }
+        self.check_time(time)?;
         let joints = pose.transforms.len();
         if let Some(bad) = self.channels.iter().find(|c| c.joint.0 as usize >= joints) {
             return Err(RigError::JointOutOfRange {
@@ -311,16 +355,51 @@ impl Clip {
                 joints,
             });
         }
+        let time = self.start + self.within(time, playback);
+        for channel in &self.channels {
+            channel.sample_into(time, &mut pose.transforms[channel.joint.index()]);
+        }
+        Ok(())
+    }
+
+    /// The transform of one joint at `time`, relative to its parent, as [`Clip::sample`] has it in its pose. `rest` is
+    /// kept where no channel moves the joint.
+    ///
+    /// # Errors
+    /// [`RigError::NotFinite`] if `time` is not finite.
+    pub fn sample_joint(
+        &self,
+        joint: JointId,
+        rest: Transform,
+        time: f64,
+        playback: Playback,
+    ) -> Result<Transform, RigError> {
+        self.check_time(time)?;
+        let time = self.start + self.within(time, playback);
+        let mut transform = rest;
+        for channel in self.channels.iter().filter(|c| c.joint == joint) {
+            channel.sample_into(time, &mut transform);
+        }
+        Ok(transform)
+    }
+
+    fn check_time(&self, time: f64) -> Result<(), RigError> {
+        if time.is_finite() {
+            return Ok(());
+        }
+        Err(RigError::NotFinite {
+            what: format!("time {time} in clip {}", self.name),
+        })
+    }
+
+    /// A time within the clip, 0 to its duration.
+    fn within(&self, time: f64, playback: Playback) -> f64 {
         let duration = self.duration();
-        let within = match playback {
+        match playback {
             Playback::Loop if duration > 0.0 => time.rem_euclid(duration),
             Playback::Loop => 0.0,
             Playback::Clamp => time.clamp(0.0, duration),
-        };
-        for channel in &self.channels {
-            channel.sample_into(self.start + within, pose);
         }
-        Ok(())
     }
 }
 

@@ -60,4 +60,14 @@ pub enum RigError {
         /// Index of the key frame that has the earlier time.
         index: usize,
     },
+    /// A marker's time is not within its clip.
+    #[error("marker {name:?} is at {time} s, but the clip lasts {duration} s")]
+    MarkerOutOfRange {
+        /// Name of the marker.
+        name: String,
+        /// Its time, seconds after the clip's first key frame.
+        time: f64,
+        /// Duration of the clip, seconds.
+        duration: f64,
+    },
 }

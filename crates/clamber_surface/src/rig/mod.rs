@@ -6,6 +6,7 @@
 
 mod clip;
 mod error;
+mod marker;
 mod palette;
 mod pose;
 mod skeleton;
@@ -14,6 +15,7 @@ mod weak_point;
 
 pub use clip::{Channel, Clip, Interpolation, Keyframes, Playback};
 pub use error::RigError;
+pub use marker::Marker;
 pub use palette::Palette;
 pub use pose::Pose;
 pub use skeleton::{Joint, JointId, Skeleton};

@@ -1,0 +1,203 @@
+mod layer;
+mod play;
+mod sample;
+
+use clamber_surface::rig::{Playback, Pose};
+
+pub use layer::{Layer, LayerKind};
+pub use play::AnimationEvent;
+pub use sample::PoseBuffers;
+
+use crate::error::{finite, within};
+use crate::inertialize::{Course, Offsets};
+use crate::{AnimationError, AnimationSet, ClipId};
+
+/// Plays clips on one creature: layers, transitions, time.
+///
+/// It is a plain value without references. The clips stand in an [`AnimationSet`], which all calls get; the pose is a
+/// function of the two. So a clone is a snapshot, and two animators that are equal go on equally.
+///
+/// ```
+/// use clamber_animation::{AnimationSet, Animator, Layer, PoseBuffers};
+/// # use clamber_surface::geometry::Affine;
+/// # use clamber_surface::rig::*;
+/// # let joint = Joint {
+/// #     name: "root".into(), parent: None, rest: Transform::IDENTITY, inverse_bind: Affine::IDENTITY,
+/// # };
+/// # let skeleton = Skeleton::new(vec![joint])?;
+/// # let times = vec![0.0, 1.0];
+/// # let values = Keyframes::Translation(vec![glam::Vec3::ZERO, glam::Vec3::Y]);
+/// # let channel = Channel::new(JointId(0), Interpolation::Linear, times, values)?;
+/// # let clips = vec![Clip::new("idle", vec![]), Clip::new("walk", vec![channel])];
+/// let set = AnimationSet::new(&skeleton, clips)?;
+/// let (idle, walk) = (set.find("idle").ok_or("no idle")?, set.find("walk").ok_or("no walk")?);
+///
+/// let mut animator = Animator::new(vec![Layer::new(idle)]);
+/// let (mut pose, mut buffers, mut events) = (set.rest().clone(), PoseBuffers::default(), Vec::new());
+/// animator.play(&set, 0, walk, 0.3)?; // within 0.3 s
+/// for _ in 0..60 {
+///     events.clear();
+///     animator.advance(&set, 1.0 / 60.0, &mut events)?; // events: markers that were passed
+///     animator.pose_into(&set, &mut pose, &mut buffers)?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Animator {
+    layers: Vec<Layer>,
+    /// Seconds of the layers per second.
+    rate: f64,
+    /// What is left of the pose before the last change.
+    offsets: Offsets,
+}
+
+/// Seconds between the two poses from which velocities are taken. Poses are f32: over less time their rounding would
+/// show, over more time the change of velocity would.
+const STEP: f64 = 1.0 / 4096.0;
+
+impl Animator {
+    /// Plays layers from the lowest to the topmost one.
+    pub fn new(layers: Vec<Layer>) -> Self {
+        Self {
+            layers,
+            rate: 1.0,
+            offsets: Offsets::default(),
+        }
+    }
+
+    /// The layers, the lowest first.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    /// The layers, to drive weights and speeds from frame to frame. What is changed here shows at once: a change of a
+    /// clip needs [`Animator::change`].
+    pub fn layers_mut(&mut self) -> &mut [Layer] {
+        &mut self.layers
+    }
+
+    /// Seconds of the layers per second; 1 unless it was set.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Plays all layers at another rate; negative plays backwards.
+    ///
+    /// # Errors
+    /// [`AnimationError::OutOfRange`] if it is not finite.
+    pub fn set_rate(&mut self, rate: f64) -> Result<(), AnimationError> {
+        finite("the rate", rate)?;
+        self.rate = rate;
+        Ok(())
+    }
+
+    /// Plays clips that were made for one size on a creature that is `scale` times as large: at the rate
+    /// `1 / sqrt(scale)`, so that things fall, swing and stride as they do under the same gravity (Froude's law; Alexander
+    /// 1989, "Optimization and gaits in the locomotion of vertebrates").
+    ///
+    /// # Errors
+    /// [`AnimationError::OutOfRange`] if the scale is not finite or not more than 0.
+    pub fn set_scale(&mut self, scale: f64) -> Result<(), AnimationError> {
+        let least = f64::MIN_POSITIVE;
+        within(
+            "the scale",
+            "finite and more than 0",
+            scale,
+            least,
+            f64::MAX,
+        )?;
+        self.rate = 1.0 / scale.sqrt();
+        Ok(())
+    }
+
+    /// Changes layers in any way; the pose passes to that of the new layers within `fade` seconds, by inertialisation: it
+    /// goes on with its velocity, and only the new layers are sampled from now on. A fade of 0 shows the change at once.
+    /// Changes may come during other changes, as often as you like. Allocates.
+    ///
+    /// # Errors
+    /// [`AnimationError::OutOfRange`] if the fade is negative or not finite, and the errors of
+    /// [`Animator::pose_into`] for the layers before and after the change.
+    pub fn change(
+        &mut self,
+        set: &AnimationSet,
+        fade: f64,
+        change: impl FnOnce(&mut Vec<Layer>),
+    ) -> Result<(), AnimationError> {
+        within("the fade", "finite and not negative", fade, 0.0, f64::MAX)?;
+        let mut changed = self.clone();
+        changed.offsets.clear();
+        change(&mut changed.layers);
+        let to = changed.course(set)?;
+        if fade > 0.0 {
+            let from = self.course(set)?;
+            let courses = [&from, &to].map(|[now, then]| Course { now, then });
+            changed
+                .offsets
+                .restart(&courses[0], &courses[1], STEP, fade);
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Plays a clip on a layer from the clip's start; see [`Animator::change`].
+    ///
+    /// # Errors
+    /// [`AnimationError::NoLayer`] if the layer does not exist, and those of [`Animator::change`].
+    pub fn play(
+        &mut self,
+        set: &AnimationSet,
+        layer: usize,
+        clip: ClipId,
+        fade: f64,
+    ) -> Result<(), AnimationError> {
+        let layers = self.layers.len();
+        if layer >= layers {
+            let found = layer;
+            return Err(AnimationError::NoLayer { found, layers });
+        }
+        self.change(set, fade, |layers| {
+            layers[layer].clip = clip;
+            layers[layer].time = 0.0;
+        })
+    }
+
+    /// True while the pose passes from one animation to another.
+    pub fn is_fading(&self) -> bool {
+        !self.offsets.is_empty()
+    }
+
+    /// The pose now, and a moment later if it goes on as it does.
+    fn course(&self, set: &AnimationSet) -> Result<[Pose; 2], AnimationError> {
+        let mut buffers = PoseBuffers::default();
+        let mut at = |shift: f64| -> Result<Pose, AnimationError> {
+            let mut pose = Pose::default();
+            self.sample(set, shift, &mut pose, &mut buffers)?;
+            Ok(pose)
+        };
+        Ok([at(0.0)?, at(STEP)?])
+    }
+}
+
+impl Layer {
+    /// A layer that plays a clip in a loop, over all that is below it.
+    pub fn new(clip: ClipId) -> Self {
+        Self {
+            clip,
+            time: 0.0,
+            speed: 1.0,
+            weight: 1.0,
+            playback: Playback::Loop,
+            kind: LayerKind::Override,
+            mask: None,
+        }
+    }
+
+    /// A layer that plays a clip once and holds its end.
+    pub fn once(clip: ClipId) -> Self {
+        Self {
+            playback: Playback::Clamp,
+            ..Self::new(clip)
+        }
+    }
+}

@@ -1,0 +1,134 @@
+use clamber_surface::geometry::slerp;
+use clamber_surface::rig::{Playback, Pose, Transform};
+use glam::DQuat;
+
+use super::{Animator, Layer, LayerKind};
+use crate::pose::{rotation_of, store_rotation};
+use crate::{AnimationError, AnimationSet};
+
+/// Memory for [`Animator::pose_into`], kept from frame to frame so that it does not allocate. Holds nothing else.
+#[derive(Clone, Debug, Default)]
+pub struct PoseBuffers {
+    sampled: Pose,
+    first: Pose,
+}
+
+impl Animator {
+    /// The pose at the animator's time. Allocates nothing once the pose and the buffers have the skeleton's size.
+    ///
+    /// # Errors
+    /// [`AnimationError::NoClip`] or [`AnimationError::NoMask`] if a layer names what the set does not have,
+    /// [`AnimationError::OutOfRange`] if a layer's number is not finite or its weight is not from 0 to 1. The pose's
+    /// content is then undefined.
+    pub fn pose_into(
+        &self,
+        set: &AnimationSet,
+        pose: &mut Pose,
+        buffers: &mut PoseBuffers,
+    ) -> Result<(), AnimationError> {
+        self.sample(set, 0.0, pose, buffers)
+    }
+
+    /// The pose `shift` seconds from now, if everything goes on as it does.
+    pub(super) fn sample(
+        &self,
+        set: &AnimationSet,
+        shift: f64,
+        pose: &mut Pose,
+        buffers: &mut PoseBuffers,
+    ) -> Result<(), AnimationError> {
+        pose.transforms.clone_from(&set.rest().transforms);
+        for layer in &self.layers {
+            layer.check()?;
+            let time = layer.time + shift * layer.speed * self.rate;
+            match layer.kind {
+                LayerKind::Override if layer.weight >= 1.0 && layer.mask.is_none() => {
+                    sample_clip(set, layer, time, pose)?;
+                }
+                LayerKind::Override => {
+                    sample_clip(set, layer, time, &mut buffers.sampled)?;
+                    each_joint(set, layer, pose, |index, joint, share| {
+                        *joint = mix(joint, &buffers.sampled.transforms[index], share);
+                    })?;
+                }
+                LayerKind::Additive => {
+                    sample_clip(set, layer, time, &mut buffers.sampled)?;
+                    sample_clip(set, layer, 0.0, &mut buffers.first)?;
+                    let (sampled, first) = (&buffers.sampled.transforms, &buffers.first.transforms);
+                    each_joint(set, layer, pose, |index, joint, share| {
+                        add(joint, &first[index], &sampled[index], share);
+                    })?;
+                }
+            }
+        }
+        self.offsets.add_to(pose, shift);
+        Ok(())
+    }
+}
+
+/// The pose of a layer's clip; joints that it does not move are at rest.
+fn sample_clip(
+    set: &AnimationSet,
+    layer: &Layer,
+    time: f64,
+    pose: &mut Pose,
+) -> Result<(), AnimationError> {
+    let clip = set.clip(layer.clip)?;
+    pose.transforms.clone_from(&set.rest().transforms);
+    // Before its start, a clip that is played once is at its start.
+    clip.sample_into(time, layer.playback, pose)?;
+    if let Some(root) = set.root() {
+        root.remove(clip, pose)?;
+    }
+    Ok(())
+}
+
+/// Calls `change` for every joint that a layer moves, with the joint's share of the layer.
+fn each_joint(
+    set: &AnimationSet,
+    layer: &Layer,
+    pose: &mut Pose,
+    mut change: impl FnMut(usize, &mut Transform, f64),
+) -> Result<(), AnimationError> {
+    let mask = layer.mask.map(|mask| set.mask(mask)).transpose()?;
+    for (index, joint) in pose.transforms.iter_mut().enumerate() {
+        let share = mask.map_or(1.0, |mask| f64::from(mask.shares()[index]));
+        let share = share * layer.weight;
+        if share > 0.0 {
+            change(index, joint, share);
+        }
+    }
+    Ok(())
+}
+
+/// A transform between two: vectors linearly, rotations along the shorter arc.
+fn mix(from: &Transform, to: &Transform, share: f64) -> Transform {
+    let lerp = |a: glam::Vec3, b: glam::Vec3| (a.as_dvec3().lerp(b.as_dvec3(), share)).as_vec3();
+    let mut mixed = Transform {
+        translation: lerp(from.translation, to.translation),
+        scale: lerp(from.scale, to.scale),
+        rotation: from.rotation,
+    };
+    store_rotation(&mut mixed, slerp(rotation_of(from), rotation_of(to), share));
+    mixed
+}
+
+/// Adds a share of the difference between two transforms to a third.
+fn add(joint: &mut Transform, first: &Transform, sampled: &Transform, share: f64) {
+    let way = sampled.translation.as_dvec3() - first.translation.as_dvec3();
+    joint.translation = (joint.translation.as_dvec3() + way * share).as_vec3();
+    let turn = rotation_of(first).conjugate() * rotation_of(sampled);
+    let turn = slerp(DQuat::IDENTITY, turn, share);
+    store_rotation(joint, rotation_of(joint) * turn);
+    let grown = sampled.scale.as_dvec3() - first.scale.as_dvec3();
+    joint.scale = (joint.scale.as_dvec3() + grown * share).as_vec3();
+}
+
+/// How a clip goes on, with its loop counted: the time within the clip, and how many ends it passed.
+pub(super) fn within(time: f64, duration: f64, playback: Playback) -> (f64, f64) {
+    match playback {
+        Playback::Loop if duration > 0.0 => (time.rem_euclid(duration), (time / duration).floor()),
+        Playback::Loop => (0.0, 0.0),
+        Playback::Clamp => (time.clamp(0.0, duration), 0.0),
+    }
+}

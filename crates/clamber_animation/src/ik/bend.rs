@@ -1,0 +1,91 @@
+//! Two bones in a plane, by similar triangles instead of angles.
+//!
+//! With the shoulder at the origin, the target at distance `d` along `u`, and bones of lengths `a` and `b`, the elbow is
+//! at `along = (a² - b² + d²) / 2d` on the line to the target and `across = sqrt((a - along)(a + along))` beside it, on the
+//! side of the pole. No inverse trigonometry is needed, and the product keeps digits that `a² - along²` loses near a
+//! straight arm. (Lander 1998, "Oh My God, I Inverted Kine!", Game Developer, has the same triangle with angles.)
+
+use glam::DVec3;
+
+/// Whether a limb reached its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// Its end is at the target.
+    Reached,
+    /// The target is too far, or in the soft part of its reach; what is missing, metres.
+    Short(f64),
+    /// The target is nearer than the limb can fold; by how much, metres.
+    TooNear(f64),
+}
+
+/// Two bones that were bent towards a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bend {
+    /// Elbow or knee, relative to the shoulder or hip.
+    pub elbow: DVec3,
+    /// Hand or foot, relative to the shoulder or hip.
+    pub end: DVec3,
+    /// Whether that is the target.
+    pub reach: Reach,
+}
+
+/// Bends two bones so that their end is at `target`, relative to where they begin.
+///
+/// `lengths` are those of the bones, not both 0. `pole` is the side to which the elbow goes: of any length, and only its
+/// part across the line to the target counts. Where it has none, any side is taken. `soft` is the share of the full length
+/// from which a far target is approached softly, more than 0 to 1, where 1 does not; see [`soft_distance`]. `least` is the
+/// smallest distance to which the limb folds.
+///
+/// All arguments must be finite. The end is at the target to 1e-6 of the bones' length, or `reach` says what is missing.
+pub fn bend(lengths: [f64; 2], target: DVec3, pole: DVec3, soft: f64, least: f64) -> Bend {
+    let [first, second] = lengths;
+    let full = first + second;
+    let wanted = target.length();
+    // A target on the shoulder has no direction: the limb folds across the pole.
+    let direction = if wanted > 1e-12 * full {
+        target / wanted
+    } else {
+        pole.any_orthogonal_vector().normalize_or(DVec3::X)
+    };
+    let nearest = least.max((first - second).abs()).min(full);
+    let distance = soft_distance(wanted, full, soft).max(nearest);
+    let along = if distance > 0.0 {
+        (first * first - second * second + distance * distance) / (2.0 * distance)
+    } else {
+        0.0
+    };
+    let across = ((first - along) * (first + along)).max(0.0).sqrt();
+    let side = pole - direction * pole.dot(direction);
+    let side = side
+        .try_normalize()
+        .unwrap_or_else(|| direction.any_orthonormal_vector());
+    let gap = wanted - distance;
+    Bend {
+        elbow: direction * along + side * across,
+        end: direction * distance,
+        reach: if gap.abs() <= 1e-9 * full {
+            Reach::Reached
+        } else if gap > 0.0 {
+            Reach::Short(gap)
+        } else {
+            Reach::TooNear(-gap)
+        },
+    }
+}
+
+/// The distance to which a limb of length `full` reaches for a target at `distance`: the distance itself up to
+/// `soft * full`, then ever less of it, never more than `full`.
+///
+/// An elbow stretches infinitely fast when a target leaves its reach; with this it does not. The map and its slope are
+/// continuous, its slope is at most 1, and a target at exactly the full length is missed by `(1 - soft) / e` of it.
+pub fn soft_distance(distance: f64, full: f64, soft: f64) -> f64 {
+    let start = soft * full;
+    let room = full - start;
+    if distance <= start {
+        distance
+    } else if room > 0.0 {
+        start + room * -libm::expm1(-(distance - start) / room)
+    } else {
+        full
+    }
+}

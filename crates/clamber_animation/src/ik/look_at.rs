@@ -1,0 +1,251 @@
+use clamber_surface::rig::{JointId, Pose, Skeleton};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::two_bone::check_pose;
+use super::{IkError, arc};
+use crate::space::{model_from_joint, model_from_parent, turn_in_model};
+use crate::spring::rotation_from_vector;
+use clamber_surface::geometry::rotation_vector;
+
+/// How far a gaze turns from straight ahead, radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LookLimits {
+    /// To either side.
+    pub yaw: f64,
+    /// Up and down.
+    pub pitch: f64,
+}
+
+impl Default for LookLimits {
+    /// 80° to either side, 60° up and down.
+    fn default() -> Self {
+        Self {
+            yaw: 80f64.to_radians(),
+            pitch: 60f64.to_radians(),
+        }
+    }
+}
+
+/// Turns a chain of joints, from the head down to the neck or the spine, so that the eye looks at a target.
+///
+/// Each joint takes its share of the turn that is left after the joints above it, and the last one takes all of the rest,
+/// so that the gaze arrives; no iteration is needed (Guillaume Blanc, ozz-animation, sample "look at").
+#[derive(Clone, Debug, PartialEq)]
+pub struct LookAt {
+    /// From the head down, with shares.
+    joints: Vec<(JointId, f64)>,
+    /// In the head's own space: where the eye is, and where it looks.
+    eye: DVec3,
+    forward: DVec3,
+    limits: LookLimits,
+    /// At rest, in the space of the last joint's parent: ahead and up.
+    ahead: DVec3,
+    up: DVec3,
+}
+
+/// What a gaze remembers, so that it does not jump from one shoulder to the other when a target passes behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LookMemory {
+    /// The side to which it looks: 1 is left, -1 right, 0 not known yet.
+    side: f64,
+    /// Seconds since it changed.
+    since: f64,
+}
+
+/// How far beyond straight behind a target must be to change the side, and how long the side stays, radians and seconds.
+const BEHIND: f64 = 0.35;
+const STAYS: f64 = 1.0;
+
+impl LookAt {
+    /// A gaze by the joints of `chain`, from the head down, each with the share that it takes of the turn that is left, 0
+    /// to 1; the last one takes all of it. `eye` and `forward` are in the head's own space, `up` is the creature's up in
+    /// model space at rest.
+    ///
+    /// # Errors
+    /// [`IkError::BadSetUp`] if the chain is empty, a share is not from 0 to 1, or `forward` or `up` have no length or are
+    /// parallel at rest; [`IkError::NoJoint`]; [`IkError::NotAChain`] if a joint is not above the joint before it;
+    /// [`IkError::NotInvertible`].
+    pub fn new(
+        skeleton: &Skeleton,
+        chain: &[(JointId, f64)],
+        eye: DVec3,
+        forward: DVec3,
+        up: DVec3,
+    ) -> Result<Self, IkError> {
+        let joints = skeleton.joints().len();
+        let (Some(&(head, _)), Some(&(last, _))) = (chain.first(), chain.last()) else {
+            return Err(IkError::BadSetUp("a look-at chain has no joints"));
+        };
+        for &(joint, share) in chain {
+            if joint.index() >= joints {
+                return Err(IkError::NoJoint { joint, joints });
+            }
+            if !(0.0..=1.0).contains(&share) {
+                return Err(IkError::BadSetUp("a joint's share is not from 0 to 1"));
+            }
+        }
+        for pair in chain.windows(2) {
+            let (joint, ancestor) = (pair[0].0, pair[1].0);
+            if joint == ancestor || !skeleton.is_descendant_or_self(joint, ancestor) {
+                return Err(IkError::NotAChain { joint, ancestor });
+            }
+        }
+        let rest = skeleton.rest_pose();
+        let parent = model_from_parent(skeleton, &rest, last).matrix3;
+        let inverse = crate::space::invertible(&parent, last)?;
+        let ahead_in_model = model_from_joint(skeleton, &rest, head).matrix3 * forward;
+        let ahead = (inverse * ahead_in_model).try_normalize();
+        let up = (inverse * up).try_normalize();
+        let (Some(ahead), Some(up), true) = (ahead, up, eye.is_finite()) else {
+            return Err(IkError::BadSetUp(
+                "the eye, forward or up is not finite or has no length",
+            ));
+        };
+        let level = (ahead - up * ahead.dot(up)).try_normalize();
+        if level.is_none() {
+            return Err(IkError::BadSetUp("forward and up are parallel"));
+        }
+        Ok(Self {
+            joints: chain.to_vec(),
+            eye,
+            forward: forward.normalize(),
+            limits: LookLimits::default(),
+            ahead,
+            up,
+        })
+    }
+
+    /// The same gaze with other limits.
+    ///
+    /// # Errors
+    /// [`IkError::BadSetUp`] if the yaw is not from 0 to pi or the pitch not from 0 to a quarter turn.
+    pub fn with_limits(self, limits: LookLimits) -> Result<Self, IkError> {
+        use core::f64::consts::{FRAC_PI_2, PI};
+        if (0.0..=PI).contains(&limits.yaw) && (0.0..=FRAC_PI_2).contains(&limits.pitch) {
+            Ok(Self { limits, ..self })
+        } else {
+            Err(IkError::BadSetUp("a look-at limit is out of range"))
+        }
+    }
+
+    /// Turns the gaze of a pose towards a target in model space: by `weight`, 0 (not at all) to 1 (all the way), and within
+    /// the limits. `dt` is the time since the last call with this memory, seconds. Returns the angle between the gaze and the
+    /// target that is left, radians.
+    ///
+    /// # Errors
+    /// [`IkError::NotFinite`] for target, weight or pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and
+    /// [`IkError::Sheared`] if a joint's parents scale unevenly. The pose is unchanged then.
+    pub fn solve(
+        &self,
+        skeleton: &Skeleton,
+        pose: &mut Pose,
+        target: DVec3,
+        weight: f64,
+        memory: &mut LookMemory,
+        dt: f64,
+    ) -> Result<f64, IkError> {
+        check_pose(skeleton, pose)?;
+        if !target.is_finite() || !weight.is_finite() {
+            return Err(IkError::NotFinite("a target or a weight"));
+        }
+        let (head, last) = (self.joints[0].0, self.joints[self.joints.len() - 1].0);
+        // Everything that can fail, before anything is changed.
+        for (joint, _) in &self.joints {
+            let parent = model_from_parent(skeleton, pose, *joint).matrix3;
+            crate::space::uniform_scale(&parent, *joint)?;
+        }
+        let base = model_from_parent(skeleton, pose, last).matrix3;
+        let from_head = model_from_joint(skeleton, pose, head);
+        let eye = from_head.transform_point3(self.eye);
+        let Some(gaze) = from_head.transform_vector3(self.forward).try_normalize() else {
+            return Err(IkError::NotInvertible(head));
+        };
+        let Some(to_target) = (target - eye).try_normalize() else {
+            return Ok(0.0);
+        };
+        let allowed = self.limited(&base, to_target, memory, dt);
+        let turn = rotation_vector(arc(gaze, allowed));
+        let wanted = rotation_from_vector(turn * weight.clamp(0.0, 1.0)) * gaze;
+        // As a point as far away as the target: the eye moves when the head turns.
+        let point = eye + wanted * (target - eye).length();
+        let count = self.joints.len();
+        for (index, &(joint, share)) in self.joints.iter().enumerate() {
+            let share = if index + 1 == count { 1.0 } else { share };
+            self.turn_joint(skeleton, pose, joint, point, share)?;
+        }
+        let from_head = model_from_joint(skeleton, pose, head);
+        let gaze = from_head
+            .transform_vector3(self.forward)
+            .normalize_or_zero();
+        let left = (target - from_head.transform_point3(self.eye)).normalize_or(gaze);
+        Ok(libm::atan2(gaze.cross(left).length(), gaze.dot(left)))
+    }
+
+    /// Turns one joint by a share of what makes the eye look at a point.
+    fn turn_joint(
+        &self,
+        skeleton: &Skeleton,
+        pose: &mut Pose,
+        joint: JointId,
+        point: DVec3,
+        share: f64,
+    ) -> Result<(), IkError> {
+        let parent = model_from_parent(skeleton, pose, joint);
+        let origin = (parent * pose.transforms[joint.index()].to_affine()).translation;
+        let from_head = model_from_joint(skeleton, pose, self.joints[0].0);
+        let eye = from_head.transform_point3(self.eye) - origin;
+        let Some(gaze) = from_head.transform_vector3(self.forward).try_normalize() else {
+            return Ok(());
+        };
+        let target = point - origin;
+        // The point of the line of sight that is as far from the joint as the target: turned onto the target, it makes the
+        // eye look there. A target that is nearer than the line of sight passes cannot be looked at.
+        let along = eye.dot(gaze);
+        let room = along * along - (eye.length_squared() - target.length_squared());
+        if room < 0.0 {
+            return Ok(());
+        }
+        let seen = eye + gaze * (room.sqrt() - along);
+        let (Some(seen), Some(target)) = (seen.try_normalize(), target.try_normalize()) else {
+            return Ok(());
+        };
+        let turn = rotation_vector(arc(seen, target)) * share;
+        turn_in_model(pose, joint, &parent, rotation_from_vector(turn))
+    }
+
+    /// The direction nearest to one towards the target that the limits allow.
+    fn limited(&self, base: &DMat3, to_target: DVec3, memory: &mut LookMemory, dt: f64) -> DVec3 {
+        use core::f64::consts::{PI, TAU};
+        let up = (*base * self.up).normalize_or(DVec3::Y);
+        let ahead = *base * self.ahead;
+        let level = (ahead - up * ahead.dot(up)).normalize_or(up.any_orthonormal_vector());
+        let left = up.cross(level);
+        let (x, y, z) = (to_target.dot(level), to_target.dot(left), to_target.dot(up));
+        let level_length = (x * x + y * y).sqrt();
+        let mut yaw = libm::atan2(y, x);
+        let pitch = libm::atan2(z, level_length);
+        memory.since += dt.max(0.0);
+        let side = if yaw < 0.0 { -1.0 } else { 1.0 };
+        let is_behind = yaw.abs() > self.limits.yaw;
+        if memory.side == 0.0 || !is_behind {
+            // In front the gaze passes from side to side by itself.
+            if memory.side != side {
+                memory.since = if is_behind { 0.0 } else { STAYS };
+            }
+            memory.side = side;
+        } else if side != memory.side {
+            let is_clear = yaw.abs() < PI - BEHIND;
+            if is_clear && memory.since >= STAYS {
+                (memory.side, memory.since) = (side, 0.0);
+            } else {
+                yaw += TAU * memory.side;
+            }
+        }
+        let yaw = yaw.clamp(-self.limits.yaw, self.limits.yaw);
+        let pitch = pitch.clamp(-self.limits.pitch, self.limits.pitch);
+        let about = |axis: DVec3, angle: f64| -> DQuat { rotation_from_vector(axis * angle) };
+        // Left is a positive turn about up, and up a negative one about left.
+        about(up, yaw) * (about(left, -pitch) * level)
+    }
+}

@@ -1,0 +1,95 @@
+//! Inverse kinematics: joints are turned so that a hand, a foot or a gaze gets where it should.
+//!
+//! All solvers work on a [`Pose`](clamber_surface::rig::Pose) and take targets in model space. They change rotations
+//! only, so bones keep their lengths. They solve in the space of the chain's parent: parents that are mirrored or scaled,
+//! even unevenly, are no approximation. A joint *within* a chain must scale uniformly, else [`IkError::Sheared`].
+
+mod aim;
+mod bend;
+mod chain;
+mod error;
+mod limits;
+mod look_at;
+mod pole;
+mod two_bone;
+
+pub use aim::aim;
+pub use bend::{Bend, Reach, bend, soft_distance};
+pub use chain::Chain;
+pub use error::IkError;
+pub use limits::SwingTwist;
+pub use look_at::{LookAt, LookLimits, LookMemory};
+pub use pole::PoleMemory;
+pub use two_bone::{TwoBone, TwoBoneGoal};
+
+use glam::{DQuat, DVec3};
+
+/// The smallest rotation from one unit vector to another, without trigonometry. For opposite vectors it is half a turn
+/// about any axis across them.
+pub(crate) fn arc(from: DVec3, to: DVec3) -> DQuat {
+    let half = from + to;
+    let length_sq = half.length_squared();
+    // Below this the cross product is all rounding.
+    if length_sq < 1e-20 {
+        let axis = from.any_orthonormal_vector();
+        return DQuat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
+    }
+    let half = half / length_sq.sqrt();
+    let axis = from.cross(half);
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, from.dot(half)).normalize()
+}
+
+/// The rotation that takes one pair of perpendicular unit vectors to another.
+pub(crate) fn frame_turn(from: [DVec3; 2], to: [DVec3; 2]) -> DQuat {
+    let first = arc(from[0], to[0]);
+    let second = first * from[1];
+    // About the first vector of the pair, by the angle between the second ones.
+    let cos = second.dot(to[1]);
+    let sin = second.cross(to[1]).dot(to[0]);
+    let half = DQuat::from_xyzw(to[0].x * sin, to[0].y * sin, to[0].z * sin, 1.0 + cos);
+    let turn = if half.length_squared() > 1e-20 {
+        half.normalize()
+    } else {
+        DQuat::from_xyzw(to[0].x, to[0].y, to[0].z, 0.0)
+    };
+    (turn * first).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_turned_onto_each_other() {
+        let mut rng = fastrand::Rng::with_seed(5);
+        let mut unit = || {
+            let v = DVec3::from([(); 3].map(|()| rng.f64() * 2.0 - 1.0));
+            v.normalize_or(DVec3::X)
+        };
+        for k in 0..10_000 {
+            let mut pair = || {
+                let a = unit();
+                let b = unit();
+                [
+                    a,
+                    (b - a * a.dot(b)).normalize_or(a.any_orthonormal_vector()),
+                ]
+            };
+            let (from, mut to) = (pair(), pair());
+            if k % 4 == 0 {
+                to = [-from[0], from[1]];
+            } else if k % 4 == 1 {
+                to = [from[0], -from[1]];
+            }
+            let turn = frame_turn(from, to);
+            assert!((turn.length() - 1.0).abs() < 1e-12);
+            for (from, to) in from.into_iter().zip(to) {
+                assert!(
+                    (turn * from - to).length() < 1e-7,
+                    "{from} {to}: {}",
+                    turn * from
+                );
+            }
+        }
+    }
+}

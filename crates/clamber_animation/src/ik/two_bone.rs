@@ -1,0 +1,367 @@
+use clamber_surface::rig::{JointId, Pose, Skeleton, Transform};
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::bend::{Reach, bend};
+use super::{IkError, PoleMemory, arc, frame_turn};
+use crate::pose::{rotation_of, store_rotation};
+use crate::space::{invertible, model_from_joint, model_from_parent, uniform_scale};
+
+/// An arm or a leg of a skeleton.
+///
+/// Between its three joints may stand others, such as twist joints, which keep their pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoBone {
+    upper: JointId,
+    lower: JointId,
+    /// The end is a point in the space of a joint: of the lower one, or of one below it.
+    end: JointId,
+    tip: DVec3,
+    /// The axis about which the elbow bends, where the pose does not say: in the upper joint's own space.
+    hinge: DVec3,
+    /// Least angle between the bones, as its cosine.
+    least_cos: f64,
+}
+
+/// What a limb should do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoBoneGoal {
+    /// Where its end should be, in model space.
+    pub target: DVec3,
+    /// To which side of the line from shoulder to target the elbow points: a vector in model space of any length. `None`
+    /// for the side to which the pose bends it.
+    pub pole: Option<DVec3>,
+    /// The share of the limb's length from which a far target is approached softly, more than 0 to 1. 0.97 keeps elbows from
+    /// snapping straight; 1 reaches as far as the bones do, for hands and feet that must not slip.
+    pub soft: f64,
+}
+
+impl TwoBoneGoal {
+    /// Reaches for a point in model space as far as the bones do, and bends the limb where it is bent.
+    pub const fn reach(target: DVec3) -> Self {
+        Self {
+            target,
+            pole: None,
+            soft: 1.0,
+        }
+    }
+}
+
+/// A limb in one pose, in the space of its upper joint's parent.
+struct Posed {
+    model_from_parent: DAffine3,
+    shoulder: DVec3,
+    /// Bones, from shoulder to elbow and from elbow to end.
+    bones: [DVec3; 2],
+    /// Unit vector about which the elbow bends.
+    hinge: DVec3,
+    /// Maps vectors in the space of the lower joint's parent to the upper joint's, without the latter's rotation.
+    upper_from_lower: DMat3,
+}
+
+impl TwoBone {
+    /// The limb from shoulder to elbow to hand, or from hip to knee to foot. `bends_towards` is where the elbow or knee
+    /// points at rest, in model space: forward for knees, backward for elbows. Only its part across the limb counts.
+    ///
+    /// # Errors
+    /// [`IkError::NoJoint`], [`IkError::NotAChain`], [`IkError::NoLength`] if a bone has no length at rest,
+    /// [`IkError::NotInvertible`] and [`IkError::Sheared`] for scales, and [`IkError::BadSetUp`] if `bends_towards` is not
+    /// finite or lies along the limb.
+    pub fn new(
+        skeleton: &Skeleton,
+        [upper, lower, end]: [JointId; 3],
+        bends_towards: DVec3,
+    ) -> Result<Self, IkError> {
+        if end == lower {
+            let (joint, ancestor) = (end, lower);
+            return Err(IkError::NotAChain { joint, ancestor });
+        }
+        Self::with_tip(skeleton, [upper, lower, end], DVec3::ZERO, bends_towards)
+    }
+
+    /// The limb of a rig whose foot does not hang below the knee, but stands beside the leg as a target of its own, as in
+    /// files with baked controls. It ends at a point in the space of the lower joint: that where the foot is at rest.
+    ///
+    /// # Errors
+    /// As [`TwoBone::new`]; [`IkError::BadSetUp`] also if the point is not finite.
+    pub fn to_point(
+        skeleton: &Skeleton,
+        [upper, lower]: [JointId; 2],
+        point: DVec3,
+        bends_towards: DVec3,
+    ) -> Result<Self, IkError> {
+        if !point.is_finite() {
+            return Err(IkError::BadSetUp("where the limb ends is not finite"));
+        }
+        Self::with_tip(skeleton, [upper, lower, lower], point, bends_towards)
+    }
+
+    fn with_tip(
+        skeleton: &Skeleton,
+        [upper, lower, end]: [JointId; 3],
+        tip: DVec3,
+        bends_towards: DVec3,
+    ) -> Result<Self, IkError> {
+        let joints = skeleton.joints().len();
+        if let Some(joint) = [upper, lower, end]
+            .into_iter()
+            .find(|j| j.index() >= joints)
+        {
+            return Err(IkError::NoJoint { joint, joints });
+        }
+        for (joint, ancestor) in [(lower, upper), (end, lower)] {
+            let is_same = joint == ancestor && joint != end;
+            if is_same || !skeleton.is_descendant_or_self(joint, ancestor) {
+                return Err(IkError::NotAChain { joint, ancestor });
+            }
+        }
+        let mut limb = Self {
+            upper,
+            lower,
+            end,
+            tip,
+            hinge: DVec3::X,
+            least_cos: 1.0,
+        };
+        let rest = skeleton.rest_pose();
+        let posed = limb.posed(skeleton, &rest)?;
+        let inverse = invertible(&posed.model_from_parent.matrix3, upper)?;
+        let line = (posed.bones[0] + posed.bones[1])
+            .try_normalize()
+            .or_else(|| posed.bones[0].try_normalize())
+            .unwrap_or(DVec3::X);
+        let side = inverse * bends_towards;
+        let hinge = (side - line * side.dot(line)).cross(line).try_normalize();
+        let hinge = hinge.filter(|_| bends_towards.is_finite());
+        let hinge = hinge.ok_or(IkError::BadSetUp(
+            "where the limb bends to is not finite, or lies along the limb",
+        ))?;
+        let upper_rotation = rotation_of(&rest.transforms[upper.index()]);
+        limb.hinge = upper_rotation.conjugate() * hinge;
+        Ok(limb)
+    }
+
+    /// The same limb, which does not fold further than to this angle between its bones, radians: 0 is folded flat, pi is
+    /// straight.
+    ///
+    /// # Errors
+    /// [`IkError::BadSetUp`] if the angle is not from 0 to pi.
+    pub fn with_least_angle(self, angle: f64) -> Result<Self, IkError> {
+        if !(0.0..=core::f64::consts::PI).contains(&angle) {
+            return Err(IkError::BadSetUp(
+                "a limb's least angle is not from 0 to pi",
+            ));
+        }
+        Ok(Self {
+            least_cos: libm::cos(angle),
+            ..self
+        })
+    }
+
+    /// The joints: shoulder, elbow and hand, or hip, knee and foot; the elbow or knee twice if the limb ends at a
+    /// [point](TwoBone::to_point).
+    pub fn joints(&self) -> [JointId; 3] {
+        [self.upper, self.lower, self.end]
+    }
+
+    /// The lengths of both bones in a pose, in model units where the parents do not scale.
+    ///
+    /// # Errors
+    /// As [`TwoBone::solve`].
+    pub fn lengths(&self, skeleton: &Skeleton, pose: &Pose) -> Result<[f64; 2], IkError> {
+        check_pose(skeleton, pose)?;
+        Ok(self.posed(skeleton, pose)?.bones.map(DVec3::length))
+    }
+
+    /// Turns the upper and the lower joint so that the end is at the target. With a `memory`, the elbow does not flip when
+    /// the limb passes its pole; pass the seconds since the last call with it.
+    ///
+    /// The bend of the pose is the plane in which its bones lie. If they are straight, or bent the wrong way, it is that
+    /// in which the limb bends at rest. A pose that is at the target already is kept.
+    ///
+    /// # Errors
+    /// [`IkError::NotFinite`] for the target, the pole or softness; [`IkError::NoJoint`] if the pose is not the skeleton's;
+    /// [`IkError::NoLength`], [`IkError::NotInvertible`] and [`IkError::Sheared`] for the pose. The pose is unchanged
+    /// then.
+    pub fn solve(
+        &self,
+        skeleton: &Skeleton,
+        pose: &mut Pose,
+        goal: &TwoBoneGoal,
+        memory: Option<(&mut PoleMemory, f64)>,
+    ) -> Result<Reach, IkError> {
+        check_pose(skeleton, pose)?;
+        if !goal.target.is_finite() {
+            return Err(IkError::NotFinite("the target"));
+        }
+        if goal.pole.is_some_and(|pole| !pole.is_finite()) {
+            return Err(IkError::NotFinite("the pole"));
+        }
+        if !(goal.soft > 0.0 && goal.soft <= 1.0) {
+            return Err(IkError::BadSetUp(
+                "a softness is not more than 0 and at most 1",
+            ));
+        }
+        let posed = self.posed(skeleton, pose)?;
+        let parent_from_model = posed.model_from_parent.inverse();
+        let target = parent_from_model.transform_point3(goal.target) - posed.shoulder;
+        let lengths = posed.bones.map(DVec3::length);
+        let wanted = match goal.pole {
+            Some(pole) => parent_from_model.transform_vector3(pole),
+            None => self.side_of(&posed, target),
+        };
+        let direction = target.try_normalize();
+        let pole = match (memory, direction) {
+            (Some((memory, dt)), Some(direction)) => memory.side(direction, wanted, dt),
+            _ => wanted,
+        };
+        let [a, b] = lengths;
+        let least = (a * a + b * b - 2.0 * a * b * self.least_cos)
+            .max(0.0)
+            .sqrt();
+        let solved = bend(lengths, target, pole, goal.soft, least);
+        self.apply(pose, &posed, [solved.elbow, solved.end - solved.elbow]);
+        Ok(solved.reach)
+    }
+
+    /// To which side the limb bends, if it were turned to the target.
+    fn side_of(&self, posed: &Posed, target: DVec3) -> DVec3 {
+        let reach = posed.bones[0] + posed.bones[1];
+        let (Some(from), Some(to)) = (reach.try_normalize(), target.try_normalize()) else {
+            return posed.hinge.cross(posed.bones[0]);
+        };
+        // The hinge turned along with the line to the end; across both of them is the elbow.
+        let hinge = arc(from, to) * posed.hinge;
+        to.cross(hinge)
+    }
+
+    /// Turns the two joints so that the bones are as wanted.
+    fn apply(&self, pose: &mut Pose, posed: &Posed, wanted: [DVec3; 2]) {
+        let [upper, lower] = [self.upper, self.lower].map(JointId::index);
+        let was = posed.bones.map(|bone| bone.normalize_or(DVec3::X));
+        let now = wanted.map(|bone| bone.normalize_or(DVec3::X));
+        let across = |hinge: DVec3, bone: DVec3| {
+            (hinge - bone * hinge.dot(bone))
+                .try_normalize()
+                .unwrap_or_else(|| bone.any_orthonormal_vector())
+        };
+        let bent = now[0].cross(now[1]);
+        let hinge_now = if bent.length() > STRAIGHT {
+            bent
+        } else {
+            arc(was[0], now[0]) * posed.hinge
+        };
+        let turn = frame_turn(
+            [was[0], across(posed.hinge, was[0])],
+            [now[0], across(hinge_now, now[0])],
+        );
+        let upper_rotation = (turn * rotation_of(&pose.transforms[upper])).normalize();
+        // The lower bone in the space of its joint's parent, before and after.
+        let lower_from_parent =
+            (DMat3::from_quat(upper_rotation) * posed.upper_from_lower).inverse();
+        let bone_now = lower_from_parent * now[1];
+        let before =
+            DMat3::from_quat(rotation_of(&pose.transforms[upper])) * posed.upper_from_lower;
+        let bone_was = before.inverse() * was[1];
+        let turn = arc(
+            bone_was.normalize_or(DVec3::X),
+            bone_now.normalize_or(DVec3::X),
+        );
+        let lower_rotation = (turn * rotation_of(&pose.transforms[lower])).normalize();
+        store_rotation(&mut pose.transforms[upper], upper_rotation);
+        store_rotation(&mut pose.transforms[lower], lower_rotation);
+    }
+
+    fn posed(&self, skeleton: &Skeleton, pose: &Pose) -> Result<Posed, IkError> {
+        let upper = &pose.transforms[self.upper.index()];
+        let lower = &pose.transforms[self.lower.index()];
+        // What stands between the joints, from the space below the upper joint to the parent of the lower.
+        let between = between(skeleton, pose, self.upper, self.lower);
+        let below = self.tip_below(skeleton, pose);
+        let scale = |transform: &Transform| DMat3::from_diagonal(transform.scale.as_dvec3());
+        let upper_from_lower = scale(upper) * between.matrix3;
+        uniform_scale(&upper_from_lower, self.lower)?;
+        let model_from_parent = model_from_parent(skeleton, pose, self.upper);
+        invertible(&model_from_parent.matrix3, self.upper)?;
+
+        let rotation = rotation_of(upper);
+        let elbow = between.transform_point3(lower.translation.as_dvec3());
+        let first = rotation * (scale(upper) * elbow);
+        let tip = scale(lower) * below;
+        let second = rotation * (upper_from_lower * (rotation_of(lower) * tip));
+        for (joint, bone) in [(self.lower, first), (self.end, second)] {
+            if bone.length().is_nan() || bone.length() < 1e-9 {
+                return Err(IkError::NoLength(joint));
+            }
+        }
+        // The plane of the bones, unless they are nearly straight or bent the wrong way.
+        let hinge = rotation * self.hinge;
+        let bent = first.normalize().cross(second.normalize());
+        let hinge = if bent.length() <= STRAIGHT {
+            hinge
+        } else if bent.dot(hinge) >= 0.0 {
+            bent.normalize()
+        } else {
+            -bent.normalize()
+        };
+        Ok(Posed {
+            model_from_parent,
+            shoulder: upper.translation.as_dvec3(),
+            bones: [first, second],
+            hinge,
+            upper_from_lower,
+        })
+    }
+}
+
+/// The sine of the angle between two bones below which they count as straight: rotations of poses are rounded to f32, so
+/// that the plane of the bones is uncertain by 1e-7 over this.
+const STRAIGHT: f64 = 1e-3;
+
+/// The transforms of the joints between two, without either.
+fn between(skeleton: &Skeleton, pose: &Pose, upper: JointId, lower: JointId) -> DAffine3 {
+    let mut product = DAffine3::IDENTITY;
+    let mut next = skeleton.joints()[lower.index()].parent;
+    while let Some(joint) = next.filter(|joint| *joint != upper) {
+        product = pose.transforms[joint.index()].to_affine() * product;
+        next = skeleton.joints()[joint.index()].parent;
+    }
+    product
+}
+
+/// Refuses a pose that is not the skeleton's, or not finite.
+pub(super) fn check_pose(skeleton: &Skeleton, pose: &Pose) -> Result<(), IkError> {
+    let joints = skeleton.joints().len();
+    if pose.transforms.len() != joints {
+        return Err(IkError::NoJoint {
+            joint: JointId(pose.transforms.len() as u32),
+            joints,
+        });
+    }
+    if pose.transforms.iter().all(Transform::is_valid) {
+        Ok(())
+    } else {
+        Err(IkError::NotFinite("the pose"))
+    }
+}
+
+impl TwoBone {
+    /// The end in the space of the lower joint.
+    fn tip_below(&self, skeleton: &Skeleton, pose: &Pose) -> DVec3 {
+        if self.end == self.lower {
+            return self.tip;
+        }
+        let end = pose.transforms[self.end.index()].to_affine();
+        let below = between(skeleton, pose, self.lower, self.end) * end;
+        below.transform_point3(self.tip)
+    }
+
+    /// Where the limb ends in a pose, in model space.
+    ///
+    /// # Errors
+    /// [`IkError::NoJoint`] and [`IkError::NotFinite`] for the pose.
+    pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
+        check_pose(skeleton, pose)?;
+        let model_from_end = model_from_joint(skeleton, pose, self.end);
+        Ok(model_from_end.transform_point3(self.tip))
+    }
+}

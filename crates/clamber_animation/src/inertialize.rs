@@ -1,0 +1,284 @@
+//! Inertialisation: a change of animation is drawn at once, and what the pose loses by it decays.
+//!
+//! The offset from the new pose to the old one starts with the old pose's velocity, and ends in a given time with
+//! velocity and acceleration 0 (Bollo 2018, "Inertialization: High-Performance Animation Transitions in Gears of War",
+//! GDC). Only the new pose is evaluated, at the cost of one polynomial a joint.
+//!
+//! Bollo decays the length of an offset and drops the velocity across it. Here the polynomial has vectors as
+//! coefficients, so that position and velocity have no jump in any direction. He also shortens the time so that an
+//! offset whose velocity leads to 0 does not shoot past it; here to no less than [`SHORTEST`] of the time, since a
+//! small offset with a large velocity would stop within a frame.
+
+use clamber_surface::geometry::rotation_vector;
+use clamber_surface::rig::{Pose, Transform};
+use glam::{DQuat, DVec3, Vec3};
+
+use crate::pose::{rotation_of, store_rotation};
+use crate::spring::rotation_from_vector;
+
+/// The share of the time to which an offset's decay is shortened at most.
+const SHORTEST: f64 = 0.5;
+
+/// Offsets shorter than this, in metres or radians, and slower than this a second, are left out: f32 has rounded them.
+const NONE: f64 = 1e-7;
+
+/// An offset that decays to 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Decay {
+    /// The offset and its velocity at the start.
+    offset: Vec3,
+    velocity: Vec3,
+    /// Seconds until it is 0.
+    time: f32,
+}
+
+impl Decay {
+    /// The decay of an offset within `time` seconds, or sooner if it would shoot past 0; `None` if there is no offset.
+    pub(crate) fn new(offset: DVec3, velocity: DVec3, time: f64) -> Option<Self> {
+        if offset.length() < NONE && velocity.length() < NONE {
+            return None;
+        }
+        let length_sq = offset.length_squared();
+        let closing = -velocity.dot(offset);
+        // Bollo's -5 x / v: with that time, the jerk at the end is 0 and the offset falls all the way.
+        let time = if closing > 0.0 && length_sq > 0.0 {
+            time.min((5.0 * length_sq / closing).max(SHORTEST * time))
+        } else {
+            time
+        };
+        Some(Self {
+            offset: offset.as_vec3(),
+            velocity: velocity.as_vec3(),
+            time: time as f32,
+        })
+    }
+
+    /// The offset at a time since the start, seconds.
+    pub(crate) fn at(&self, elapsed: f64) -> DVec3 {
+        let end = f64::from(self.time);
+        if elapsed >= end {
+            return DVec3::ZERO;
+        }
+        let (x, v) = (self.offset.as_dvec3(), self.velocity.as_dvec3());
+        // The acceleration at the start, along the offset: what Bollo chooses so that it does not shoot past 0.
+        let direction = x.normalize_or_zero();
+        let along = v.dot(direction).min(0.0);
+        let wanted = (-8.0 * along * end - 20.0 * x.length()) / (end * end);
+        let a = direction * wanted.max(0.0);
+        let (xs, vs, accelerations) = (x, v * end, a * (end * end));
+        let c5 = -(accelerations + vs * 6.0 + xs * 12.0) * 0.5;
+        let c4 = (accelerations * 3.0 + vs * 16.0 + xs * 30.0) * 0.5;
+        let c3 = -(accelerations * 3.0 + vs * 12.0 + xs * 20.0) * 0.5;
+        let t = elapsed / end;
+        let series = c3 + (c4 + c5 * t) * t;
+        x + (vs + (accelerations * 0.5 + series * t) * t) * t
+    }
+
+    fn is_over(&self, elapsed: f64) -> bool {
+        elapsed >= f64::from(self.time)
+    }
+}
+
+/// What is left of the last pose, for each joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Offsets {
+    joints: Vec<JointOffset>,
+    /// Seconds since the change.
+    elapsed: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct JointOffset {
+    joint: u32,
+    /// As a rotation vector, in the space of the parent.
+    rotation: Option<Decay>,
+    translation: Option<Decay>,
+    scale: Option<Decay>,
+}
+
+/// Two poses, `dt` seconds apart.
+pub(crate) struct Course<'a> {
+    pub(crate) now: &'a Pose,
+    pub(crate) then: &'a Pose,
+}
+
+impl Offsets {
+    /// Starts anew: from poses as they would have gone on, to poses as they go on now, `step` seconds after each other.
+    pub(crate) fn restart(&mut self, from: &Course<'_>, to: &Course<'_>, step: f64, time: f64) {
+        self.clear();
+        let course = from.now.transforms.iter().zip(&from.then.transforms);
+        let goal = to.now.transforms.iter().zip(&to.then.transforms);
+        for (joint, (from, to)) in course.zip(goal).enumerate() {
+            let offset = JointOffset {
+                joint: joint as u32,
+                rotation: rotation_decay([from.0, from.1], [to.0, to.1], step, time),
+                translation: {
+                    let start = difference(from.0.translation, to.0.translation);
+                    let next = difference(from.1.translation, to.1.translation);
+                    Decay::new(start, (next - start) / step, time)
+                },
+                scale: scale_decay([from.0, from.1], [to.0, to.1], step, time),
+            };
+            let parts = [offset.rotation, offset.translation, offset.scale];
+            if parts.iter().any(Option::is_some) {
+                self.joints.push(offset);
+            }
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.joints.clear();
+        self.elapsed = 0.0;
+    }
+
+    /// Lets time pass, and forgets offsets that are 0.
+    pub(crate) fn advance(&mut self, dt: f64) {
+        self.elapsed += dt;
+        let elapsed = self.elapsed;
+        self.joints.retain(|offset| {
+            let parts = [offset.rotation, offset.translation, offset.scale];
+            parts.iter().flatten().any(|decay| !decay.is_over(elapsed))
+        });
+    }
+
+    /// True if nothing is left of the last pose.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.joints.is_empty()
+    }
+
+    /// Adds the offsets of `shift` seconds from now to a pose.
+    pub(crate) fn add_to(&self, pose: &mut Pose, shift: f64) {
+        let elapsed = self.elapsed + shift;
+        for offset in &self.joints {
+            let Some(joint) = pose.transforms.get_mut(offset.joint as usize) else {
+                continue;
+            };
+            if let Some(decay) = &offset.rotation {
+                let turn = rotation_from_vector(decay.at(elapsed));
+                store_rotation(joint, turn * rotation_of(joint));
+            }
+            if let Some(decay) = &offset.translation {
+                joint.translation = (joint.translation.as_dvec3() + decay.at(elapsed)).as_vec3();
+            }
+            if let Some(decay) = &offset.scale {
+                joint.scale = (joint.scale.as_dvec3() + decay.at(elapsed)).as_vec3();
+            }
+        }
+    }
+}
+
+fn difference(from: Vec3, to: Vec3) -> DVec3 {
+    from.as_dvec3() - to.as_dvec3()
+}
+
+fn rotation_decay(
+    from: [&Transform; 2],
+    to: [&Transform; 2],
+    step: f64,
+    time: f64,
+) -> Option<Decay> {
+    let turn = |k: usize| rotation_of(from[k]) * rotation_of(to[k]).conjugate();
+    let start = rotation_vector(turn(0));
+    let next = nearest_vector(turn(1), start);
+    Decay::new(start, (next - start) / step, time)
+}
+
+/// The rotation vector nearest to another one. Near half a turn, vectors of nearly opposite direction are nearly the
+/// same rotation.
+fn nearest_vector(rotation: DQuat, to: DVec3) -> DVec3 {
+    let vector = rotation_vector(rotation);
+    if vector.dot(to) >= 0.0 {
+        return vector;
+    }
+    let angle = vector.length();
+    let other = vector * ((angle - core::f64::consts::TAU) / angle);
+    if (other - to).length_squared() < (vector - to).length_squared() {
+        other
+    } else {
+        vector
+    }
+}
+
+/// A joint of scale 0 is hidden; it appears and disappears at once.
+fn scale_decay(from: [&Transform; 2], to: [&Transform; 2], step: f64, time: f64) -> Option<Decay> {
+    let is_hidden = |joint: &Transform| joint.scale.abs().min_element() == 0.0;
+    if from.into_iter().chain(to).any(is_hidden) {
+        return None;
+    }
+    let start = difference(from[0].scale, to[0].scale);
+    let next = difference(from[1].scale, to[1].scale);
+    Decay::new(start, (next - start) / step, time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Position, velocity and acceleration by differences.
+    fn derivatives(decay: &Decay, at: f64) -> [DVec3; 3] {
+        let h = 1e-4;
+        let [a, b, c] = [-h, 0.0, h].map(|by| decay.at(at + by));
+        [b, (c - a) / (2.0 * h), (a + c - b * 2.0) / (h * h)]
+    }
+
+    #[test]
+    fn an_offset_starts_as_told_and_ends_at_rest() {
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut random = |size: f64| DVec3::from([(); 3].map(|()| (rng.f64() * 2.0 - 1.0) * size));
+        for _ in 0..1000 {
+            let (x, v) = (random(1.0), random(8.0));
+            let decay = Decay::new(x, v, 0.4).unwrap();
+            let [x0, v0, _] = derivatives(&decay, 0.0);
+            assert!(
+                (x0 - x).length() < 1e-6 && (v0 - v).length() < 2e-2,
+                "{x} {v}: {v0}"
+            );
+            let end = f64::from(decay.time);
+            assert!((0.2 - 1e-6..=0.4 + 1e-6).contains(&end));
+            let [x1, v1, a1] = derivatives(&decay, end - 1e-3);
+            assert!(
+                x1.length() < 1e-5 && v1.length() < 5e-2 && a1.length() < 20.0,
+                "{v1} {a1}"
+            );
+            assert_eq!(decay.at(end), DVec3::ZERO);
+        }
+    }
+
+    #[test]
+    fn an_offset_that_closes_quickly_does_not_shoot_past_zero() {
+        // Within Bollo's shortened time, for velocities up to twice that of the unshortened one.
+        for speed in [0.0, 1.0, 5.0, 10.0] {
+            let decay = Decay::new(DVec3::X, DVec3::NEG_X * speed, 1.0).unwrap();
+            for k in 0..=100 {
+                let x = decay.at(f64::from(k) * 0.01).x;
+                assert!((-1e-6..=1.0 + 1e-6).contains(&x), "{speed}: {x}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_to_decay_is_nothing() {
+        assert_eq!(Decay::new(DVec3::ZERO, DVec3::ZERO, 1.0), None);
+        let mut offsets = Offsets::default();
+        let pose = Pose {
+            transforms: vec![Transform::IDENTITY; 3],
+        };
+        let course = Course {
+            now: &pose,
+            then: &pose,
+        };
+        offsets.restart(&course, &course, 1e-3, 0.3);
+        assert!(offsets.is_empty());
+    }
+
+    #[test]
+    fn rotations_near_half_a_turn_have_no_jump() {
+        let start = DVec3::X * 3.1;
+        let beyond = rotation_from_vector(DVec3::X * 3.2);
+        let next = nearest_vector(beyond, start);
+        assert!((next - DVec3::X * 3.2).length() < 1e-9, "{next}");
+    }
+}

@@ -1,0 +1,69 @@
+use clamber_surface::rig::{JointId, Skeleton};
+
+use crate::AnimationError;
+use crate::error::within;
+
+/// How much of a layer each joint gets, 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointMask {
+    shares: Vec<f32>,
+}
+
+impl JointMask {
+    /// Nothing for any joint.
+    pub fn none(skeleton: &Skeleton) -> Self {
+        Self {
+            shares: vec![0.0; skeleton.joints().len()],
+        }
+    }
+
+    /// All for a joint and its descendants, nothing for the others.
+    ///
+    /// # Errors
+    /// As [`JointMask::with_branch`].
+    pub fn branch(skeleton: &Skeleton, joint: JointId) -> Result<Self, AnimationError> {
+        Self::none(skeleton).with_branch(skeleton, joint, 1.0)
+    }
+
+    /// The same mask with another share for a joint and all of its descendants. Called for one joint of the spine after
+    /// the other, with rising shares, it lets a layer begin softly.
+    ///
+    /// # Errors
+    /// [`AnimationError::NoJoint`] and [`AnimationError::JointCount`] if the joint or the mask do not fit the skeleton,
+    /// [`AnimationError::OutOfRange`] if the share is not from 0 to 1.
+    pub fn with_branch(
+        mut self,
+        skeleton: &Skeleton,
+        joint: JointId,
+        share: f64,
+    ) -> Result<Self, AnimationError> {
+        let joints = skeleton.joints().len();
+        self.check(joints)?;
+        if joint.index() >= joints {
+            let found = joint;
+            return Err(AnimationError::NoJoint { found, joints });
+        }
+        within("a mask's share", "from 0 to 1", share, 0.0, 1.0)?;
+        for (index, mine) in self.shares.iter_mut().enumerate() {
+            if skeleton.is_descendant_or_self(JointId(index as u32), joint) {
+                *mine = share as f32;
+            }
+        }
+        Ok(self)
+    }
+
+    /// The share of each joint, in joint order.
+    pub fn shares(&self) -> &[f32] {
+        &self.shares
+    }
+
+    pub(crate) fn check(&self, joints: usize) -> Result<(), AnimationError> {
+        if self.shares.len() == joints {
+            return Ok(());
+        }
+        Err(AnimationError::JointCount {
+            expected: joints,
+            found: self.shares.len(),
+        })
+    }
+}

@@ -1,0 +1,127 @@
+use core::fmt;
+
+use clamber_surface::rig::{Clip, JointId, Pose, RigError, Skeleton};
+
+use crate::root_motion::RootMotion;
+use crate::{AnimationError, JointMask};
+
+/// Index of a clip in its [`AnimationSet`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ClipId(pub u32);
+
+impl fmt::Display for ClipId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+/// Index of a mask in its [`AnimationSet`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MaskId(pub u32);
+
+/// What animators of one kind of creature share: the clips, masks, and the pose at rest. It never changes while they
+/// play, so an animator is small, and a copy of it is a whole snapshot.
+#[derive(Clone, Debug)]
+pub struct AnimationSet {
+    rest: Pose,
+    clips: Vec<Clip>,
+    masks: Vec<JointMask>,
+    root: Option<RootMotion>,
+}
+
+impl AnimationSet {
+    /// A set of clips for a skeleton.
+    ///
+    /// # Errors
+    /// [`RigError::JointOutOfRange`] if a clip moves a joint that the skeleton does not have.
+    pub fn new(skeleton: &Skeleton, clips: Vec<Clip>) -> Result<Self, AnimationError> {
+        let joints = skeleton.joints().len();
+        let mut channels = clips.iter().flat_map(|clip| clip.channels());
+        if let Some(bad) = channels.find(|channel| channel.joint().index() >= joints) {
+            let joint = bad.joint();
+            return Err(RigError::JointOutOfRange { joint, joints }.into());
+        }
+        Ok(Self {
+            rest: skeleton.rest_pose(),
+            clips,
+            masks: Vec::new(),
+            root: None,
+        })
+    }
+
+    /// The same set, whose clips move the creature by the motion of a joint: that motion is taken out of poses, and
+    /// reported by [`Animator::advance`](crate::Animator::advance). It is the joint's motion along the ground and its
+    /// turn about up, which is Y in model space. The joint is the root of what moves, such as the hips.
+    ///
+    /// # Errors
+    /// [`AnimationError::NoJoint`] if the skeleton does not have the joint, [`AnimationError::JointCount`] if it is
+    /// not the set's skeleton.
+    pub fn with_root_motion(
+        mut self,
+        skeleton: &Skeleton,
+        joint: JointId,
+    ) -> Result<Self, AnimationError> {
+        let (expected, found) = (self.rest.transforms.len(), skeleton.joints().len());
+        if expected != found {
+            return Err(AnimationError::JointCount { expected, found });
+        }
+        if joint.index() >= found {
+            return Err(AnimationError::NoJoint {
+                found: joint,
+                joints: found,
+            });
+        }
+        self.root = Some(RootMotion::new(skeleton, joint));
+        Ok(self)
+    }
+
+    /// Adds a mask for layers.
+    ///
+    /// # Errors
+    /// [`AnimationError::JointCount`] if the mask is of another skeleton.
+    pub fn add_mask(&mut self, mask: JointMask) -> Result<MaskId, AnimationError> {
+        mask.check(self.rest.transforms.len())?;
+        self.masks.push(mask);
+        Ok(MaskId(self.masks.len() as u32 - 1))
+    }
+
+    /// The first clip of this name; `None` if there is none.
+    pub fn find(&self, name: &str) -> Option<ClipId> {
+        let index = self.clips.iter().position(|clip| clip.name == name)?;
+        Some(ClipId(index as u32))
+    }
+
+    /// The clips, by their ids.
+    pub fn clips(&self) -> &[Clip] {
+        &self.clips
+    }
+
+    /// The pose in which every joint is at rest.
+    pub fn rest(&self) -> &Pose {
+        &self.rest
+    }
+
+    /// A clip.
+    ///
+    /// # Errors
+    /// [`AnimationError::NoClip`].
+    pub fn clip(&self, id: ClipId) -> Result<&Clip, AnimationError> {
+        self.clips.get(id.0 as usize).ok_or(AnimationError::NoClip {
+            found: id,
+            clips: self.clips.len(),
+        })
+    }
+
+    pub(crate) fn mask(&self, id: MaskId) -> Result<&JointMask, AnimationError> {
+        self.masks.get(id.0 as usize).ok_or(AnimationError::NoMask {
+            found: id.0,
+            masks: self.masks.len(),
+        })
+    }
+
+    pub(crate) fn root(&self) -> Option<&RootMotion> {
+        self.root.as_ref()
+    }
+}

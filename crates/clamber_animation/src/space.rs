@@ -1,0 +1,93 @@
+//! Model space of poses, and rotations of joints in it.
+
+use clamber_surface::rig::{JointId, Pose, Skeleton};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::ik::IkError;
+use crate::pose::{rotation_of, store_rotation};
+
+/// The transform of a joint in model space. Composes the joints from it to its root.
+///
+/// # Panics
+/// If the pose or the skeleton lacks the joint.
+pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
+    let mut model = pose.transforms[joint.index()].to_affine();
+    let mut next = skeleton.joints()[joint.index()].parent;
+    while let Some(parent) = next {
+        model = pose.transforms[parent.index()].to_affine() * model;
+        next = skeleton.joints()[parent.index()].parent;
+    }
+    model
+}
+
+/// [`model_from_joint`] of a joint's parent; the identity for a root.
+pub(crate) fn model_from_parent(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
+    let parent = skeleton.joints()[joint.index()].parent;
+    parent.map_or(DAffine3::IDENTITY, |parent| {
+        model_from_joint(skeleton, pose, parent)
+    })
+}
+
+/// How far the axes of a matrix may be from perpendicular, and their lengths from equal, as a share, for it to count as
+/// a rotation with a uniform scale, perhaps mirrored.
+const SIMILAR: f64 = 1e-4;
+
+/// The scale of a matrix that only rotates, mirrors and scales uniformly.
+///
+/// # Errors
+/// [`IkError::NotInvertible`] if it has no inverse, [`IkError::Sheared`] if it scales unevenly.
+pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkError> {
+    let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let scale = axes[0].length();
+    invertible(matrix, joint)?;
+    let even = axes
+        .iter()
+        .all(|axis| (axis.length() - scale).abs() <= SIMILAR * scale);
+    let [x, y, z] = axes;
+    let skew = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
+    if even && skew <= SIMILAR * scale * scale {
+        Ok(scale)
+    } else {
+        Err(IkError::Sheared(joint))
+    }
+}
+
+/// The inverse of a matrix.
+///
+/// # Errors
+/// [`IkError::NotInvertible`] if it has none that is finite.
+pub(crate) fn invertible(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkError> {
+    let inverse = matrix.inverse();
+    let size = matrix.x_axis.length() + matrix.y_axis.length() + matrix.z_axis.length();
+    // Smaller than any scale that is meant: a determinant of rounding errors.
+    let least = size * size * size * 1e-12;
+    if inverse.is_finite() && matrix.determinant().abs() > least {
+        Ok(inverse)
+    } else {
+        Err(IkError::NotInvertible(joint))
+    }
+}
+
+/// Turns a joint, and all below it, by a rotation in model space about the joint's own origin.
+///
+/// # Errors
+/// [`IkError::Sheared`] and [`IkError::NotInvertible`] if its parents scale unevenly, so that the turn is no rotation
+/// in the joint's own space.
+pub(crate) fn turn_in_model(
+    pose: &mut Pose,
+    joint: JointId,
+    model_from_parent: &DAffine3,
+    turn: DQuat,
+) -> Result<(), IkError> {
+    let parent = model_from_parent.matrix3;
+    uniform_scale(&parent, joint)?;
+    let inverse = invertible(&parent, joint)?;
+    // In a mirrored space a turn goes the other way about its mirrored axis.
+    let axis = inverse * DVec3::new(turn.x, turn.y, turn.z);
+    let length = DVec3::new(turn.x, turn.y, turn.z).length();
+    let axis = axis.normalize_or_zero() * length * parent.determinant().signum();
+    let local = DQuat::from_xyzw(axis.x, axis.y, axis.z, turn.w);
+    let transform = &mut pose.transforms[joint.index()];
+    store_rotation(transform, (local * rotation_of(transform)).normalize());
+    Ok(())
+}

@@ -1,0 +1,177 @@
+//! Critically damped springs in closed form: the same motion at any frame rate.
+//!
+//! The differential equation `x'' = -2 w x' - w^2 (x - goal)` has the solution `x - goal = (a + b t) e^(-w t)`. A step
+//! evaluates it, so one long step equals many short ones, and no step is too long (Holden 2021, "Spring-It-On: The Game
+//! Developer's Spring-Roll-Call").
+
+use core::ops::{Add, Mul, Sub};
+
+use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
+use glam::{DQuat, DVec3};
+
+/// The solution of `(1 + x) e^(-x) = 1/2`: after `x / w` seconds, a spring that started at rest has half of its way
+/// behind it.
+const HALF: f64 = 1.678_346_990_016_661;
+
+/// What a spring can move: a number or a vector.
+pub trait Springy:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
+}
+
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Springy for T {}
+
+/// A value that follows a goal as fast as it can without overshooting from rest.
+///
+/// ```
+/// use clamber_animation::Spring;
+///
+/// let mut height = Spring::at(0.0);
+/// height.step(1.0, 0.1, 0.1);
+/// assert!((height.value - 0.5).abs() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Spring<T> {
+    /// Current value.
+    pub value: T,
+    /// Its rate of change, per second.
+    pub velocity: T,
+}
+
+impl<T: Springy> Spring<T> {
+    /// At rest at a value.
+    pub fn at(value: T) -> Self {
+        Self {
+            value,
+            velocity: value - value,
+        }
+    }
+
+    /// Moves on by `dt` seconds towards `goal`. From rest, half of the way is done after `half_time` seconds. With a
+    /// half time of 0 or less it is at the goal at once; with a `dt` of 0 or less nothing changes.
+    pub fn step(&mut self, goal: T, half_time: f64, dt: f64) {
+        if dt <= 0.0 {
+            return;
+        }
+        if half_time <= 0.0 {
+            *self = Self::at(goal);
+            return;
+        }
+        let rate = HALF / half_time;
+        let left = libm::exp(-rate * dt);
+        let away = self.value - goal;
+        let pull = self.velocity + away * rate;
+        self.value = goal + (away + pull * dt) * left;
+        self.velocity = (self.velocity - pull * (rate * dt)) * left;
+    }
+}
+
+/// A rotation that follows a goal along the shorter arc: a [`Spring`] on its rotation vector from the goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RotationSpring {
+    /// Current rotation, a unit quaternion.
+    pub rotation: DQuat,
+    /// Rate of change of the rotation vector from the goal, radians a second. Near the goal it is the angular velocity.
+    pub velocity: DVec3,
+}
+
+impl RotationSpring {
+    /// At rest.
+    pub fn at(rotation: DQuat) -> Self {
+        Self {
+            rotation,
+            velocity: DVec3::ZERO,
+        }
+    }
+
+    /// Moves on by `dt` seconds towards the unit quaternion `goal`; see [`Spring::step`].
+    pub fn step(&mut self, goal: DQuat, half_time: f64, dt: f64) {
+        let mut spring = Spring {
+            value: rotation_vector(self.rotation * goal.conjugate()),
+            velocity: self.velocity,
+        };
+        spring.step(DVec3::ZERO, half_time, dt);
+        self.rotation = (rotation_from_vector(spring.value) * goal).normalize();
+        self.velocity = spring.velocity;
+    }
+}
+
+/// Moves a value towards a goal by a share that depends on the time alone: half of the way in each `half_time` seconds.
+/// A damper has no velocity, so its motion begins with a jerk; where that shows, take a [`Spring`].
+pub fn damp<T: Springy>(value: T, goal: T, half_time: f64, dt: f64) -> T {
+    if dt <= 0.0 {
+        return value;
+    }
+    if half_time <= 0.0 {
+        return goal;
+    }
+    goal + (value - goal) * libm::exp2(-dt / half_time)
+}
+
+/// The rotation by the length of a vector, in radians, about its direction.
+pub(crate) fn rotation_from_vector(vector: DVec3) -> DQuat {
+    let angle = vector.length();
+    if angle < 1e-12 {
+        return DQuat::from_xyzw(vector.x * 0.5, vector.y * 0.5, vector.z * 0.5, 1.0).normalize();
+    }
+    rotation_from_axis_angle(vector / angle, angle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Scene B22: one second of a goal that stays, at any frame rate.
+    #[test]
+    fn springs_do_not_depend_on_the_frame_rate() {
+        let follow = |rate: usize| {
+            let mut spring = Spring {
+                value: DVec3::new(1.0, -2.0, 0.5),
+                velocity: DVec3::new(-3.0, 0.0, 8.0),
+            };
+            let mut turn = RotationSpring::at(rotation_from_vector(DVec3::new(1.0, 0.4, -0.2)));
+            let mut damped = 3.0;
+            for _ in 0..rate {
+                let dt = 1.0 / rate as f64;
+                spring.step(DVec3::ZERO, 0.2, dt);
+                turn.step(DQuat::IDENTITY, 0.2, dt);
+                damped = damp(damped, 1.0, 0.2, dt);
+            }
+            (spring.value, rotation_vector(turn.rotation), damped)
+        };
+        let once = follow(1);
+        assert!(once.0.is_finite() && once.1.is_finite());
+        for rate in [30, 60, 144, 1000] {
+            let often = follow(rate);
+            assert!((often.0 - once.0).length() < 1e-6, "{rate}: {often:?}");
+            assert!((often.1 - once.1).length() < 1e-6, "{rate}: {often:?}");
+            assert!((often.2 - once.2).abs() < 1e-6, "{rate}: {often:?}");
+        }
+    }
+
+    #[test]
+    fn half_the_way_is_done_after_the_half_time() {
+        for half_time in [1e-6, 0.1, 3.0] {
+            let mut spring = Spring::at(2.0);
+            spring.step(-2.0, half_time, half_time);
+            assert!(spring.value.abs() < 1e-9, "{half_time}: {spring:?}");
+            assert!((damp(2.0, -2.0, half_time, half_time)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn no_time_changes_nothing_and_no_half_time_arrives() {
+        let spring = Spring {
+            value: 1.0,
+            velocity: 5.0,
+        };
+        let mut still = spring;
+        still.step(9.0, 0.1, 0.0);
+        assert_eq!(still, spring);
+        still.step(9.0, 0.0, 0.1);
+        assert_eq!(still, Spring::at(9.0));
+        assert_eq!(damp(1.0, 9.0, 0.1, 0.0), 1.0);
+    }
+}

@@ -1,0 +1,315 @@
+//! Heads that look at something: scenes B10 and B11.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use clamber_animation::glam::{DQuat, DVec3, Vec3};
+use clamber_animation::ik::{Chain, IkError, LookAt, LookMemory, Reach, aim};
+use clamber_animation::rig::{JointId, Pose, Skeleton};
+use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
+use common::{joint, place};
+
+const HEAD: JointId = JointId(4);
+
+/// Hips, two joints of the spine, neck and head, upright; it looks along +Z.
+fn torso() -> Skeleton {
+    let up = Vec3::Y * 0.15;
+    let hips = joint(None, Vec3::Y);
+    let above = (0..4).map(|parent| joint(Some(parent), up));
+    Skeleton::new(std::iter::once(hips).chain(above).collect()).unwrap()
+}
+
+fn look(skeleton: &Skeleton) -> LookAt {
+    let chain = [(HEAD, 0.5), (JointId(3), 0.5), (JointId(2), 1.0)];
+    let eye = DVec3::new(0.0, 0.1, 0.08);
+    LookAt::new(skeleton, &chain, eye, DVec3::Z, DVec3::Y).unwrap()
+}
+
+/// Eye and gaze in model space.
+fn gaze(skeleton: &Skeleton, pose: &Pose) -> [DVec3; 2] {
+    let palette = skeleton.palette(pose).unwrap();
+    let head = palette.model_from_joint(HEAD).unwrap();
+    let eye = head.transform_point3(DVec3::new(0.0, 0.1, 0.08));
+    [eye, head.transform_vector3(DVec3::Z).normalize()]
+}
+
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}
+
+fn at(yaw: f64, pitch: f64, distance: f64) -> DVec3 {
+    let level = DVec3::new(libm::sin(yaw), 0.0, libm::cos(yaw)) * libm::cos(pitch);
+    DVec3::Y * 1.7 + (level + DVec3::Y * libm::sin(pitch)) * distance
+}
+
+#[test]
+fn b10_the_gaze_arrives_and_half_a_weight_is_half_the_turn() {
+    let skeleton = torso();
+    let look = look(&skeleton);
+    for yaw in [-70, -30, 0, 10, 45, 75].map(|deg| f64::from(deg).to_radians()) {
+        for pitch in [-50, -20, 0, 30, 55].map(|deg| f64::from(deg).to_radians()) {
+            let target = at(yaw, pitch, 5.0);
+            let mut last = f64::INFINITY;
+            let mut whole = 0.0;
+            for k in 0..=20 {
+                let weight = f64::from(k) / 20.0;
+                let solve = |negated: bool| {
+                    let mut pose = skeleton.rest_pose();
+                    for transform in &mut pose.transforms {
+                        // The same rotation with the other sign.
+                        if negated {
+                            transform.rotation = -transform.rotation;
+                        }
+                    }
+                    let mut memory = LookMemory::default();
+                    look.solve(&skeleton, &mut pose, target, weight, &mut memory, 0.1)
+                        .unwrap();
+                    pose
+                };
+                let [a, b] = [false, true].map(solve);
+                let [eye, seen] = gaze(&skeleton, &a);
+                let other = gaze(&skeleton, &b)[1];
+                assert!((seen - other).length() < 1e-6, "{yaw} {pitch} {weight}");
+                // Monotone: the angle to the target falls with the weight.
+                let left = angle(seen, target - eye);
+                assert!(
+                    left <= last + 1e-6,
+                    "{yaw} {pitch} {weight}: {left} after {last}"
+                );
+                last = left;
+                if k == 0 {
+                    whole = angle(DVec3::Z, target - eye);
+                }
+                if k == 10 {
+                    assert!(
+                        (left - whole / 2.0).abs() <= 0.05 * whole + 1e-3,
+                        "{left} of {whole}"
+                    );
+                }
+            }
+            assert!(last < 1e-4, "{yaw} {pitch}: {last} left");
+        }
+    }
+}
+
+#[test]
+fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
+    let skeleton = torso();
+    let look = look(&skeleton);
+    for speed in [1.0, 3.0, 10.0, 40.0] {
+        let (rate, mut memory) = (60.0, LookMemory::default());
+        let (mut side, mut since, mut changes) = (0.0, 10.0, 0);
+        for tick in 0..1200 {
+            // It circles, and then swings to and fro behind.
+            let time = f64::from(tick) / rate;
+            let yaw = if tick < 600 {
+                time * speed
+            } else {
+                core::f64::consts::PI + 0.6 * libm::sin(time * speed)
+            };
+            let mut pose = skeleton.rest_pose();
+            look.solve(
+                &skeleton,
+                &mut pose,
+                at(yaw, 0.2, 8.0),
+                1.0,
+                &mut memory,
+                1.0 / rate,
+            )
+            .unwrap();
+            let seen = gaze(&skeleton, &pose)[1];
+            let yaw_seen = libm::atan2(seen.x, seen.z);
+            assert!(
+                yaw_seen.abs() <= 80.5f64.to_radians(),
+                "{}",
+                yaw_seen.to_degrees()
+            );
+            since += 1.0 / rate;
+            // While it looks over a shoulder.
+            if yaw_seen.abs() > 79f64.to_radians() {
+                if side != 0.0 && side != yaw_seen.signum() {
+                    // Through the front it may pass at any time.
+                    let front = libm::cos(yaw) > 0.17;
+                    if !front && speed < 30.0 {
+                        assert!(
+                            since >= 0.99 || tick < 600,
+                            "after {since} s, in tick {tick} at {speed} rad/s"
+                        );
+                    }
+                    changes += 1;
+                    since = 0.0;
+                }
+                side = yaw_seen.signum();
+            }
+        }
+        assert!(changes > 0 || speed > 3.0, "{speed}");
+    }
+    let up = {
+        let mut pose = skeleton.rest_pose();
+        let high = at(0.0, 1.5, 8.0);
+        look.solve(
+            &skeleton,
+            &mut pose,
+            high,
+            1.0,
+            &mut LookMemory::default(),
+            0.1,
+        )
+        .unwrap();
+        gaze(&skeleton, &pose)[1]
+    };
+    // The eye moves as the head turns: by a degree and a half here.
+    let pitch = angle(up, DVec3::Z).to_degrees();
+    assert!((57.0..=60.1).contains(&pitch), "{pitch}");
+}
+
+#[test]
+fn b11_a_head_stays_where_it_looks_while_the_body_sways() {
+    // A body with a neck of five bones, bent like a swan's.
+    let bend = [0.9, -0.7, -0.6, 0.5, 0.4];
+    let mut joints = vec![joint(None, Vec3::Y * 2.0)];
+    for (index, angle) in bend.into_iter().enumerate() {
+        let mut next = joint(Some(index as u32), Vec3::Y * 0.4);
+        next.rest.rotation = rotation_from_axis_angle(DVec3::X, angle).as_quat();
+        joints.push(next);
+    }
+    joints.push(joint(Some(5), Vec3::Y * 0.4));
+    let skeleton = Skeleton::new(joints).unwrap();
+    let (neck, head) = (
+        Chain::new(&skeleton, JointId(1), JointId(6)).unwrap(),
+        JointId(6),
+    );
+    let rest = skeleton.rest_pose();
+    let home = place(&skeleton, &rest, 6);
+    let target = DVec3::new(0.0, 2.0, 30.0);
+    let sway = |tick: u32| {
+        let phase = f64::from(tick) / 60.0 * core::f64::consts::TAU;
+        let mut pose = rest.clone();
+        let body = &mut pose.transforms[0];
+        body.translation += (DVec3::X * (0.3 * libm::sin(phase))).as_vec3();
+        let turn = rotation_from_axis_angle(DVec3::Z, 20f64.to_radians() * libm::sin(phase));
+        body.rotation = turn.as_quat();
+        pose
+    };
+    let rotation = |pose: &Pose| -> DQuat {
+        let palette = skeleton.palette(pose).unwrap();
+        palette
+            .model_from_joint(head)
+            .unwrap()
+            .to_scale_rotation_translation()
+            .1
+    };
+    let (mut first, mut control) = (None, 0f64);
+    for tick in 0..120 {
+        let mut pose = sway(tick);
+        control = control.max(place(&skeleton, &pose, 6).distance(home));
+        // The head first, then the neck follows it, and then the head looks.
+        let reach = neck.solve(&skeleton, &mut pose, home).unwrap();
+        assert_eq!(reach, Reach::Reached);
+        let to_target = target - place(&skeleton, &pose, 6);
+        aim(
+            &skeleton,
+            &mut pose,
+            head,
+            [DVec3::Z, DVec3::Y],
+            [to_target, DVec3::Y],
+        )
+        .unwrap();
+        let moved = place(&skeleton, &pose, 6).distance(home);
+        assert!(moved <= 0.02, "{moved} m in tick {tick}");
+        let now = rotation(&pose);
+        let first = *first.get_or_insert(now);
+        let turned = rotation_vector(now * first.conjugate()).length();
+        assert!(
+            turned <= 1f64.to_radians(),
+            "{}° in tick {tick}",
+            turned.to_degrees()
+        );
+    }
+    assert!(
+        control > 0.3,
+        "without it the head moves by {control} m only"
+    );
+}
+
+#[test]
+fn chains_reach_what_they_can_and_say_what_they_cannot() {
+    let skeleton = torso();
+    let chain = Chain::new(&skeleton, JointId(0), HEAD).unwrap();
+    let rest = skeleton.rest_pose();
+    let mut rng = fastrand::Rng::with_seed(6);
+    for _ in 0..2_000 {
+        // Straight at rest, also with the target on its line.
+        let from = DVec3::Y;
+        let target = match rng.u32(0..4) {
+            0 => from + DVec3::Y * (0.6 * rng.f64()),
+            _ => from + common::unit(&mut rng) * (0.02 + 0.57 * rng.f64()),
+        };
+        let mut pose = rest.clone();
+        let reach = chain.solve(&skeleton, &mut pose, target).unwrap();
+        let off = chain.end(&skeleton, &pose).unwrap().distance(target);
+        match reach {
+            Reach::Reached => assert!(off < 2e-4, "{target}: {off}"),
+            Reach::Short(gap) | Reach::TooNear(gap) => {
+                assert!(
+                    (gap - off).abs() < 1e-4 && off < 0.05,
+                    "{target}: {off} {gap}"
+                );
+            }
+        }
+        for pair in [[0, 1], [1, 2], [2, 3], [3, 4]] {
+            let [a, b] = pair.map(|k| place(&skeleton, &pose, k));
+            assert!((a.distance(b) - 0.15).abs() < 1e-6);
+        }
+    }
+    let mut pose = rest.clone();
+    let far = chain
+        .solve(&skeleton, &mut pose, DVec3::new(2.0, 1.0, 0.0))
+        .unwrap();
+    assert!(
+        matches!(far, Reach::Short(gap) if (gap - 1.4).abs() < 1e-4),
+        "{far:?}"
+    );
+    assert!(chain.solve(&skeleton, &mut pose, DVec3::NAN).is_err());
+    assert!(Chain::new(&skeleton, HEAD, JointId(0)).is_err());
+    assert!(Chain::new(&skeleton, HEAD, HEAD).is_err());
+    assert!(Chain::new(&skeleton, JointId(0), JointId(9)).is_err());
+}
+
+#[test]
+fn gazes_that_make_no_sense_are_refused() {
+    let skeleton = torso();
+    let new = |chain: &[(JointId, f64)], forward, up| {
+        LookAt::new(&skeleton, chain, DVec3::ZERO, forward, up).err()
+    };
+    let head = [(HEAD, 1.0)];
+    assert_eq!(new(&head, DVec3::Z, DVec3::Y), None);
+    assert!(new(&[], DVec3::Z, DVec3::Y).is_some());
+    assert!(new(&head, DVec3::ZERO, DVec3::Y).is_some());
+    assert!(new(&head, DVec3::Z, DVec3::Z).is_some());
+    assert!(new(&head, DVec3::Z, DVec3::NAN).is_some());
+    assert!(new(&[(HEAD, 2.0)], DVec3::Z, DVec3::Y).is_some());
+    assert!(new(&[(JointId(9), 1.0)], DVec3::Z, DVec3::Y).is_some());
+    assert!(new(&[(JointId(1), 0.5), (HEAD, 1.0)], DVec3::Z, DVec3::Y).is_some());
+    let look = look(&skeleton);
+    let mut pose = skeleton.rest_pose();
+    let mut solve = |target, weight| {
+        look.solve(
+            &skeleton,
+            &mut pose,
+            target,
+            weight,
+            &mut LookMemory::default(),
+            0.1,
+        )
+    };
+    assert_eq!(
+        solve(DVec3::NAN, 1.0),
+        Err(IkError::NotFinite("a target or a weight"))
+    );
+    assert_eq!(
+        solve(DVec3::Z, f64::NAN),
+        Err(IkError::NotFinite("a target or a weight"))
+    );
+}
