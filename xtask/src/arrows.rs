@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 16] = [
+const ALLOWED: [(&str, &[&str]); 17] = [
     ("clamber_oracle", &[]),
     // Only for its feature `oracle`.
     ("clamber_surface", &["clamber_oracle"]),
@@ -13,6 +13,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
         "clamber_climber",
         &["clamber_surface", "clamber_world", "clamber_mover"],
     ),
+    ("clamber_animation", &["clamber_surface"]),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),
     (
@@ -23,6 +24,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
         "clamber",
         &[
             "clamber_surface",
+            "clamber_animation",
             "clamber_world",
             "clamber_mover",
             "clamber_climber",
@@ -75,9 +77,10 @@ const ALLOWED: [(&str, &[&str]); 16] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 9] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 10] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
+    ("clamber_animation", "clamber_gltf"),
     ("clamber_benches", "clamber"),
     ("clamber_cli", "clamber_scenes"),
     ("clamber_benches", "clamber_scenes"),

@@ -16,8 +16,9 @@ const FEATURES: &str = "\
 
 /// The packages whose tests `cargo test` runs in full: the workspace's default members, but for the oracle, which has
 /// more tests with its feature.
-const DEFAULT: [&str; 6] = [
+const DEFAULT: [&str; 7] = [
     "clamber",
+    "clamber_animation",
     "clamber_climber",
     "clamber_gltf",
     "clamber_mover",

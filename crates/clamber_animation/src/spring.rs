@@ -13,13 +13,16 @@ use glam::{DQuat, DVec3};
 /// behind it.
 const HALF: f64 = 1.678_346_990_016_661;
 
-/// What a spring can move: a number or a vector.
+/// What a spring can move: a number or a vector. Its default is zero.
 pub trait Springy:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
 }
 
-impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Springy for T {}
+impl<T> Springy for T where
+    T: Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
+}
 
 /// A value that follows a goal as fast as it can without overshooting from rest.
 ///
@@ -44,7 +47,7 @@ impl<T: Springy> Spring<T> {
     pub fn at(value: T) -> Self {
         Self {
             value,
-            velocity: value - value,
+            velocity: T::default(),
         }
     }
 

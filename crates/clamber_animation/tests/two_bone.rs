@@ -190,7 +190,8 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
     }
     assert_eq!(pose, rest);
     // Bones and scales of 0.
-    let broken: [(usize, fn(&mut Transform), IkError); 4] = [
+    type Break = fn(&mut Transform);
+    let broken: [(usize, Break, IkError); 4] = [
         (
             2,
             |t| t.translation = Vec3::ZERO,

@@ -333,7 +333,7 @@ mod tests {
         for text in [
             r#"{"clamber": {"markers": [{"name": "hit"}]}}"#,
             r#"{"clamber": {"marker": []}}"#,
-            r#"{"clamber": [0.4]}"#,
+            r#"{"clamber": 0.4}"#,
         ] {
             assert!(parse::<AnimationExtras>(text).is_err(), "{text}");
         }

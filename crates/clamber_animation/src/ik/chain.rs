@@ -78,7 +78,7 @@ impl Chain {
         let mut space = DAffine3::IDENTITY;
         for joint in &self.joints {
             let local = pose.transforms[joint.index()].to_affine();
-            space = space * local;
+            space *= local;
             points.push(space.translation);
             if joint != &self.joints[self.joints.len() - 1] {
                 uniform_scale(&space.matrix3, *joint)?;
@@ -112,7 +112,7 @@ impl Chain {
                 let rotation = arc(bone, wanted) * rotation_of(&pose.transforms[joint]);
                 store_rotation(&mut pose.transforms[joint], rotation.normalize());
             }
-            space = space * pose.transforms[joint].to_affine();
+            space *= pose.transforms[joint].to_affine();
         }
     }
 
