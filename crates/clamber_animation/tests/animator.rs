@@ -183,6 +183,15 @@ fn markers_are_told_once_and_in_order_however_time_is_cut() {
     animator.advance(&set, 1e9, &mut events).unwrap();
     assert_eq!(told(&events), [3, 4, 0, 1, 2]);
 
+    let mut animator = Animator::new(vec![Layer {
+        time: 0.5,
+        ..Layer::new(ClipId(0))
+    }]);
+    events.clear();
+    animator.advance(&set, 1.3, &mut events).unwrap();
+    assert_eq!(told(&events), [3, 4, 0, 1, 2]);
+    assert!((animator.layers()[0].time - 0.8).abs() < 1e-12);
+
     // A clip that is played once ends once, and holds.
     let mut animator = Animator::new(vec![Layer::once(ClipId(0))]);
     events.clear();

@@ -94,6 +94,84 @@ fn b10_the_gaze_arrives_and_half_a_weight_is_half_the_turn() {
 }
 
 #[test]
+fn mirrored_and_scaled_bodies_look_where_they_should() {
+    let look_up = |scale: Vec3, turn: DQuat| {
+        let mut joints = torso().joints().to_vec();
+        joints[0].rest.scale = scale;
+        joints[0].rest.rotation = turn.as_quat();
+        let skeleton = Skeleton::new(joints).unwrap();
+        let chain = [(HEAD, 0.5), (JointId(3), 0.5), (JointId(2), 1.0)];
+        let eye = DVec3::new(0.0, 0.1, 0.08);
+        let up = turn * DVec3::Y;
+        let look = LookAt::new(&skeleton, &chain, eye, DVec3::Z, up).unwrap();
+        let target = turn * (DVec3::new(2.0, 0.6, 4.0) * scale.as_dvec3().signum()) + DVec3::Y;
+        let mut pose = skeleton.rest_pose();
+        let mut memory = LookMemory::default();
+        let left = look.solve(&skeleton, &mut pose, target, 1.0, &mut memory, 0.1);
+        assert!(
+            left.as_ref().is_ok_and(|left| *left < 1e-4),
+            "{scale} {turn}: {left:?}"
+        );
+        let [eye, seen] = gaze(&skeleton, &pose);
+        assert!(angle(seen, target - eye) < 1e-4, "{scale} {turn}");
+        // And a head that is aimed points where it should, with both axes.
+        let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::new(-0.1, 1.0, 0.0)];
+        aim(&skeleton, &mut pose, HEAD, [DVec3::Z, DVec3::Y], directions).unwrap();
+        let palette = skeleton.palette(&pose).unwrap();
+        let head = palette.model_from_joint(HEAD).unwrap().matrix3;
+        assert!(
+            angle(head * DVec3::Z, directions[0]) < 1e-5,
+            "{scale} {turn}"
+        );
+        let across = directions[0].cross(directions[1]);
+        assert!((head * DVec3::Y).dot(across).abs() < 1e-5, "{scale} {turn}");
+        assert!((head * DVec3::Y).dot(directions[1]) > 0.0, "{scale} {turn}");
+    };
+    let mut rng = fastrand::Rng::with_seed(12);
+    for scale in [
+        Vec3::ONE,
+        Vec3::splat(7.0),
+        Vec3::new(-1.0, 1.0, 1.0),
+        Vec3::new(2.0, 2.0, -2.0),
+    ] {
+        look_up(scale, DQuat::IDENTITY);
+        for _ in 0..50 {
+            look_up(scale, common::rotation(&mut rng));
+        }
+    }
+    // A head that is itself mirrored.
+    let mut pose = torso().rest_pose();
+    pose.transforms[4].scale = Vec3::new(-1.0, 1.0, 1.0);
+    let directions = [DVec3::new(0.3, 0.2, 1.0), DVec3::NEG_Y];
+    aim(&torso(), &mut pose, HEAD, [DVec3::X, DVec3::Y], directions).unwrap();
+    let palette = torso().palette(&pose).unwrap();
+    let head = palette.model_from_joint(HEAD).unwrap().matrix3;
+    assert!(angle(head * DVec3::X, directions[0]) < 1e-5 && (head * DVec3::Y).y < 0.0);
+
+    let mut pose = torso().rest_pose();
+    pose.transforms[1].scale = Vec3::new(1.0, 2.0, 1.0);
+    let sheared = aim(
+        &torso(),
+        &mut pose,
+        HEAD,
+        [DVec3::Z, DVec3::Y],
+        [DVec3::X, DVec3::Y],
+    );
+    assert!(matches!(sheared, Err(IkError::Sheared(_))), "{sheared:?}");
+    let parallel = aim(
+        &torso(),
+        &mut pose,
+        JointId(0),
+        [DVec3::Z, DVec3::Z],
+        [DVec3::X, DVec3::Y],
+    );
+    assert!(
+        matches!(parallel, Err(IkError::BadSetUp(_))),
+        "{parallel:?}"
+    );
+}
+
+#[test]
 fn b10_limits_hold_and_a_target_behind_changes_the_side_once_a_second() {
     let skeleton = torso();
     let look = look(&skeleton);

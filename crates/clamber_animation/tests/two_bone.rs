@@ -530,3 +530,24 @@ fn a_limb_may_end_at_a_point_of_its_lower_bone() {
     assert!(TwoBone::to_point(&skeleton, joints, DVec3::NAN, DVec3::NEG_Z).is_err());
     assert!(TwoBone::to_point(&skeleton, joints, DVec3::ZERO, DVec3::NEG_Z).is_err());
 }
+
+/// A clip may overstretch an elbow a little. It bends the right way all the same, without a twist of the arm.
+#[test]
+fn an_overstretched_elbow_bends_the_right_way() {
+    let skeleton = arm([0.3, 0.25], Transform::IDENTITY);
+    for overstretch in [0.002, 0.02, 0.2] {
+        let mut pose = skeleton.rest_pose();
+        let turn = rotation_from_axis_angle(DVec3::Y, overstretch);
+        pose.transforms[2].rotation = turn.as_quat();
+        let before = pose.transforms[1].rotation;
+        let from = shoulder(&skeleton, &pose);
+        let target = from + (place(&skeleton, &pose, 3) - from) * 0.99;
+        limb(&skeleton)
+            .solve(&skeleton, &mut pose, &TwoBoneGoal::reach(target), None)
+            .unwrap();
+        let elbow = place(&skeleton, &pose, 2) - from;
+        assert!(elbow.z < -0.01, "{overstretch}: {elbow}");
+        let turned = apart(before, pose.transforms[1].rotation);
+        assert!(turned < 0.4, "{overstretch}: {turned}");
+    }
+}
