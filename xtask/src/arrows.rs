@@ -48,6 +48,7 @@ const ALLOWED: [(&str, &[&str]); 17] = [
         "bevy_clamber",
         &[
             "clamber_surface",
+            "clamber_animation",
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",

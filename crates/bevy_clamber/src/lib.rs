@@ -37,7 +37,8 @@ pub use collider::{
 pub use controls::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
 pub use creature::{
-    RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig, TooManyJoints,
+    RigAssets, RigJoints, RigMarkerPassed, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
+    TooManyJoints,
 };
 #[cfg(feature = "diagnostics")]
 pub use diagnostics::SurfaceDiagnosticsPlugin;
@@ -58,6 +59,8 @@ pub use query::{
 };
 pub use surface::{DrawnSurface, PoseError, PoseTiming, PosedSurface, SurfacePlugin, WorldOrigin};
 
+#[cfg(feature = "clamber_gltf")]
+pub use clamber_animation;
 /// The character.
 pub use clamber_climber;
 #[cfg(feature = "clamber_gltf")]

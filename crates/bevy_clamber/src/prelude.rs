@@ -12,7 +12,9 @@ pub use crate::{
 #[cfg(feature = "input")]
 pub use crate::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
-pub use crate::{RigAssets, RigJoints, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig};
+pub use crate::{
+    RigAssets, RigJoints, RigMarkerPassed, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
+};
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use bevy_app::{App, FixedPostUpdate, PostUpdate};
 use bevy_asset::Assets;
-use bevy_clamber::clamber_surface::rig::{Joint, Playback, Skeleton};
+use bevy_clamber::clamber_surface::rig::{Joint, Marker, Playback, Skeleton};
 use bevy_clamber::clamber_surface::skin::skin;
 use bevy_clamber::prelude::*;
 use bevy_clamber::{RigAssets, TooManyJoints};
@@ -215,6 +215,69 @@ fn clips_are_held_looped_slowed_and_reversed() {
     let (held, _) = play(held, 5);
     let (played, _) = play(walk, 32);
     assert_eq!(held, played);
+}
+
+/// A change of clip passes without a jump, and markers are told.
+#[test]
+fn a_change_of_clip_fades_and_markers_are_told() {
+    let mut rig = clamber_gltf::load(COLOSSUS).unwrap();
+    let step = |time: f64| Marker {
+        name: format!("step at {time}"),
+        time,
+    };
+    for clip in &mut rig.clips {
+        *clip = clip
+            .clone()
+            .with_markers(vec![step(0.1), step(0.3)])
+            .unwrap();
+    }
+    let player_plugin = RigPlayerPlugin::in_schedule(PostUpdate);
+    let mut app = app_with(64.0, (ClamberPlugins::default(), player_plugin));
+    #[derive(Resource, Default)]
+    struct Heard(Vec<String>);
+    app.init_resource::<Heard>().add_observer(
+        |passed: On<RigMarkerPassed>, mut heard: ResMut<Heard>| heard.0.push(passed.marker.clone()),
+    );
+    let assets = assets(&mut app, rig).unwrap();
+    let spawned = spawn(&mut app, &assets, Transform::IDENTITY);
+    app.update();
+    let mut entity = app.world_mut().entity_mut(spawned.root);
+    entity.insert(RigPlayer::new("walk"));
+    let rotations = |app: &App| -> Vec<bevy_math::Quat> {
+        let joints = spawned.joints.iter();
+        let rotation = |joint: &Entity| app.world().get::<Transform>(*joint).unwrap().rotation;
+        joints.map(rotation).collect()
+    };
+    let frames = |app: &mut App, count: usize| {
+        let mut worst = 0f32;
+        for _ in 0..count {
+            let before = rotations(app);
+            app.update();
+            let turned = rotations(app).into_iter().zip(before);
+            worst = turned
+                .map(|(a, b)| a.angle_between(b))
+                .fold(worst, f32::max);
+        }
+        worst
+    };
+    let walking = frames(&mut app, 20);
+    assert_eq!(
+        app.world().resource::<Heard>().0,
+        ["step at 0.1", "step at 0.3"]
+    );
+    for (fade, most) in [(0.4, 0.15), (0.0, 9.0)] {
+        for clip in ["swipe", "walk"] {
+            let player = RigPlayer {
+                fade,
+                ..RigPlayer::new(clip)
+            };
+            app.world_mut().entity_mut(spawned.root).insert(player);
+            let worst = frames(&mut app, 30);
+            assert!(worst < most, "{clip}: {worst} a frame, {walking} before");
+            // The control: a cut jumps.
+            assert!(fade > 0.0 || worst > 0.2, "{clip}: {worst}");
+        }
+    }
 }
 
 #[test]

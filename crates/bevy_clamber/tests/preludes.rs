@@ -35,7 +35,7 @@ use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
 use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
 use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
 use_each! { RIGS, cfg(feature = "clamber_gltf"),
-    RigAssets RigJoints RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
+    RigAssets RigJoints RigMarkerPassed RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
 }
 
 /// Otherwise a name that is added to the prelude would not be checked above.

@@ -5,13 +5,15 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_transform::components::Transform;
+use clamber_animation::{AnimationError, AnimationSet};
 use clamber_gltf::Rig;
 use clamber_surface::mesh::SurfaceTag;
-use clamber_surface::rig::{self, Pose};
+use clamber_surface::rig;
 use glam::DMat4;
 use thiserror::Error;
 
 use super::mesh::mesh;
+use super::player::Played;
 use crate::ColliderTag;
 
 /// Maximum number of joints that a Bevy mesh can index: its joint indices have 16 bits.
@@ -31,6 +33,8 @@ pub struct TooManyJoints(pub usize);
 #[non_exhaustive]
 pub struct RigAssets {
     rig: Arc<Rig>,
+    /// Its clips; or why they do not fit its skeleton.
+    animations: Result<Arc<AnimationSet>, AnimationError>,
     inverse_bindposes: Handle<SkinnedMeshInverseBindposes>,
     meshes: Vec<RigMesh>,
 }
@@ -69,8 +73,8 @@ pub struct RigJoints {
     pub(super) rig: Arc<Rig>,
     #[entities]
     pub(super) joints: Vec<Entity>,
-    pub(super) rest: Pose,
-    pub(super) pose: Pose,
+    pub(super) animations: Result<Arc<AnimationSet>, AnimationError>,
+    pub(super) played: Played,
 }
 
 impl RigJoints {
@@ -115,8 +119,10 @@ impl RigAssets {
                 });
             }
         }
+        let animations = AnimationSet::new(&rig.skeleton, rig.clips.clone()).map(Arc::new);
         Ok(Self {
             rig: Arc::new(rig),
+            animations,
             inverse_bindposes,
             meshes: added,
         })
@@ -133,7 +139,6 @@ impl RigAssets {
     /// draw the creature, insert `Visibility` on the root, and on each mesh a material chosen by its [`RigMaterial`].
     pub fn spawn(&self, commands: &mut Commands<'_, '_>, place: Transform) -> SpawnedRig {
         let skeleton = &self.rig.skeleton;
-        let rest = skeleton.rest_pose();
         let root = commands.spawn(place).id();
         let joints: Vec<Entity> = skeleton
             .joints()
@@ -168,8 +173,8 @@ impl RigAssets {
         commands.entity(root).insert(RigJoints {
             rig: Arc::clone(&self.rig),
             joints: joints.clone(),
-            pose: rest.clone(),
-            rest,
+            animations: self.animations.clone(),
+            played: Played::default(),
         });
         SpawnedRig {
             root,

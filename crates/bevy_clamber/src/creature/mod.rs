@@ -5,4 +5,4 @@ mod mesh;
 mod player;
 
 pub use assets::{RigAssets, RigJoints, RigMaterial, SpawnedRig, TooManyJoints};
-pub use player::{RigPlayer, RigPlayerPlugin};
+pub use player::{RigMarkerPassed, RigPlayer, RigPlayerPlugin};

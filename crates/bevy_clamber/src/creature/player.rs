@@ -4,7 +4,8 @@ use bevy_ecs::schedule::{InternedScheduleLabel, ScheduleLabel};
 use bevy_reflect::prelude::*;
 use bevy_time::{Fixed, Time};
 use bevy_transform::components::Transform;
-use clamber_surface::rig::{Playback, RigError};
+use clamber_animation::{AnimationError, AnimationEvent, Animator, ClipId, Layer, PoseBuffers};
+use clamber_surface::rig::{Playback, Pose};
 use thiserror::Error;
 
 use super::assets::{RigJoints, transform};
@@ -12,6 +13,9 @@ use crate::ClamberSystems;
 use crate::needs::need_resource;
 
 /// Plays a clip on the joints of a spawned rig. Insert it on the root, beside [`RigJoints`].
+///
+/// Where [`RigPlayer::clip`] becomes another, the creature passes into it within [`RigPlayer::fade`] seconds, with the
+/// velocity that it had: `*player = RigPlayer::new("swipe")`. Markers of the clip are told by [`RigMarkerPassed`].
 ///
 /// Joints and properties that no channel of the clip moves stay as in the rest pose. If the rig does not have the clip,
 /// or the time is not finite, nothing moves and a warning is logged.
@@ -26,18 +30,48 @@ pub struct RigPlayer {
     pub speed: f64,
     /// True to repeat the clip, false to stop at its end, or at its start when it plays backwards.
     pub looped: bool,
+    /// Seconds within which the creature passes into the clip from the one before; 0 cuts.
+    pub fade: f64,
 }
 
+/// How long a player fades unless it is told, seconds.
+const FADE: f64 = 0.3;
+
 impl RigPlayer {
-    /// Plays a clip from its start, at its own speed, in a loop.
+    /// Plays a clip from its start, at its own speed, in a loop. Passes into it within 0.3 s.
     pub fn new(clip: impl Into<String>) -> Self {
         Self {
             clip: clip.into(),
             time: 0.0,
             speed: 1.0,
             looped: true,
+            fade: FADE,
         }
     }
+}
+
+/// A [`RigPlayer`] has come past a marker of its clip: a foot is planted, a blow hits.
+///
+/// Triggered on the creature's root, and written as a message. Clips get their markers from the extras of glTF
+/// animations; see `clamber_gltf`.
+#[derive(EntityEvent, Message, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Clone, Debug, PartialEq)]
+pub struct RigMarkerPassed {
+    /// The creature's root.
+    pub entity: Entity,
+    /// Name of the marker.
+    pub marker: String,
+}
+
+/// What a creature's player remembers beside the component.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Played {
+    /// The clip of the last pose.
+    clip: Option<ClipId>,
+    animator: Animator,
+    pose: Pose,
+    buffers: PoseBuffers,
+    events: Vec<AnimationEvent>,
 }
 
 /// Plays [`RigPlayer`]s, in [`ClamberSystems::Animate`].
@@ -68,6 +102,7 @@ impl Default for RigPlayerPlugin {
 impl Plugin for RigPlayerPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<RigPlayer>()
+            .add_message::<RigMarkerPassed>()
             .configure_sets(
                 self.schedule,
                 ClamberSystems::Animate
@@ -89,13 +124,14 @@ enum PlayError {
     #[error("the rig has no clip {0:?}")]
     NoClip(String),
     #[error(transparent)]
-    Rig(#[from] RigError),
+    Animation(#[from] AnimationError),
 }
 
 fn play(
     time: Res<Time>,
     mut players: Query<(Entity, &mut RigPlayer, &mut RigJoints)>,
     mut transforms: Query<&mut Transform>,
+    mut commands: Commands,
 ) {
     for (entity, mut player, mut joints) in &mut players {
         let told = !player.is_changed();
@@ -107,7 +143,14 @@ fn play(
             }
             continue;
         }
-        for (joint, local) in joints.joints.iter().zip(&joints.pose.transforms) {
+        for marker in passed(joints) {
+            commands.queue(move |world: &mut World| {
+                let passed = RigMarkerPassed { entity, marker };
+                world.write_message(passed.clone());
+                world.trigger(passed);
+            });
+        }
+        for (joint, local) in joints.joints.iter().zip(&joints.played.pose.transforms) {
             // A joint that the app has despawned needs no pose.
             if let Ok(mut found) = transforms.get_mut(*joint) {
                 found.set_if_neq(transform(local));
@@ -118,18 +161,52 @@ fn play(
 
 /// Advances a player's time, and samples the pose there.
 fn pose(player: &mut RigPlayer, joints: &mut RigJoints, dt: f64) -> Result<(), PlayError> {
-    let clip = joints.rig.clip(&player.clip);
+    let played = &mut joints.played;
+    played.events.clear();
+    let set = joints.animations.as_ref().map_err(Clone::clone)?;
+    let clip = set.find(&player.clip);
     let clip = clip.ok_or_else(|| PlayError::NoClip(player.clip.clone()))?;
-    let time = player.time + player.speed * dt;
-    let duration = clip.duration();
-    let (time, playback) = if player.looped && duration > 0.0 {
-        (time.rem_euclid(duration), Playback::Loop)
-    } else {
-        (time.clamp(0.0, duration), Playback::Clamp)
+    let layer = Layer {
+        time: player.time,
+        speed: player.speed,
+        playback: if player.looped {
+            Playback::Loop
+        } else {
+            Playback::Clamp
+        },
+        ..Layer::new(clip)
     };
-    let transforms = &mut joints.pose.transforms;
-    transforms.clone_from(&joints.rest.transforms);
-    clip.sample_into(time, playback, &mut joints.pose)?;
-    player.time = time;
+    if played.clip == Some(clip) {
+        played.animator.layers_mut().fill(layer);
+    } else {
+        let fade = if played.clip.is_some() {
+            player.fade
+        } else {
+            0.0
+        };
+        played.animator.change(set, fade, |layers| {
+            layers.clear();
+            layers.push(layer);
+        })?;
+        played.clip = Some(clip);
+    }
+    played.animator.advance(set, dt, &mut played.events)?;
+    played
+        .animator
+        .pose_into(set, &mut played.pose, &mut played.buffers)?;
+    if let Some(layer) = played.animator.layers().first() {
+        player.time = layer.time;
+    }
     Ok(())
+}
+
+/// Names of the markers that were passed.
+fn passed(joints: &RigJoints) -> impl Iterator<Item = String> {
+    joints.played.events.iter().filter_map(|event| {
+        let AnimationEvent::Marker { clip, marker, .. } = event else {
+            return None;
+        };
+        let clip = joints.animations.as_ref().ok()?.clip(*clip).ok()?;
+        Some(clip.markers().get(*marker)?.name.clone())
+    })
 }

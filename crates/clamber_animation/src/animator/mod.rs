@@ -52,6 +52,13 @@ pub struct Animator {
     offsets: Offsets,
 }
 
+impl Default for Animator {
+    /// Plays nothing.
+    fn default() -> Self {
+        Self::new(Vec::new())
+    }
+}
+
 /// Seconds between the two poses from which velocities are taken. Poses are f32: over less time their rounding would
 /// show, over more time the change of velocity would.
 const STEP: f64 = 1.0 / 4096.0;
