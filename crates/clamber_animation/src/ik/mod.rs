@@ -1,8 +1,9 @@
 //! Inverse kinematics: joints are turned so that a hand, a foot or a gaze gets where it should.
 //!
 //! All solvers work on a [`Pose`](clamber_surface::rig::Pose) and take targets in model space. They change rotations
-//! only, so bones keep their lengths. They solve in the space of the chain's parent: parents that are mirrored or scaled,
-//! even unevenly, are no approximation. A joint *within* a chain must scale uniformly, else [`IkError::Sheared`].
+//! only, so bones keep their lengths. Mirrored and uniformly scaled parents are no approximation. [`TwoBone`] and
+//! [`Chain`] solve in the space of the chain's parent, which may scale unevenly; a joint *within* their chain must scale
+//! uniformly, and so must all parents for [`aim`] and [`LookAt`], else [`IkError::Sheared`].
 
 mod aim;
 mod bend;

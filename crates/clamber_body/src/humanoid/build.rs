@@ -1,0 +1,286 @@
+//! A body from named joints: what hangs where, and limbs that can be bent.
+
+use clamber_animation::ik::{IkError, TwoBone};
+use clamber_surface::rig::{JointId, Palette, Skeleton};
+use glam::{DAffine3, DVec3};
+
+use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side};
+use crate::HumanoidError;
+
+/// The joints of a body.
+pub(super) struct Named {
+    pub(super) hips: JointId,
+    pub(super) chest: Option<JointId>,
+    pub(super) head: JointId,
+    pub(super) arms: [NamedLimb; 2],
+    pub(super) legs: [NamedLimb; 2],
+}
+
+pub(super) struct NamedLimb {
+    pub(super) shoulder: Option<JointId>,
+    pub(super) upper: JointId,
+    pub(super) lower: JointId,
+    pub(super) end: NamedEnd,
+    pub(super) toes: Option<JointId>,
+}
+
+pub(super) enum NamedEnd {
+    Joint(JointId),
+    Between(Vec<JointId>),
+}
+
+/// Words in the names of fingers.
+const FINGERS: [&str; 6] = ["thumb", "index", "middle", "ring", "pinky", "finger"];
+
+impl Humanoid {
+    /// A body from joints that are named by hand. Hips, head, upper and lower arms and legs, hands and feet are needed;
+    /// shoulders, chest, neck and toes are not.
+    ///
+    /// # Errors
+    /// [`HumanoidError::Missing`] with all that is missing, [`HumanoidError::NoJoint`], [`HumanoidError::Twice`],
+    /// [`HumanoidError::NotBelow`] if a limb, the chest or the head does not hang where it should,
+    /// [`HumanoidError::NoFacing`], and [`HumanoidError::Limb`] if a limb cannot be bent, such as one without length.
+    pub fn from_joints(
+        skeleton: &Skeleton,
+        joints: &[(HumanJoint, JointId)],
+    ) -> Result<Self, HumanoidError> {
+        let count = skeleton.joints().len();
+        for (index, &(what, joint)) in joints.iter().enumerate() {
+            if joint.index() >= count {
+                return Err(HumanoidError::NoJoint {
+                    what,
+                    joint,
+                    joints: count,
+                });
+            }
+            let before = &joints[..index];
+            if before
+                .iter()
+                .any(|(role, other)| *role == what || *other == joint)
+            {
+                return Err(HumanoidError::Twice { what });
+            }
+        }
+        let find = |what: HumanJoint| joints.iter().find(|(role, _)| *role == what);
+        let find = |what: HumanJoint| find(what).map(|(_, joint)| *joint);
+        let mut missing = Vec::new();
+        let mut need = |what: HumanJoint| {
+            let found = find(what);
+            if found.is_none() {
+                missing.push(what);
+            }
+            found
+        };
+        let hips = need(HumanJoint::Hips);
+        let head = need(HumanJoint::Head);
+        let arms = Side::BOTH.map(|side| {
+            let parts = [
+                HumanJoint::UpperArm(side),
+                HumanJoint::LowerArm(side),
+                HumanJoint::Hand(side),
+            ]
+            .map(&mut need);
+            limb(parts, find(HumanJoint::Shoulder(side)), None)
+        });
+        let legs = Side::BOTH.map(|side| {
+            let parts = [
+                HumanJoint::UpperLeg(side),
+                HumanJoint::LowerLeg(side),
+                HumanJoint::Foot(side),
+            ]
+            .map(&mut need);
+            limb(parts, None, find(HumanJoint::Toes(side)))
+        });
+        let (Some(hips), Some(head), [Some(a), Some(b)], [Some(c), Some(d)]) =
+            (hips, head, arms, legs)
+        else {
+            return Err(HumanoidError::Missing(missing));
+        };
+        let named = Named {
+            hips,
+            chest: find(HumanJoint::Chest),
+            head,
+            arms: [a, b],
+            legs: [c, d],
+        };
+        named.build(skeleton)
+    }
+}
+
+fn limb(
+    [upper, lower, end]: [Option<JointId>; 3],
+    shoulder: Option<JointId>,
+    toes: Option<JointId>,
+) -> Option<NamedLimb> {
+    Some(NamedLimb {
+        shoulder,
+        upper: upper?,
+        lower: lower?,
+        end: NamedEnd::Joint(end?),
+        toes,
+    })
+}
+
+/// A skeleton at rest.
+struct AtRest<'a> {
+    skeleton: &'a Skeleton,
+    palette: Palette,
+    facing: DVec3,
+}
+
+impl Named {
+    pub(super) fn build(self, skeleton: &Skeleton) -> Result<Humanoid, HumanoidError> {
+        let below = |joint, ancestor| skeleton.is_descendant_or_self(joint, ancestor);
+        let check = |what: HumanJoint, joint, above: HumanJoint, ancestor| {
+            if below(joint, ancestor) && joint != ancestor {
+                Ok(())
+            } else {
+                Err(HumanoidError::NotBelow { what, above })
+            }
+        };
+        check(HumanJoint::Head, self.head, HumanJoint::Hips, self.hips)?;
+        for side in Side::BOTH {
+            let (arm, leg) = (&self.arms[side.index()], &self.legs[side.index()]);
+            let (upper_arm, upper_leg) = (HumanJoint::UpperArm(side), HumanJoint::UpperLeg(side));
+            check(upper_arm, arm.upper, HumanJoint::Hips, self.hips)?;
+            check(upper_leg, leg.upper, HumanJoint::Hips, self.hips)?;
+            check(HumanJoint::LowerArm(side), arm.lower, upper_arm, arm.upper)?;
+            check(HumanJoint::LowerLeg(side), leg.lower, upper_leg, leg.upper)?;
+        }
+        let mut path = self.path(skeleton);
+        let carries = |joint: &JointId| self.arms.iter().all(|arm| below(arm.upper, *joint));
+        let chest = match self.chest {
+            Some(chest) => {
+                check(HumanJoint::Chest, chest, HumanJoint::Hips, self.hips)?;
+                check(HumanJoint::Head, self.head, HumanJoint::Chest, chest)?;
+                path.iter().position(|joint| *joint == chest)
+            }
+            None => path.iter().rposition(carries),
+        };
+        let neck = path.split_off(chest.map_or(0, |chest| chest + 1));
+
+        // A skeleton's own rest pose always has a palette.
+        let palette = skeleton.palette(&skeleton.rest_pose()).unwrap_or_default();
+        let mut rest = AtRest {
+            skeleton,
+            palette,
+            facing: DVec3::Z,
+        };
+        let [left, right] = [&self.legs[0], &self.legs[1]].map(|leg| rest.place(leg.upper));
+        let across = (left - right) * DVec3::new(1.0, 0.0, 1.0);
+        let facing = across.cross(DVec3::Y).try_normalize();
+        rest.facing = facing.ok_or(HumanoidError::NoFacing)?;
+        let sides = Side::BOTH.map(|side| {
+            let arm = rest.limb(&self.arms[side.index()], HumanJoint::UpperArm(side))?;
+            let leg = rest.limb(&self.legs[side.index()], HumanJoint::UpperLeg(side))?;
+            Ok((arm, leg))
+        });
+        let [left, right] = sides;
+        let ((left_arm, left_leg), (right_arm, right_leg)) = (left?, right?);
+        Ok(Humanoid {
+            hips: self.hips,
+            spine: path,
+            neck,
+            head: self.head,
+            arms: [left_arm, right_arm],
+            legs: [left_leg, right_leg],
+            facing: rest.facing,
+        })
+    }
+
+    /// The joints between hips and head, from below.
+    fn path(&self, skeleton: &Skeleton) -> Vec<JointId> {
+        let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+        let above = core::iter::successors(parent(&self.head), parent);
+        let mut path: Vec<JointId> = above.take_while(|joint| *joint != self.hips).collect();
+        path.reverse();
+        path
+    }
+}
+
+impl AtRest<'_> {
+    fn model(&self, joint: JointId) -> DAffine3 {
+        let model = self.palette.model_from_joint(joint);
+        model.copied().unwrap_or(DAffine3::IDENTITY)
+    }
+
+    fn place(&self, joint: JointId) -> DVec3 {
+        self.model(joint).translation
+    }
+
+    fn limb(&self, named: &NamedLimb, what: HumanJoint) -> Result<Limb, HumanoidError> {
+        let failed = |error| HumanoidError::Limb { limb: what, error };
+        let (upper, lower) = (named.upper, named.lower);
+        let is_leg = matches!(what, HumanJoint::UpperLeg(_));
+        let below = |joint| self.skeleton.is_descendant_or_self(joint, lower) && joint != lower;
+        let end = match &named.end {
+            NamedEnd::Joint(joint) if below(*joint) => LimbEnd::Joint(*joint),
+            NamedEnd::Joint(joint) => {
+                LimbEnd::Beside(*joint, self.in_space_of(lower, self.place(*joint)))
+            }
+            NamedEnd::Between(joints) => {
+                let sum: DVec3 = joints.iter().map(|joint| self.place(*joint)).sum();
+                LimbEnd::Point(self.in_space_of(lower, sum / joints.len() as f64))
+            }
+        };
+        let bends = if is_leg { self.facing } else { -self.facing };
+        let ik = |bends| match end {
+            LimbEnd::Joint(joint) => TwoBone::new(self.skeleton, [upper, lower, joint], bends),
+            LimbEnd::Beside(_, point) | LimbEnd::Point(point) => {
+                TwoBone::to_point(self.skeleton, [upper, lower], point, bends)
+            }
+        };
+        // An arm that is stretched out in front bends downwards.
+        let ik = match ik(bends) {
+            Err(IkError::BadSetUp(_)) => ik(DVec3::NEG_Y),
+            other => other,
+        };
+        let ik = ik.map_err(failed)?;
+        let lengths = ik.lengths(self.skeleton, &self.skeleton.rest_pose());
+        let shoulder = named.shoulder.filter(|shoulder| {
+            let is_above = self.skeleton.is_descendant_or_self(upper, *shoulder);
+            is_above && *shoulder != upper
+        });
+        Ok(Limb {
+            shoulder,
+            upper,
+            lower,
+            end,
+            toes: named.toes,
+            fingers: if is_leg {
+                Vec::new()
+            } else {
+                self.fingers(lower)
+            },
+            ik,
+            lengths: lengths.map_err(failed)?,
+        })
+    }
+
+    fn in_space_of(&self, joint: JointId, point: DVec3) -> DVec3 {
+        self.model(joint).inverse().transform_point3(point)
+    }
+
+    /// The chains of joints below a forearm that are named like fingers.
+    fn fingers(&self, lower: JointId) -> Vec<Vec<JointId>> {
+        let is_finger = |joint: &JointId| {
+            let name = self.skeleton.joints()[joint.index()].name.to_lowercase();
+            FINGERS.iter().any(|finger| name.contains(finger))
+        };
+        let parent = |joint: JointId| self.skeleton.joints()[joint.index()].parent;
+        let all = (0..self.skeleton.joints().len() as u32).map(JointId);
+        let below: Vec<JointId> = all
+            .filter(|joint| self.skeleton.is_descendant_or_self(*joint, lower))
+            .filter(is_finger)
+            .collect();
+        let begins = |joint: &&JointId| parent(**joint).is_none_or(|above| !below.contains(&above));
+        let next = |joint: &JointId| below.iter().find(|other| parent(**other) == Some(*joint));
+        below
+            .iter()
+            .filter(begins)
+            .map(|first| {
+                core::iter::successors(Some(*first), |joint| next(joint).copied()).collect()
+            })
+            .collect()
+    }
+}

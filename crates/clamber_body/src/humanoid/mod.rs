@@ -1,0 +1,159 @@
+mod build;
+mod find;
+mod joint;
+mod names;
+
+use clamber_animation::ik::TwoBone;
+use clamber_surface::rig::JointId;
+use glam::DVec3;
+
+pub use joint::{HumanJoint, Side};
+
+/// A human body in a skeleton: which joint is what, and limbs that can be posed.
+///
+/// [`Humanoid::find`] knows the names that Mixamo, Rigify, Quaternius, KayKit, VRM, Unreal and Godot use, and numbered
+/// chains such as `leg_joint_L_1`. For any other, [`Humanoid::from_joints`] takes a list.
+///
+/// ```
+/// use clamber_body::{Humanoid, Side};
+/// # use clamber_surface::{geometry::Affine, rig::*};
+/// # let mut joints: Vec<Joint> = Vec::new();
+/// # let mut add = |name: &str, parent: i32, at: [f32; 3]| joints.push(Joint {
+/// #     name: name.into(), parent: u32::try_from(parent).ok().map(JointId), inverse_bind: Affine::IDENTITY,
+/// #     rest: Transform::from_translation(at.into()),
+/// # });
+/// # add("Hips", -1, [0.0, 1.0, 0.0]); add("Spine", 0, [0.0, 0.3, 0.0]); add("Head", 1, [0.0, 0.4, 0.0]);
+/// # for (side, x) in [("Left", 1.0), ("Right", -1.0)] {
+/// #     let at = if x > 0.0 { 3 } else { 9 };
+/// #     add(&format!("{side}Arm"), 1, [0.2 * x, 0.2, 0.0]); add(&format!("{side}ForeArm"), at, [0.3 * x, 0.0, 0.0]);
+/// #     add(&format!("{side}Hand"), at + 1, [0.3 * x, 0.0, 0.0]); add(&format!("{side}UpLeg"), 0, [0.1 * x, 0.0, 0.0]);
+/// #     add(&format!("{side}Leg"), at + 3, [0.0, -0.5, 0.0]); add(&format!("{side}Foot"), at + 4, [0.0, -0.5, 0.0]);
+/// # }
+/// # let skeleton = Skeleton::new(joints)?;
+/// let body = Humanoid::find(&skeleton)?;
+/// let left_hand = body.arm(Side::Left).end.joint();
+/// assert_eq!(left_hand, skeleton.find("LeftHand"));
+/// assert!(body.facing.z > 0.99);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Humanoid {
+    /// Carries the spine and both legs.
+    pub hips: JointId,
+    /// From above the hips to the joint that carries both arms, the chest.
+    pub spine: Vec<JointId>,
+    /// From above the chest to below the head; may be empty.
+    pub neck: Vec<JointId>,
+    /// The head.
+    pub head: JointId,
+    /// The left and the right arm.
+    pub arms: [Limb; 2],
+    /// The left and the right leg.
+    pub legs: [Limb; 2],
+    /// Where the body faces at rest: a level unit vector in model space. +Z for most files.
+    pub facing: DVec3,
+}
+
+/// An arm or a leg.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Limb {
+    /// The collar bone of an arm, if the skeleton has one; `None` for legs.
+    pub shoulder: Option<JointId>,
+    /// Upper arm or thigh.
+    pub upper: JointId,
+    /// Forearm or shin.
+    pub lower: JointId,
+    /// Hand or foot.
+    pub end: LimbEnd,
+    /// The toes of a leg, if the skeleton has them; `None` for arms.
+    pub toes: Option<JointId>,
+    /// Chains of joints below the hand, one per finger, each from the palm outward. Empty for legs.
+    pub fingers: Vec<Vec<JointId>>,
+    /// Brings the end to a target.
+    pub ik: TwoBone,
+    /// Lengths of the upper and the lower bone at rest, in model units.
+    pub lengths: [f64; 2],
+}
+
+/// Where a limb ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimbEnd {
+    /// At a joint below the lower bone: it moves along.
+    Joint(JointId),
+    /// At a joint that stands beside the limb, as in files with baked controls. Whoever poses the limb has to move it to
+    /// this point in the space of the lower bone.
+    Beside(JointId, DVec3),
+    /// At a point in the space of the lower bone, between several joints: a hand that consists of fingers.
+    Point(DVec3),
+}
+
+impl LimbEnd {
+    /// The joint of the hand or foot, if there is one.
+    pub fn joint(&self) -> Option<JointId> {
+        match self {
+            Self::Joint(joint) | Self::Beside(joint, _) => Some(*joint),
+            Self::Point(_) => None,
+        }
+    }
+}
+
+impl Limb {
+    /// The length of the straight limb at rest, in model units.
+    pub fn length(&self) -> f64 {
+        self.lengths[0] + self.lengths[1]
+    }
+}
+
+impl Humanoid {
+    /// The joint that carries both arms: the last of the spine, or the hips.
+    pub fn chest(&self) -> JointId {
+        self.spine.last().copied().unwrap_or(self.hips)
+    }
+
+    /// An arm.
+    pub fn arm(&self, side: Side) -> &Limb {
+        &self.arms[side.index()]
+    }
+
+    /// A leg.
+    pub fn leg(&self, side: Side) -> &Limb {
+        &self.legs[side.index()]
+    }
+
+    /// What a joint is; `None` if it is not one of the body's named joints.
+    pub fn role(&self, joint: JointId) -> Option<HumanJoint> {
+        self.joints()
+            .into_iter()
+            .find_map(|(role, found)| (found == joint).then_some(role))
+    }
+
+    /// The joints that were found, from the hips outward.
+    pub fn joints(&self) -> Vec<(HumanJoint, JointId)> {
+        let mut all = vec![(HumanJoint::Hips, self.hips)];
+        if !self.spine.is_empty() {
+            all.push((HumanJoint::Chest, self.chest()));
+        }
+        all.extend(self.neck.first().map(|neck| (HumanJoint::Neck, *neck)));
+        all.push((HumanJoint::Head, self.head));
+        for side in Side::BOTH {
+            let (arm, leg) = (self.arm(side), self.leg(side));
+            let some = [
+                (HumanJoint::Shoulder(side), arm.shoulder),
+                (HumanJoint::UpperArm(side), Some(arm.upper)),
+                (HumanJoint::LowerArm(side), Some(arm.lower)),
+                (HumanJoint::Hand(side), arm.end.joint()),
+                (HumanJoint::UpperLeg(side), Some(leg.upper)),
+                (HumanJoint::LowerLeg(side), Some(leg.lower)),
+                (HumanJoint::Foot(side), leg.end.joint()),
+                (HumanJoint::Toes(side), leg.toes),
+            ];
+            all.extend(
+                some.into_iter()
+                    .filter_map(|(role, joint)| Some((role, joint?))),
+            );
+        }
+        all
+    }
+}

@@ -1,0 +1,209 @@
+//! What the name of a joint says.
+
+use super::Side;
+
+/// What part of a body a name means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Part {
+    Shoulder,
+    UpperArm,
+    LowerArm,
+    /// `arm`: an upper arm where there is a forearm, or one of a numbered chain.
+    Arm,
+    Hand,
+    Wrist,
+    Palm,
+    UpperLeg,
+    LowerLeg,
+    /// `leg`: a shin where there is a thigh, or one of a numbered chain.
+    Leg,
+    Foot,
+    Toes,
+    Head,
+    Neck,
+    Spine,
+}
+
+/// A joint's name, taken apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Meaning {
+    pub(super) part: Part,
+    pub(super) side: Option<Side>,
+    /// Lower is better: a deforming joint before a plain one, and that before one that only steers it.
+    pub(super) rank: u8,
+}
+
+/// Words of which a name may have any number without meaning anything.
+const NOISE: [&str; 18] = [
+    "armature",
+    "b",
+    "base",
+    "bip",
+    "bone",
+    "c",
+    "cc",
+    "character",
+    "def",
+    "j",
+    "jnt",
+    "joint",
+    "mixamorig",
+    "org",
+    "rig",
+    "root",
+    "skeleton",
+    "valve",
+];
+
+/// Words of joints that are no part of the body: they twist, steer or hold something.
+const OTHERS: [&str; 22] = [
+    "control", "ctrl", "end", "fk", "helper", "ik", "item", "mch", "nub", "orient", "parent",
+    "pole", "roll", "slot", "socket", "target", "tip", "tracker", "tweak", "twist", "vis",
+    "weapon",
+];
+
+/// What the rest of a name may be, without spaces.
+const PARTS: [(Part, &[&str]); 15] = [
+    (
+        Part::Shoulder,
+        &["shoulder", "clavicle", "collar", "collarbone"],
+    ),
+    (Part::UpperArm, &["upperarm", "uparm", "armupper"]),
+    (
+        Part::LowerArm,
+        &["lowerarm", "forearm", "lowarm", "armlower", "elbow"],
+    ),
+    (Part::Arm, &["arm"]),
+    (Part::Hand, &["hand"]),
+    (Part::Wrist, &["wrist"]),
+    (
+        Part::Palm,
+        &["palm", "palmi", "palmm", "palmp", "palmr", "palmt"],
+    ),
+    (Part::UpperLeg, &["upperleg", "upleg", "thigh", "legupper"]),
+    (
+        Part::LowerLeg,
+        &["lowerleg", "shin", "calf", "lowleg", "leglower", "knee"],
+    ),
+    (Part::Leg, &["leg"]),
+    (Part::Foot, &["foot", "ankle"]),
+    (Part::Toes, &["toe", "toes", "toebase", "ball"]),
+    (Part::Head, &["head"]),
+    (Part::Neck, &["neck"]),
+    (
+        Part::Spine,
+        &[
+            "spine",
+            "chest",
+            "torso",
+            "abdomen",
+            "waist",
+            "upperchest",
+            "body",
+        ],
+    ),
+];
+
+impl Meaning {
+    /// What a name means; `None` for joints that are no part of a body.
+    pub(super) fn of(name: &str) -> Option<Self> {
+        // Without the name of an armature or a namespace.
+        let name = name.rsplit([':', '|']).next().unwrap_or(name);
+        let words = words(name);
+        if words.iter().any(|word| OTHERS.contains(&word.as_str())) {
+            return None;
+        }
+        let rank = match words.first().map(String::as_str) {
+            Some("def") => 0,
+            Some("org") => 2,
+            _ => 1,
+        };
+        let mut side = None;
+        let mut rest = String::new();
+        for word in &words {
+            match word.as_str() {
+                "l" | "left" => side = Some(Side::Left),
+                "r" | "right" => side = Some(Side::Right),
+                word if NOISE.contains(&word) => {}
+                word => rest += word,
+            }
+        }
+        let is = |(_, names): &&(Part, &[&str])| names.contains(&rest.as_str());
+        let part = PARTS.iter().find(is)?.0;
+        Some(Self { part, side, rank })
+    }
+}
+
+/// A name's words in lower case: parted at all that is no letter, and where a capital follows. Numbers are left out.
+fn words(name: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word = String::new();
+    let mut before = ' ';
+    for letter in name.chars() {
+        let starts = letter.is_uppercase() && before.is_lowercase();
+        if (starts || !letter.is_alphabetic()) && !word.is_empty() {
+            words.push(core::mem::take(&mut word));
+        }
+        if letter.is_alphabetic() {
+            word.extend(letter.to_lowercase());
+        }
+        before = letter;
+    }
+    if !word.is_empty() {
+        words.push(word);
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_many_tools_are_understood() {
+        use Side::{Left, Right};
+        for (name, part, side) in [
+            ("mixamorig:LeftUpLeg", Part::UpperLeg, Some(Left)),
+            ("mixamorig1:RightForeArm", Part::LowerArm, Some(Right)),
+            ("mixamorig:LeftArm", Part::Arm, Some(Left)),
+            ("mixamorig:LeftToeBase", Part::Toes, Some(Left)),
+            ("DEF-upper_arm.L", Part::UpperArm, Some(Left)),
+            ("DEF-shin.R.001", Part::LowerLeg, Some(Right)),
+            ("UpperLeg.L", Part::UpperLeg, Some(Left)),
+            ("upperarm.r", Part::UpperArm, Some(Right)),
+            ("J_Bip_L_LowerLeg", Part::LowerLeg, Some(Left)),
+            ("J_Bip_C_Neck", Part::Neck, None),
+            ("clavicle_l", Part::Shoulder, Some(Left)),
+            ("calf_r", Part::LowerLeg, Some(Right)),
+            ("ball_l", Part::Toes, Some(Left)),
+            ("Bip001 R UpperArm", Part::UpperArm, Some(Right)),
+            ("LeftLowerLeg", Part::LowerLeg, Some(Left)),
+            ("CC_Base_L_Thigh", Part::UpperLeg, Some(Left)),
+            ("l-forearm", Part::LowerArm, Some(Left)),
+            ("Skeleton_arm_joint_L__4_", Part::Arm, Some(Left)),
+            ("leg_joint_R_1", Part::Leg, Some(Right)),
+            ("Armature|Head", Part::Head, None),
+            ("DEF-spine.006", Part::Spine, None),
+        ] {
+            let meaning = Meaning::of(name).map(|meaning| (meaning.part, meaning.side));
+            assert_eq!(meaning, Some((part, side)), "{name}");
+        }
+        for other in [
+            "upperarm_twist_01_l",
+            "PoleTarget.L",
+            "handslot.l",
+            "socket_hand_L",
+            "thigh_ik.L",
+            "Weapon",
+            "Bone.003",
+            "headtracker",
+            "r-LEGCONTROL",
+            "",
+            "PT.L",
+            "HeadTop_End",
+            "Pinky1.L",
+        ] {
+            assert_eq!(Meaning::of(other), None, "{other}");
+        }
+    }
+}
