@@ -30,8 +30,8 @@ def jump():
     table = _to(stand, [
         (0.10, {"hips.y": -0.20, "hips.z": -0.02, "hips.pitch": 16, "spine.pitch": 14, "head.pitch": -14, "arm.swing.L": -34, "arm.swing.R": -34,
                 "arm.out.L": 16, "arm.out.R": 16, "elbow.L": 14, "elbow.R": 14}),
-        (0.20, {"hips.y": 0.055, "hips.z": 0.02, "hips.pitch": 2, "spine.pitch": -6, "head.pitch": -10, "arm.swing.L": 70, "arm.swing.R": 62,
-                "arm.out.L": 24, "arm.out.R": 24, "elbow.L": 30, "elbow.R": 30}),
+        (0.20, {"hips.y": 0.055, "hips.z": 0.02, "hips.pitch": 2, "spine.pitch": -6, "head.pitch": -10, "arm.swing.L": 88, "arm.swing.R": 66,
+                "arm.out.L": 34, "arm.out.R": 32, "elbow.L": 62, "elbow.R": 70}),
         (t, {**_AIR, "hips.y": 0.0, "hips.z": 0.0}),
     ])
     for side in (".L", ".R"):

@@ -19,7 +19,7 @@ CLOTH_THICKNESS = 0.010
 
 def pieces(thinned):
     """All clothes."""
-    result = [_tunic(), _skirt(), _belt(), _buckle(), _pouch(), _mantle(), _cowl(), _clasp()]
+    result = [_tunic(), _skirt(), _belt(), _buckle(), _pouch(), _baldric(), _mantle(), _cowl(), _clasp()]
     for piece in (_sleeve(), _bracer(), _trouser(), _boot(thinned)):
         result += m.both_sides(piece)
     return result
@@ -45,7 +45,7 @@ def trunk(p):
 def upper_arm(p):
     """Distance to the sleeve of the left arm, down to the bracer."""
     folds = _folds(p)
-    deltoid = f.ellipsoid(p, SHOULDER + (0.022, -0.018, 0.0), (0.062, 0.066, 0.062))
+    deltoid = f.ellipsoid(p, SHOULDER + (0.020, -0.018, 0.0), (0.058, 0.063, 0.060))
     upper = f.round_cone(p, SHOULDER, ELBOW, 0.054, 0.046)
     biceps = m.turned_ellipsoid(p, SHOULDER + 0.15 * ALONG + 0.010 * FORWARD, (0.085, 0.05, 0.05), _arm_axes())
     lower = f.round_cone(p, ELBOW, ELBOW + 0.10 * LOWER, 0.046, 0.053)
@@ -107,7 +107,7 @@ def _skirt():
     front = (points[:, 2] > 0.0)[:, None] & (row < len(outer) - 2)[:, None]
     shade = 0.82 + 0.18 * np.cos(SKIRT_FOLDS * np.arctan2(points[:, 2], points[:, 0]))[:, None] * 0.6
     colours = np.where(front | (row < len(outer) - 2)[:, None], colours * shade, colours)
-    return m.Piece("skirt", points, triangles, "cloth", colours, weights.body(points, legs=0.86), 70.0)
+    return m.Piece("skirt", points, triangles, "cloth", colours, weights.body(points, legs=0.94), 70.0)
 
 
 def _belt():
@@ -118,6 +118,22 @@ def _belt():
     row = np.arange(len(points)) // 24
     colours = np.where(np.isin(row, (2, 3))[:, None], COLOURS["leather"], np.asarray(COLOURS["leather"]) * 0.7)
     return m.Piece("belt", points, triangles, "leather", colours, weights.body(points), 50.0)
+
+
+def _baldric():
+    """The strap of the quiver: from the right shoulder, under the mantle, to the left hip."""
+    around, middle = 26, np.array([0.0, 1.22, -0.010])
+    slope = np.array([0.52, -0.85, 0.0])
+    slope /= np.linalg.norm(slope)
+    rings = []
+    for aside, lift in ((-0.017, -0.003), (-0.015, 0.005), (0.015, 0.005), (0.017, -0.003)):
+        centre = middle + aside * np.cross(FORWARD, slope)
+        path = np.stack([centre - 0.01 * np.cross(FORWARD, slope), centre, centre + 0.01 * np.cross(FORWARD, slope)])
+        rings.append(m.wrapped(lambda p, lift=lift: trunk(p) - lift - 0.003, path, around, FORWARD, 0.34)[1])
+    points, triangles = m.loft(rings)
+    row = np.arange(len(points)) // around
+    colours = np.where(np.isin(row, (1, 2))[:, None], COLOURS["leather"], COLOURS["leather_dark"])
+    return m.Piece("baldric", points, triangles, "leather", colours, weights.body(points), 50.0)
 
 
 def _box(centre, half, axes=np.eye(3), taper=1.0):
@@ -152,6 +168,10 @@ def _sleeve():
     lower = ELBOW + np.array([0.026, 0.052, 0.072, 0.090, 0.104])[:, None] * LOWER
     path = np.concatenate([upper[:-1], ELBOW[None], lower])
     rings = m.wrapped(upper_arm, path, 12, FORWARD, 0.11)
+    # Its upper side is flat under the mantle, so that a raised arm does not come through it.
+    for row, size in enumerate((0.30, 0.45, 0.68, 0.86)):
+        above = np.maximum(-(rings[row] - path[row]) @ PALM_SIDE, 0.0)
+        rings[row] += (1.0 - size) * above[:, None] * PALM_SIDE
     points, triangles = m.loft(rings)
     return m.Piece("sleeve", points, triangles, "cloth", m.plain(points, COLOURS["linen"]), weights.arm(points), 80.0)
 
@@ -189,6 +209,9 @@ def _trouser():
     path = np.stack([np.interp(heights, (ANKLE[1], HIP[1], 0.99), (ANKLE[0], HIP[0], 0.082)), heights,
                      np.interp(heights, (ANKLE[1], 0.49, HIP[1]), (-0.026, 0.0, -0.006))], axis=1)
     rings = m.wrapped(_leg_field, path, 14, LEFT, 0.16)
+    # The upper end hides under the skirt.
+    rings[0] = path[0] + 0.62 * (rings[0] - path[0])
+    rings[1] = path[1] + 0.94 * (rings[1] - path[1])
     # Both legs meet in the middle plane.
     rings[..., 0] = np.maximum(rings[..., 0], -0.004)
     points, triangles = m.loft(rings)
@@ -243,22 +266,22 @@ def mantle_field(p):
     around = np.arctan2(p[:, 0], p[:, 2] + 0.03)
     folds = 0.006 * np.sin(9.0 * around + 2.0 * np.sin(2 * around)) * f.smooth_step(1.47, 1.33, p[:, 1])
     hood = f.ellipsoid(p, (0.0, 1.425, -0.128), (0.090, 0.075, 0.046), pitch=0.25)
-    return m.blended(trunk(p), (_plain_arm(p), 0.06), (hood, 0.04)) - 0.017 - folds
+    return m.blended(trunk(p), (_plain_arm(p), 0.06), (hood, 0.04)) - 0.015 - folds
 
 
 def _plain_arm(p):
     return m.blended(
-        f.ellipsoid(p, SHOULDER + (0.022, -0.018, 0.0), (0.064, 0.068, 0.064)), (f.round_cone(p, SHOULDER, ELBOW, 0.056, 0.050), 0.05)
+        f.ellipsoid(p, SHOULDER + (0.020, -0.018, 0.0), (0.059, 0.064, 0.061)), (f.round_cone(p, SHOULDER, ELBOW, 0.054, 0.050), 0.05)
     )
 
 
 def _mantle():
     """Rings about the neck, from under the cowl to a trimmed edge that is turned in."""
-    around, middle = 40, np.array([0.0, 1.435, -0.032])
+    around, middle = 36, np.array([0.0, 1.435, -0.032])
     angle = 2 * np.pi * np.arange(around) / around
     out = np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1)
     # How far the edge hangs below the horizontal, seen from the neck: less over the shoulders.
-    edge = np.radians(np.interp(np.abs(np.degrees(np.arctan2(out[:, 0], out[:, 2]))), (0, 25, 65, 90, 120, 150, 180), (50, 44, 26, 19, 25, 42, 50)))
+    edge = np.radians(np.interp(np.abs(np.degrees(np.arctan2(out[:, 0], out[:, 2]))), (0, 25, 65, 90, 120, 150, 180), (50, 44, 23, 11, 21, 42, 50)))
     edge += 0.035 * np.cos(9.0 * angle)
     shares = (-0.10, 0.15, 0.34, 0.52, 0.68, 0.80, 0.805, 0.90, 0.995)
     start = np.radians(-38.0)
@@ -279,7 +302,7 @@ def _mantle():
 
 def _cowl():
     """Two rolls of cloth about the neck, lower in front."""
-    around, sides = 28, 10
+    around, sides = 24, 8
     angle = 2 * np.pi * np.arange(around) / around
     rings = []
     for turn in 2 * np.pi * np.arange(sides + 1) / sides:

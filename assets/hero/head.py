@@ -197,8 +197,8 @@ def _mouth():
     bottom = line - np.array([0.0, 0.0045, 0.0074, 0.0084, 0.0086, 0.0084, 0.0074, 0.0045, 0.0])
     rows, colours = [], []
     for height, lift, colour in (
-        (top, 0.0003, COLOURS["skin"]), ((top + 2 * line) / 3, 0.0010, COLOURS["lip"]), (line + 0.0004, 0.0004, np.multiply(COLOURS["lip"], 0.25)),
-        (line - 0.0005, 0.0004, np.multiply(COLOURS["lip"], 0.25)), ((bottom + 2 * line) / 3, 0.0012, COLOURS["lip"]), (bottom, 0.0003, COLOURS["skin"]),
+        (top, -0.0012, COLOURS["skin"]), ((top + 2 * line) / 3, 0.0019, COLOURS["lip"]), (line + 0.0005, 0.0010, np.multiply(COLOURS["lip"], 0.25)),
+        (line - 0.0005, 0.0010, np.multiply(COLOURS["lip"], 0.25)), ((bottom + 2 * line) / 3, 0.0021, COLOURS["lip"]), (bottom, -0.0012, COLOURS["skin"]),
     ):
         rows.append(_on_face(np.stack([x, height, 0 * x], axis=1), lift))
         colours.append(m.plain(x, colour))

@@ -22,6 +22,8 @@ FOREARM_TWIST = 0.55
 HEEL, TOE_END = np.array([0.098, 0.0, -0.085]), np.array([0.114, 0.0, 0.185])
 # From the mouth of the scabbard to its end, and how high its end is kept; metres.
 SCABBARD, SCABBARD_CLEAR = 0.92, 0.05
+# How high bow and quiver are kept, in metres.
+BACK_CLEAR = 0.012
 # Points of the trunk that touch the ground when he lies, and the joints that they follow.
 BACK = tuple((joint, (sign * x, y, z)) for joint, x, y, z in (
     ("hips", 0.09, 0.92, -0.130), ("hips", 0.12, 0.86, -0.155), ("spine", 0.10, 1.10, -0.115), ("chest", 0.11, 1.36, -0.158), ("chest", 0.20, 1.38, -0.095), ("head", 0.03, 1.66, -0.125),
@@ -335,16 +337,27 @@ def _carry(channels, time, pose):
         lever /= max(np.linalg.norm(lever), 1e-6)
         step = about(turn[PARENT[scabbard]].T @ lever, np.degrees(0.5 * min(short, 0.1) / SCABBARD))
         pose.local[scabbard] = step @ pose.local[scabbard]
+    if channels.has("floor"):
+        _back_on_floor(pose, turn, place)
     nocked = c("nocked")
     if nocked > 0.0:
         arrow, bow, string = INDEX["arrow"], INDEX["bow"], INDEX["bow_string"]
         rest = turn[bow] @ FRAMES[bow]
         aim = place[bow] + 0.022 * rest[:, 1] - place[arrow]
         hand = turn[PARENT[arrow]]
-        wanted = hand.T @ _frame(aim, rest[:, 1]) @ _frame(FRAMES[arrow][:, 1], -FRAMES[arrow][:, 0]).T
+        wanted = hand.T @ _frame(aim, rest[:, 1]) @ _frame(FRAMES[arrow][:, 1], -FRAMES[arrow][:, 2]).T
         pose.local[arrow] = between(np.eye(3), wanted, nocked)
         pulled = turn[bow].T @ (place[arrow] - place[bow]) - (HEADS[string] - HEADS[bow])
         pose.shift[string] = c("string") * pulled
+
+
+def _back_on_floor(pose, turn, place):
+    """Pushes bow and quiver up where he lies on them."""
+    chest = turn[INDEX["chest"]]
+    for name, points in (("bow_back", ((0.0, 0.6, -0.12), (0.0, 0.0, 0.01), (0.0, -0.6, -0.12))), ("quiver", ((0.045, 0.0, 0.0), (0.05, 0.45, 0.0)))):
+        joint = INDEX[name]
+        low = min((place[joint] + turn[joint] @ FRAMES[joint] @ np.array(point))[1] for point in points)
+        pose.shift[joint] += chest.T @ np.array([0.0, max(BACK_CLEAR - low, 0.0), 0.0])
 
 
 def skinned(figure, pose):

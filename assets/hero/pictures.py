@@ -114,40 +114,40 @@ def beauty(path, figure, moves):
     """The hero with his sword, and beside it climbing a block of stone."""
     camera = bpy.context.scene.camera
     _slab((-60.0, -1.0, -60.0), (60.0, 0.0, 60.0), (0.30, 0.33, 0.24))
-    ready = moves["unsheathe"].poses[-1]
-    add_figure(figure, ready, (0.42, 0.0, 0.35), -24.0)
-    climber = (-0.78, 0.62, -0.70)
-    turn = 200.0
+    add_figure(figure, moves["unsheathe"].poses[-1], (0.56, 0.0, 0.45), -36.0)
+    climber, turn = (-0.74, 0.50, -0.30), 172.0
     add_figure(figure, moves["climb"].poses[0], climber, turn)
     angle = math.radians(turn)
     # The wall's face is as far in front of the climber as the clip says.
-    face = np.array(climber) + WALL * np.array([math.sin(angle), 0.0, math.cos(angle)])
-    _rock(face, turn)
-    camera.data.type, camera.data.lens = "PERSP", 50.0
-    _aim((1.55, 1.35, 4.6), (-0.12, 1.02, 0.0))
+    _rock(np.array(climber) + WALL * np.array([math.sin(angle), 0.0, math.cos(angle)]), turn)
+    camera.data.type, camera.data.lens = "PERSP", 58.0
+    _aim((-0.75, 1.30, 5.6), (-0.10, 1.0, 0.0))
     _write(path, _shoot(path.with_name("tile.png"), BEAUTY, BEAUTY_SAMPLES))
     path.with_name("tile.png").unlink()
     _clear()
 
 
+# Joints between the blocks of each course, in metres from the middle of the wall.
+_COURSES = ((-0.95, -0.2, 0.7, 1.1), (-0.95, -0.5, 0.30, 1.1), (-0.95, 0.05, 0.75), (-0.95, -0.35, 0.55), (-0.80, 0.1))
+COURSE, COURSE_DEPTH = 0.52, 0.9
+
+
 def _rock(face, turn):
-    """Courses of weathered stone behind a climber's wall."""
-    angle = math.radians(turn)
-    ahead, aside = np.array([math.sin(angle), 0.0, math.cos(angle)]), np.array([math.cos(angle), 0.0, -math.sin(angle)])
-    number = 0
-    for course in range(5):
-        low = course * 0.62 - 0.02
-        for block in range(3):
+    """Courses of stone blocks with their face at a place: the ruin of a wall."""
+    angle, number = math.radians(turn), 0
+    core = _slab((-0.75, 0.0, 0.1), (0.5, (len(_COURSES) - 1) * COURSE, COURSE_DEPTH - 0.05), (0.12, 0.115, 0.10))
+    core.location, core.rotation_euler = _in_blender(np.asarray(face) * (1.0, 0.0, 1.0)), (0.0, 0.0, angle)
+    for course, joints in enumerate(_COURSES):
+        for left, right in zip(joints, joints[1:]):
             number += 1
-            wide, shift = 0.94, (0.30 if course % 2 else -0.12)
-            set_back = 0.035 * ((number * 7) % 5) / 4.0
-            middle = np.asarray(face) * (1, 0, 1) + (block - 1) * wide * aside + shift * aside + (0.55 + set_back) * ahead
-            tone = 0.30 + 0.05 * ((number * 5) % 4) / 3.0
-            slab = _slab((-wide / 2 + 0.008, low, -0.55), (wide / 2 - 0.008, low + 0.606, 0.55), (tone, 0.94 * tone, 0.82 * tone))
-            slab.location = _in_blender(middle)
+            set_back = 0.020 * ((number * 7) % 5) / 4.0
+            tone = 0.27 + 0.05 * ((number * 5) % 4) / 3.0
+            low, high = course * COURSE, (course + 1) * COURSE - 0.012
+            slab = _slab((left + 0.006, low, set_back), (right - 0.006, high, COURSE_DEPTH), (tone, 0.94 * tone, 0.82 * tone))
+            slab.location = _in_blender(np.asarray(face) * (1.0, 0.0, 1.0))
             slab.rotation_euler = (0.0, 0.0, angle)
             bevel = slab.modifiers.new("bevel", "BEVEL")
-            bevel.width, bevel.segments = 0.025, 3
+            bevel.width, bevel.segments = 0.022, 3
 
 
 def _slab(low, high, colour):

@@ -44,7 +44,7 @@ def _arm():
 ALONG, LOWER, PALM_SIDE = _arm()
 # From the index finger's side of the hand to the little finger's is backward: the thumb is in front.
 THUMB_SIDE = np.cross(PALM_SIDE, LOWER)
-SHOULDER = np.array([0.168, 1.412, -0.022])
+SHOULDER = np.array([0.162, 1.412, -0.022])
 ELBOW = SHOULDER + UPPER_ARM * ALONG
 WRIST = ELBOW + FOREARM * LOWER
 HIP, KNEE_HEIGHT, ANKLE = np.array([0.088, 0.918, -0.004]), 0.492, np.array([0.100, 0.088, -0.026])
@@ -116,7 +116,7 @@ def _gear():
     lean = np.radians(SWORD_LEAN)
     blade = np.cos(lean) * THUMB_SIDE + np.sin(lean) * LOWER
     right_grip, right_blade = GRIP * MIRROR, blade * MIRROR
-    scabbard, down = np.array([0.165, 0.985, 0.055]), np.array([0.14, -0.78, -0.61])
+    scabbard, down = np.array([0.188, 0.985, 0.050]), np.array([0.27, -0.76, -0.59])
     down = down / np.linalg.norm(down)
     rows = [
         ("sword", "hand.R", right_grip, right_blade, LOWER * MIRROR),
@@ -127,7 +127,7 @@ def _gear():
         ("bow_string", "bow", GRIP - BOW_BRACE * LOWER, THUMB_SIDE, np.cross(THUMB_SIDE, LOWER)),
         ("bow_back", "chest", (0.045, 1.20, -0.212), (0.52, 0.85, 0.0), -FORWARD),
         ("quiver", "chest", (-0.035, 1.05, -0.160), (-0.40, 0.90, -0.10), -FORWARD),
-        ("arrow", "hand.R", in_hand(0.088, 0.018, 0.022) * MIRROR, FORWARD, -UP),
+        ("arrow", "hand.R", in_hand(0.088, 0.018, 0.022) * MIRROR, LOWER * MIRROR, PALM_SIDE * MIRROR),
     ]
     return [
         (name, parent, np.asarray(head, float), np.asarray(y, float), np.asarray(x, float))

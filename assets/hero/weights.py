@@ -12,7 +12,7 @@ from .skeleton import ALONG, ANKLE, ELBOW, HIP, JOINTS, LOWER, NAMES, SHOULDER, 
 # Half the width of the soft zone about each joint, in metres.
 WAIST, BREAST, NAPE, ELBOW_ZONE, KNEE_ZONE, ANKLE_ZONE, TOE_ZONE = 0.06, 0.08, 0.035, 0.055, 0.065, 0.035, 0.022
 # Flesh and cloth farther than this from the arm's bone do not follow it, in metres: inner and outer limit.
-ARM_REACH = (0.070, 0.135)
+ARM_REACH = (0.088, 0.140)
 MOST_INFLUENCES = 4
 # A height at which all of the trunk is chest, in metres.
 CHEST_HEIGHT = 1.45
@@ -54,7 +54,7 @@ def body(points, legs=0.0):
         lower = _passed(p, ELBOW, ALONG + LOWER, ELBOW_ZONE, ELBOW_ZONE) * (p[:, 0] > 0.2)
         _split(result, "upper_arm" + side, "forearm" + side, lower)
     if legs:
-        hang = legs * smooth_step(HIP[1] + 0.05, HIP[1] - 0.16, y)
+        hang = legs * smooth_step(HIP[1] + 0.06, HIP[1] - 0.12, y)
         left = hang * smooth_step(-0.07, 0.07, x)
         _split(result, "hips", "thigh.L", left)
         _split(result, "hips", "thigh.R", (hang - left) / np.maximum(1.0 - left, 1e-9))
