@@ -68,6 +68,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         "clamber_cli",
         &[
             "clamber_surface",
+            "clamber_body",
             "clamber_gltf",
             "clamber_oracle",
             "clamber_record",

@@ -42,6 +42,52 @@ fn check_limbs(rig: &Rig, body: &Humanoid) {
 }
 
 #[test]
+fn the_hero_has_a_whole_body_and_clips_with_markers() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
+    let rig = clamber_gltf::load(file).unwrap();
+    let body = Humanoid::find(&rig.skeleton).unwrap();
+    assert_eq!(body.joints().len(), 4 + 2 * 8);
+    assert_eq!(
+        (name(&rig, body.hips), name(&rig, body.chest())),
+        ("hips", "chest")
+    );
+    assert!(body.facing.distance(DVec3::Z) < 1e-6);
+    for side in Side::BOTH {
+        let (arm, leg) = (body.arm(side), body.leg(side));
+        assert_eq!(arm.fingers.len(), 3, "{:?}", arm.fingers);
+        assert!(arm.fingers.iter().all(|finger| finger.len() == 2));
+        assert!((0.45..0.65).contains(&arm.length()) && (0.75..0.95).contains(&leg.length()));
+    }
+    check_limbs(&rig, &body);
+    // In locomotion both feet step once, at the speed that the clip tells.
+    for (clip, speed) in [
+        ("walk", 1.4),
+        ("run", 4.0),
+        ("walk_back", 1.2),
+        ("strafe_left", 1.2),
+    ] {
+        let clip = rig.clip(clip).unwrap();
+        let mut steps: Vec<&str> = clip
+            .markers()
+            .iter()
+            .map(|marker| marker.name.as_str())
+            .collect();
+        steps.sort_unstable();
+        assert_eq!(steps, ["step_left", "step_right"], "{}", clip.name);
+        let found = clip.ground_speed().unwrap();
+        assert!((found - speed).abs() < 1e-6, "{}: {found} m/s", clip.name);
+    }
+    for (clip, marker) in [("stab_strike", "hit"), ("swing", "hit"), ("loose", "loose")] {
+        let clip = rig.clip(clip).unwrap();
+        assert!(
+            clip.markers().iter().any(|found| found.name == marker),
+            "{}",
+            clip.name
+        );
+    }
+}
+
+#[test]
 fn bodies_are_found_in_files_of_many_tools() {
     // The hips, the chest, the left hand, the left foot, and how many fingers.
     let expected = [

@@ -141,3 +141,41 @@ fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
         assert!(text.contains(told), "{text}");
     }
 }
+
+#[test]
+fn a_body_is_printed_and_drawn_and_a_file_without_one_is_told() {
+    let hero = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
+    let drawing = std::env::temp_dir().join(format!("clamber_body_{}.svg", std::process::id()));
+    let path = drawing.to_str().unwrap();
+    let found = clamber(&["inspect", "--humanoid", "--draw", path, hero]);
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert!(found.status.success(), "{said}");
+    assert!(said.contains("left hand          hand.L\n"), "{said}");
+    let svg = std::fs::read_to_string(&drawing).unwrap();
+    std::fs::remove_file(&drawing).unwrap();
+    assert!(svg.contains("left lower arm") && svg.matches("<circle").count() > 20);
+
+    if let Some(file) = test_data::file("a file without a body", "models/greenman.glb") {
+        let none = clamber(&["inspect", "--humanoid", file.to_str().unwrap()]);
+        let said = String::from_utf8(none.stdout).unwrap();
+        assert_eq!(none.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("left upper arm") && said.contains("hand_L"),
+            "{said}"
+        );
+    }
+    let refused = clamber(&[
+        "inspect",
+        "--humanoid",
+        "--draw",
+        "/no/such/folder/a.svg",
+        hero,
+    ]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("cannot draw /no/such/folder/a.svg"), "{said}");
+    assert_eq!(
+        clamber(&["inspect", "--draw", path, hero]).status.code(),
+        Some(2)
+    );
+}

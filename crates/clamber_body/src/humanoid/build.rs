@@ -4,6 +4,7 @@ use clamber_animation::ik::{IkError, TwoBone};
 use clamber_surface::rig::{JointId, Palette, Skeleton};
 use glam::{DAffine3, DVec3};
 
+use super::names::words;
 use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side};
 use crate::HumanoidError;
 
@@ -30,7 +31,9 @@ pub(super) enum NamedEnd {
 }
 
 /// Words in the names of fingers.
-const FINGERS: [&str; 6] = ["thumb", "index", "middle", "ring", "pinky", "finger"];
+const FINGERS: [&str; 8] = [
+    "finger", "fingers", "index", "little", "middle", "pinky", "ring", "thumb",
+];
 
 impl Humanoid {
     /// A body from joints that are named by hand. Hips, head, upper and lower arms and legs, hands and feet are needed;
@@ -236,7 +239,12 @@ impl AtRest<'_> {
             other => other,
         };
         let ik = ik.map_err(failed)?;
-        let lengths = ik.lengths(self.skeleton, &self.skeleton.rest_pose());
+        let tip = match end {
+            LimbEnd::Joint(joint) | LimbEnd::Beside(joint, _) => self.place(joint),
+            LimbEnd::Point(point) => self.model(lower).transform_point3(point),
+        };
+        let [shoulder, elbow] = [upper, lower].map(|joint| self.place(joint));
+        let lengths = [shoulder.distance(elbow), elbow.distance(tip)];
         let shoulder = named.shoulder.filter(|shoulder| {
             let is_above = self.skeleton.is_descendant_or_self(upper, *shoulder);
             is_above && *shoulder != upper
@@ -253,7 +261,7 @@ impl AtRest<'_> {
                 self.fingers(lower)
             },
             ik,
-            lengths: lengths.map_err(failed)?,
+            lengths,
         })
     }
 
@@ -264,8 +272,8 @@ impl AtRest<'_> {
     /// The chains of joints below a forearm that are named like fingers.
     fn fingers(&self, lower: JointId) -> Vec<Vec<JointId>> {
         let is_finger = |joint: &JointId| {
-            let name = self.skeleton.joints()[joint.index()].name.to_lowercase();
-            FINGERS.iter().any(|finger| name.contains(finger))
+            let words = words(&self.skeleton.joints()[joint.index()].name);
+            words.iter().any(|word| FINGERS.contains(&word.as_str()))
         };
         let parent = |joint: JointId| self.skeleton.joints()[joint.index()].parent;
         let all = (0..self.skeleton.joints().len() as u32).map(JointId);

@@ -135,7 +135,7 @@ impl Meaning {
 }
 
 /// A name's words in lower case: parted at all that is no letter, and where a capital follows. Numbers are left out.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();
     let mut before = ' ';

@@ -3,10 +3,12 @@
 
 mod bounds;
 mod deviation;
+mod humanoid;
 mod options;
 mod report;
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
@@ -47,6 +49,14 @@ pub enum InspectError {
     /// No mesh can be built of the visual meshes.
     #[error(transparent)]
     Visual(#[from] MeshError),
+    /// The drawing cannot be written.
+    #[error("cannot draw {}: {error}", file.display())]
+    Draw {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        error: String,
+    },
     /// The file has no clip of that name.
     #[error("there is no clip {name:?}; the clips are: {clips}")]
     Clip {
@@ -57,7 +67,8 @@ pub enum InspectError {
     },
 }
 
-/// Loads a file, measures the creature, and prints both as they come; returns true if all checks hold.
+/// Loads a file, measures the creature, and prints both as they come; returns true if all checks hold. With
+/// [`InspectOptions::humanoid`], prints the human body in it instead; returns true if there is one.
 ///
 /// # Errors
 /// [`InspectError`] if the file cannot be loaded, has no clip of that name, or a clip does not fit the creature.
@@ -65,6 +76,9 @@ pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
     let mut load = LoadOptions::default();
     load.skin = options.skin;
     let rig = load_with(&options.file, &load)?;
+    if options.humanoid {
+        return humanoid::print(&rig, options);
+    }
     let chosen = chosen(&rig, options)?;
     let found = Inspection::of_import(&rig);
     if !options.json {

@@ -33,6 +33,14 @@ pub struct InspectOptions {
     #[arg(long)]
     pub thorough: bool,
 
+    /// Print which joints make a human body, and measure nothing. Exits with 1 if there is none.
+    #[arg(long, conflicts_with_all = ["json", "clips", "poses", "thorough"])]
+    pub humanoid: bool,
+
+    /// With --humanoid: draw the skeleton at rest into this SVG file.
+    #[arg(long, value_name = "SVG", requires = "humanoid")]
+    pub draw: Option<PathBuf>,
+
     /// Seed for the places of the queries; the same number gives the same places.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -54,6 +62,8 @@ impl InspectOptions {
             clips: Vec::new(),
             poses: None,
             thorough: false,
+            humanoid: false,
+            draw: None,
             seed: 1,
         }
     }
