@@ -27,16 +27,41 @@ SOLE = (("foot", (0.098, 0.0, -0.085)), ("toe", (0.112, 0.0, 0.115)), ("toe", (0
 CLIPS = """idle walk run walk_back strafe_left strafe_right turn_left turn_right jump fall land_soft land_hard tumble climb
 hang ledge mantle crouch get_up lie die crushed stab_raise stab_hold stab_strike swing draw aim loose unsheathe sheathe""".split()
 LENGTHS = {
-    "idle": 4.0, "jump": 0.35, "land_soft": 0.5, "land_hard": 0.9, "mantle": 1.2, "tumble": 0.8, "get_up": 1.2, "die": 1.5, "stab_raise": 0.5,
-    "stab_strike": 0.35, "swing": 0.6, "draw": 0.6, "loose": 0.3, "unsheathe": 0.5, "sheathe": 0.5,
+    "idle": 4.0,
+    "jump": 0.35,
+    "land_soft": 0.5,
+    "land_hard": 0.9,
+    "mantle": 1.2,
+    "tumble": 0.8,
+    "get_up": 1.2,
+    "die": 1.5,
+    "stab_raise": 0.5,
+    "stab_strike": 0.35,
+    "swing": 0.6,
+    "draw": 0.6,
+    "loose": 0.3,
+    "unsheathe": 0.5,
+    "sheathe": 0.5,
 }
 MARKERS = {
-    "walk": ["step_left", "step_right"], "run": ["step_left", "step_right"], "walk_back": ["step_left", "step_right"], "jump": ["take_off"],
-    "land_soft": ["land"], "land_hard": ["land"], "stab_strike": ["hit"], "swing": ["hit"], "loose": ["loose"], "unsheathe": ["unsheathed"], "sheathe": ["sheathed"],
+    "walk": ["step_left", "step_right"],
+    "run": ["step_left", "step_right"],
+    "walk_back": ["step_left", "step_right"],
+    "jump": ["take_off"],
+    "land_soft": ["land"],
+    "land_hard": ["land"],
+    "stab_strike": ["hit"],
+    "swing": ["hit"],
+    "loose": ["loose"],
+    "unsheathe": ["unsheathed"],
+    "sheathe": ["sheathed"],
 }
 SPEEDS = {"walk": 1.4, "run": 4.0, "walk_back": 1.2, "strafe_left": 1.2, "strafe_right": 1.2}
 # Clips during which no part of the body may sink into the ground.
-GROUNDED = "idle walk run walk_back strafe_left strafe_right turn_left turn_right land_soft land_hard crouch crushed get_up lie die stab_raise stab_hold stab_strike swing draw aim loose unsheathe sheathe".split()
+GROUNDED = """idle walk run walk_back strafe_left strafe_right turn_left turn_right land_soft land_hard crouch crushed get_up lie
+die stab_raise stab_hold stab_strike swing draw aim loose unsheathe sheathe""".split()
+# A clip that ends as another one begins may differ by this much, in metres and in axes.
+JOINED_GAP = 2e-3
 # How deep the skin may be in the ground, in metres: cloth and flesh give way.
 BODY_SINK = 0.03
 
@@ -103,11 +128,13 @@ def _sampled(track, time):
 
 def _rotation(quaternion):
     x, y, z, w = quaternion
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ])
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def check(path, figure, moves):
@@ -132,7 +159,7 @@ def check(path, figure, moves):
 def _check_joints(played):
     missing = set(NAMES) - set(played.order)
     assert not missing, f"joints are missing: {sorted(missing)}"
-    for number, joint in enumerate(JOINTS):
+    for joint in JOINTS:
         parent = played.nodes[played.parent[played.order[joint.name]]]["name"]
         assert parent == (joint.parent or "hero"), f"{joint.name} hangs on {parent}"
     assert PARENT[0] == -1 and NAMES[0] == "root"
@@ -144,10 +171,14 @@ def _check_mesh(document, binary, played):
     for primitive in document["meshes"][0]["primitives"]:
         attributes = primitive["attributes"]
         assert "JOINTS_1" not in attributes, "more than four influences"
-        points, normals, joints, weights = (glb.accessor(document, binary, attributes[name]) for name in ("POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"))
+        points, normals, joints, weights = (
+            glb.accessor(document, binary, attributes[name]) for name in ("POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0")
+        )
         index = glb.accessor(document, binary, primitive["indices"]).reshape(-1)
         assert index.max() < len(points), "an index without a vertex"
-        assert np.isfinite(points).all() and np.isfinite(normals).all() and np.isfinite(weights).all(), "a vertex is not a number"
+        assert np.isfinite(points).all() and np.isfinite(normals).all() and np.isfinite(weights).all(), (
+            "a vertex is not a number"
+        )
         assert np.abs(np.linalg.norm(normals, axis=1) - 1.0).max() < 1e-3, "a normal is not a unit vector"
         assert (weights >= 0.0).all() and np.abs(weights.sum(axis=1) - 1.0).max() < 1e-5, "weights do not sum to 1"
         triangles += len(index) // 3
@@ -160,7 +191,9 @@ def _check_mesh(document, binary, played):
     assert abs(high - HEIGHT) <= HEIGHT_ERROR, f"he is {high:.3f} m tall"
     print(f"mesh: {triangles} triangles, {len(points)} vertices, {high:.3f} m tall")
     rest = played.matrices()
-    inverse = glb.accessor(document, binary, document["skins"][0]["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
+    inverse = (
+        glb.accessor(document, binary, document["skins"][0]["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
+    )
     for number, name in enumerate(NAMES):
         error = np.abs(rest[name] @ inverse[number] - np.eye(4)).max()
         assert error < 1e-5, f"{name}: the rest pose is not the pose of the skin, by {error}"
@@ -189,15 +222,23 @@ def _check_clips(document, played, moves):
         assert abs(length - LENGTHS.get(name, length)) < 1e-5, f"{name} lasts {length} s"
         found = [marker["name"] for marker in tag["markers"]]
         assert set(MARKERS.get(name, ())) <= set(found), f"{name} has the markers {found}"
-        assert all(0.0 <= marker["time"] <= length for marker in tag["markers"]), f"{name}: a marker is outside the clip"
+        assert all(0.0 <= marker["time"] <= length for marker in tag["markers"]), (
+            f"{name}: a marker is outside the clip"
+        )
         assert abs(tag.get("speed", 0.0) - SPEEDS.get(name, 0.0)) < 1e-6, f"{name}: speed {tag.get('speed')}"
         moved = {node for node, _ in played.clips[name]}
         assert played.order["root"] not in moved, f"{name} moves the root"
-    die, lie = played.matrices("die", played.length("die")), played.matrices("lie", 0.0)
+    for first, second in (("die", "lie"), ("jump", "fall")):
+        _check_joined(played, first, second)
+
+
+def _check_joined(played, first, second):
+    """One clip ends in the pose in which another one begins."""
+    end, start = played.matrices(first, played.length(first)), played.matrices(second, 0.0)
     for joint in NAMES:
         if joint not in GEAR:
-            gap = np.abs(die[joint] - lie[joint]).max()
-            assert gap < 2e-3, f"die does not end as lie begins: {joint} differs by {gap}"
+            gap = np.abs(end[joint] - start[joint]).max()
+            assert gap < JOINED_GAP, f"{first} does not end as {second} begins: {joint} differs by {gap:.3f}"
 
 
 def _check_loop(played, move):
@@ -206,7 +247,9 @@ def _check_loop(played, move):
     for name, node in played.order.items():
         first, last = (played.local(move.name, node, time) for time in (0.0, length))
         gap = 2.0 * np.arccos(np.clip(abs(first[1] @ last[1]), 0.0, 1.0))
-        assert gap < LOOP_GAP and np.abs(first[0] - last[0]).max() < LOOP_GAP, f"{move.name} does not close: {name} differs by {gap:.4f} rad"
+        assert gap < LOOP_GAP and np.abs(first[0] - last[0]).max() < LOOP_GAP, (
+            f"{move.name} does not close: {name} differs by {gap:.4f} rad"
+        )
         assert np.abs(first[2] - last[2]).max() == 0.0, f"{move.name} does not close: the scale of {name}"
         times = np.linspace(0.0, length, len(move.poses))
         turns = [played.local(move.name, node, time)[1] for time in times]
@@ -215,7 +258,9 @@ def _check_loop(played, move):
         inside = max(inside, *jolts[:-1])
         if jolts[-1] > worst:
             worst, where = jolts[-1], name
-    assert worst < max(LOOP_JOLT, LOOP_JOLT_SHARE * inside), f"{move.name} jolts where it closes: {where} by {worst:.2f} rad/s"
+    assert worst < max(LOOP_JOLT, LOOP_JOLT_SHARE * inside), (
+        f"{move.name} jolts where it closes: {where} by {worst:.2f} rad/s"
+    )
 
 
 def _speed(first, last):
@@ -255,7 +300,9 @@ def _check_feet(played, move):
             if time < start - 1e-9 or time + step > end + 1e-9:
                 continue
             lowest = first[side][:, 1].min()
-            assert lowest < TOUCHES, f"{move.name}: the foot {side[1]} is in the air at {time:.2f} s, lowest {lowest:.4f} m"
+            assert lowest < TOUCHES, (
+                f"{move.name}: the foot {side[1]} is in the air at {time:.2f} s, lowest {lowest:.4f} m"
+            )
             worst_sink = max(worst_sink, float(-lowest))
             low = (first[side][:, 1] < TOUCHES) & (last[side][:, 1] < TOUCHES)
             if not low.any():
@@ -263,10 +310,14 @@ def _check_feet(played, move):
                 continue
             middle = (first[side] + last[side]) / 2
             # The ground goes backwards, and round against the turn.
-            ground = np.array([-left, 0.0, -forward]) - turn * np.stack([middle[:, 2], 0 * middle[:, 0], -middle[:, 0]], axis=1)
+            ground = np.array([-left, 0.0, -forward]) - turn * np.stack(
+                [middle[:, 2], 0 * middle[:, 0], -middle[:, 0]], axis=1
+            )
             slide = ((last[side] - first[side]) / step - ground)[low][:, [0, 2]]
             worst_slide = max(worst_slide, float(np.linalg.norm(slide, axis=1).max()))
-    print(f"{move.name}: standing feet slide by at most {100 * worst_slide:.2f} cm/s and sink by {100 * worst_sink:.2f} cm")
+    print(
+        f"{move.name}: standing feet slide by at most {100 * worst_slide:.2f} cm/s and sink by {100 * worst_sink:.2f} cm"
+    )
     assert worst_slide < FOOT_SLIDE, f"{move.name}: a standing foot slides by {worst_slide:.3f} m/s"
     assert worst_sink < FOOT_SINK, f"{move.name}: a standing foot sinks by {worst_sink:.3f} m"
 
@@ -282,4 +333,6 @@ def _check_ground(played, move, skin):
         for slot in range(4):
             height += weights[:, slot] * (palette[joints[:, slot], 1] * flat).sum(axis=1)
         low = int(height.argmin())
-        assert height[low] > -BODY_SINK, f"{move.name}: at {time:.2f} s the skin of {NAMES[joints[low, 0]]} is {-height[low]:.3f} m in the ground"
+        assert height[low] > -BODY_SINK, (
+            f"{move.name}: at {time:.2f} s the skin of {NAMES[joints[low, 0]]} is {-height[low]:.3f} m in the ground"
+        )

@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
-from giant import blender, nets
+from giant.blender import thinned
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from . import clothes, gear, hands, head
+from . import face, features, gear, hair, hands, legs, mantle, sleeves, tunic
 from .palette import MATERIALS
 from .skeleton import GEAR, NAMES
 
@@ -32,14 +31,10 @@ class Figure:
     names: list
 
 
-def thinned(mesh, share):
-    """A mesh with a share of its triangles; both sides alike."""
-    return blender.thinned(mesh, share)
-
-
 def figure():
     """Makes all pieces and joins them."""
-    pieces = head.pieces(thinned) + hands.pieces(thinned) + clothes.pieces(thinned) + gear.pieces()
+    pieces = [face.piece(thinned, hair.hair), hair.piece(thinned), *features.pieces(), *hands.pieces(thinned)]
+    pieces += tunic.pieces() + mantle.pieces() + sleeves.pieces() + legs.pieces(thinned) + gear.pieces()
     for piece in pieces:
         assert np.isfinite(piece.points).all(), piece.name
     _shade(pieces)
@@ -52,7 +47,8 @@ def figure():
     return Figure(
         *(np.concatenate([part[column] for part in parts]) for column in range(4)),
         np.concatenate([part[4] + start for part, start in zip(parts, starts)]),
-        np.array(materials), names,
+        np.array(materials),
+        names,
     )
 
 
@@ -64,14 +60,14 @@ def _split(piece):
     faces, cross = piece.triangles[area > 1e-10], cross[area > 1e-10]
     normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)
     around = [[] for _ in piece.points]
-    for face, corners in enumerate(faces):
+    for number, corners in enumerate(faces):
         for corner in corners:
-            around[corner].append(face)
+            around[corner].append(number)
     limit = np.cos(np.radians(piece.crease))
     table, source, normals, triangles = {}, [], [], np.empty_like(faces)
-    for face, corners in enumerate(faces):
+    for number, corners in enumerate(faces):
         for slot, corner in enumerate(corners):
-            near = [other for other in around[corner] if normal[other] @ normal[face] >= limit]
+            near = [other for other in around[corner] if normal[other] @ normal[number] >= limit]
             mean = cross[near].sum(axis=0)
             mean /= max(np.linalg.norm(mean), 1e-12)
             key = (int(corner), *np.round(mean, 3))
@@ -79,7 +75,7 @@ def _split(piece):
                 table[key] = len(source)
                 source.append(corner)
                 normals.append(mean)
-            triangles[face, slot] = table[key]
+            triangles[number, slot] = table[key]
     return piece.points[source], np.array(normals), piece.colours[source], piece.weights[source], triangles
 
 

@@ -6,7 +6,18 @@ from giant.field import smooth_step
 
 from . import mesh as m
 from .palette import COLOURS
-from .skeleton import JOINTS, LOWER, NAMES, PALM_SIDE, THUMB_SIDE, WRIST, finger, head, in_hand
+from .skeleton import (
+    JOINTS,
+    LOWER,
+    NAMES,
+    PALM_SIDE,
+    TAILS,
+    THUMB_SIDE,
+    WRIST,
+    finger,
+    head,
+    in_hand,
+)
 
 FINGER_SIDES, THICKNESS = 6, (0.0100, 0.0104, 0.0098, 0.0087)
 # Half the width of the soft zone about a finger's joint, in metres.
@@ -62,18 +73,30 @@ def _palm(thinned):
     points, triangles = points[used], renumbered.reshape(-1, 3)
     q = (points - WRIST) @ _axes()
     warm = 0.35 * smooth_step(0.0, 0.015, q[:, 2]) + 0.3 * smooth_step(0.075, 0.09, q[:, 0]) * (q[:, 2] < 0.0)
-    return m.Piece("palm", points, triangles, "skin", m.mixed(COLOURS["skin"], COLOURS["skin_warm"], warm), _hand_weights(points), 180.0)
+    return m.Piece(
+        "palm",
+        points,
+        triangles,
+        "skin",
+        m.mixed(COLOURS["skin"], COLOURS["skin_warm"], warm),
+        _hand_weights(points),
+        180.0,
+    )
 
 
-def _digit(name, path, radii, first, second, start_joint, middle_at):
-    """A tube along a path, its weights by the distance along it."""
+def _digit(name, path, radii, first, second, stiff_root=True):
+    """A tube along a path. It bends in the planes of its joints, also where three fingers share them."""
     rings = m.frames_along(path, PALM_SIDE)
     tube = [m.ring(c, u, v, (0.92 * r, r), FINGER_SIDES) for c, u, v, r in zip(path, *rings, radii)]
     points, triangles = m.loft(tube, cap_end=True)
     step = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     along = np.append(np.repeat(step, FINGER_SIDES), step[-1])
     result = np.zeros((len(points), len(JOINTS)))
-    bends = smooth_step(start_joint - SOFT, start_joint + SOFT, along), smooth_step(middle_at - SOFT, middle_at + SOFT, along)
+    bends = []
+    for joint in (first, second):
+        way = TAILS[NAMES.index(joint)] - head(joint)
+        bends.append(smooth_step(-SOFT, SOFT, (points - head(joint)) @ way / np.linalg.norm(way)))
+    bends[0] = bends[0] if stiff_root else np.ones(len(points))
     result[:, NAMES.index("hand.L")] = 1.0 - bends[0]
     result[:, NAMES.index(first)] = bends[0] * (1.0 - bends[1])
     result[:, NAMES.index(second)] = bends[0] * bends[1]
@@ -88,24 +111,39 @@ def _finger(number):
     size = THICKNESS[number]
     between = lambda a, b, share: a + share * (b - a)
     end = tip - 0.0035 * (tip - middle) / np.linalg.norm(tip - middle)
-    path = np.array([
-        back, between(back, knuckle, 0.75), between(knuckle, middle, 0.3), between(knuckle, middle, 0.75), between(middle, tip, 0.0),
-        between(middle, tip, 0.28), between(middle, tip, 0.62), between(middle, tip, 0.86), end,
-    ])
+    path = np.array(
+        [
+            back,
+            between(back, knuckle, 0.75),
+            between(knuckle, middle, 0.3),
+            between(knuckle, middle, 0.75),
+            between(middle, tip, 0.0),
+            between(middle, tip, 0.28),
+            between(middle, tip, 0.62),
+            between(middle, tip, 0.86),
+            end,
+        ]
+    )
     radii = size * np.array([0.80, 1.02, 1.0, 0.95, 1.02, 0.93, 0.90, 0.74, 0.38])
     joints = ("index.01.L", "index.02.L") if number == 0 else ("fingers.01.L", "fingers.02.L")
-    start = np.linalg.norm(knuckle - back)
-    return _digit(f"finger{number}", path, radii, *joints, start, start + np.linalg.norm(middle - knuckle))
+    return _digit(f"finger{number}", path, radii, *joints)
 
 
 def _thumb():
     root, middle = head("thumb.01.L"), head("thumb.02.L")
     tip = in_hand(0.088, 0.062, 0.030)
     between = lambda a, b, share: a + share * (b - a)
-    path = np.array([
-        between(root, middle, -0.1), between(root, middle, 0.35), between(root, middle, 0.75), middle, between(middle, tip, 0.3),
-        between(middle, tip, 0.6), between(middle, tip, 0.85), between(middle, tip, 0.95),
-    ])
+    path = np.array(
+        [
+            between(root, middle, -0.1),
+            between(root, middle, 0.35),
+            between(root, middle, 0.75),
+            middle,
+            between(middle, tip, 0.3),
+            between(middle, tip, 0.6),
+            between(middle, tip, 0.85),
+            between(middle, tip, 0.95),
+        ]
+    )
     radii = 0.0124 * np.array([0.85, 1.02, 0.95, 1.0, 0.95, 0.96, 0.76, 0.40])
-    start = 0.1 * np.linalg.norm(middle - root)
-    return _digit("thumb", path, radii, "thumb.01.L", "thumb.02.L", start - 0.02, start + np.linalg.norm(middle - root))
+    return _digit("thumb", path, radii, "thumb.01.L", "thumb.02.L", stiff_root=False)

@@ -102,7 +102,10 @@ def both_sides(piece):
     swapped = [name[:-1] + {"L": "R", "R": "L"}[name[-1]] if name[-2:] in (".L", ".R") else name for name in NAMES]
     order = [NAMES.index(name) if name in NAMES else number for number, name in enumerate(swapped)]
     mirror = replace(
-        piece, name=piece.name + ".R", points=piece.points * MIRROR, triangles=piece.triangles[:, ::-1],
+        piece,
+        name=piece.name + ".R",
+        points=piece.points * MIRROR,
+        triangles=piece.triangles[:, ::-1],
         weights=piece.weights[:, order],
     )
     return [replace(piece, name=piece.name + ".L"), mirror]

@@ -10,7 +10,18 @@ import numpy as np
 from giant.field import smooth_step
 from giant.motion import Curves, quaternions
 
-from .skeleton import (ALONG, ANKLE, BOW_BRACE, FRAMES, GRIP, HEADS, INDEX, JOINTS, LOWER, MIRROR, PALM_SIDE, PARENT, THUMB_SIDE, WRIST)
+from .skeleton import (
+    ALONG,
+    FRAMES,
+    HEADS,
+    INDEX,
+    JOINTS,
+    LOWER,
+    MIRROR,
+    PALM_SIDE,
+    PARENT,
+    THUMB_SIDE,
+)
 
 # The share of an arm's or a leg's length to which IK straightens it at most.
 MOST_STRETCH = 0.9985
@@ -25,10 +36,19 @@ SCABBARD, SCABBARD_CLEAR = 0.92, 0.05
 # How high bow and quiver are kept, in metres.
 BACK_CLEAR = 0.012
 # Points of the trunk that touch the ground when he lies, and the joints that they follow.
-BACK = tuple((joint, (sign * x, y, z)) for joint, x, y, z in (
-    ("hips", 0.09, 0.92, -0.130), ("hips", 0.12, 0.86, -0.155), ("spine", 0.10, 1.10, -0.115), ("chest", 0.11, 1.36, -0.158), ("chest", 0.20, 1.38, -0.095), ("head", 0.03, 1.66, -0.125),
-    ("chest", 0.08, 1.25, -0.140),
-) for sign in (1.0, -1.0))
+BACK = tuple(
+    (joint, (sign * x, y, z))
+    for joint, x, y, z in (
+        ("hips", 0.09, 0.92, -0.130),
+        ("hips", 0.12, 0.86, -0.155),
+        ("spine", 0.10, 1.10, -0.115),
+        ("chest", 0.11, 1.36, -0.158),
+        ("chest", 0.20, 1.38, -0.095),
+        ("head", 0.03, 1.66, -0.125),
+        ("chest", 0.08, 1.25, -0.140),
+    )
+    for sign in (1.0, -1.0)
+)
 SIDES = ((".L", 1.0), (".R", -1.0))
 
 
@@ -154,13 +174,17 @@ def _arm(channels, time, pose, side, sign):
     pose.local[shoulder] = about(_sided(Y_AXIS, sign), -forward) @ about(_sided(Z_AXIS, sign), lift)
     # Hanging straight down is 50 degrees below the rest pose.
     pose.local[upper] = (
-        about(X_AXIS, -c("arm.swing")) @ about(_sided(Z_AXIS, sign), c("arm.out") - 50.0 - lift)
+        about(X_AXIS, -c("arm.swing"))
+        @ about(_sided(Z_AXIS, sign), c("arm.out") - 50.0 - lift)
         @ about(_sided(ALONG, sign), c("arm.twist"))
     )
-    pose.local[lower] = about(_sided(PALM_SIDE, sign), c("elbow")) @ about(_sided(LOWER, sign), FOREARM_TWIST * c("turn"))
+    pose.local[lower] = about(_sided(PALM_SIDE, sign), c("elbow")) @ about(
+        _sided(LOWER, sign), FOREARM_TWIST * c("turn")
+    )
     pose.local[hand] = (
         about(_sided(LOWER, sign), (1 - FOREARM_TWIST) * c("turn"))
-        @ about(_sided(-THUMB_SIDE, sign), c("wrist")) @ about(_sided(PALM_SIDE, sign), c("wrist.side"))
+        @ about(_sided(-THUMB_SIDE, sign), c("wrist"))
+        @ about(_sided(PALM_SIDE, sign), c("wrist.side"))
     )
     if channels.has("hand" + side) and c("loose") < 1.0:
         free = pose.local[[upper, lower, hand]]
@@ -200,7 +224,7 @@ def _share_twist(pose, lower, hand, axis):
 def _fingers(c, pose, side, sign):
     curl, thumb = c("curl" + side), c("thumb" + side)
     axis = _sided(-THUMB_SIDE, sign)
-    for name, more in (("index", 0.92 + 0.0), ("fingers", 1.08)):
+    for name, more in (("index", 0.92), ("fingers", 1.08)):
         pose.local[INDEX[f"{name}.01{side}"]] = about(axis, more * curl)
         pose.local[INDEX[f"{name}.02{side}"]] = about(axis, more * 1.15 * curl)
     for name, share in (("thumb.01", 0.4), ("thumb.02", 0.7)):
@@ -213,7 +237,9 @@ def _leg(channels, time, pose, side, sign):
     c = lambda name: channels(name + side, time)
     thigh, shin, foot, toe = (INDEX[name + side] for name in ("thigh", "shin", "foot", "toe"))
     free = [
-        about(X_AXIS, -c("thigh.swing")) @ about(_sided(Z_AXIS, sign), c("thigh.out")) @ about(_sided(Y_AXIS, sign), c("thigh.twist")),
+        about(X_AXIS, -c("thigh.swing"))
+        @ about(_sided(Z_AXIS, sign), c("thigh.out"))
+        @ about(_sided(Y_AXIS, sign), c("thigh.twist")),
         about(FRAMES[shin][:, 0], c("knee")),
         about(X_AXIS, c("ankle")),
     ]
@@ -224,7 +250,11 @@ def _leg(channels, time, pose, side, sign):
     flip = np.array([sign, 1.0, 1.0])
     pivot = HEADS[toe] if pitch >= 0.0 or channels.has("on_wall") else HEEL * flip
     standing = HEADS[toe] + yaw @ (pivot - HEADS[toe])
-    goal = standing + turn @ (HEADS[foot] - pivot) + np.array([sign * c("foot.out") + c("foot.x"), c("foot.y"), c("foot.z")])
+    goal = (
+        standing
+        + turn @ (HEADS[foot] - pivot)
+        + np.array([sign * c("foot.out") + c("foot.x"), c("foot.y"), c("foot.z")])
+    )
     share = c("leg.free")
     if share < 1.0:
         hips = pose.turn_of("hips")[0]
@@ -241,7 +271,9 @@ def _leg(channels, time, pose, side, sign):
 def _trunk_on_floor(pose):
     """Raises the hips where the back, the seat or the head would be in the ground."""
     turn, place = pose.placed()
-    low = min((place[INDEX[joint]] + turn[INDEX[joint]] @ (np.array(point) - HEADS[INDEX[joint]]))[1] for joint, point in BACK)
+    low = min(
+        (place[INDEX[joint]] + turn[INDEX[joint]] @ (np.array(point) - HEADS[INDEX[joint]]))[1] for joint, point in BACK
+    )
     pose.shift[INDEX["hips"]][1] += max(-low, 0.0)
 
 
@@ -250,7 +282,16 @@ def _arm_on_floor(pose, side):
     upper = INDEX["upper_arm" + side]
     for _ in range(12):
         turn, place = pose.placed()
-        ends = [(place[INDEX[name + side]], thick) for name, thick in (("forearm", 0.052), ("hand", 0.035), ("fingers.01", 0.022), ("fingers.02", 0.012), ("index.02", 0.012))]
+        ends = [
+            (place[INDEX[name + side]], thick)
+            for name, thick in (
+                ("forearm", 0.052),
+                ("hand", 0.035),
+                ("fingers.01", 0.022),
+                ("fingers.02", 0.012),
+                ("index.02", 0.012),
+            )
+        ]
         point, short = min(((end, end[1] - thick) for end, thick in ends), key=lambda pair: pair[1])
         if short > -1e-3:
             return
@@ -354,7 +395,10 @@ def _carry(channels, time, pose):
 def _back_on_floor(pose, turn, place):
     """Pushes bow and quiver up where he lies on them."""
     chest = turn[INDEX["chest"]]
-    for name, points in (("bow_back", ((0.0, 0.6, -0.12), (0.0, 0.0, 0.01), (0.0, -0.6, -0.12))), ("quiver", ((0.045, 0.0, 0.0), (0.05, 0.45, 0.0)))):
+    for name, points in (
+        ("bow_back", ((0.0, 0.6, -0.12), (0.0, 0.0, 0.01), (0.0, -0.6, -0.12))),
+        ("quiver", ((0.045, 0.0, 0.0), (0.05, 0.45, 0.0))),
+    ):
         joint = INDEX[name]
         low = min((place[joint] + turn[joint] @ FRAMES[joint] @ np.array(point))[1] for point in points)
         pose.shift[joint] += chest.T @ np.array([0.0, max(BACK_CLEAR - low, 0.0), 0.0])
@@ -363,11 +407,15 @@ def _back_on_floor(pose, turn, place):
 def skinned(figure, pose):
     """Points and normals of the rest pose, moved by linear blend skinning."""
     turn, place = pose.placed()
+    scale = pose.scale.copy()
+    for joint, parent in enumerate(PARENT):
+        if parent >= 0 and scale[parent] == 0.0:
+            # What hangs on a hidden piece is hidden in it.
+            scale[joint], place[joint] = 0.0, place[parent]
     points, normals = np.zeros_like(figure.points), np.zeros_like(figure.normals)
     for joint in np.flatnonzero(figure.weights.any(axis=0)):
         rows = np.flatnonzero(figure.weights[:, joint])
         weight = figure.weights[rows, joint, None]
-        matrix = turn[joint] * pose.scale[joint]
-        points[rows] += weight * ((figure.points[rows] - HEADS[joint]) @ matrix.T + place[joint])
+        points[rows] += weight * ((figure.points[rows] - HEADS[joint]) @ (scale[joint] * turn[joint]).T + place[joint])
         normals[rows] += weight * (figure.normals[rows] @ turn[joint].T)
     return points, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)

@@ -21,9 +21,12 @@ CLIPS_A_SHEET = 4
 SHADES = 63
 # A picture's name, the eye, the target (glTF's frame), the width shown in metres.
 CLOSE = (
-    ("face", (0.0, 1.64, 3.0), (0.0, 1.62, 0.0), 0.42), ("face_three_quarter", (1.6, 1.75, 2.6), (0.0, 1.62, 0.0), 0.42),
-    ("face_side", (3.0, 1.64, 0.0), (0.0, 1.62, 0.0), 0.42), ("head_back", (-1.6, 2.1, -2.6), (0.0, 1.60, 0.0), 0.5),
-    ("hand_back", (1.5, 2.2, 2.2), (0.66, 1.02, 0.03), 0.40), ("hand_palm", (-1.2, -0.4, 1.6), (0.66, 1.02, 0.03), 0.40),
+    ("face", (0.0, 1.64, 3.0), (0.0, 1.62, 0.0), 0.42),
+    ("face_three_quarter", (1.6, 1.75, 2.6), (0.0, 1.62, 0.0), 0.42),
+    ("face_side", (3.0, 1.64, 0.0), (0.0, 1.62, 0.0), 0.42),
+    ("head_back", (-1.6, 2.1, -2.6), (0.0, 1.60, 0.0), 0.5),
+    ("hand_back", (1.5, 2.2, 2.2), (0.66, 1.02, 0.03), 0.40),
+    ("hand_palm", (-1.2, -0.4, 1.6), (0.66, 1.02, 0.03), 0.40),
 )
 
 
@@ -143,7 +146,9 @@ def _rock(face, turn):
             set_back = 0.020 * ((number * 7) % 5) / 4.0
             tone = 0.27 + 0.05 * ((number * 5) % 4) / 3.0
             low, high = course * COURSE, (course + 1) * COURSE - 0.012
-            slab = _slab((left + 0.006, low, set_back), (right - 0.006, high, COURSE_DEPTH), (tone, 0.94 * tone, 0.82 * tone))
+            slab = _slab(
+                (left + 0.006, low, set_back), (right - 0.006, high, COURSE_DEPTH), (tone, 0.94 * tone, 0.82 * tone)
+            )
             slab.location = _in_blender(np.asarray(face) * (1.0, 0.0, 1.0))
             slab.rotation_euler = (0.0, 0.0, angle)
             bevel = slab.modifiers.new("bevel", "BEVEL")

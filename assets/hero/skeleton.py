@@ -64,7 +64,7 @@ def in_hand(along, side, depth):
 def finger(number):
     """Knuckle, middle joint and tip of a finger of the left hand, 0 (index) to 3 (little)."""
     spread = np.radians((5.0, 0.5, -4.5, -10.0)[number])
-    knuckle = in_hand((0.090, 0.094, 0.088, 0.078)[number], (0.030, 0.0095, -0.0110, -0.030)[number], 0.0)
+    knuckle = in_hand((0.088, 0.091, 0.087, 0.080)[number], (0.030, 0.0095, -0.0110, -0.030)[number], 0.0)
     length = (0.078, 0.086, 0.080, 0.064)[number]
     along = np.cos(spread) * LOWER + np.sin(spread) * THUMB_SIDE
     bent = np.radians(14.0)
@@ -79,7 +79,7 @@ def _rows():
     curl = -THUMB_SIDE
     thumb = (in_hand(0.022, 0.026, 0.010), in_hand(0.056, 0.052, 0.022), in_hand(0.088, 0.062, 0.030))
     thumb_axis = np.cross(thumb[1] - thumb[0], 0.9 * PALM_SIDE - 0.4 * THUMB_SIDE)
-    index, middle = finger(0), finger(1)
+    index, ring = finger(0), finger(2)
     middle_rows = [
         ("root", None, (0, 0, 0), (0, 0.2, 0), x),
         ("hips", "root", (0, 0.945, -0.004), (0, 1.035, -0.006), x),
@@ -97,8 +97,8 @@ def _rows():
         ("thumb.02", "thumb.01", thumb[1], thumb[2], thumb_axis),
         ("index.01", "hand", index[0], index[1], curl),
         ("index.02", "index.01", index[1], index[2], curl),
-        ("fingers.01", "hand", middle[0], middle[1], curl),
-        ("fingers.02", "fingers.01", middle[1], middle[2], curl),
+        ("fingers.01", "hand", ring[0], ring[1], curl),
+        ("fingers.02", "fingers.01", ring[1], ring[2], curl),
         ("thigh", "hips", HIP, knee, x),
         ("shin", "thigh", knee, ANKLE, x),
         ("foot", "shin", ANKLE, (0.112, 0.022, 0.108), x),
@@ -108,7 +108,7 @@ def _rows():
 
 
 # Where a fist holds a hilt or a bow: in the bend of the fingers, under the palm.
-GRIP = in_hand(0.072, 0.0, 0.026)
+GRIP = in_hand(0.074, 0.0, 0.027)
 
 
 def _gear():

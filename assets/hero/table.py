@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .skeleton import GRIP, LOWER, PALM_SIDE, THUMB_SIDE, WRIST
+from .skeleton import GRIP, LOWER, PALM_SIDE, SWORD_LEAN, THUMB_SIDE, WRIST
 
 _IN_GRIP = np.array([(GRIP - WRIST) @ axis for axis in (LOWER, THUMB_SIDE, PALM_SIDE)])
 
@@ -43,6 +43,13 @@ def fist(side, grip, thumb, fingers):
     return tuple(wrist), tuple(fingers), tuple(palm)
 
 
+def sword_fist(grip, blade, fingers):
+    """Grip, thumb's side and fingers of a fist whose sword points along `blade`."""
+    blade, lean = unit(blade), np.radians(SWORD_LEAN)
+    ahead = unit(np.asarray(fingers, float) - blade * (blade @ np.asarray(fingers, float)))
+    return grip, np.cos(lean) * blade - np.sin(lean) * ahead, np.cos(lean) * ahead + np.sin(lean) * blade
+
+
 def fist_keys(side, keys):
     """Channels of a hand from keys (time, grip, thumb, fingers)."""
     rows = [(time, *fist(side, *rest)) for time, *rest in keys]
@@ -52,11 +59,31 @@ def fist_keys(side, keys):
     }
 
 
-# How he stands: a table to start from.
 def standing():
     """Feet a little apart, arms loose."""
     return {
-        "hips.y": -0.012, "spine.pitch": 1.5, "neck.pitch": 2.0, "head.pitch": -2.0,
-        **both("arm.out", 11.0), **both("arm.swing", 1.0), **both("elbow", 15.0), **both("curl", 24.0), **both("turn", 12.0),
-        **both("arm.twist", 12.0), **both("foot.out", 0.012), **both("foot.yaw", 7.0),
+        "hips.y": -0.012,
+        "spine.pitch": 1.5,
+        "neck.pitch": 2.0,
+        "head.pitch": -2.0,
+        **both("arm.out", 11.0),
+        **both("arm.swing", 1.0),
+        **both("elbow", 15.0),
+        **both("curl", 24.0),
+        **both("turn", 12.0),
+        **both("arm.twist", 12.0),
+        **both("foot.out", 0.012),
+        **both("foot.yaw", 7.0),
     }
+
+
+def pose_keys(start, keys):
+    """Keys for many channels: `keys` are (time, {channel: value}); `start` gives those at 0."""
+    table = {name: [(0.0, value)] for name, value in start.items() if isinstance(value, (int, float))}
+    for time, values in keys:
+        for name, value in values.items():
+            track = table.setdefault(name, [(0.0, 0.0)])
+            if track[-1][0] == time:
+                track.pop()
+            track.append((time, value))
+    return table

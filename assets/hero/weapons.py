@@ -3,8 +3,7 @@
 import numpy as np
 from giant.field import smooth_step
 
-from .air import _to
-from .table import both, fist, fist_keys, standing, unit, wave
+from .table import both, fist, fist_keys, pose_keys, standing, sword_fist, unit, wave
 
 SWORD = ("sword", "scabbard", "bow_back", "quiver")
 SHEATHED = ("scabbard", "sword_sheathed", "bow_back", "quiver")
@@ -12,7 +11,7 @@ BOW = ("bow", "scabbard", "sword_sheathed", "quiver")
 BOW_AND_ARROW = (*BOW, "arrow")
 # From the right fist to the left one along the hilt, to the pommel, in metres.
 FISTS = 0.088
-_GRIPPED = {**both("curl", 74.0), **both("thumb", 40.0)}
+_GRIPPED = {**both("curl", 84.0), **both("thumb", 44.0)}
 
 
 def _stab(keys):
@@ -28,18 +27,45 @@ def _stab(keys):
 
 _RAISED = ((0.0, 1.80, 0.13), (0.0, -0.93, 0.36))
 _STRUCK = ((0.0, 0.92, 0.47), (0.0, -0.96, 0.28))
-_BRACED = {"foot.z.L": 0.13, "foot.z.R": -0.12, "foot.out.L": 0.04, "foot.out.R": 0.045, "foot.yaw.L": 6.0, "foot.yaw.R": 20.0}
+_BRACED = {
+    "foot.z.L": 0.13,
+    "foot.z.R": -0.12,
+    "foot.out.L": 0.04,
+    "foot.out.R": 0.045,
+    "foot.yaw.L": 6.0,
+    "foot.yaw.R": 20.0,
+}
 _WIDE = {"elbow.to.L": (0.85, -0.15, 0.45), "elbow.to.R": (-0.85, -0.15, 0.45)}
 
 
 def stab_raise():
     t = 0.5
     stand = standing()
-    table = _to(stand, [
-        (0.18, {"hips.y": -0.10, "hips.pitch": 6, "spine.pitch": 12, "head.pitch": 4}),
-        (t, {"hips.y": -0.045, "hips.z": -0.01, "hips.pitch": -5, "spine.pitch": -13, "neck.pitch": 8, "head.pitch": 18}),
-    ])
-    table |= _stab([(0.0, (-0.05, 1.00, 0.33), (0.05, -0.96, 0.30)), (0.16, (-0.03, 1.02, 0.36), (0.03, -0.96, 0.30)), (0.34, (0.0, 1.50, 0.36), (0.0, -0.92, 0.38)), (t, *_RAISED)])
+    table = pose_keys(
+        stand,
+        [
+            (0.18, {"hips.y": -0.10, "hips.pitch": 6, "spine.pitch": 12, "head.pitch": 4}),
+            (
+                t,
+                {
+                    "hips.y": -0.045,
+                    "hips.z": -0.01,
+                    "hips.pitch": -5,
+                    "spine.pitch": -13,
+                    "neck.pitch": 8,
+                    "head.pitch": 18,
+                },
+            ),
+        ],
+    )
+    table |= _stab(
+        [
+            (0.0, (-0.05, 1.00, 0.33), (0.05, -0.96, 0.30)),
+            (0.16, (-0.03, 1.02, 0.36), (0.03, -0.96, 0.30)),
+            (0.34, (0.0, 1.50, 0.36), (0.0, -0.92, 0.38)),
+            (t, *_RAISED),
+        ]
+    )
     table |= _GRIPPED | _WIDE | {"sword.flip": 1.0}
     table["elbow.to.L"] = [(0.0, (0.8, -0.5, -0.1)), (t, (0.85, -0.15, 0.45))]
     table["elbow.to.R"] = [(0.0, (-0.8, -0.5, -0.1)), (t, (-0.85, -0.15, 0.45))]
@@ -57,19 +83,31 @@ def _held():
 def stab_hold():
     t = 1.0
     table = _held()
-    shake = lambda size, count, peak: (lambda time: size * np.cos(2 * np.pi * (count * time / t - peak)))
-    for name, size, count in (("hips.x", 0.0022, 4), ("hips.z", 0.0018, 5), ("spine.roll", 0.35, 6), ("spine.yaw", 0.30, 5), ("head.roll", 0.4, 4)):
-        table[name] = lambda time, rest=table.get(name, 0.0), move=shake(size, count, 0.2 * count): rest + move(time)
+    for name, size, count in (
+        ("hips.x", 0.0022, 4),
+        ("hips.z", 0.0018, 5),
+        ("spine.roll", 0.35, 6),
+        ("spine.yaw", 0.30, 5),
+        ("head.roll", 0.4, 4),
+    ):
+        table[name] = wave(t, size, 0.2 * count, count, table.get(name, 0.0))
     table["breath"] = wave(t, 1.6, 0.3)
-    for side, lean in ((".L", 1.0), (".R", -1.0)):
-        table[f"of_chest{side}"] = 0.0
     frames = 15
     keys = []
     for number in range(frames):
         time = t * number / frames
         turn = 2 * np.pi * number / frames
         grip, blade = _RAISED
-        keys.append((time, np.add(grip, (0.003 * np.cos(4 * turn), 0.004 * np.cos(turn) - 0.004, 0.003 * np.cos(3 * turn + 1.0) - 0.0016)), np.add(blade, (0.012 * np.sin(4 * turn), 0.0, 0.010 * np.sin(3 * turn)))))
+        keys.append(
+            (
+                time,
+                np.add(
+                    grip,
+                    (0.003 * np.cos(4 * turn), 0.004 * np.cos(turn) - 0.004, 0.003 * np.cos(3 * turn + 1.0) - 0.0016),
+                ),
+                np.add(blade, (0.012 * np.sin(4 * turn), 0.0, 0.010 * np.sin(3 * turn))),
+            )
+        )
     table |= _stab(keys)
     return t, True, table, {"shown": [(0.0, SWORD)], "stands": [(side, 0.0, t) for side in (".L", ".R")]}
 
@@ -77,16 +115,52 @@ def stab_hold():
 def stab_strike():
     t = 0.35
     held = _held()
-    table = _to(held, [
-        (0.06, {"hips.y": -0.03, "spine.pitch": -17, "hips.pitch": -6}),
-        (0.20, {"hips.y": -0.36, "hips.z": 0.03, "hips.pitch": 24, "spine.pitch": 34, "neck.pitch": -4, "head.pitch": -2}),
-        (0.27, {"hips.y": -0.375, "spine.pitch": 38, "head.pitch": 6}),
-        (t, {"hips.y": -0.35, "hips.z": 0.02, "hips.pitch": 23, "spine.pitch": 33, "neck.pitch": -6, "head.pitch": 0}),
-    ])
-    table |= _stab([(0.0, *_RAISED), (0.06, (0.0, 1.82, 0.09), (0.0, -0.95, 0.30)), (0.13, (0.0, 1.42, 0.42), (0.0, -0.93, 0.36)), (0.20, (0.0, 0.80, 0.50), (0.0, -0.985, 0.17)), (0.27, (0.0, 0.77, 0.50), (0.0, -0.985, 0.17)), (t, (0.0, 0.80, 0.50), (0.0, -0.985, 0.17))])
+    table = pose_keys(
+        held,
+        [
+            (0.06, {"hips.y": -0.03, "spine.pitch": -17, "hips.pitch": -6}),
+            (
+                0.20,
+                {
+                    "hips.y": -0.36,
+                    "hips.z": 0.03,
+                    "hips.pitch": 24,
+                    "spine.pitch": 34,
+                    "neck.pitch": -4,
+                    "head.pitch": -2,
+                },
+            ),
+            (0.27, {"hips.y": -0.375, "spine.pitch": 38, "head.pitch": 6}),
+            (
+                t,
+                {
+                    "hips.y": -0.35,
+                    "hips.z": 0.02,
+                    "hips.pitch": 23,
+                    "spine.pitch": 33,
+                    "neck.pitch": -6,
+                    "head.pitch": 0,
+                },
+            ),
+        ],
+    )
+    table |= _stab(
+        [
+            (0.0, *_RAISED),
+            (0.06, (0.0, 1.82, 0.09), (0.0, -0.95, 0.30)),
+            (0.13, (0.0, 1.42, 0.42), (0.0, -0.93, 0.36)),
+            (0.20, (0.0, 0.80, 0.50), (0.0, -0.985, 0.17)),
+            (0.27, (0.0, 0.77, 0.50), (0.0, -0.985, 0.17)),
+            (t, (0.0, 0.80, 0.50), (0.0, -0.985, 0.17)),
+        ]
+    )
     table |= _GRIPPED | {"sword.flip": 1.0, "knee.out.L": 6.0, "knee.out.R": 10.0}
     for side, sign in ((".L", 1.0), (".R", -1.0)):
-        table[f"elbow.to{side}"] = [(0.0, (0.85 * sign, -0.15, 0.45)), (0.2, (0.9 * sign, -0.2, -0.1)), (t, (0.9 * sign, -0.2, -0.1))]
+        table[f"elbow.to{side}"] = [
+            (0.0, (0.85 * sign, -0.15, 0.45)),
+            (0.2, (0.9 * sign, -0.2, -0.1)),
+            (t, (0.9 * sign, -0.2, -0.1)),
+        ]
     table["foot.pitch.R"] = [(0.0, 0.0), (0.06, 0.0), (0.20, 30.0), (t, 30.0)]
     for name, value in _BRACED.items():
         table[name] = [(0.0, value)]
@@ -96,88 +170,245 @@ def stab_strike():
 def swing():
     """A slash from right to left: the hips lead, the blade comes last."""
     t = 0.6
-    table = _to(standing() | _BRACED, [
-        (0.20, {"hips.y": -0.07, "hips.yaw": -24, "hips.z": -0.03, "spine.yaw": -34, "spine.pitch": 2, "spine.roll": -4, "neck.yaw": 20, "head.yaw": 30, "arm.swing.L": 40, "arm.out.L": 30, "elbow.L": 50}),
-        (0.33, {"hips.y": -0.12, "hips.yaw": 14, "hips.z": 0.05, "spine.yaw": 8, "spine.pitch": 10, "spine.roll": 3, "neck.yaw": -4, "head.yaw": -10, "arm.swing.L": 4, "arm.out.L": 40, "elbow.L": 56}),
-        (0.43, {"hips.y": -0.11, "hips.yaw": 24, "hips.z": 0.05, "spine.yaw": 32, "spine.pitch": 12, "neck.yaw": -18, "head.yaw": -26, "arm.swing.L": -26, "arm.out.L": 38, "elbow.L": 50}),
-        (t, {**standing(), "hips.y": -0.04, "hips.yaw": 4, "hips.z": 0.0, "spine.yaw": 6, "spine.roll": 0, "neck.yaw": -2, "head.yaw": -6}),
-    ])
-    table |= fist_keys(".R", [
-        (0.0, (-0.26, 0.98, 0.24), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
-        (0.10, (-0.40, 1.22, 0.10), (-0.2, 0.85, 0.45), (0.2, -0.4, 0.9)),
-        (0.20, (-0.47, 1.55, -0.06), (-0.35, 0.62, -0.70), (0.3, 0.75, 0.6)),
-        (0.27, (-0.42, 1.48, 0.30), (-0.85, 0.40, 0.05), (0.2, 0.1, 1.0)),
-        (0.33, (-0.02, 1.28, 0.60), (-0.35, 0.10, 0.93), (0.93, -0.1, 0.35)),
-        (0.39, (0.32, 1.10, 0.42), (0.72, -0.22, 0.66), (0.65, -0.15, -0.75)),
-        (0.46, (0.32, 1.0, 0.22), (0.80, -0.30, -0.52), (-0.4, -0.5, -0.75)),
-        (t, (0.02, 0.98, 0.34), (0.55, 0.30, 0.75), (0.6, -0.6, 0.1)),
-    ])
-    table |= {"elbow.to.R": [(0.0, (-0.6, -0.6, -0.5)), (0.20, (-0.8, -0.3, -0.5)), (0.33, (-0.7, -0.7, -0.1)), (t, (-0.6, -0.7, -0.3))]}
-    table |= {"curl.R": 74.0, "thumb.R": 40.0, "foot.pitch.R": [(0.0, 0.0), (0.24, 0.0), (0.36, 26.0), (0.48, 28.0), (t, 0.0)]}
+    table = pose_keys(
+        standing() | _BRACED,
+        [
+            (
+                0.20,
+                {
+                    "hips.y": -0.07,
+                    "hips.yaw": -24,
+                    "hips.z": -0.03,
+                    "spine.yaw": -34,
+                    "spine.pitch": 2,
+                    "spine.roll": -4,
+                    "neck.yaw": 20,
+                    "head.yaw": 30,
+                    "arm.swing.L": 40,
+                    "arm.out.L": 30,
+                    "elbow.L": 50,
+                },
+            ),
+            (
+                0.33,
+                {
+                    "hips.y": -0.12,
+                    "hips.yaw": 14,
+                    "hips.z": 0.05,
+                    "spine.yaw": 8,
+                    "spine.pitch": 10,
+                    "spine.roll": 3,
+                    "neck.yaw": -4,
+                    "head.yaw": -10,
+                    "arm.swing.L": 4,
+                    "arm.out.L": 40,
+                    "elbow.L": 56,
+                },
+            ),
+            (
+                0.43,
+                {
+                    "hips.y": -0.11,
+                    "hips.yaw": 24,
+                    "hips.z": 0.05,
+                    "spine.yaw": 32,
+                    "spine.pitch": 12,
+                    "neck.yaw": -18,
+                    "head.yaw": -26,
+                    "arm.swing.L": -26,
+                    "arm.out.L": 38,
+                    "elbow.L": 50,
+                },
+            ),
+            (
+                t,
+                {
+                    **standing(),
+                    "hips.y": -0.04,
+                    "hips.yaw": 4,
+                    "hips.z": 0.0,
+                    "spine.yaw": 6,
+                    "spine.roll": 0,
+                    "neck.yaw": -2,
+                    "head.yaw": -6,
+                },
+            ),
+        ],
+    )
+    table |= fist_keys(
+        ".R",
+        [
+            (0.0, (-0.26, 0.98, 0.24), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
+            (0.10, (-0.40, 1.22, 0.10), (-0.2, 0.85, 0.45), (0.2, -0.4, 0.9)),
+            (0.20, (-0.47, 1.55, -0.06), (-0.35, 0.62, -0.70), (0.3, 0.75, 0.6)),
+            (0.27, (-0.42, 1.48, 0.30), (-0.85, 0.40, 0.05), (0.2, 0.1, 1.0)),
+            (0.33, (-0.02, 1.28, 0.60), (-0.35, 0.10, 0.93), (0.93, -0.1, 0.35)),
+            (0.39, (0.32, 1.10, 0.42), (0.72, -0.22, 0.66), (0.65, -0.15, -0.75)),
+            (0.46, (0.32, 1.0, 0.22), (0.80, -0.30, -0.52), (-0.4, -0.5, -0.75)),
+            (t, (0.02, 0.98, 0.34), (0.55, 0.30, 0.75), (0.6, -0.6, 0.1)),
+        ],
+    )
+    table |= {
+        "elbow.to.R": [
+            (0.0, (-0.6, -0.6, -0.5)),
+            (0.20, (-0.8, -0.3, -0.5)),
+            (0.33, (-0.7, -0.7, -0.1)),
+            (t, (-0.6, -0.7, -0.3)),
+        ]
+    }
+    table |= {
+        "curl.R": 84.0,
+        "thumb.R": 44.0,
+        "foot.pitch.R": [(0.0, 0.0), (0.24, 0.0), (0.36, 26.0), (0.48, 28.0), (t, 0.0)],
+    }
     for name, value in _BRACED.items():
         table[name] = [(0.0, value)]
     return t, False, table, {"shown": [(0.0, SWORD)], "markers": [(0.33, "hit")], "stands": [(".L", 0.0, t)]}
 
 
+# The sword in the scabbard while he draws or sheathes it: its grip, and where its blade points.
+_IN_SCABBARD = (0.1755, 1.0135, 0.0835), (0.189, -0.761, -0.621)
+# The left hand about the scabbard meanwhile.
+_ON_SCABBARD = (0.205, 0.905, -0.008), (-0.19, 0.76, 0.62), (0.15, -0.65, 0.72)
+
+
+def _left_on_scabbard(take, leave, end):
+    """The left hand goes to the scabbard's mouth, and comes back."""
+    return fist_keys(".L", [(0.0, *_ON_SCABBARD)]) | {
+        "elbow.to.L": (0.75, -0.1, -0.75),
+        "loose.L": [(0.0, 1.0), (take, 0.0), (leave, 0.0), (end, 1.0)],
+        "curl.L": [(0.0, 24.0), (take - 0.04, 18.0), (take + 0.04, 70.0), (leave, 70.0), (end, 24.0)],
+        "thumb.L": [(0.0, 0.0), (take, 30.0), (leave, 30.0), (end, 0.0)],
+    }
+
+
 def unsheathe():
     t = 0.5
     swap = 0.20
-    table = _to(standing(), [
-        (0.18, {"hips.y": -0.04, "hips.yaw": 8, "spine.yaw": 16, "spine.pitch": 8, "head.pitch": 4, "head.yaw": -10}),
-        (0.34, {"hips.y": -0.05, "hips.yaw": -8, "spine.yaw": -12, "spine.pitch": 2, "head.pitch": -2, "head.yaw": 12}),
-        (t, {"hips.y": -0.03, "hips.yaw": -2, "spine.yaw": -4, "spine.pitch": 2, "head.yaw": 4}),
-    ])
-    table |= fist_keys(".R", [
-        (0.0, (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
-        (0.10, (-0.05, 0.98, 0.28), (0.2, -0.4, 0.7), (0.9, 0.0, 0.2)),
-        (swap, (0.160, 1.060, 0.108), (0.27, -0.76, -0.59), (0.9, 0.2, -0.3)),
-        (0.28, (-0.02, 1.28, 0.44), (0.30, -0.55, -0.5), (0.8, 0.3, 0.3)),
-        (0.38, (-0.36, 1.30, 0.42), (0.10, 0.75, 0.6), (0.3, -0.5, 0.8)),
-        (t, (-0.28, 1.02, 0.30), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
-    ])
+    table = pose_keys(
+        standing(),
+        [
+            (
+                0.18,
+                {"hips.y": -0.04, "hips.yaw": 8, "spine.yaw": 16, "spine.pitch": 8, "head.pitch": 4, "head.yaw": -10},
+            ),
+            (
+                0.34,
+                {"hips.y": -0.05, "hips.yaw": -8, "spine.yaw": -12, "spine.pitch": 2, "head.pitch": -2, "head.yaw": 12},
+            ),
+            (t, {"hips.y": -0.03, "hips.yaw": -2, "spine.yaw": -4, "spine.pitch": 2, "head.yaw": 4}),
+        ],
+    )
+    table |= fist_keys(
+        ".R",
+        [
+            (0.0, (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
+            (0.11, (-0.08, 0.98, 0.25), (-0.68, -0.68, 0.27), (0.7, -0.7, 0.0)),
+            (swap, *sword_fist(*_IN_SCABBARD, (0.85, 0.40, -0.20))),
+            (0.28, (-0.02, 1.28, 0.44), (0.30, -0.55, -0.5), (0.8, 0.3, 0.3)),
+            (0.38, (-0.36, 1.30, 0.42), (0.10, 0.75, 0.6), (0.3, -0.5, 0.8)),
+            (t, (-0.28, 1.02, 0.30), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
+        ],
+    )
     table |= {
-        "elbow.to.R": [(0.0, (-0.6, -0.6, -0.5)), (0.2, (-0.7, -0.3, 0.4)), (0.35, (-0.8, -0.4, -0.1)), (t, (-0.6, -0.6, -0.5))],
-        "curl.R": [(0.0, 24.0), (0.12, 20.0), (swap, 74.0), (t, 74.0)], "thumb.R": [(0.0, 0.0), (swap, 40.0), (t, 40.0)],
-        # The left hand holds the scabbard.
-        "arm.swing.L": [(0.0, 1.0), (0.16, -8.0), (0.3, -10.0), (t, 1.0)], "elbow.L": [(0.0, 15.0), (0.16, 70.0), (0.30, 66.0), (t, 24.0)],
-        "scabbard": [(0.0, 0.0), (0.18, 10.0), (0.30, 12.0), (t, 0.0)],
-    }
-    return t, False, table, {"shown": [(0.0, SHEATHED), (swap, SWORD)], "markers": [(swap, "unsheathed")], "stands": [(side, 0.0, t) for side in (".L", ".R")]}
+        "elbow.to.R": [
+            (0.0, (-0.6, -0.6, -0.5)),
+            (0.2, (-0.7, -0.3, 0.4)),
+            (0.35, (-0.8, -0.4, -0.1)),
+            (t, (-0.6, -0.6, -0.5)),
+        ],
+        "curl.R": [(0.0, 24.0), (0.12, 20.0), (swap, 84.0), (t, 84.0)],
+        "thumb.R": [(0.0, 0.0), (swap, 40.0), (t, 40.0)],
+    } | _left_on_scabbard(0.14, 0.30, t)
+    return (
+        t,
+        False,
+        table,
+        {
+            "shown": [(0.0, SHEATHED), (swap, SWORD)],
+            "markers": [(swap, "unsheathed")],
+            "stands": [(side, 0.0, t) for side in (".L", ".R")],
+        },
+    )
 
 
 def sheathe():
     """The way back, slower at the mouth of the scabbard."""
     t = 0.5
     swap = 0.30
-    table = _to(standing(), [
-        (0.16, {"hips.y": -0.04, "hips.yaw": -6, "spine.yaw": -6, "spine.pitch": 4, "head.pitch": 6, "head.yaw": 12}),
-        (0.30, {"hips.y": -0.045, "hips.yaw": 8, "spine.yaw": 16, "spine.pitch": 9, "head.pitch": 12, "head.yaw": 6}),
-        (t, {**standing(), "hips.yaw": 0, "spine.yaw": 0, "head.yaw": 0}),
-    ])
-    table |= fist_keys(".R", [
-        (0.0, (-0.28, 1.02, 0.30), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
-        (0.10, (-0.30, 1.30, 0.42), (0.10, 0.55, 0.7), (0.5, -0.4, 0.6)),
-        (0.19, (-0.02, 1.34, 0.46), (0.30, -0.55, -0.5), (0.8, 0.3, 0.3)),
-        (swap, (0.160, 1.060, 0.108), (0.27, -0.76, -0.59), (0.9, 0.2, -0.3)),
-        (0.40, (0.0, 0.98, 0.27), (0.2, -0.4, 0.7), (0.9, 0.0, 0.2)),
-        (t, (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
-    ])
+    table = pose_keys(
+        standing(),
+        [
+            (
+                0.16,
+                {"hips.y": -0.04, "hips.yaw": -6, "spine.yaw": -6, "spine.pitch": 4, "head.pitch": 6, "head.yaw": 12},
+            ),
+            (
+                0.30,
+                {"hips.y": -0.045, "hips.yaw": 8, "spine.yaw": 16, "spine.pitch": 9, "head.pitch": 12, "head.yaw": 6},
+            ),
+            (t, {**standing(), "hips.yaw": 0, "spine.yaw": 0, "head.yaw": 0}),
+        ],
+    )
+    table |= fist_keys(
+        ".R",
+        [
+            (0.0, (-0.28, 1.02, 0.30), (0.12, 0.50, 0.86), (0.1, -0.8, 0.5)),
+            (0.10, (-0.30, 1.30, 0.42), (0.10, 0.55, 0.7), (0.5, -0.4, 0.6)),
+            (0.19, (-0.02, 1.34, 0.46), (0.30, -0.55, -0.5), (0.8, 0.3, 0.3)),
+            (swap, *sword_fist(*_IN_SCABBARD, (0.85, 0.40, -0.20))),
+            (0.40, (-0.08, 0.98, 0.25), (-0.68, -0.68, 0.27), (0.7, -0.7, 0.0)),
+            (t, (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
+        ],
+    )
     table |= {
-        "elbow.to.R": [(0.0, (-0.6, -0.6, -0.5)), (0.15, (-0.8, -0.4, -0.1)), (0.3, (-0.7, -0.3, 0.4)), (t, (-0.6, -0.6, -0.5))],
-        "curl.R": [(0.0, 74.0), (swap, 74.0), (0.38, 20.0), (t, 24.0)], "thumb.R": [(0.0, 40.0), (swap, 40.0), (t, 0.0)],
-        "arm.swing.L": [(0.0, 1.0), (0.18, -10.0), (0.34, -8.0), (t, 1.0)], "elbow.L": [(0.0, 24.0), (0.18, 66.0), (0.34, 70.0), (t, 15.0)],
-        "scabbard": [(0.0, 0.0), (0.2, 12.0), (0.34, 8.0), (t, 0.0)],
-    }
-    return t, False, table, {"shown": [(0.0, SWORD), (swap, SHEATHED)], "markers": [(swap, "sheathed")], "stands": [(side, 0.0, t) for side in (".L", ".R")]}
+        "elbow.to.R": [
+            (0.0, (-0.6, -0.6, -0.5)),
+            (0.15, (-0.8, -0.4, -0.1)),
+            (0.3, (-0.7, -0.3, 0.4)),
+            (t, (-0.6, -0.6, -0.5)),
+        ],
+        "curl.R": [(0.0, 84.0), (swap, 84.0), (0.38, 20.0), (t, 24.0)],
+        "thumb.R": [(0.0, 40.0), (swap, 40.0), (t, 0.0)],
+    } | _left_on_scabbard(0.20, 0.34, t)
+    return (
+        t,
+        False,
+        table,
+        {
+            "shown": [(0.0, SWORD), (swap, SHEATHED)],
+            "markers": [(swap, "sheathed")],
+            "stands": [(side, 0.0, t) for side in (".L", ".R")],
+        },
+    )
 
 
 # The archer's stance: the left side in front.
 _ARCHER = {
-    "hips.y": -0.04, "hips.x": -0.02, "hips.z": 0.0, "hips.yaw": -42.0, "hips.pitch": 0.0, "spine.yaw": -30.0, "spine.pitch": -1.0, "spine.roll": 0.0, "neck.yaw": 30.0, "neck.pitch": 2.0, "head.yaw": 36.0, "head.pitch": 2.0, "head.roll": 3.0,
+    "hips.y": -0.04,
+    "hips.x": -0.02,
+    "hips.z": 0.0,
+    "hips.yaw": -42.0,
+    "hips.pitch": 0.0,
+    "spine.yaw": -30.0,
+    "spine.pitch": -1.0,
+    "spine.roll": 0.0,
+    "neck.yaw": 30.0,
+    "neck.pitch": 2.0,
+    "head.yaw": 36.0,
+    "head.pitch": 2.0,
+    "head.roll": 4.0,
 }
-_ARCHER_FEET = {"foot.x.L": -0.02, "foot.z.L": 0.13, "foot.yaw.L": -22.0, "foot.x.R": -0.03, "foot.z.R": -0.12, "foot.yaw.R": 62.0}
+_ARCHER_FEET = {
+    "foot.x.L": -0.02,
+    "foot.z.L": 0.13,
+    "foot.yaw.L": -22.0,
+    "foot.x.R": -0.03,
+    "foot.z.R": -0.12,
+    "foot.yaw.R": 62.0,
+}
 # The bow's grip, and the arrow's nock at full draw.
-_BOW_GRIP, _NOCK = (0.030, 1.448, 0.655), (-0.050, 1.512, 0.040)
+_BOW_GRIP, _NOCK = (0.022, 1.446, 0.655), (-0.082, 1.496, 0.050)
 _STRING_HAND = (0.088, 0.018, 0.022)
 
 
@@ -192,41 +423,82 @@ def _string_hand(nock, aim, up=(0.35, 0.92, 0.0)):
 
 def _string_keys(keys):
     rows = [(time, *(fist(".R", *rest[1:]) if rest[0] == "fist" else _string_hand(*rest[1:]))) for time, *rest in keys]
-    return {f"{name}.R": [(row[0], row[column]) for row in rows] for column, name in ((1, "hand"), (2, "fingers"), (3, "palm"))}
+    return {
+        f"{name}.R": [(row[0], row[column]) for row in rows]
+        for column, name in ((1, "hand"), (2, "fingers"), (3, "palm"))
+    }
 
 
 _AIM = np.subtract(_BOW_GRIP, _NOCK) + (0.0, 0.02, 0.0)
-_UP = (-0.10, 0.99, 0.0)
-_DRAWN = {"curl.L": 66.0, "thumb.L": 36.0, "curl.R": 62.0, "thumb.R": 6.0, "elbow.to.L": (0.75, -0.55, 0.1), "shoulder.forward.R": -8.0}
+_UP = (-0.20, 0.97, 0.0)
+_DRAWN = {
+    "curl.L": 84.0,
+    "thumb.L": 40.0,
+    "curl.R": 70.0,
+    "thumb.R": 6.0,
+    "elbow.to.L": (0.75, -0.55, 0.1),
+    "shoulder.forward.R": -8.0,
+}
 
 
 def draw():
     t = 0.6
     swap, take, nock = 0.10, 0.20, 0.40
     stand = {name: value for name, value in standing().items() if not name.startswith("foot")}
-    table = _to(stand, [
-        (0.16, {"hips.y": -0.03, "hips.yaw": -16, "spine.yaw": -8, "spine.pitch": 2, "neck.yaw": 10, "head.yaw": 8, "head.pitch": 4}),
-        (0.38, {**_ARCHER, "hips.yaw": -36, "spine.yaw": -20, "neck.yaw": 24, "head.yaw": 28, "head.pitch": 8}),
-        (t, _ARCHER),
-    ])
-    table |= fist_keys(".L", [
-        (0.0, (0.29, 0.86, 0.10), (0.0, 0.2, 1.0), (0.0, -1.0, 0.2)), (swap, (0.30, 1.02, 0.30), (-0.3, 0.6, 0.7), (0.1, -0.6, 0.8)),
-        (0.36, (0.06, 1.30, 0.58), (-0.30, 0.95, 0.0), (0.0, 0.0, 1.0)), (t, _BOW_GRIP, _UP, _AIM),
-    ])
-    table |= _string_keys([
-        (0.0, "fist", (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
-        (0.09, "fist", (-0.36, 1.35, 0.02), (0.3, -0.3, 0.9), (0.1, 0.9, 0.3)),
-        (take, "nock", (-0.235, 1.545, -0.195), (0.25, -0.75, -0.45), (0.8, 0.3, 0.3)),
-        (0.25, "nock", (-0.290, 1.640, -0.02), (-0.80, -0.15, 0.10), (0.3, 0.9, 0.6)),
-        (0.31, "nock", (-0.20, 1.56, 0.22), (-0.20, 0.15, 0.95), (0.5, 0.85, 0.0)),
-        (nock, "nock", (0.045, 1.36, 0.42), (0.0, 0.05, 1.0)),
-        (t, "nock", _NOCK, _AIM),
-    ])
+    table = pose_keys(
+        stand,
+        [
+            (
+                0.16,
+                {
+                    "hips.y": -0.03,
+                    "hips.yaw": -16,
+                    "spine.yaw": -8,
+                    "spine.pitch": 2,
+                    "neck.yaw": 10,
+                    "head.yaw": 8,
+                    "head.pitch": 4,
+                },
+            ),
+            (0.38, {**_ARCHER, "hips.yaw": -36, "spine.yaw": -20, "neck.yaw": 24, "head.yaw": 28, "head.pitch": 8}),
+            (t, _ARCHER),
+        ],
+    )
+    table |= fist_keys(
+        ".L",
+        [
+            (0.0, (0.29, 0.86, 0.10), (0.0, 0.2, 1.0), (0.0, -1.0, 0.2)),
+            (swap, (0.30, 1.02, 0.30), (-0.3, 0.6, 0.7), (0.1, -0.6, 0.8)),
+            (0.36, (0.06, 1.30, 0.58), (-0.30, 0.95, 0.0), (0.0, 0.0, 1.0)),
+            (t, _BOW_GRIP, _UP, _AIM),
+        ],
+    )
+    table |= _string_keys(
+        [
+            (0.0, "fist", (-0.27, 0.82, 0.08), (0.0, 0.1, 1.0), (0.0, -1.0, 0.1)),
+            (0.09, "fist", (-0.36, 1.35, 0.02), (0.3, -0.3, 0.9), (0.1, 0.9, 0.3)),
+            (take, "nock", (-0.235, 1.545, -0.195), (0.25, -0.75, -0.45), (0.8, 0.3, 0.3)),
+            (0.25, "nock", (-0.290, 1.640, -0.02), (-0.80, -0.15, 0.10), (0.3, 0.9, 0.6)),
+            (0.31, "nock", (-0.20, 1.56, 0.22), (-0.20, 0.15, 0.95), (0.5, 0.85, 0.0)),
+            (nock, "nock", (0.045, 1.36, 0.42), (0.0, 0.05, 1.0)),
+            (t, "nock", _NOCK, _AIM),
+        ]
+    )
     table |= {
-        "elbow.to.R": [(0.0, (-0.6, -0.6, -0.5)), (take, (-0.9, 0.1, 0.4)), (0.32, (-0.9, -0.2, -0.2)), (t, (-0.75, 0.25, -0.6))], "elbow.to.L": [(0.0, (0.6, -0.6, -0.5)), (t, (0.75, -0.55, 0.1))],
-        "curl.L": [(0.0, 24.0), (swap, 66.0), (t, 66.0)], "thumb.L": [(0.0, 0.0), (swap, 36.0), (t, 36.0)],
-        "curl.R": [(0.0, 24.0), (0.14, 16.0), (take, 62.0), (t, 62.0)], "thumb.R": [(0.0, 0.0), (t, 6.0)], "shoulder.forward.R": [(0.0, 0.0), (nock, 4.0), (t, -8.0)],
-        "nocked": lambda time: smooth_step(0.29, nock, time), "string": lambda time: float(time >= nock - 1e-9),
+        "elbow.to.R": [
+            (0.0, (-0.6, -0.6, -0.5)),
+            (take, (-0.9, 0.1, 0.4)),
+            (0.32, (-0.9, -0.2, -0.2)),
+            (t, (-0.75, 0.25, -0.6)),
+        ],
+        "elbow.to.L": [(0.0, (0.6, -0.6, -0.5)), (t, (0.75, -0.55, 0.1))],
+        "curl.L": [(0.0, 24.0), (swap, 84.0), (t, 84.0)],
+        "thumb.L": [(0.0, 0.0), (swap, 36.0), (t, 36.0)],
+        "curl.R": [(0.0, 24.0), (0.14, 16.0), (take, 70.0), (t, 70.0)],
+        "thumb.R": [(0.0, 0.0), (t, 6.0)],
+        "shoulder.forward.R": [(0.0, 0.0), (nock, 4.0), (t, -8.0)],
+        "nocked": lambda time: smooth_step(0.29, nock, time),
+        "string": lambda time: float(time >= nock - 1e-9),
     }
     for name, value in _ARCHER_FEET.items():
         first = {"foot.yaw.L": 7.0, "foot.yaw.R": 7.0}.get(name, 0.0)
@@ -234,7 +506,15 @@ def draw():
         table[name] = [(0.0, first), (begin, first), (begin + 0.16, value), (t, value)]
     for side, begin in ((".R", 0.06), (".L", 0.24)):
         table[f"foot.y{side}"] = [(0.0, 0.0), (begin, 0.0), (begin + 0.08, 0.03), (begin + 0.16, 0.0), (t, 0.0)]
-    return t, False, table, {"shown": [(0.0, SHEATHED), (swap, BOW), (take, BOW_AND_ARROW)], "markers": [(0.22, "step_right"), (0.40, "step_left")]}
+    return (
+        t,
+        False,
+        table,
+        {
+            "shown": [(0.0, SHEATHED), (swap, BOW), (take, BOW_AND_ARROW)],
+            "markers": [(0.22, "step_right"), (0.40, "step_left")],
+        },
+    )
 
 
 def _aimed():
@@ -248,7 +528,9 @@ def _aimed():
 def aim():
     t = 2.0
     table = _aimed() | {
-        "breath": wave(t, 0.8, 0.0), "hips.x": lambda time: _ARCHER["hips.x"] + 0.0025 * (np.cos(2 * np.pi * time / t) - 1.0), "spine.roll": lambda time: 0.3 * np.sin(4 * np.pi * time / t),
+        "breath": wave(t, 0.8, 0.0),
+        "hips.x": lambda time: _ARCHER["hips.x"] + 0.0025 * (np.cos(2 * np.pi * time / t) - 1.0),
+        "spine.roll": lambda time: 0.3 * np.sin(4 * np.pi * time / t),
     }
     steps = 12
     grips, nocks = [], []
@@ -265,23 +547,60 @@ def loose():
     """The string goes, the hand springs back, the bow arm gives a little."""
     t = 0.3
     gone = 1.0 / 30.0
-    table = _to(_aimed(), [
-        (0.10, {"spine.yaw": -35, "spine.roll": -2, "hips.x": -0.026, "head.yaw": 38}),
-        (t, {"spine.yaw": -29, "spine.roll": 0, "hips.x": -0.02}),
-    ])
+    table = pose_keys(
+        _aimed(),
+        [
+            (0.10, {"spine.yaw": -35, "spine.roll": -2, "hips.x": -0.026, "head.yaw": 38}),
+            (t, {"spine.yaw": -29, "spine.roll": 0, "hips.x": -0.02}),
+        ],
+    )
     back = np.asarray(_NOCK) - 0.13 * unit(_AIM) + (-0.05, 0.0, 0.0)
-    table |= fist_keys(".L", [(0.0, _BOW_GRIP, _UP, _AIM), (gone, _BOW_GRIP, _UP, _AIM), (0.10, np.add(_BOW_GRIP, (0.03, 0.015, 0.0)), (-0.02, 0.97, 0.22), _AIM + (0.03, 0.0, 0.0)), (t, np.add(_BOW_GRIP, (0.01, -0.03, -0.01)), _UP, _AIM + (0.0, -0.05, 0.0))])
-    table |= _string_keys([(0.0, "nock", _NOCK, _AIM), (gone, "nock", _NOCK, _AIM), (0.10, "nock", back, _AIM + (0.0, 0.06, 0.0)), (t, "nock", np.add(back, (-0.02, -0.04, 0.03)), _AIM)])
+    table |= fist_keys(
+        ".L",
+        [
+            (0.0, _BOW_GRIP, _UP, _AIM),
+            (gone, _BOW_GRIP, _UP, _AIM),
+            (0.10, np.add(_BOW_GRIP, (0.03, 0.015, 0.0)), (-0.02, 0.97, 0.22), _AIM + (0.03, 0.0, 0.0)),
+            (t, np.add(_BOW_GRIP, (0.01, -0.03, -0.01)), _UP, _AIM + (0.0, -0.05, 0.0)),
+        ],
+    )
+    table |= _string_keys(
+        [
+            (0.0, "nock", _NOCK, _AIM),
+            (gone, "nock", _NOCK, _AIM),
+            (0.10, "nock", back, _AIM + (0.0, 0.06, 0.0)),
+            (t, "nock", np.add(back, (-0.02, -0.04, 0.03)), _AIM),
+        ]
+    )
     table |= {
-        "elbow.to.R": (-0.75, 0.25, -0.6), "elbow.to.L": (0.75, -0.55, 0.1), "curl.R": [(0.0, 62.0), (gone, 62.0), (0.10, 12.0), (t, 24.0)],
-        "nocked": 1.0, "string": lambda time: float(time <= 1e-9) if time < gone - 1e-9 else 0.0,
+        "elbow.to.R": (-0.75, 0.25, -0.6),
+        "elbow.to.L": (0.75, -0.55, 0.1),
+        "curl.R": [(0.0, 70.0), (gone, 70.0), (0.10, 12.0), (t, 24.0)],
+        "nocked": 1.0,
+        "string": lambda time: float(time <= 1e-9) if time < gone - 1e-9 else 0.0,
     }
     for name, value in _ARCHER_FEET.items():
         table[name] = [(0.0, value)]
-    return t, False, table, {"shown": [(0.0, BOW_AND_ARROW), (gone, BOW)], "markers": [(gone, "loose")], "stands": [(side, 0.0, t) for side in (".L", ".R")]}
+    return (
+        t,
+        False,
+        table,
+        {
+            "shown": [(0.0, BOW_AND_ARROW), (gone, BOW)],
+            "markers": [(gone, "loose")],
+            "stands": [(side, 0.0, t) for side in (".L", ".R")],
+        },
+    )
 
 
 TABLES = {
-    "stab_raise": stab_raise, "stab_hold": stab_hold, "stab_strike": stab_strike, "swing": swing, "draw": draw, "aim": aim, "loose": loose,
-    "unsheathe": unsheathe, "sheathe": sheathe,
+    "stab_raise": stab_raise,
+    "stab_hold": stab_hold,
+    "stab_strike": stab_strike,
+    "swing": swing,
+    "draw": draw,
+    "aim": aim,
+    "loose": loose,
+    "unsheathe": unsheathe,
+    "sheathe": sheathe,
 }

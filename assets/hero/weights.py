@@ -7,7 +7,18 @@ softly over some centimetres. Pieces that lie on each other use the same rules, 
 import numpy as np
 from giant.field import round_cone, smooth_step
 
-from .skeleton import ALONG, ANKLE, ELBOW, HIP, JOINTS, LOWER, NAMES, SHOULDER, WRIST, head
+from .skeleton import (
+    ALONG,
+    ANKLE,
+    ELBOW,
+    HIP,
+    JOINTS,
+    LOWER,
+    NAMES,
+    SHOULDER,
+    WRIST,
+    head,
+)
 
 # Half the width of the soft zone about each joint, in metres.
 WAIST, BREAST, NAPE, ELBOW_ZONE, KNEE_ZONE, ANKLE_ZONE, TOE_ZONE = 0.06, 0.08, 0.035, 0.055, 0.065, 0.035, 0.022

@@ -21,7 +21,9 @@ class _File:
     def __init__(self):
         self.document = {
             "asset": {"version": "2.0", "generator": "assets/hero.py", "copyright": "CC0 1.0"},
-            "accessors": [], "bufferViews": [], "buffers": [{}],
+            "accessors": [],
+            "bufferViews": [],
+            "buffers": [{}],
         }
         self.binary = b""
 
@@ -35,7 +37,12 @@ class _File:
             view["target"] = target
         self.binary += values.tobytes()
         self.document["bufferViews"].append(view)
-        entry = {"bufferView": len(self.document["bufferViews"]) - 1, "componentType": kind, "count": len(values), "type": shape}
+        entry = {
+            "bufferView": len(self.document["bufferViews"]) - 1,
+            "componentType": kind,
+            "count": len(values),
+            "type": shape,
+        }
         if normalized:
             entry["normalized"] = True
         if limits:
@@ -51,16 +58,28 @@ def write(path, figure, moves):
     document = file.document
     document["scene"], document["scenes"] = 0, [{"name": "hero", "nodes": [len(JOINTS) + 1]}]
     document["nodes"] = _joint_nodes()
-    document["nodes"] += [{"name": "hero_mesh", "mesh": 0, "skin": 0}, {"name": "hero", "children": [INDEX["root"], len(JOINTS)]}]
+    document["nodes"] += [
+        {"name": "hero_mesh", "mesh": 0, "skin": 0},
+        {"name": "hero", "children": [INDEX["root"], len(JOINTS)]},
+    ]
     document["materials"] = [
-        {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness}}
+        {
+            "name": name,
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [1.0, 1.0, 1.0, 1.0],
+                "metallicFactor": metallic,
+                "roughnessFactor": roughness,
+            },
+        }
         for name, (roughness, metallic) in MATERIALS.items()
     ]
     document["meshes"] = [{"name": "hero", "primitives": _primitives(file, figure)}]
     inverse = np.stack([_inverse_bind(joint) for joint in range(len(JOINTS))])
     # Matrices are stored column by column.
     bind = file.add(inverse.transpose(0, 2, 1).reshape(-1, 16), _FLOAT, "MAT4")
-    document["skins"] = [{"name": "hero", "joints": list(range(len(JOINTS))), "skeleton": INDEX["root"], "inverseBindMatrices": bind}]
+    document["skins"] = [
+        {"name": "hero", "joints": list(range(len(JOINTS))), "skeleton": INDEX["root"], "inverseBindMatrices": bind}
+    ]
     document["animations"] = [_animation(file, move) for move in moves]
     document["buffers"][0]["byteLength"] = len(file.binary) + -len(file.binary) % 4
     glb.write(path, document, file.binary)
