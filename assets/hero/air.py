@@ -34,6 +34,7 @@ def _falling():
 def jump():
     t = 0.35
     stand = standing()
+    body = [name for name in stand if not name.startswith("foot")]
     table = pose_keys(
         stand,
         [
@@ -69,7 +70,7 @@ def jump():
                     "elbow.R": 70,
                 },
             ),
-            (t, {"hips.y": 0.0, "hips.z": 0.0, **dict.fromkeys(stand, 0.0), **_falling()}),
+            (t, {"hips.y": 0.0, "hips.z": 0.0, **dict.fromkeys(body, 0.0), **_falling()}),
         ],
     )
     for side in (".L", ".R"):

@@ -46,7 +46,7 @@ def face(points):
 def piece(thinned, hair):
     """The skin of head and neck, without what lies deep under the field `hair`."""
     cut = lambda p: np.maximum(face(p), 1.432 - p[:, 1])
-    points, triangles = m.meshed(cut, (-0.1, 1.40, -0.13), (0.1, 1.76, 0.14), 0.0046, 0.080, thinned)
+    points, triangles = m.meshed(cut, (-0.1, 1.40, -0.13), (0.1, 1.76, 0.14), 0.0046, 0.0755, thinned)
     points, triangles = _without_hidden(points, triangles, hair)
     y, z = points[:, 1], points[:, 2]
     warm = np.maximum.reduce(

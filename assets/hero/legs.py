@@ -47,7 +47,7 @@ def _trouser():
     rings = m.wrapped(_leg_field, path, 14, LEFT, 0.16)
     # The upper end hides under the skirt.
     rings[0] = path[0] + 0.62 * (rings[0] - path[0])
-    rings[1] = path[1] + 0.94 * (rings[1] - path[1])
+    rings[1] = path[1] + 0.84 * (rings[1] - path[1])
     # Both legs meet in the middle plane.
     rings[..., 0] = np.maximum(rings[..., 0], -0.004)
     points, triangles = m.loft(rings)

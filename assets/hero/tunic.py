@@ -13,7 +13,8 @@ HEM = 0.715
 # The tunic's waist and hem: half widths and half depths, in metres.
 WAIST_SIZE, HEM_SIZE = (0.146, 0.107), (0.232, 0.178)
 SKIRT_FOLDS, FOLD_DEPTH = 8, 0.012
-CLOTH_THICKNESS = 0.010
+# How far the lining is inside the cloth, from the hem upwards, in metres.
+LINING = (0.010, 0.016, 0.032, 0.060)
 
 
 def pieces():
@@ -71,7 +72,8 @@ def _skirt_ring(share, inset=0.0):
 def _skirt():
     shares = (0.0, 0.16, 0.36, 0.58, 0.80, 0.93, 0.932, 1.0)
     outer = [_skirt_ring(share) for share in shares]
-    inner = [_skirt_ring(share, CLOTH_THICKNESS) for share in (1.0, 0.6, 0.2)]
+    # The lining has its rings where the cloth has some, so that it stays inside when the thighs bend both.
+    inner = [_skirt_ring(share, inset) for share, inset in zip((1.0, 0.8, 0.58, 0.36), LINING)]
     points, triangles = m.loft(np.array(outer + inner))
     around = len(outer[0])
     row = np.arange(len(points)) // around

@@ -65,7 +65,7 @@ def body(points, legs=0.0):
         lower = _passed(p, ELBOW, ALONG + LOWER, ELBOW_ZONE, ELBOW_ZONE) * (p[:, 0] > 0.2)
         _split(result, "upper_arm" + side, "forearm" + side, lower)
     if legs:
-        hang = legs * smooth_step(HIP[1] + 0.06, HIP[1] - 0.12, y)
+        hang = legs * smooth_step(HIP[1] + 0.08, HIP[1] - 0.16, y)
         left = hang * smooth_step(-0.07, 0.07, x)
         _split(result, "hips", "thigh.L", left)
         _split(result, "hips", "thigh.R", (hang - left) / np.maximum(1.0 - left, 1e-9))
@@ -90,7 +90,7 @@ def leg(points):
     result = _empty(points)
     y = points[:, 1]
     result[:, NAMES.index("hips")] = 1.0
-    _split(result, "hips", "thigh.L", smooth_step(HIP[1] + 0.07, HIP[1] - 0.09, y))
+    _split(result, "hips", "thigh.L", smooth_step(HIP[1] + 0.08, HIP[1] - 0.16, y))
     knee = head("shin.L")
     _split(result, "thigh.L", "shin.L", smooth_step(knee[1] + KNEE_ZONE, knee[1] - KNEE_ZONE, y))
     _split(result, "shin.L", "foot.L", smooth_step(ANKLE[1] + ANKLE_ZONE + 0.012, ANKLE[1] - ANKLE_ZONE + 0.012, y))
