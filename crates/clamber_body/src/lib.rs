@@ -2,8 +2,10 @@
 
 mod error;
 mod humanoid;
+mod retarget;
 
 /// Poses over time, and the inverse kinematics that [`Limb::ik`] is for.
 pub use clamber_animation;
 pub use error::HumanoidError;
 pub use humanoid::{HumanJoint, Humanoid, Limb, LimbEnd, Side};
+pub use retarget::{Retarget, RetargetError};

@@ -6,6 +6,7 @@ use clamber_animation::ik::{Reach, TwoBoneGoal};
 use clamber_body::{HumanJoint, Humanoid, HumanoidError, LimbEnd, Side};
 use clamber_gltf::Rig;
 use clamber_scenes::test_data;
+use clamber_surface::rig::JointId;
 use glam::DVec3;
 
 fn load(name: &str) -> Option<Rig> {
@@ -14,7 +15,7 @@ fn load(name: &str) -> Option<Rig> {
 }
 
 /// The name of a joint.
-fn name(rig: &Rig, joint: clamber_surface::rig::JointId) -> &str {
+fn name(rig: &Rig, joint: JointId) -> &str {
     &rig.skeleton.joints()[joint.index()].name
 }
 
@@ -235,7 +236,8 @@ fn joints_without_names_are_named_by_hand() {
     check_limbs(&rig, &body);
 
     // What does not fit is refused.
-    let refused = |change: &dyn Fn(&mut Vec<(HumanJoint, clamber_surface::rig::JointId)>)| {
+    type Joints = Vec<(HumanJoint, JointId)>;
+    let refused = |change: &dyn Fn(&mut Joints)| {
         let mut joints = joints.clone();
         change(&mut joints);
         Humanoid::from_joints(&rig.skeleton, &joints).unwrap_err()

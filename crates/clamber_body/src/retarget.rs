@@ -1,0 +1,370 @@
+//! Clips of one body on another.
+//!
+//! What is carried over is how far each bone has turned, in model space, from a reference in which both bodies have the same
+//! posture: the source at rest, and the target with each of its bones turned to where the source's bone points at rest.
+//! So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no knowledge of how
+//! either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion Retargeting to Highly Varied
+//! User-Created Morphologies", whose bodies are far more varied). Hips move as far as the legs are long.
+
+use clamber_surface::rig::{
+    Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, RigError, Skeleton,
+};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use thiserror::Error;
+
+use crate::{Humanoid, Limb, LimbEnd};
+
+/// Keys of a carried clip, a second.
+const RATE: f64 = 30.0;
+
+/// Why clips cannot be carried over.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum RetargetError {
+    /// A skeleton is not that of its body, or a clip does not fit it.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A body's legs have no length.
+    #[error("the legs have no length")]
+    NoLegs,
+}
+
+/// Carries clips from one body to another.
+#[derive(Clone, Debug)]
+pub struct Retarget<'a> {
+    from: &'a Skeleton,
+    to: &'a Skeleton,
+    bones: Vec<Bone>,
+    hips: [JointId; 2],
+    /// Rotation from the source's facing to the target's.
+    turn: DQuat,
+    /// How much longer the target's legs are.
+    scale: f64,
+    /// The source's joints at rest in model space, and the target's.
+    rest: [Vec<DAffine3>; 2],
+    /// Feet that stand beside their legs.
+    beside: Vec<Beside>,
+}
+
+/// A joint of the target that turns like one of the source, or like two of them.
+#[derive(Clone, Copy, Debug)]
+struct Bone {
+    /// In the source; the second one's share, 0 to 1.
+    from: [JointId; 2],
+    share: f64,
+    to: JointId,
+    /// The joint's rotation in model space in the reference.
+    reference: DQuat,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    lower: JointId,
+    point: DVec3,
+    foot: JointId,
+}
+
+impl<'a> Retarget<'a> {
+    /// From one body to another, each with its skeleton.
+    ///
+    /// # Errors
+    /// [`RetargetError::NoLegs`], and [`RetargetError::Rig`] if a body has joints that its skeleton lacks.
+    pub fn new(
+        (from, source): (&'a Skeleton, &Humanoid),
+        (to, target): (&'a Skeleton, &Humanoid),
+    ) -> Result<Self, RetargetError> {
+        let rest = [models(from, &from.rest_pose())?, models(to, &to.rest_pose())?];
+        for (skeleton, body) in [(from, source), (to, target)] {
+            let joints = skeleton.joints().len();
+            let named = body.joints().into_iter().map(|(_, joint)| joint);
+            let inner = body.spine.iter().chain(&body.neck).copied();
+            if let Some(joint) = named.chain(inner).find(|joint| joint.index() >= joints) {
+                return Err(RigError::JointOutOfRange { joint, joints }.into());
+            }
+        }
+        let length = |body: &Humanoid| body.legs.iter().map(Limb::length).sum::<f64>();
+        let scale = length(target) / length(source);
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(RetargetError::NoLegs);
+        }
+        let turn = about_y(source.facing, target.facing);
+        let mut retarget = Self {
+            from,
+            to,
+            bones: Vec::new(),
+            hips: [source.hips, target.hips],
+            turn,
+            scale,
+            rest,
+            beside: Vec::new(),
+        };
+        retarget.add_trunk(source, target);
+        for (from, to) in source.arms.iter().zip(&target.arms) {
+            retarget.add_limb(from, to, [source.facing, target.facing]);
+        }
+        for (from, to) in source.legs.iter().zip(&target.legs) {
+            retarget.add_limb(from, to, [source.facing, target.facing]);
+        }
+        // Parents before children, so that a joint's parent is known when the joint is turned.
+        let depth = |joint: JointId| {
+            let parent = |joint: &JointId| to.joints()[joint.index()].parent;
+            core::iter::successors(Some(joint), parent).count()
+        };
+        retarget.bones.sort_by_key(|bone| (depth(bone.to), bone.to));
+        Ok(retarget)
+    }
+
+    /// A clip of the source as one of the target: 30 keys a second, of the same length, with the same name and markers.
+    ///
+    /// # Errors
+    /// [`RetargetError::Rig`] if the clip is not the source's.
+    pub fn clip(&self, clip: &Clip) -> Result<Clip, RetargetError> {
+        let duration = clip.duration();
+        let keys = (duration * RATE).ceil().max(1.0) as usize + 1;
+        let times: Vec<f32> = (0..keys)
+            .map(|key| (duration * key as f64 / (keys - 1) as f64) as f32)
+            .collect();
+        let rest = self.from.rest_pose();
+        let moved = self.moved_joints();
+        let mut rotations: Vec<Vec<Quat>> = vec![Vec::with_capacity(keys); moved.len()];
+        let mut translations: Vec<Vec<Vec3>> = rotations.iter().map(|_| Vec::new()).collect();
+        for time in &times {
+            let source = clip.sample(&rest, f64::from(*time), Playback::Clamp)?;
+            let pose = self.pose(&source)?;
+            for (index, joint) in moved.iter().enumerate() {
+                let transform = &pose.transforms[joint.index()];
+                rotations[index].push(transform.rotation);
+                translations[index].push(transform.translation);
+            }
+        }
+        let mut channels = Vec::new();
+        let mut add = |joint: JointId, values: Keyframes| -> Result<(), RigError> {
+            let linear = Interpolation::Linear;
+            channels.push(Channel::new(joint, linear, times.clone(), values)?);
+            Ok(())
+        };
+        let travels = |joint: &JointId| {
+            *joint == self.hips[1] || self.beside.iter().any(|beside| beside.foot == *joint)
+        };
+        for ((joint, turns), places) in moved.iter().zip(rotations).zip(translations) {
+            add(*joint, Keyframes::Rotation(turns))?;
+            if travels(joint) {
+                add(*joint, Keyframes::Translation(places))?;
+            }
+        }
+        let speed = clip.ground_speed().map(|speed| speed * self.scale);
+        let carried = Clip::new(clip.name.clone(), channels);
+        // Keys are rounded to f32, and so is the last one.
+        let length = carried.duration();
+        let markers = clip.markers().iter().cloned().map(|mut marker| {
+            marker.time = marker.time.min(length);
+            marker
+        });
+        Ok(carried.with_markers(markers.collect())?.with_ground_speed(speed)?)
+    }
+
+    /// A pose of the source as one of the target. Joints that are not part of the body are at rest.
+    ///
+    /// # Errors
+    /// [`RetargetError::Rig`] if the pose is not the source's.
+    pub fn pose(&self, source: &Pose) -> Result<Pose, RetargetError> {
+        let moved = models(self.from, source)?;
+        let turned = |joint: JointId| {
+            let [now, rest] = [&moved, &self.rest[0]].map(|models| rotation(&models[joint.index()]));
+            now * rest.conjugate()
+        };
+        let mut pose = self.to.rest_pose();
+        let way = moved[self.hips[0].index()].translation
+            - self.rest[0][self.hips[0].index()].translation;
+        let hips = self.rest[1][self.hips[1].index()].translation + self.turn * way * self.scale;
+        for bone in &self.bones {
+            let [first, second] = bone.from.map(turned);
+            let turn = clamber_surface::geometry::slerp(first, second, bone.share);
+            let wanted = self.turn * turn * self.turn.conjugate() * bone.reference;
+            let parent = self.model_from_parent(&pose, bone.to);
+            let local = &mut pose.transforms[bone.to.index()];
+            local.rotation = (rotation(&parent).conjugate() * wanted).normalize().as_quat();
+            if bone.to == self.hips[1] {
+                local.translation = parent.inverse().transform_point3(hips).as_vec3();
+            }
+        }
+        for beside in &self.beside {
+            let lower = self.model_from_parent(&pose, beside.lower)
+                * pose.transforms[beside.lower.index()].to_affine();
+            let place = lower.transform_point3(beside.point);
+            let parent = self.model_from_parent(&pose, beside.foot);
+            let local = &mut pose.transforms[beside.foot.index()];
+            local.translation = parent.inverse().transform_point3(place).as_vec3();
+        }
+        Ok(pose)
+    }
+
+    /// The joints that a clip has to move.
+    fn moved_joints(&self) -> Vec<JointId> {
+        let mut moved: Vec<JointId> = self.bones.iter().map(|bone| bone.to).collect();
+        moved.extend(self.beside.iter().map(|beside| beside.foot));
+        moved.sort_unstable();
+        moved.dedup();
+        moved
+    }
+
+    fn model_from_parent(&self, pose: &Pose, joint: JointId) -> DAffine3 {
+        let mut model = DAffine3::IDENTITY;
+        let mut next = self.to.joints()[joint.index()].parent;
+        while let Some(parent) = next {
+            model = pose.transforms[parent.index()].to_affine() * model;
+            next = self.to.joints()[parent.index()].parent;
+        }
+        model
+    }
+
+    /// Hips, spine, neck and head.
+    fn add_trunk(&mut self, source: &Humanoid, target: &Humanoid) {
+        let facing = [source.facing, target.facing];
+        // The hips point to the middle of the shoulders.
+        let shoulders = |rest: &[DAffine3], body: &Humanoid| {
+            let places = body.arms.iter().map(|arm| rest[arm.upper.index()].translation);
+            places.sum::<DVec3>() * 0.5
+        };
+        let up = |rest: &[DAffine3], body: &Humanoid| {
+            shoulders(rest, body) - rest[body.hips.index()].translation
+        };
+        let trunk = [up(&self.rest[0], source), up(&self.rest[1], target)];
+        self.add([source.hips; 2], 0.0, target.hips, trunk, facing);
+        self.add_column(&source.spine, &target.spine, source.hips, trunk, facing);
+        let chest = [source.chest(), target.chest()];
+        let above = |rest: &[DAffine3], body: &Humanoid, chest: JointId| {
+            rest[body.head.index()].translation - rest[chest.index()].translation
+        };
+        let neck = [
+            above(&self.rest[0], source, chest[0]),
+            above(&self.rest[1], target, chest[1]),
+        ];
+        self.add_column(&source.neck, &target.neck, chest[0], neck, facing);
+        // Heads have no direction that both skeletons share, but that of the neck.
+        self.add([source.head; 2], 0.0, target.head, neck, facing);
+    }
+
+    /// A column of joints: each joint of the target turns like the source's column at the same share of its length.
+    fn add_column(
+        &mut self,
+        from: &[JointId],
+        to: &[JointId],
+        below: JointId,
+        directions: [DVec3; 2],
+        facing: [DVec3; 2],
+    ) {
+        for (index, joint) in to.iter().enumerate() {
+            // 0 is the joint below the column, `from.len()` its last joint.
+            let at = (index + 1) as f64 / to.len() as f64 * from.len() as f64;
+            let joint_at = |index: usize| match index.checked_sub(1) {
+                None => below,
+                Some(index) => from[index.min(from.len() - 1)],
+            };
+            let first = (at.ceil() as usize).saturating_sub(1);
+            let share = at - first as f64;
+            let (pair, share) = if from.is_empty() {
+                ([below; 2], 0.0)
+            } else {
+                ([joint_at(first), joint_at(first + 1)], share)
+            };
+            self.add(pair, share, *joint, directions, facing);
+        }
+    }
+
+    fn add_limb(&mut self, from: &Limb, to: &Limb, facing: [DVec3; 2]) {
+        let place = |rest: &[DAffine3], joint: JointId| rest[joint.index()].translation;
+        let tip = |rest: &[DAffine3], limb: &Limb| match limb.end {
+            LimbEnd::Joint(joint) | LimbEnd::Beside(joint, _) => place(rest, joint),
+            LimbEnd::Point(point) => rest[limb.lower.index()].transform_point3(point),
+        };
+        let bones = |rest: &[DAffine3], limb: &Limb| {
+            let [shoulder, elbow] = [limb.upper, limb.lower].map(|joint| place(rest, joint));
+            let collar = limb.shoulder.map_or(DVec3::ZERO, |joint| shoulder - place(rest, joint));
+            [collar, elbow - shoulder, tip(rest, limb) - elbow]
+        };
+        let (source, target) = (bones(&self.rest[0], from), bones(&self.rest[1], to));
+        if let (Some(a), Some(b)) = (from.shoulder, to.shoulder) {
+            self.add([a; 2], 0.0, b, [source[0], target[0]], facing);
+        }
+        self.add([from.upper; 2], 0.0, to.upper, [source[1], target[1]], facing);
+        self.add([from.lower; 2], 0.0, to.lower, [source[2], target[2]], facing);
+        if let LimbEnd::Beside(foot, point) = to.end {
+            let lower = to.lower;
+            self.beside.push(Beside { lower, point, foot });
+        }
+        let (Some(a), Some(b)) = (from.end.joint(), to.end.joint()) else {
+            return;
+        };
+        let toes = |rest: &[DAffine3], limb: &Limb, end: JointId| {
+            let toes = limb.toes.map(|toes| place(rest, toes) - place(rest, end));
+            toes.filter(|way| way.length() > 1e-6)
+        };
+        let ends = [toes(&self.rest[0], from, a), toes(&self.rest[1], to, b)];
+        match ends {
+            // Feet point along their soles, hands along their forearms.
+            [Some(first), Some(second)] => {
+                self.add([a; 2], 0.0, b, [first, second], [DVec3::Y; 2]);
+            }
+            _ if from.toes.is_some() || to.toes.is_some() => {
+                self.add([a; 2], 0.0, b, facing, [DVec3::Y; 2]);
+            }
+            _ => self.add([a; 2], 0.0, b, [source[2], target[2]], facing),
+        }
+        if let (Some(a), Some(b), [Some(first), Some(second)]) = (from.toes, to.toes, ends) {
+            self.add([a; 2], 0.0, b, [first, second], [DVec3::Y; 2]);
+        }
+    }
+
+    /// Adds a bone that points along `directions` at rest, and whose other axis is nearest to `others`.
+    fn add(
+        &mut self,
+        from: [JointId; 2],
+        share: f64,
+        to: JointId,
+        directions: [DVec3; 2],
+        others: [DVec3; 2],
+    ) {
+        let wanted = frame(self.turn * directions[0], self.turn * others[0]);
+        let found = frame(directions[1], others[1]);
+        let correction = wanted * found.conjugate();
+        let reference = correction * rotation(&self.rest[1][to.index()]);
+        self.bones.push(Bone {
+            from,
+            share,
+            to,
+            reference,
+        });
+    }
+}
+
+/// A rotation whose X axis is along a vector, and whose Y axis is nearest to another one.
+fn frame(direction: DVec3, other: DVec3) -> DQuat {
+    let x = direction.normalize_or(DVec3::Y);
+    let y = (other - x * x.dot(other)).normalize_or(x.any_orthonormal_vector());
+    DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
+}
+
+/// The rotation about Y from one level unit vector to another.
+fn about_y(from: DVec3, to: DVec3) -> DQuat {
+    let half = DVec3::new(0.0, from.cross(to).y, 0.0);
+    let turn = DQuat::from_xyzw(0.0, half.y, 0.0, 1.0 + from.dot(to));
+    if turn.length_squared() > 1e-12 {
+        turn.normalize()
+    } else {
+        DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0)
+    }
+}
+
+/// The rotation of a transform that may scale and mirror.
+fn rotation(model: &DAffine3) -> DQuat {
+    model.to_scale_rotation_translation().1
+}
+
+/// All joints of a pose in model space.
+fn models(skeleton: &Skeleton, pose: &Pose) -> Result<Vec<DAffine3>, RigError> {
+    let palette = skeleton.palette(pose)?;
+    let joints = 0..skeleton.joints().len() as u32;
+    let model = |joint| palette.model_from_joint(JointId(joint)).copied();
+    Ok(joints.filter_map(model).collect())
+}
