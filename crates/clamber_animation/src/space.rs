@@ -37,6 +37,9 @@ const SIMILAR: f64 = 1e-4;
 /// # Errors
 /// [`IkError::NotInvertible`] if it has no inverse, [`IkError::Sheared`] if it scales unevenly.
 pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkError> {
+    if *matrix == DMat3::IDENTITY {
+        return Ok(1.0);
+    }
     let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let scale = axes[0].length();
     invertible(matrix, joint)?;
@@ -57,6 +60,9 @@ pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkErr
 /// # Errors
 /// [`IkError::NotInvertible`] if it has none that is finite.
 pub(crate) fn invertible(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkError> {
+    if *matrix == DMat3::IDENTITY {
+        return Ok(*matrix);
+    }
     let inverse = matrix.inverse();
     let size = matrix.x_axis.length() + matrix.y_axis.length() + matrix.z_axis.length();
     // Smaller than any scale that is meant: a determinant of rounding errors.

@@ -55,8 +55,15 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let one = vec![Layer::new(walk)];
     let three = vec![
         Layer::new(walk),
-        Layer { weight: 0.5, ..Layer::new(run) },
-        Layer { weight: 0.5, kind: LayerKind::Additive, ..Layer::new(run) },
+        Layer {
+            weight: 0.5,
+            ..Layer::new(run)
+        },
+        Layer {
+            weight: 0.5,
+            kind: LayerKind::Additive,
+            ..Layer::new(run)
+        },
     ];
     let mut plain = Player::new(one.clone());
     let mut layered = Player::new(three);
@@ -71,7 +78,9 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
         let to = if round % 2 == 0 { run } else { walk };
         fading.change(&set, to)?;
         times[3].push(timed(|_| fading.frame(&set))?);
-        times[4].push(timed(|frame| changing.change(&set, if frame % 2 == 0 { run } else { walk }))?);
+        times[4].push(timed(|frame| {
+            changing.change(&set, if frame % 2 == 0 { run } else { walk })
+        })?);
         times[5].push(timed(|frame| body.solve(&rig, frame))?);
     }
     let [sampling, plain, layered, fading, changing, body] =
@@ -79,7 +88,10 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
     let mut cells = Cells::default();
     cells.value("one clip sampled and its palette composed, us", sampling);
     cells.value("an animator with one layer, us", plain);
-    cells.value("an animator with three layers, one of them additive, us", layered);
+    cells.value(
+        "an animator with three layers, one of them additive, us",
+        layered,
+    );
     cells.value("an animator with one layer that fades, us", fading);
     cells.value("a change of clip, us", changing);
     cells.value("the body: four limbs and a look-at, us", body);
@@ -89,9 +101,7 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
 }
 
 /// The mean time of a frame, microseconds.
-fn timed(
-    mut frame: impl FnMut(u32) -> Result<(), Box<dyn Error>>,
-) -> Result<f64, Box<dyn Error>> {
+fn timed(mut frame: impl FnMut(u32) -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let start = Instant::now();
     for index in 0..FRAMES {
         frame(index)?;
@@ -116,7 +126,8 @@ impl Player {
 
     fn frame(&mut self, set: &AnimationSet) -> Result<(), Box<dyn Error>> {
         self.animator.advance(set, DT, &mut Vec::new())?;
-        self.animator.pose_into(set, &mut self.pose, &mut self.buffers)?;
+        self.animator
+            .pose_into(set, &mut self.pose, &mut self.buffers)?;
         Ok(())
     }
 
@@ -150,8 +161,9 @@ impl Body {
         let walk = rig.clip("walk").ok_or("no walk")?;
         let walk = walk.sample(&rig.skeleton.rest_pose(), 0.3, Playback::Loop)?;
         let limbs = body.arms.iter().chain(&body.legs);
-        let ends: Result<Vec<DVec3>, _> =
-            limbs.map(|limb| limb.ik.end(&rig.skeleton, &walk)).collect();
+        let ends: Result<Vec<DVec3>, _> = limbs
+            .map(|limb| limb.ik.end(&rig.skeleton, &walk))
+            .collect();
         Ok(Self {
             look,
             ends: ends?,
@@ -168,7 +180,8 @@ impl Body {
         let sway = f64::from(frame) * 1e-3;
         let target = DVec3::new(1.0 - sway, 1.5, 4.0);
         let (skeleton, pose) = (&rig.skeleton, &mut self.pose);
-        self.look.solve(skeleton, pose, target, 1.0, &mut self.gaze, DT)?;
+        self.look
+            .solve(skeleton, pose, target, 1.0, &mut self.gaze, DT)?;
         let limbs = self.body.arms.iter().chain(&self.body.legs);
         for ((limb, end), pole) in limbs.zip(&self.ends).zip(&mut self.poles) {
             let goal = TwoBoneGoal::reach(*end + DVec3::new(sway, 0.05, 0.0));

@@ -73,7 +73,10 @@ impl<'a> Retarget<'a> {
         (from, source): (&'a Skeleton, &Humanoid),
         (to, target): (&'a Skeleton, &Humanoid),
     ) -> Result<Self, RetargetError> {
-        let rest = [models(from, &from.rest_pose())?, models(to, &to.rest_pose())?];
+        let rest = [
+            models(from, &from.rest_pose())?,
+            models(to, &to.rest_pose())?,
+        ];
         for (skeleton, body) in [(from, source), (to, target)] {
             let joints = skeleton.joints().len();
             let named = body.joints().into_iter().map(|(_, joint)| joint);
@@ -160,7 +163,9 @@ impl<'a> Retarget<'a> {
             marker.time = marker.time.min(length);
             marker
         });
-        Ok(carried.with_markers(markers.collect())?.with_ground_speed(speed)?)
+        Ok(carried
+            .with_markers(markers.collect())?
+            .with_ground_speed(speed)?)
     }
 
     /// A pose of the source as one of the target. Joints that are not part of the body are at rest.
@@ -170,7 +175,8 @@ impl<'a> Retarget<'a> {
     pub fn pose(&self, source: &Pose) -> Result<Pose, RetargetError> {
         let moved = models(self.from, source)?;
         let turned = |joint: JointId| {
-            let [now, rest] = [&moved, &self.rest[0]].map(|models| rotation(&models[joint.index()]));
+            let [now, rest] =
+                [&moved, &self.rest[0]].map(|models| rotation(&models[joint.index()]));
             now * rest.conjugate()
         };
         let mut pose = self.to.rest_pose();
@@ -183,7 +189,9 @@ impl<'a> Retarget<'a> {
             let wanted = self.turn * turn * self.turn.conjugate() * bone.reference;
             let parent = self.model_from_parent(&pose, bone.to);
             let local = &mut pose.transforms[bone.to.index()];
-            local.rotation = (rotation(&parent).conjugate() * wanted).normalize().as_quat();
+            local.rotation = (rotation(&parent).conjugate() * wanted)
+                .normalize()
+                .as_quat();
             if bone.to == self.hips[1] {
                 local.translation = parent.inverse().transform_point3(hips).as_vec3();
             }
@@ -223,7 +231,10 @@ impl<'a> Retarget<'a> {
         let facing = [source.facing, target.facing];
         // The hips point to the middle of the shoulders.
         let shoulders = |rest: &[DAffine3], body: &Humanoid| {
-            let places = body.arms.iter().map(|arm| rest[arm.upper.index()].translation);
+            let places = body
+                .arms
+                .iter()
+                .map(|arm| rest[arm.upper.index()].translation);
             places.sum::<DVec3>() * 0.5
         };
         let up = |rest: &[DAffine3], body: &Humanoid| {
@@ -280,15 +291,29 @@ impl<'a> Retarget<'a> {
         };
         let bones = |rest: &[DAffine3], limb: &Limb| {
             let [shoulder, elbow] = [limb.upper, limb.lower].map(|joint| place(rest, joint));
-            let collar = limb.shoulder.map_or(DVec3::ZERO, |joint| shoulder - place(rest, joint));
+            let collar = limb
+                .shoulder
+                .map_or(DVec3::ZERO, |joint| shoulder - place(rest, joint));
             [collar, elbow - shoulder, tip(rest, limb) - elbow]
         };
         let (source, target) = (bones(&self.rest[0], from), bones(&self.rest[1], to));
         if let (Some(a), Some(b)) = (from.shoulder, to.shoulder) {
             self.add([a; 2], 0.0, b, [source[0], target[0]], facing);
         }
-        self.add([from.upper; 2], 0.0, to.upper, [source[1], target[1]], facing);
-        self.add([from.lower; 2], 0.0, to.lower, [source[2], target[2]], facing);
+        self.add(
+            [from.upper; 2],
+            0.0,
+            to.upper,
+            [source[1], target[1]],
+            facing,
+        );
+        self.add(
+            [from.lower; 2],
+            0.0,
+            to.lower,
+            [source[2], target[2]],
+            facing,
+        );
         if let LimbEnd::Beside(foot, point) = to.end {
             let lower = to.lower;
             self.beside.push(Beside { lower, point, foot });

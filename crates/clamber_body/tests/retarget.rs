@@ -16,7 +16,9 @@ fn hero() -> Rig {
 fn models(skeleton: &Skeleton, pose: &Pose) -> Vec<DAffine3> {
     let palette = skeleton.palette(pose).unwrap();
     let joints = 0..skeleton.joints().len() as u32;
-    joints.map(|joint| *palette.model_from_joint(JointId(joint)).unwrap()).collect()
+    joints
+        .map(|joint| *palette.model_from_joint(JointId(joint)).unwrap())
+        .collect()
 }
 
 /// Where the bones of a limb point: upper, lower.
@@ -27,7 +29,10 @@ fn bones(models: &[DAffine3], limb: &Limb) -> [DVec3; 2] {
         LimbEnd::Point(point) => models[limb.lower.index()].transform_point3(point),
     };
     let elbow = place(limb.lower);
-    [(elbow - place(limb.upper)).normalize(), (tip - elbow).normalize()]
+    [
+        (elbow - place(limb.upper)).normalize(),
+        (tip - elbow).normalize(),
+    ]
 }
 
 fn angle(a: DVec3, b: DVec3) -> f64 {
@@ -43,8 +48,17 @@ fn a_clip_on_its_own_body_is_itself() {
     for clip in &rig.clips {
         let carried = same.clip(clip).unwrap();
         assert_eq!(carried.name, clip.name);
-        assert!((carried.duration() - clip.duration()).abs() < 1e-6, "{}", clip.name);
-        assert_eq!(carried.markers().len(), clip.markers().len(), "{}", clip.name);
+        assert!(
+            (carried.duration() - clip.duration()).abs() < 1e-6,
+            "{}",
+            clip.name
+        );
+        assert_eq!(
+            carried.markers().len(),
+            clip.markers().len(),
+            "{}",
+            clip.name
+        );
         assert_eq!(carried.ground_speed(), clip.ground_speed(), "{}", clip.name);
         // At its keys it is the clip; between them it is linear.
         let count = (clip.duration() * 30.0).ceil() as usize;
@@ -74,18 +88,20 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
         };
         let other = clamber_gltf::load(file).unwrap();
         let found = Humanoid::find(&other.skeleton).unwrap();
-        let retarget =
-            Retarget::new((&rig.skeleton, &body), (&other.skeleton, &found)).unwrap();
+        let retarget = Retarget::new((&rig.skeleton, &body), (&other.skeleton, &found)).unwrap();
         let turn = DQuat::from_rotation_arc(body.facing, found.facing);
         let mut worst = 0f64;
         for clip in &rig.clips {
             let carried = retarget.clip(clip).unwrap();
             for share in [0.0, 0.3, 0.7, 1.0] {
                 let time = clip.duration() * share;
-                let source = clip.sample(&rig.skeleton.rest_pose(), time, Playback::Clamp).unwrap();
+                let source = clip
+                    .sample(&rig.skeleton.rest_pose(), time, Playback::Clamp)
+                    .unwrap();
                 let target = retarget.pose(&source).unwrap();
-                let sampled =
-                    carried.sample(&other.skeleton.rest_pose(), time, Playback::Clamp).unwrap();
+                let sampled = carried
+                    .sample(&other.skeleton.rest_pose(), time, Playback::Clamp)
+                    .unwrap();
                 let [source, target, sampled] = [
                     models(&rig.skeleton, &source),
                     models(&other.skeleton, &target),
@@ -93,11 +109,19 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
                 ];
                 let limbs = body.arms.iter().chain(&body.legs);
                 for (from, to) in limbs.zip(found.arms.iter().chain(&found.legs)) {
-                    let [a, b, c] = [bones(&source, from), bones(&target, to), bones(&sampled, to)];
+                    let [a, b, c] = [
+                        bones(&source, from),
+                        bones(&target, to),
+                        bones(&sampled, to),
+                    ];
                     for bone in 0..2 {
                         let off = angle(turn * a[bone], b[bone]);
                         worst = worst.max(off);
-                        assert!(off < 1.0, "{name}, {} at {time}: bone {bone} {off}°", clip.name);
+                        assert!(
+                            off < 1.0,
+                            "{name}, {} at {time}: bone {bone} {off}°",
+                            clip.name
+                        );
                         // Its clip has the pose, but between keys.
                         let off = angle(b[bone], c[bone]);
                         assert!(off < 12.0, "{name}, {} at {time}: {off}°", clip.name);
@@ -110,7 +134,11 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
                 let up = |models: &[DAffine3], hips: JointId| models[hips.index()].translation.y;
                 let bob = up(&target, found.hips) - up(&rest, found.hips);
                 let expected = (up(&source, body.hips) - up(&own, body.hips)) * size;
-                assert!((bob - expected).abs() < 0.02 * size, "{name}, {}: {bob} {expected}", clip.name);
+                assert!(
+                    (bob - expected).abs() < 0.02 * size,
+                    "{name}, {}: {bob} {expected}",
+                    clip.name
+                );
             }
         }
         println!("{name}: limbs within {worst:.3}°");
@@ -121,7 +149,9 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
 fn what_does_not_fit_is_refused() {
     let rig = hero();
     let body = Humanoid::find(&rig.skeleton).unwrap();
-    let small = Skeleton::new(rig.skeleton.joints()[..1].to_vec()).unwrap();
+    let mut joints = rig.skeleton.joints()[..1].to_vec();
+    joints[0].parent = None;
+    let small = Skeleton::new(joints).unwrap();
     assert!(Retarget::new((&small, &body), (&rig.skeleton, &body)).is_err());
     assert!(Retarget::new((&rig.skeleton, &body), (&small, &body)).is_err());
     let same = Retarget::new((&rig.skeleton, &body), (&rig.skeleton, &body)).unwrap();

@@ -32,6 +32,9 @@ pub fn aim(
         return Err(IkError::NotFinite("a direction"));
     }
     let parent = model_from_parent(skeleton, pose, joint).matrix3;
+    if !parent.is_finite() {
+        return Err(IkError::NotFinite("the pose"));
+    }
     uniform_scale(&parent, joint)?;
     let inverse = invertible(&parent, joint)?;
     let transform = &mut pose.transforms[joint.index()];

@@ -71,6 +71,9 @@ impl Chain {
         }
         let first = self.joints[0];
         let parent = model_from_parent(skeleton, pose, first);
+        if !parent.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
         invertible(&parent.matrix3, first)?;
         // In the space of the first joint's parent.
         let target = parent.inverse().transform_point3(target);
@@ -79,6 +82,9 @@ impl Chain {
         for joint in &self.joints {
             let local = pose.transforms[joint.index()].to_affine();
             space *= local;
+            if !space.is_finite() {
+                return Err(IkError::NotFinite("the pose"));
+            }
             points.push(space.translation);
             if joint != &self.joints[self.joints.len() - 1] {
                 uniform_scale(&space.matrix3, *joint)?;

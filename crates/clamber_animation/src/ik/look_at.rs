@@ -1,11 +1,11 @@
 use clamber_surface::rig::{JointId, Pose, Skeleton};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::two_bone::check_pose;
 use super::{IkError, arc};
 use crate::space::{model_from_joint, model_from_parent, turn_in_model};
 use crate::spring::rotation_from_vector;
-use clamber_surface::geometry::rotation_vector;
+use clamber_surface::geometry::slerp;
 
 /// How far a gaze turns from straight ahead, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,68 +150,64 @@ impl LookAt {
             return Err(IkError::NotFinite("a target or a weight"));
         }
         let (head, last) = (self.joints[0].0, self.joints[self.joints.len() - 1].0);
+        let base = model_from_parent(skeleton, pose, last);
+        // A joint's parents are below it in the chain, and are turned after it: all of them can be taken from this pose.
+        let parent = |pose: &Pose, joint: JointId| {
+            let mut model = DAffine3::IDENTITY;
+            let mut next = joint;
+            while next != last {
+                next = skeleton.joints()[next.index()].parent.unwrap_or(last);
+                model = pose.transforms[next.index()].to_affine() * model;
+            }
+            base * model
+        };
         // Everything that can fail, before anything is changed.
         for (joint, _) in &self.joints {
-            let parent = model_from_parent(skeleton, pose, *joint).matrix3;
-            crate::space::uniform_scale(&parent, *joint)?;
+            let matrix = parent(pose, *joint).matrix3;
+            if !matrix.is_finite() {
+                return Err(IkError::NotFinite("the pose"));
+            }
+            crate::space::uniform_scale(&matrix, *joint)?;
         }
-        let base = model_from_parent(skeleton, pose, last).matrix3;
-        let from_head = model_from_joint(skeleton, pose, head);
+        let from_head = parent(pose, head) * pose.transforms[head.index()].to_affine();
         let eye = from_head.transform_point3(self.eye);
-        let Some(gaze) = from_head.transform_vector3(self.forward).try_normalize() else {
-            return Err(IkError::NotInvertible(head));
-        };
+        if !eye.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
+        let gaze = from_head.transform_vector3(self.forward).try_normalize();
+        let gaze = gaze.ok_or(IkError::NotInvertible(head))?;
         let Some(to_target) = (target - eye).try_normalize() else {
             return Ok(0.0);
         };
-        let allowed = self.limited(&base, to_target, memory, dt);
-        let turn = rotation_vector(arc(gaze, allowed));
-        let wanted = rotation_from_vector(turn * weight.clamp(0.0, 1.0)) * gaze;
+        let allowed = self.limited(&base.matrix3, to_target, memory, dt);
+        let turn = arc(gaze, allowed);
+        let wanted = slerp(DQuat::IDENTITY, turn, weight.clamp(0.0, 1.0)) * gaze;
         // As a point as far away as the target: the eye moves when the head turns.
         let point = eye + wanted * (target - eye).length();
         let count = self.joints.len();
+        let mut sight = Sight { eye, gaze };
         for (index, &(joint, share)) in self.joints.iter().enumerate() {
-            let share = if index + 1 == count { 1.0 } else { share };
-            self.turn_joint(skeleton, pose, joint, point, share)?;
+            let model_from_parent = parent(pose, joint);
+            let origin = pose.transforms[joint.index()].translation.as_dvec3();
+            let origin = model_from_parent.transform_point3(origin);
+            let Some(turn) = sight.turn_to(point, origin) else {
+                continue;
+            };
+            // The last one takes all that is left.
+            let turn = if index + 1 == count {
+                turn
+            } else {
+                slerp(DQuat::IDENTITY, turn, share)
+            };
+            turn_in_model(pose, joint, &model_from_parent, turn)?;
+            sight.eye = origin + turn * (sight.eye - origin);
+            sight.gaze = turn * sight.gaze;
         }
-        let from_head = model_from_joint(skeleton, pose, head);
-        let gaze = from_head
-            .transform_vector3(self.forward)
-            .normalize_or_zero();
-        let left = (target - from_head.transform_point3(self.eye)).normalize_or(gaze);
-        Ok(libm::atan2(gaze.cross(left).length(), gaze.dot(left)))
-    }
-
-    /// Turns one joint by a share of what makes the eye look at a point.
-    fn turn_joint(
-        &self,
-        skeleton: &Skeleton,
-        pose: &mut Pose,
-        joint: JointId,
-        point: DVec3,
-        share: f64,
-    ) -> Result<(), IkError> {
-        let parent = model_from_parent(skeleton, pose, joint);
-        let origin = (parent * pose.transforms[joint.index()].to_affine()).translation;
-        let from_head = model_from_joint(skeleton, pose, self.joints[0].0);
-        let eye = from_head.transform_point3(self.eye) - origin;
-        let Some(gaze) = from_head.transform_vector3(self.forward).try_normalize() else {
-            return Ok(());
-        };
-        let target = point - origin;
-        // The point of the line of sight that is as far from the joint as the target: turned onto the target, it makes the
-        // eye look there. A target that is nearer than the line of sight passes cannot be looked at.
-        let along = eye.dot(gaze);
-        let room = along * along - (eye.length_squared() - target.length_squared());
-        if room < 0.0 {
-            return Ok(());
-        }
-        let seen = eye + gaze * (room.sqrt() - along);
-        let (Some(seen), Some(target)) = (seen.try_normalize(), target.try_normalize()) else {
-            return Ok(());
-        };
-        let turn = rotation_vector(arc(seen, target)) * share;
-        turn_in_model(pose, joint, &parent, rotation_from_vector(turn))
+        let left = (target - sight.eye).normalize_or(sight.gaze);
+        Ok(libm::atan2(
+            sight.gaze.cross(left).length(),
+            sight.gaze.dot(left),
+        ))
     }
 
     /// The direction nearest to one towards the target that the limits allow.
@@ -242,10 +238,36 @@ impl LookAt {
                 yaw += TAU * memory.side;
             }
         }
+        if yaw.abs() <= self.limits.yaw && pitch.abs() <= self.limits.pitch {
+            return to_target;
+        }
         let yaw = yaw.clamp(-self.limits.yaw, self.limits.yaw);
         let pitch = pitch.clamp(-self.limits.pitch, self.limits.pitch);
         let about = |axis: DVec3, angle: f64| -> DQuat { rotation_from_vector(axis * angle) };
         // Left is a positive turn about up, and up a negative one about left.
         about(up, yaw) * (about(left, -pitch) * level)
+    }
+}
+
+/// An eye and where it looks, in model space.
+#[derive(Clone, Copy)]
+struct Sight {
+    eye: DVec3,
+    gaze: DVec3,
+}
+
+impl Sight {
+    /// The turn about an origin that makes the eye look at a point. `None` for points that are nearer to the origin than
+    /// the line of sight passes.
+    fn turn_to(&self, point: DVec3, origin: DVec3) -> Option<DQuat> {
+        let (eye, target) = (self.eye - origin, point - origin);
+        // The point of the line of sight that is as far from the origin as the target is turned onto the target.
+        let along = eye.dot(self.gaze);
+        let room = along * along - (eye.length_squared() - target.length_squared());
+        if room < 0.0 {
+            return None;
+        }
+        let seen = eye + self.gaze * (room.sqrt() - along);
+        Some(arc(seen.try_normalize()?, target.try_normalize()?))
     }
 }

@@ -46,8 +46,15 @@ impl PoleMemory {
         let [none, all] = CERTAIN;
         let certain = ((sine - none) / (all - none)).clamp(0.0, 1.0);
         // About the direction, from where it is to where it should be.
-        let angle = libm::atan2(carried.cross(wanted).dot(direction), carried.dot(wanted));
+        let (sine, cosine) = (carried.cross(wanted).dot(direction), carried.dot(wanted));
         let most = FASTEST * dt.max(0.0) * certain;
+        // A lower bound of the sine of that: within it, no angle has to be known.
+        let near = most * (1.0 - most * most / 6.0);
+        if cosine > 0.0 && most < 1.0 && sine.abs() <= near {
+            self.last = Some([direction, wanted]);
+            return wanted;
+        }
+        let angle = libm::atan2(sine, cosine);
         let turn: DQuat = rotation_from_vector(direction * angle.clamp(-most, most));
         let side = (turn * carried).normalize();
         self.last = Some([direction, side]);

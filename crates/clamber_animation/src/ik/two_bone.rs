@@ -48,14 +48,16 @@ impl TwoBoneGoal {
 
 /// A limb in one pose, in the space of its upper joint's parent.
 struct Posed {
-    model_from_parent: DAffine3,
+    /// Where that space has its origin in model space, and vectors of model space in it.
+    origin: DVec3,
+    parent_from_model: DMat3,
     shoulder: DVec3,
     /// Bones, from shoulder to elbow and from elbow to end.
     bones: [DVec3; 2],
     /// Unit vector about which the elbow bends.
     hinge: DVec3,
-    /// Maps vectors in the space of the lower joint's parent to the upper joint's, without the latter's rotation.
-    upper_from_lower: DMat3,
+    /// Maps vectors in the space of the upper joint, without its rotation, to that of the lower joint's parent.
+    lower_from_upper: DMat3,
 }
 
 impl TwoBone {
@@ -124,12 +126,11 @@ impl TwoBone {
         };
         let rest = skeleton.rest_pose();
         let posed = limb.posed(skeleton, &rest)?;
-        let inverse = invertible(&posed.model_from_parent.matrix3, upper)?;
         let line = (posed.bones[0] + posed.bones[1])
             .try_normalize()
             .or_else(|| posed.bones[0].try_normalize())
             .unwrap_or(DVec3::X);
-        let side = inverse * bends_towards;
+        let side = posed.parent_from_model * bends_towards;
         let hinge = (side - line * side.dot(line)).cross(line).try_normalize();
         let hinge = hinge.filter(|_| bends_towards.is_finite());
         let hinge = hinge.ok_or(IkError::BadSetUp(
@@ -202,11 +203,10 @@ impl TwoBone {
             ));
         }
         let posed = self.posed(skeleton, pose)?;
-        let parent_from_model = posed.model_from_parent.inverse();
-        let target = parent_from_model.transform_point3(goal.target) - posed.shoulder;
+        let target = posed.parent_from_model * (goal.target - posed.origin) - posed.shoulder;
         let lengths = posed.bones.map(DVec3::length);
         let wanted = match goal.pole {
-            Some(pole) => parent_from_model.transform_vector3(pole),
+            Some(pole) => posed.parent_from_model * pole,
             None => self.side_of(&posed, target),
         };
         let direction = target.try_normalize();
@@ -254,14 +254,11 @@ impl TwoBone {
             [was[0], across(posed.hinge, was[0])],
             [now[0], across(hinge_now, now[0])],
         );
-        let upper_rotation = (turn * rotation_of(&pose.transforms[upper])).normalize();
+        let upper_before = rotation_of(&pose.transforms[upper]);
+        let upper_rotation = (turn * upper_before).normalize();
         // The lower bone in the space of its joint's parent, before and after.
-        let lower_from_parent =
-            (DMat3::from_quat(upper_rotation) * posed.upper_from_lower).inverse();
-        let bone_now = lower_from_parent * now[1];
-        let before =
-            DMat3::from_quat(rotation_of(&pose.transforms[upper])) * posed.upper_from_lower;
-        let bone_was = before.inverse() * was[1];
+        let bone_was = posed.lower_from_upper * (upper_before.conjugate() * was[1]);
+        let bone_now = posed.lower_from_upper * (upper_rotation.conjugate() * now[1]);
         let turn = arc(
             bone_was.normalize_or(DVec3::X),
             bone_now.normalize_or(DVec3::X),
@@ -279,9 +276,16 @@ impl TwoBone {
         let below = self.tip_below(skeleton, pose);
         let scale = |transform: &Transform| DMat3::from_diagonal(transform.scale.as_dvec3());
         let upper_from_lower = scale(upper) * between.matrix3;
+        if !upper_from_lower.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
         uniform_scale(&upper_from_lower, self.lower)?;
+        let lower_from_upper = invertible(&upper_from_lower, self.lower)?;
         let model_from_parent = model_from_parent(skeleton, pose, self.upper);
-        invertible(&model_from_parent.matrix3, self.upper)?;
+        if !model_from_parent.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
+        let parent_from_model = invertible(&model_from_parent.matrix3, self.upper)?;
 
         let rotation = rotation_of(upper);
         let elbow = between.transform_point3(lower.translation.as_dvec3());
@@ -289,7 +293,10 @@ impl TwoBone {
         let tip = scale(lower) * below;
         let second = rotation * (upper_from_lower * (rotation_of(lower) * tip));
         for (joint, bone) in [(self.lower, first), (self.end, second)] {
-            if bone.length().is_nan() || bone.length() < 1e-9 {
+            if !bone.is_finite() {
+                return Err(IkError::NotFinite("the pose"));
+            }
+            if bone.length_squared() < 1e-18 {
                 return Err(IkError::NoLength(joint));
             }
         }
@@ -304,11 +311,12 @@ impl TwoBone {
             -bent.normalize()
         };
         Ok(Posed {
-            model_from_parent,
+            origin: model_from_parent.translation,
+            parent_from_model,
             shoulder: upper.translation.as_dvec3(),
             bones: [first, second],
             hinge,
-            upper_from_lower,
+            lower_from_upper,
         })
     }
 }
@@ -328,20 +336,16 @@ fn between(skeleton: &Skeleton, pose: &Pose, upper: JointId, lower: JointId) -> 
     product
 }
 
-/// Refuses a pose that is not the skeleton's, or not finite.
+/// Refuses a pose that is not the skeleton's.
 pub(super) fn check_pose(skeleton: &Skeleton, pose: &Pose) -> Result<(), IkError> {
     let joints = skeleton.joints().len();
-    if pose.transforms.len() != joints {
-        return Err(IkError::NoJoint {
-            joint: JointId(pose.transforms.len() as u32),
-            joints,
-        });
+    if pose.transforms.len() == joints {
+        return Ok(());
     }
-    if pose.transforms.iter().all(Transform::is_valid) {
-        Ok(())
-    } else {
-        Err(IkError::NotFinite("the pose"))
-    }
+    Err(IkError::NoJoint {
+        joint: JointId(pose.transforms.len() as u32),
+        joints,
+    })
 }
 
 impl TwoBone {
@@ -362,6 +366,11 @@ impl TwoBone {
     pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
         check_pose(skeleton, pose)?;
         let model_from_end = model_from_joint(skeleton, pose, self.end);
-        Ok(model_from_end.transform_point3(self.tip))
+        let end = model_from_end.transform_point3(self.tip);
+        if end.is_finite() {
+            Ok(end)
+        } else {
+            Err(IkError::NotFinite("the pose"))
+        }
     }
 }
