@@ -1,7 +1,8 @@
 //! Clips of one body on another.
 //!
 //! What is carried over is how far each bone has turned, in model space, from a reference in which both bodies have the same
-//! posture: the source at rest, and the target with each of its bones turned to where the source's bone points at rest.
+//! posture: the source in its bind pose, and the target with each of its bones turned to where the source's bone points
+//! there.
 //! So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no knowledge of how
 //! either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion Retargeting to Highly Varied
 //! User-Created Morphologies", whose bodies are far more varied). Hips move as far as the legs are long.
@@ -12,6 +13,7 @@ use clamber_surface::rig::{
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use thiserror::Error;
 
+use crate::humanoid::reference;
 use crate::{Humanoid, Limb, LimbEnd};
 
 /// Keys of a carried clip, a second.
@@ -35,13 +37,16 @@ pub struct Retarget<'a> {
     from: &'a Skeleton,
     to: &'a Skeleton,
     bones: Vec<Bone>,
+    /// The target's joints in its bind pose, and those among them that are turned otherwise at rest.
+    start: Pose,
+    turned: Vec<JointId>,
     hips: [JointId; 2],
     /// Rotation from the source's facing to the target's.
     turn: DQuat,
     /// How much longer the target's legs are.
     scale: f64,
-    /// The source's joints at rest in model space, and the target's.
-    rest: [Vec<DAffine3>; 2],
+    /// The source's joints in model space in its bind pose, and the target's.
+    bound: [Vec<DAffine3>; 2],
     /// Feet that stand beside their legs.
     beside: Vec<Beside>,
 }
@@ -73,10 +78,6 @@ impl<'a> Retarget<'a> {
         (from, source): (&'a Skeleton, &Humanoid),
         (to, target): (&'a Skeleton, &Humanoid),
     ) -> Result<Self, RetargetError> {
-        let rest = [
-            models(from, &from.rest_pose())?,
-            models(to, &to.rest_pose())?,
-        ];
         for (skeleton, body) in [(from, source), (to, target)] {
             let joints = skeleton.joints().len();
             let named = body.joints().into_iter().map(|(_, joint)| joint);
@@ -85,20 +86,27 @@ impl<'a> Retarget<'a> {
                 return Err(RigError::JointOutOfRange { joint, joints }.into());
             }
         }
+        let bound = [
+            reference(from, source.hips, source.head, feet(source)),
+            reference(to, target.hips, target.head, feet(target)),
+        ];
         let length = |body: &Humanoid| body.legs.iter().map(Limb::length).sum::<f64>();
         let scale = length(target) / length(source);
         if !(scale.is_finite() && scale > 0.0) {
             return Err(RetargetError::NoLegs);
         }
         let turn = about_y(source.facing, target.facing);
+        let (start, turned) = start(to, &bound[1]);
         let mut retarget = Self {
             from,
             to,
             bones: Vec::new(),
+            start,
+            turned,
             hips: [source.hips, target.hips],
             turn,
             scale,
-            rest,
+            bound,
             beside: Vec::new(),
         };
         retarget.add_trunk(source, target);
@@ -168,7 +176,7 @@ impl<'a> Retarget<'a> {
             .with_ground_speed(speed)?)
     }
 
-    /// A pose of the source as one of the target. Joints that are not part of the body are at rest.
+    /// A pose of the source as one of the target. Joints that are not part of the body are turned as in its bind pose.
     ///
     /// # Errors
     /// [`RetargetError::Rig`] if the pose is not the source's.
@@ -176,13 +184,13 @@ impl<'a> Retarget<'a> {
         let moved = models(self.from, source)?;
         let turned = |joint: JointId| {
             let [now, rest] =
-                [&moved, &self.rest[0]].map(|models| rotation(&models[joint.index()]));
+                [&moved, &self.bound[0]].map(|models| rotation(&models[joint.index()]));
             now * rest.conjugate()
         };
-        let mut pose = self.to.rest_pose();
+        let mut pose = self.start.clone();
         let way = moved[self.hips[0].index()].translation
-            - self.rest[0][self.hips[0].index()].translation;
-        let hips = self.rest[1][self.hips[1].index()].translation + self.turn * way * self.scale;
+            - self.bound[0][self.hips[0].index()].translation;
+        let hips = self.bound[1][self.hips[1].index()].translation + self.turn * way * self.scale;
         for bone in &self.bones {
             let [first, second] = bone.from.map(turned);
             let turn = clamber_surface::geometry::slerp(first, second, bone.share);
@@ -211,6 +219,7 @@ impl<'a> Retarget<'a> {
     fn moved_joints(&self) -> Vec<JointId> {
         let mut moved: Vec<JointId> = self.bones.iter().map(|bone| bone.to).collect();
         moved.extend(self.beside.iter().map(|beside| beside.foot));
+        moved.extend(&self.turned);
         moved.sort_unstable();
         moved.dedup();
         moved
@@ -240,7 +249,7 @@ impl<'a> Retarget<'a> {
         let up = |rest: &[DAffine3], body: &Humanoid| {
             shoulders(rest, body) - rest[body.hips.index()].translation
         };
-        let trunk = [up(&self.rest[0], source), up(&self.rest[1], target)];
+        let trunk = [up(&self.bound[0], source), up(&self.bound[1], target)];
         self.add([source.hips; 2], 0.0, target.hips, trunk, facing);
         self.add_column(&source.spine, &target.spine, source.hips, trunk, facing);
         let chest = [source.chest(), target.chest()];
@@ -248,8 +257,8 @@ impl<'a> Retarget<'a> {
             rest[body.head.index()].translation - rest[chest.index()].translation
         };
         let neck = [
-            above(&self.rest[0], source, chest[0]),
-            above(&self.rest[1], target, chest[1]),
+            above(&self.bound[0], source, chest[0]),
+            above(&self.bound[1], target, chest[1]),
         ];
         self.add_column(&source.neck, &target.neck, chest[0], neck, facing);
         // Heads have no direction that both skeletons share, but that of the neck.
@@ -296,7 +305,7 @@ impl<'a> Retarget<'a> {
                 .map_or(DVec3::ZERO, |joint| shoulder - place(rest, joint));
             [collar, elbow - shoulder, tip(rest, limb) - elbow]
         };
-        let (source, target) = (bones(&self.rest[0], from), bones(&self.rest[1], to));
+        let (source, target) = (bones(&self.bound[0], from), bones(&self.bound[1], to));
         if let (Some(a), Some(b)) = (from.shoulder, to.shoulder) {
             self.add([a; 2], 0.0, b, [source[0], target[0]], facing);
         }
@@ -325,7 +334,7 @@ impl<'a> Retarget<'a> {
             let toes = limb.toes.map(|toes| place(rest, toes) - place(rest, end));
             toes.filter(|way| way.length() > 1e-6)
         };
-        let ends = [toes(&self.rest[0], from, a), toes(&self.rest[1], to, b)];
+        let ends = [toes(&self.bound[0], from, a), toes(&self.bound[1], to, b)];
         match ends {
             // Feet point along their soles, hands along their forearms.
             [Some(first), Some(second)] => {
@@ -341,7 +350,7 @@ impl<'a> Retarget<'a> {
         }
     }
 
-    /// Adds a bone that points along `directions` at rest, and whose other axis is nearest to `others`.
+    /// Adds a bone that points along `directions` in the bind poses, and whose other axis is nearest to `others`.
     fn add(
         &mut self,
         from: [JointId; 2],
@@ -353,7 +362,7 @@ impl<'a> Retarget<'a> {
         let wanted = frame(self.turn * directions[0], self.turn * others[0]);
         let found = frame(directions[1], others[1]);
         let correction = wanted * found.conjugate();
-        let reference = correction * rotation(&self.rest[1][to.index()]);
+        let reference = correction * rotation(&self.bound[1][to.index()]);
         self.bones.push(Bone {
             from,
             share,
@@ -362,6 +371,32 @@ impl<'a> Retarget<'a> {
         });
     }
 }
+
+fn feet(body: &Humanoid) -> [JointId; 2] {
+    let legs = [&body.legs[0], &body.legs[1]];
+    legs.map(|leg| leg.end.joint().unwrap_or(leg.lower))
+}
+
+/// A skeleton's pose at rest, but with the rotations of its bind pose; and the joints that these turn.
+fn start(skeleton: &Skeleton, bound: &[DAffine3]) -> (Pose, Vec<JointId>) {
+    let mut pose = skeleton.rest_pose();
+    let mut turned = Vec::new();
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        let parent = joint
+            .parent
+            .map_or(DQuat::IDENTITY, |parent| rotation(&bound[parent.index()]));
+        let local = parent.conjugate() * rotation(&bound[index]);
+        let transform = &mut pose.transforms[index];
+        if local.dot(transform.rotation.as_dquat().normalize()).abs() < SAME {
+            transform.rotation = local.normalize().as_quat();
+            turned.push(JointId(index as u32));
+        }
+    }
+    (pose, turned)
+}
+
+/// The cosine of half the angle below which two rotations count as the same: 0.01°, which inverse bind matrices round to.
+const SAME: f64 = 1.0 - 4e-9;
 
 /// A rotation whose X axis is along a vector, and whose Y axis is nearest to another one.
 fn frame(direction: DVec3, other: DVec3) -> DQuat {

@@ -154,12 +154,17 @@ fn feet_beside_the_legs_are_found_where_the_shins_end() {
     let Some(rig) = load("Character") else { return };
     let body = Humanoid::find(&rig.skeleton).unwrap();
     for leg in &body.legs {
-        let LimbEnd::Beside(foot, point) = leg.end else {
+        let LimbEnd::Beside(_, point) = leg.end else {
             panic!("{:?}", leg.end);
         };
         let palette = rig.skeleton.palette(&rig.skeleton.rest_pose()).unwrap();
-        let [foot, lower] = [foot, leg.lower].map(|joint| palette.model_from_joint(joint).unwrap());
-        assert!(lower.transform_point3(point).distance(foot.translation) < 1e-6);
+        let shin = palette.model_from_joint(leg.lower).unwrap();
+        let length = shin.transform_vector3(point).length();
+        assert!(
+            (length - leg.lengths[1]).abs() < 1e-4,
+            "{length} {:?}",
+            leg.lengths
+        );
         assert!(leg.lengths[1] > 0.2 * leg.lengths[0], "{:?}", leg.lengths);
     }
 }

@@ -91,6 +91,11 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
         let retarget = Retarget::new((&rig.skeleton, &body), (&other.skeleton, &found)).unwrap();
         let turn = DQuat::from_rotation_arc(body.facing, found.facing);
         let mut worst = 0f64;
+        let rest = rig.skeleton.rest_pose();
+        let standing = [
+            models(&rig.skeleton, &rest),
+            models(&other.skeleton, &retarget.pose(&rest).unwrap()),
+        ];
         for clip in &rig.clips {
             let carried = retarget.clip(clip).unwrap();
             for share in [0.0, 0.3, 0.7, 1.0] {
@@ -129,11 +134,9 @@ fn limbs_of_other_bodies_point_where_the_heros_do() {
                 }
                 // Its hips bob as the hero's do, by the length of its legs.
                 let size = found.legs[0].length() / body.legs[0].length();
-                let rest = models(&other.skeleton, &other.skeleton.rest_pose());
-                let own = models(&rig.skeleton, &rig.skeleton.rest_pose());
                 let up = |models: &[DAffine3], hips: JointId| models[hips.index()].translation.y;
-                let bob = up(&target, found.hips) - up(&rest, found.hips);
-                let expected = (up(&source, body.hips) - up(&own, body.hips)) * size;
+                let bob = up(&target, found.hips) - up(&standing[1], found.hips);
+                let expected = (up(&source, body.hips) - up(&standing[0], body.hips)) * size;
                 assert!(
                     (bob - expected).abs() < 0.02 * size,
                     "{name}, {}: {bob} {expected}",

@@ -1,11 +1,11 @@
 //! A body from named joints: what hangs where, and limbs that can be bent.
 
 use clamber_animation::ik::{IkError, TwoBone};
-use clamber_surface::rig::{JointId, Palette, Skeleton};
+use clamber_surface::rig::{JointId, Skeleton};
 use glam::{DAffine3, DVec3};
 
 use super::names::words;
-use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side};
+use super::{HumanJoint, Humanoid, Limb, LimbEnd, Side, reference};
 use crate::HumanoidError;
 
 /// The joints of a body.
@@ -124,10 +124,11 @@ fn limb(
     })
 }
 
-/// A skeleton at rest.
-struct AtRest<'a> {
+/// A skeleton in its bind pose.
+struct Bound<'a> {
     skeleton: &'a Skeleton,
-    palette: Palette,
+    /// All joints in model space.
+    models: Vec<DAffine3>,
     facing: DVec3,
 }
 
@@ -162,20 +163,22 @@ impl Named {
         };
         let neck = path.split_off(chest.map_or(0, |chest| chest + 1));
 
-        // A skeleton's own rest pose always has a palette.
-        let palette = skeleton.palette(&skeleton.rest_pose()).unwrap_or_default();
-        let mut rest = AtRest {
+        let feet = [0, 1].map(|side| match &self.legs[side].end {
+            NamedEnd::Joint(foot) => *foot,
+            NamedEnd::Between(_) => self.legs[side].lower,
+        });
+        let mut bound = Bound {
             skeleton,
-            palette,
+            models: reference(skeleton, self.hips, self.head, feet),
             facing: DVec3::Z,
         };
-        let [left, right] = [&self.legs[0], &self.legs[1]].map(|leg| rest.place(leg.upper));
+        let [left, right] = [&self.legs[0], &self.legs[1]].map(|leg| bound.place(leg.upper));
         let across = (left - right) * DVec3::new(1.0, 0.0, 1.0);
         let facing = across.cross(DVec3::Y).try_normalize();
-        rest.facing = facing.ok_or(HumanoidError::NoFacing)?;
+        bound.facing = facing.ok_or(HumanoidError::NoFacing)?;
         let sides = Side::BOTH.map(|side| {
-            let arm = rest.limb(&self.arms[side.index()], HumanJoint::UpperArm(side))?;
-            let leg = rest.limb(&self.legs[side.index()], HumanJoint::UpperLeg(side))?;
+            let arm = bound.limb(&self.arms[side.index()], HumanJoint::UpperArm(side))?;
+            let leg = bound.limb(&self.legs[side.index()], HumanJoint::UpperLeg(side))?;
             Ok((arm, leg))
         });
         let [left, right] = sides;
@@ -187,7 +190,7 @@ impl Named {
             head: self.head,
             arms: [left_arm, right_arm],
             legs: [left_leg, right_leg],
-            facing: rest.facing,
+            facing: bound.facing,
         })
     }
 
@@ -201,10 +204,9 @@ impl Named {
     }
 }
 
-impl AtRest<'_> {
+impl Bound<'_> {
     fn model(&self, joint: JointId) -> DAffine3 {
-        let model = self.palette.model_from_joint(joint);
-        model.copied().unwrap_or(DAffine3::IDENTITY)
+        self.models[joint.index()]
     }
 
     fn place(&self, joint: JointId) -> DVec3 {

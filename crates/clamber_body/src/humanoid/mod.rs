@@ -2,12 +2,14 @@ mod build;
 mod find;
 mod joint;
 mod names;
+mod reference;
 
 use clamber_animation::ik::TwoBone;
 use clamber_surface::rig::JointId;
 use glam::DVec3;
 
 pub use joint::{HumanJoint, Side};
+pub(crate) use reference::reference;
 
 /// A human body in a skeleton: which joint is what, and limbs that can be posed.
 ///
@@ -51,7 +53,7 @@ pub struct Humanoid {
     pub arms: [Limb; 2],
     /// The left and the right leg.
     pub legs: [Limb; 2],
-    /// Where the body faces at rest: a level unit vector in model space. +Z for most files.
+    /// Where the body faces in its bind pose: a level unit vector in model space. +Z for most files.
     pub facing: DVec3,
 }
 
@@ -73,7 +75,7 @@ pub struct Limb {
     pub fingers: Vec<Vec<JointId>>,
     /// Brings the end to a target.
     pub ik: TwoBone,
-    /// Lengths of the upper and the lower bone at rest, in model units.
+    /// Lengths of the upper and the lower bone in the bind pose, in model units.
     pub lengths: [f64; 2],
 }
 
@@ -100,7 +102,7 @@ impl LimbEnd {
 }
 
 impl Limb {
-    /// The length of the straight limb at rest, in model units.
+    /// The length of the straight limb, in model units.
     pub fn length(&self) -> f64 {
         self.lengths[0] + self.lengths[1]
     }
