@@ -28,28 +28,36 @@ use glam::{DQuat, DVec3};
 /// The smallest rotation from one unit vector to another, without trigonometry. For opposite vectors it is half a turn
 /// about any axis across them.
 pub(crate) fn arc(from: DVec3, to: DVec3) -> DQuat {
+    half_way(from, to).normalize()
+}
+
+/// [`arc`], not normalised.
+fn half_way(from: DVec3, to: DVec3) -> DQuat {
+    // The quaternion of a turn has the cosine and the axis of half of it: those of the vector half way.
     let half = from + to;
-    let length_sq = half.length_squared();
     // Below this the cross product is all rounding.
-    if length_sq < 1e-20 {
+    if half.length_squared() < 1e-20 {
         let axis = from.any_orthonormal_vector();
         return DQuat::from_xyzw(axis.x, axis.y, axis.z, 0.0);
     }
-    let half = half / length_sq.sqrt();
     let axis = from.cross(half);
-    DQuat::from_xyzw(axis.x, axis.y, axis.z, from.dot(half)).normalize()
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, from.dot(half))
 }
 
 /// The rotation that takes one pair of perpendicular unit vectors to another.
 pub(crate) fn frame_turn(from: [DVec3; 2], to: [DVec3; 2]) -> DQuat {
-    let first = arc(from[0], to[0]);
-    let second = first * from[1];
+    let first = half_way(from[0], to[0]);
+    // The second vector turned by it: a quaternion of any length turns, and scales by the square of that.
+    let (axis, real) = (DVec3::new(first.x, first.y, first.z), first.w);
+    let across = axis.cross(from[1]);
+    let share = 2.0 / first.length_squared();
+    let second = from[1] + (across * real + axis.cross(across)) * share;
     // About the first vector of the pair, by the angle between the second ones.
     let cos = second.dot(to[1]);
     let sin = second.cross(to[1]).dot(to[0]);
-    let half = DQuat::from_xyzw(to[0].x * sin, to[0].y * sin, to[0].z * sin, 1.0 + cos);
-    let turn = if half.length_squared() > 1e-20 {
-        half.normalize()
+    let turn = DQuat::from_xyzw(to[0].x * sin, to[0].y * sin, to[0].z * sin, 1.0 + cos);
+    let turn = if turn.length_squared() > 1e-20 {
+        turn
     } else {
         DQuat::from_xyzw(to[0].x, to[0].y, to[0].z, 0.0)
     };
