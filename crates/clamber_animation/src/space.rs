@@ -1,7 +1,7 @@
 //! Model space of poses, and rotations of joints in it.
 
 use clamber_surface::rig::{JointId, Pose, Skeleton};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
 use crate::ik::IkError;
 use crate::pose::{rotation_of, store_rotation};
@@ -11,11 +11,24 @@ use crate::pose::{rotation_of, store_rotation};
 /// # Panics
 /// If the pose or the skeleton lacks the joint.
 pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
-    let mut model = pose.transforms[joint.index()].to_affine();
-    let mut next = skeleton.joints()[joint.index()].parent;
-    while let Some(parent) = next {
-        model = pose.transforms[parent.index()].to_affine() * model;
-        next = skeleton.joints()[parent.index()].parent;
+    let parent = |joint: JointId| skeleton.joints()[joint.index()].parent;
+    // Rotations and translations compose with less work than matrices; most joints have no scale.
+    let (mut turn, mut place) = (DQuat::IDENTITY, DVec3::ZERO);
+    let mut next = Some(joint);
+    while let Some(joint) = next {
+        let local = &pose.transforms[joint.index()];
+        if local.scale != Vec3::ONE {
+            break;
+        }
+        let rotation = rotation_of(local);
+        place = local.translation.as_dvec3() + rotation * place;
+        turn = rotation * turn;
+        next = parent(joint);
+    }
+    let mut model = DAffine3::from_rotation_translation(turn, place);
+    while let Some(joint) = next {
+        model = pose.transforms[joint.index()].to_affine() * model;
+        next = parent(joint);
     }
     model
 }
