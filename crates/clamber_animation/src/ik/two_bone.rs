@@ -52,12 +52,20 @@ struct Posed {
     origin: DVec3,
     parent_from_model: DMat3,
     shoulder: DVec3,
-    /// Bones, from shoulder to elbow and from elbow to end.
+    /// Unit vectors along the bones, from shoulder to elbow and from elbow to end, and how long these are.
     bones: [DVec3; 2],
+    lengths: [f64; 2],
     /// Unit vector about which the elbow bends.
     hinge: DVec3,
     /// Maps vectors in the space of the upper joint, without its rotation, to that of the lower joint's parent.
     lower_from_upper: DMat3,
+}
+
+impl Posed {
+    /// From shoulder to end.
+    fn line(&self) -> DVec3 {
+        self.bones[0] * self.lengths[0] + self.bones[1] * self.lengths[1]
+    }
 }
 
 impl TwoBone {
@@ -126,10 +134,7 @@ impl TwoBone {
         };
         let rest = skeleton.rest_pose();
         let posed = limb.posed(skeleton, &rest)?;
-        let line = (posed.bones[0] + posed.bones[1])
-            .try_normalize()
-            .or_else(|| posed.bones[0].try_normalize())
-            .unwrap_or(DVec3::X);
+        let line = posed.line().normalize_or(posed.bones[0]);
         let side = posed.parent_from_model * bends_towards;
         let hinge = (side - line * side.dot(line)).cross(line).try_normalize();
         let hinge = hinge.filter(|_| bends_towards.is_finite());
@@ -170,7 +175,7 @@ impl TwoBone {
     /// As [`TwoBone::solve`].
     pub fn lengths(&self, skeleton: &Skeleton, pose: &Pose) -> Result<[f64; 2], IkError> {
         check_pose(skeleton, pose)?;
-        Ok(self.posed(skeleton, pose)?.bones.map(DVec3::length))
+        Ok(self.posed(skeleton, pose)?.lengths)
     }
 
     /// Turns the upper and the lower joint so that the end is at the target. With a `memory`, the elbow does not flip when
@@ -204,7 +209,7 @@ impl TwoBone {
         }
         let posed = self.posed(skeleton, pose)?;
         let target = posed.parent_from_model * (goal.target - posed.origin) - posed.shoulder;
-        let lengths = posed.bones.map(DVec3::length);
+        let lengths = posed.lengths;
         let wanted = match goal.pole {
             Some(pole) => posed.parent_from_model * pole,
             None => self.side_of(&posed, target),
@@ -219,13 +224,15 @@ impl TwoBone {
             .max(0.0)
             .sqrt();
         let solved = bend(lengths, target, pole, goal.soft, least);
-        self.apply(pose, &posed, [solved.elbow, solved.end - solved.elbow]);
+        // As long as the bones, by their construction.
+        let wanted = [solved.elbow / a, (solved.end - solved.elbow) / b];
+        self.apply(pose, &posed, wanted);
         Ok(solved.reach)
     }
 
     /// To which side the limb bends, if it were turned to the target.
     fn side_of(&self, posed: &Posed, target: DVec3) -> DVec3 {
-        let reach = posed.bones[0] + posed.bones[1];
+        let reach = posed.line();
         let (Some(from), Some(to)) = (reach.try_normalize(), target.try_normalize()) else {
             return posed.hinge.cross(posed.bones[0]);
         };
@@ -234,11 +241,10 @@ impl TwoBone {
         to.cross(hinge)
     }
 
-    /// Turns the two joints so that the bones are as wanted.
-    fn apply(&self, pose: &mut Pose, posed: &Posed, wanted: [DVec3; 2]) {
+    /// Turns the two joints so that the bones point along unit vectors.
+    fn apply(&self, pose: &mut Pose, posed: &Posed, now: [DVec3; 2]) {
         let [upper, lower] = [self.upper, self.lower].map(JointId::index);
-        let was = posed.bones.map(|bone| bone.normalize_or(DVec3::X));
-        let now = wanted.map(|bone| bone.normalize_or(DVec3::X));
+        let was = posed.bones;
         let across = |hinge: DVec3, bone: DVec3| {
             (hinge - bone * hinge.dot(bone))
                 .try_normalize()
@@ -292,29 +298,31 @@ impl TwoBone {
         let first = rotation * (scale(upper) * elbow);
         let tip = scale(lower) * below;
         let second = rotation * (upper_from_lower * (rotation_of(lower) * tip));
-        for (joint, bone) in [(self.lower, first), (self.end, second)] {
-            if !bone.is_finite() {
+        let lengths = [first.length(), second.length()];
+        for (joint, length) in [(self.lower, lengths[0]), (self.end, lengths[1])] {
+            if !length.is_finite() {
                 return Err(IkError::NotFinite("the pose"));
             }
-            if bone.length_squared() < 1e-18 {
+            if length < 1e-9 {
                 return Err(IkError::NoLength(joint));
             }
         }
+        let bones = [first / lengths[0], second / lengths[1]];
         // The plane of the bones, unless they are nearly straight or bent the wrong way.
-        let hinge = rotation * self.hinge;
-        let bent = first.normalize().cross(second.normalize());
-        let hinge = if bent.length() <= STRAIGHT {
-            hinge
-        } else if bent.dot(hinge) >= 0.0 {
-            bent.normalize()
+        let natural = rotation * self.hinge;
+        let bent = bones[0].cross(bones[1]);
+        let sine = bent.length();
+        let hinge = if sine <= STRAIGHT {
+            natural
         } else {
-            -bent.normalize()
+            bent / sine.copysign(bent.dot(natural))
         };
         Ok(Posed {
             origin: model_from_parent.translation,
             parent_from_model,
             shoulder: upper.translation.as_dvec3(),
-            bones: [first, second],
+            bones,
+            lengths,
             hinge,
             lower_from_upper,
         })
