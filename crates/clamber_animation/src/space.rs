@@ -50,7 +50,7 @@ const SIMILAR: f64 = 1e-4;
 /// # Errors
 /// [`IkError::NotInvertible`] if it has no inverse, [`IkError::Sheared`] if it scales unevenly.
 pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkError> {
-    if *matrix == DMat3::IDENTITY {
+    if is_orthonormal(matrix) {
         return Ok(1.0);
     }
     let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
@@ -68,13 +68,22 @@ pub(crate) fn uniform_scale(matrix: &DMat3, joint: JointId) -> Result<f64, IkErr
     }
 }
 
+/// True if a matrix only rotates, or mirrors, so that its transpose is its inverse: to 1e-11, more than what composing
+/// rotations rounds away.
+fn is_orthonormal(matrix: &DMat3) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let lengths = [x, y, z].map(|axis| (axis.length_squared() - 1.0).abs());
+    let angles = [x.dot(y), y.dot(z), z.dot(x)].map(f64::abs);
+    lengths.iter().chain(&angles).all(|off| *off < 1e-11)
+}
+
 /// The inverse of a matrix.
 ///
 /// # Errors
 /// [`IkError::NotInvertible`] if it has none that is finite.
 pub(crate) fn invertible(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkError> {
-    if *matrix == DMat3::IDENTITY {
-        return Ok(*matrix);
+    if is_orthonormal(matrix) {
+        return Ok(matrix.transpose());
     }
     let inverse = matrix.inverse();
     let size = matrix.x_axis.length() + matrix.y_axis.length() + matrix.z_axis.length();
