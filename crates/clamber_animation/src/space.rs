@@ -108,14 +108,17 @@ pub(crate) fn turn_in_model(
     turn: DQuat,
 ) -> Result<(), IkError> {
     let parent = model_from_parent.matrix3;
-    uniform_scale(&parent, joint)?;
-    let inverse = invertible(&parent, joint)?;
+    let vector = DVec3::new(turn.x, turn.y, turn.z);
     // In a mirrored space a turn goes the other way about its mirrored axis.
-    let axis = inverse * DVec3::new(turn.x, turn.y, turn.z);
-    let length = DVec3::new(turn.x, turn.y, turn.z).length();
-    let axis = axis.normalize_or_zero() * length * parent.determinant().signum();
+    let axis = if is_orthonormal(&parent) {
+        parent.transpose() * vector * parent.determinant().signum()
+    } else {
+        uniform_scale(&parent, joint)?;
+        let axis = invertible(&parent, joint)? * vector;
+        axis.normalize_or_zero() * vector.length() * parent.determinant().signum()
+    };
     let local = DQuat::from_xyzw(axis.x, axis.y, axis.z, turn.w);
     let transform = &mut pose.transforms[joint.index()];
-    store_rotation(transform, (local * rotation_of(transform)).normalize());
+    store_rotation(transform, local * rotation_of(transform));
     Ok(())
 }

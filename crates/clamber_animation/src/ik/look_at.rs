@@ -162,12 +162,17 @@ impl LookAt {
             base * model
         };
         // Everything that can fail, before anything is changed.
-        for (joint, _) in &self.joints {
-            let matrix = parent(pose, *joint).matrix3;
-            if !matrix.is_finite() {
-                return Err(IkError::NotFinite("the pose"));
+        if !base.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
+        crate::space::uniform_scale(&base.matrix3, last)?;
+        let mut above = head;
+        while above != last {
+            above = skeleton.joints()[above.index()].parent.unwrap_or(last);
+            let scale = pose.transforms[above.index()].scale.as_dvec3();
+            if scale.abs() != DVec3::ONE {
+                crate::space::uniform_scale(&DMat3::from_diagonal(scale), above)?;
             }
-            crate::space::uniform_scale(&matrix, *joint)?;
         }
         let from_head = parent(pose, head) * pose.transforms[head.index()].to_affine();
         let eye = from_head.transform_point3(self.eye);

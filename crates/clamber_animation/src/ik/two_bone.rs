@@ -1,4 +1,4 @@
-use clamber_surface::rig::{JointId, Pose, Skeleton, Transform};
+use clamber_surface::rig::{JointId, Pose, Skeleton};
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::bend::{Reach, bend};
@@ -261,7 +261,7 @@ impl TwoBone {
             [now[0], across(hinge_now, now[0])],
         );
         let upper_before = rotation_of(&pose.transforms[upper]);
-        let upper_rotation = (turn * upper_before).normalize();
+        let upper_rotation = turn * upper_before;
         // The lower bone in the space of its joint's parent, before and after.
         let bone_was = posed.lower_from_upper * (upper_before.conjugate() * was[1]);
         let bone_now = posed.lower_from_upper * (upper_rotation.conjugate() * now[1]);
@@ -269,7 +269,7 @@ impl TwoBone {
             bone_was.normalize_or(DVec3::X),
             bone_now.normalize_or(DVec3::X),
         );
-        let lower_rotation = (turn * rotation_of(&pose.transforms[lower])).normalize();
+        let lower_rotation = turn * rotation_of(&pose.transforms[lower]);
         store_rotation(&mut pose.transforms[upper], upper_rotation);
         store_rotation(&mut pose.transforms[lower], lower_rotation);
     }
@@ -280,8 +280,11 @@ impl TwoBone {
         // What stands between the joints, from the space below the upper joint to the parent of the lower.
         let between = between(skeleton, pose, self.upper, self.lower);
         let below = self.tip_below(skeleton, pose);
-        let scale = |transform: &Transform| DMat3::from_diagonal(transform.scale.as_dvec3());
-        let upper_from_lower = scale(upper) * between.matrix3;
+        let [upper_scale, lower_scale] = [upper, lower].map(|joint| joint.scale.as_dvec3());
+        let linear = between.matrix3;
+        let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let [x, y, z] = columns.map(|column| upper_scale * column);
+        let upper_from_lower = DMat3::from_cols(x, y, z);
         if !upper_from_lower.is_finite() {
             return Err(IkError::NotFinite("the pose"));
         }
@@ -295,8 +298,8 @@ impl TwoBone {
 
         let rotation = rotation_of(upper);
         let elbow = between.transform_point3(lower.translation.as_dvec3());
-        let first = rotation * (scale(upper) * elbow);
-        let tip = scale(lower) * below;
+        let first = rotation * (upper_scale * elbow);
+        let tip = lower_scale * below;
         let second = rotation * (upper_from_lower * (rotation_of(lower) * tip));
         let lengths = [first.length(), second.length()];
         for (joint, length) in [(self.lower, lengths[0]), (self.end, lengths[1])] {
