@@ -224,6 +224,14 @@ fn b03_impossible_input_gives_typed_errors_or_a_finite_pose() {
         solve(&mut pose, &fine),
         Err(IkError::NoJoint { .. })
     ));
+    // A limb of another skeleton.
+    let mut body = joint(None, Vec3::ZERO);
+    body.rest.translation = Vec3::Y;
+    let small = Skeleton::new(vec![body]).unwrap();
+    let foreign = limb.solve(&small, &mut small.rest_pose(), &fine, None);
+    assert!(matches!(foreign, Err(IkError::NoJoint { joints: 1, .. })));
+    assert!(limb.end(&small, &small.rest_pose()).is_err());
+    assert!(limb.lengths(&small, &small.rest_pose()).is_err());
     // Joints that make no limb.
     let new = |joints| TwoBone::new(&skeleton, joints, DVec3::NEG_Z);
     let [a, b, c] = JOINTS;

@@ -19,6 +19,9 @@ use crate::{Humanoid, Limb, LimbEnd};
 /// Keys of a carried clip, a second.
 const RATE: f64 = 30.0;
 
+/// The most keys of a carried clip, an hour of them: a file may claim that a clip lasts for ages.
+const MOST_KEYS: f64 = 108_000.0;
+
 /// Why clips cannot be carried over.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -125,13 +128,14 @@ impl<'a> Retarget<'a> {
         Ok(retarget)
     }
 
-    /// A clip of the source as one of the target: 30 keys a second, of the same length, with the same name and markers.
+    /// A clip of the source as one of the target, of the same length, with the same name and markers. It has 30 keys a
+    /// second; after an hour fewer, so that they are no more than 108,001.
     ///
     /// # Errors
     /// [`RetargetError::Rig`] if the clip is not the source's.
     pub fn clip(&self, clip: &Clip) -> Result<Clip, RetargetError> {
         let duration = clip.duration();
-        let keys = (duration * RATE).ceil().max(1.0) as usize + 1;
+        let keys = (duration * RATE).ceil().clamp(1.0, MOST_KEYS) as usize + 1;
         let times: Vec<f32> = (0..keys)
             .map(|key| (duration * key as f64 / (keys - 1) as f64) as f32)
             .collect();

@@ -5,8 +5,11 @@
 use clamber_body::{Humanoid, Limb, LimbEnd, Retarget};
 use clamber_gltf::Rig;
 use clamber_scenes::test_data;
-use clamber_surface::rig::{JointId, Playback, Pose, Skeleton};
-use glam::{DAffine3, DQuat, DVec3};
+use clamber_surface::geometry::Affine;
+use clamber_surface::rig::{
+    Channel, Clip, Interpolation, Joint, JointId, Keyframes, Playback, Pose, Skeleton, Transform,
+};
+use glam::{DAffine3, DQuat, DVec3, Quat};
 
 fn hero() -> Rig {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
@@ -159,4 +162,32 @@ fn what_does_not_fit_is_refused() {
     assert!(Retarget::new((&rig.skeleton, &body), (&small, &body)).is_err());
     let same = Retarget::new((&rig.skeleton, &body), (&rig.skeleton, &body)).unwrap();
     assert!(same.pose(&small.rest_pose()).is_err());
+
+    // A clip that lasts for ages has no more keys than one of an hour.
+    let still = Keyframes::Rotation(vec![Quat::IDENTITY; 2]);
+    let channel = Channel::new(body.head, Interpolation::Linear, vec![0.0, 1e30], still).unwrap();
+    let carried = same.clip(&Clip::new("ages", vec![channel])).unwrap();
+    assert_eq!(carried.channels()[0].times().len(), 108_001);
+}
+
+/// A skeleton may be a chain of any length, in any order: that is no reason to run out of stack.
+#[test]
+fn a_long_chain_of_joints_is_no_trouble() {
+    let rig = hero();
+    let mut joints = rig.skeleton.joints().to_vec();
+    let hips = rig.skeleton.find("hips").unwrap();
+    let first = joints.len() as u32;
+    let links = 20_000;
+    for link in 0..links {
+        let next = first + link + 1;
+        joints.push(Joint {
+            name: format!("link {link}"),
+            parent: (link + 1 < links).then_some(JointId(next)),
+            rest: Transform::IDENTITY,
+            inverse_bind: Affine::IDENTITY,
+        });
+    }
+    joints[hips.index()].parent = Some(JointId(first));
+    let skeleton = Skeleton::new(joints).unwrap();
+    assert!(Humanoid::find(&skeleton).is_ok());
 }

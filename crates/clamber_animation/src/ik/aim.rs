@@ -23,11 +23,7 @@ pub fn aim(
     axes: [DVec3; 2],
     directions: [DVec3; 2],
 ) -> Result<(), IkError> {
-    check_pose(skeleton, pose)?;
-    let joints = pose.transforms.len();
-    if joint.index() >= joints {
-        return Err(IkError::NoJoint { joint, joints });
-    }
+    check_pose(skeleton, pose, [joint])?;
     if !axes.iter().chain(&directions).all(|v| v.is_finite()) {
         return Err(IkError::NotFinite("a direction"));
     }

@@ -65,7 +65,7 @@ impl Chain {
         pose: &mut Pose,
         target: DVec3,
     ) -> Result<Reach, IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints.iter().copied())?;
         if !target.is_finite() {
             return Err(IkError::NotFinite("the target"));
         }
@@ -127,7 +127,7 @@ impl Chain {
     /// # Errors
     /// [`IkError::NoJoint`] and [`IkError::NotFinite`] for the pose.
     pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints.iter().copied())?;
         let end = self.joints[self.joints.len() - 1];
         Ok(model_from_joint(skeleton, pose, end).translation)
     }

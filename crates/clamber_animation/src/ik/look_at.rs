@@ -145,7 +145,7 @@ impl LookAt {
         memory: &mut LookMemory,
         dt: f64,
     ) -> Result<f64, IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints.iter().map(|(joint, _)| *joint))?;
         if !target.is_finite() || !weight.is_finite() {
             return Err(IkError::NotFinite("a target or a weight"));
         }

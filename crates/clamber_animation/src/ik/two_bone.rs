@@ -174,7 +174,7 @@ impl TwoBone {
     /// # Errors
     /// As [`TwoBone::solve`].
     pub fn lengths(&self, skeleton: &Skeleton, pose: &Pose) -> Result<[f64; 2], IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints())?;
         Ok(self.posed(skeleton, pose)?.lengths)
     }
 
@@ -195,7 +195,7 @@ impl TwoBone {
         goal: &TwoBoneGoal,
         memory: Option<(&mut PoleMemory, f64)>,
     ) -> Result<Reach, IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints())?;
         if !goal.target.is_finite() {
             return Err(IkError::NotFinite("the target"));
         }
@@ -347,16 +347,23 @@ fn between(skeleton: &Skeleton, pose: &Pose, upper: JointId, lower: JointId) -> 
     product
 }
 
-/// Refuses a pose that is not the skeleton's.
-pub(super) fn check_pose(skeleton: &Skeleton, pose: &Pose) -> Result<(), IkError> {
+/// Refuses a pose that is not the skeleton's, and a skeleton that lacks one of the joints.
+pub(super) fn check_pose(
+    skeleton: &Skeleton,
+    pose: &Pose,
+    used: impl IntoIterator<Item = JointId>,
+) -> Result<(), IkError> {
     let joints = skeleton.joints().len();
-    if pose.transforms.len() == joints {
-        return Ok(());
+    if pose.transforms.len() != joints {
+        return Err(IkError::NoJoint {
+            joint: JointId(pose.transforms.len() as u32),
+            joints,
+        });
     }
-    Err(IkError::NoJoint {
-        joint: JointId(pose.transforms.len() as u32),
-        joints,
-    })
+    match used.into_iter().find(|joint| joint.index() >= joints) {
+        Some(joint) => Err(IkError::NoJoint { joint, joints }),
+        None => Ok(()),
+    }
 }
 
 impl TwoBone {
@@ -375,7 +382,7 @@ impl TwoBone {
     /// # Errors
     /// [`IkError::NoJoint`] and [`IkError::NotFinite`] for the pose.
     pub fn end(&self, skeleton: &Skeleton, pose: &Pose) -> Result<DVec3, IkError> {
-        check_pose(skeleton, pose)?;
+        check_pose(skeleton, pose, self.joints())?;
         let model_from_end = model_from_joint(skeleton, pose, self.end);
         let end = model_from_end.transform_point3(self.tip);
         if end.is_finite() {

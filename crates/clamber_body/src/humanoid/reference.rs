@@ -72,27 +72,27 @@ fn is_skinned(skeleton: &Skeleton, joint: JointId) -> bool {
     skeleton.joints()[joint.index()].inverse_bind != Affine::IDENTITY
 }
 
-/// Finds a joint in the bind pose, and before it its parents.
+/// Finds a joint in the bind pose, and before it its parents. A loop, since files may have chains of any length.
 fn bind(
     skeleton: &Skeleton,
     joint: JointId,
     model_from_mesh: &DAffine3,
     bound: &mut [Option<DAffine3>],
-) -> Option<DAffine3> {
-    if let Some(known) = bound[joint.index()] {
-        return Some(known);
-    }
-    let this = &skeleton.joints()[joint.index()];
-    let found = if is_skinned(skeleton, joint) {
-        let model_from_joint = *model_from_mesh * this.inverse_bind.to_f64().inverse();
-        Some(model_from_joint).filter(DAffine3::is_finite)
-    } else {
-        let parent = match this.parent {
-            Some(parent) => bind(skeleton, parent, model_from_mesh, bound)?,
-            None => DAffine3::IDENTITY,
+) {
+    let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+    let unknown: Vec<JointId> = core::iter::successors(Some(joint), parent)
+        .take_while(|joint| bound[joint.index()].is_none())
+        .collect();
+    for joint in unknown.into_iter().rev() {
+        let this = &skeleton.joints()[joint.index()];
+        let above = this
+            .parent
+            .map_or(Some(DAffine3::IDENTITY), |parent| bound[parent.index()]);
+        let found = if is_skinned(skeleton, joint) {
+            Some(*model_from_mesh * this.inverse_bind.to_f64().inverse())
+        } else {
+            above.map(|above| above * this.rest.to_affine())
         };
-        Some(parent * this.rest.to_affine())
-    };
-    bound[joint.index()] = found;
-    found
+        bound[joint.index()] = found.filter(DAffine3::is_finite);
+    }
 }
