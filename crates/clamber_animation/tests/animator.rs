@@ -288,6 +288,27 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
 }
 
 #[test]
+fn a_layer_that_is_held_over_a_walk_stops_its_motion() {
+    let skeleton = skeleton();
+    let set = AnimationSet::new(&skeleton, vec![walk_in_a_circle()]).unwrap();
+    let set = set.with_root_motion(&skeleton, JointId(0)).unwrap();
+    let walk = Layer::new(ClipId(0));
+    let moved = |weight: f64| {
+        let held = Layer {
+            speed: 0.0,
+            weight,
+            ..walk
+        };
+        let mut animator = Animator::new(vec![walk, held]);
+        let motion = animator.advance(&set, 0.1, &mut Vec::new()).unwrap();
+        motion.translation.length()
+    };
+    let full = moved(0.0);
+    assert!(full > 0.1 && moved(1.0) == 0.0);
+    assert!((moved(0.5) - full * 0.5).abs() < 1e-9);
+}
+
+#[test]
 fn root_motion_runs_back_too() {
     let skeleton = skeleton();
     let set = AnimationSet::new(&skeleton, vec![walk_in_a_circle()]).unwrap();

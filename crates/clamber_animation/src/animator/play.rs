@@ -55,12 +55,11 @@ impl Animator {
         for (index, layer) in self.layers.iter_mut().enumerate() {
             let clip = set.clip(layer.clip)?;
             let way = dt * self.rate * layer.speed;
-            if way == 0.0 {
-                continue;
-            }
             let (from, _) = within(layer.time, clip.duration(), layer.playback);
             let (to, loops) = within(from + way, clip.duration(), layer.playback);
-            tell(events, index, layer, clip, [from, to], [way, loops]);
+            if way != 0.0 {
+                tell(events, index, layer, clip, [from, to], [way, loops]);
+            }
             if let (Some(root), LayerKind::Override) = (set.root(), layer.kind) {
                 let mask = layer.mask.map(|mask| set.mask(mask)).transpose()?;
                 let share = mask.map_or(1.0, |mask| f64::from(mask.shares()[root.joint.index()]));
@@ -68,7 +67,10 @@ impl Animator {
                 let moved = root.between(clip, [from, to], loops)?;
                 motion = motion.mix(&moved, share * layer.weight);
             }
-            layer.time = to;
+            // A layer that is held keeps the time that it was given.
+            if way != 0.0 {
+                layer.time = to;
+            }
         }
         self.offsets.advance(dt);
         Ok(motion)
