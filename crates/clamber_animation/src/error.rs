@@ -52,7 +52,7 @@ pub enum AnimationError {
     OutOfRange {
         /// Which number.
         what: &'static str,
-        /// What it must be.
+        /// The range that it must be in.
         range: &'static str,
         /// The number.
         found: f64,

@@ -3,7 +3,7 @@ use clamber_surface::rig::Playback;
 use crate::error::{finite, within};
 use crate::{AnimationError, ClipId, MaskId};
 
-/// How a layer meets what is below it.
+/// How a layer combines with the pose of the layers below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LayerKind {
@@ -26,7 +26,7 @@ pub struct Layer {
     pub speed: f64,
     /// 0 (not there) to 1.
     pub weight: f64,
-    /// What comes after the clip's end.
+    /// Whether the clip repeats, or holds its end.
     pub playback: Playback,
     /// Whether it replaces or adds.
     pub kind: LayerKind,

@@ -48,7 +48,7 @@ pub struct Animator {
     layers: Vec<Layer>,
     /// Seconds of the layers per second.
     rate: f64,
-    /// What is left of the pose before the last change.
+    /// Differences from the pose before the last change. They decay.
     offsets: Offsets,
 }
 
@@ -78,8 +78,8 @@ impl Animator {
         &self.layers
     }
 
-    /// The layers, to drive weights and speeds from frame to frame. What is changed here shows at once: a change of a
-    /// clip needs [`Animator::change`].
+    /// The layers, to drive weights and speeds from frame to frame. Changes made here show at once, without a
+    /// transition; for one, use [`Animator::change`].
     pub fn layers_mut(&mut self) -> &mut [Layer] {
         &mut self.layers
     }
@@ -118,8 +118,8 @@ impl Animator {
         Ok(())
     }
 
-    /// Changes layers in any way; the pose passes to that of the new layers within `fade` seconds, by inertialisation: it
-    /// goes on with its velocity, and only the new layers are sampled from now on. A fade of 0 shows the change at once.
+    /// Changes layers in any way. Within `fade` seconds, the pose becomes that of the new layers, by inertialisation: it
+    /// starts with the velocity that it had, and only the new layers are sampled. A fade of 0 shows the change at once.
     /// Changes may come during other changes, as often as you like. Allocates.
     ///
     /// # Errors

@@ -12,9 +12,9 @@ use glam::DVec3;
 pub enum Reach {
     /// Its end is at the target.
     Reached,
-    /// The target is too far, or in the soft part of its reach; what is missing, metres.
+    /// The target is too far, or in the soft part of the limb's reach. The distance that is missing, metres.
     Short(f64),
-    /// The target is nearer than the limb can fold; by how much, metres.
+    /// The target is nearer than the limb can fold. By this distance, metres.
     TooNear(f64),
 }
 
