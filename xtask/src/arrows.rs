@@ -14,7 +14,15 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         &["clamber_surface", "clamber_world", "clamber_mover"],
     ),
     ("clamber_animation", &["clamber_surface"]),
-    ("clamber_body", &["clamber_surface", "clamber_animation"]),
+    (
+        "clamber_body",
+        &[
+            "clamber_surface",
+            "clamber_world",
+            "clamber_climber",
+            "clamber_animation",
+        ],
+    ),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),
     (
@@ -26,6 +34,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         &[
             "clamber_surface",
             "clamber_animation",
+            "clamber_body",
             "clamber_world",
             "clamber_mover",
             "clamber_climber",

@@ -10,6 +10,8 @@
 #[doc(inline)]
 pub use clamber_animation as animation;
 #[doc(inline)]
+pub use clamber_body as body;
+#[doc(inline)]
 pub use clamber_climber as climber;
 #[cfg(feature = "gltf")]
 #[doc(inline)]

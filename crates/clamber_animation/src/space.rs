@@ -33,6 +33,14 @@ pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId)
     model
 }
 
+/// The transform of a joint in model space in a pose: from the joint's own space. `None` if the pose or the skeleton lacks
+/// the joint. Composes the joints from it to its root, and nothing else.
+pub fn joint_in_model(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> Option<DAffine3> {
+    let joints = skeleton.joints().len();
+    let is_there = joint.index() < joints && pose.transforms.len() == joints;
+    is_there.then(|| model_from_joint(skeleton, pose, joint))
+}
+
 /// [`model_from_joint`] of a joint's parent; the identity for a root.
 pub(crate) fn model_from_parent(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
     let parent = skeleton.joints()[joint.index()].parent;

@@ -81,14 +81,8 @@ impl<'a> Retarget<'a> {
         (from, source): (&'a Skeleton, &Humanoid),
         (to, target): (&'a Skeleton, &Humanoid),
     ) -> Result<Self, RetargetError> {
-        for (skeleton, body) in [(from, source), (to, target)] {
-            let joints = skeleton.joints().len();
-            let named = body.joints().into_iter().map(|(_, joint)| joint);
-            let inner = body.spine.iter().chain(&body.neck).copied();
-            if let Some(joint) = named.chain(inner).find(|joint| joint.index() >= joints) {
-                return Err(RigError::JointOutOfRange { joint, joints }.into());
-            }
-        }
+        check(source, from)?;
+        check(target, to)?;
         let bound = [
             reference(from, source.hips, source.head, feet(source)),
             reference(to, target.hips, target.head, feet(target)),
@@ -373,6 +367,17 @@ impl<'a> Retarget<'a> {
             to,
             reference,
         });
+    }
+}
+
+/// Refuses a body that has joints which a skeleton lacks.
+pub(crate) fn check(body: &Humanoid, skeleton: &Skeleton) -> Result<(), RigError> {
+    let joints = skeleton.joints().len();
+    let named = body.joints().into_iter().map(|(_, joint)| joint);
+    let inner = body.spine.iter().chain(&body.neck).copied();
+    match named.chain(inner).find(|joint| joint.index() >= joints) {
+        Some(joint) => Err(RigError::JointOutOfRange { joint, joints }),
+        None => Ok(()),
     }
 }
 

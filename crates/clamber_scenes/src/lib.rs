@@ -21,6 +21,7 @@
 pub mod ball;
 pub mod battle;
 pub mod beast;
+pub mod bodies;
 pub mod closed;
 pub mod controllers;
 mod creature;

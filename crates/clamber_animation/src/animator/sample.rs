@@ -41,6 +41,11 @@ impl Animator {
         for layer in &self.layers {
             layer.check()?;
             let time = layer.time + shift * layer.speed * self.rate;
+            if layer.weight == 0.0 {
+                set.clip(layer.clip)?;
+                layer.mask.map(|mask| set.mask(mask)).transpose()?;
+                continue;
+            }
             match layer.kind {
                 LayerKind::Override if layer.weight >= 1.0 && layer.mask.is_none() => {
                     sample_clip(set, layer, time, pose)?;

@@ -1,0 +1,63 @@
+//! What carries a climber moves, and all that a body remembers in world space moves along.
+
+use clamber_world::{Attachment, Obstacle, ObstacleId};
+use glam::{DQuat, DVec3};
+
+use crate::figure::Place;
+
+/// A rigid motion since the last frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carry {
+    from: DVec3,
+    to: DVec3,
+    turn: DQuat,
+}
+
+impl Carry {
+    /// The motion of a material point; `None` if it is gone.
+    pub(crate) fn by(
+        carrier: &Attachment,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        dt: f64,
+    ) -> Option<Self> {
+        let (_, obstacle) = obstacles.iter().find(|(id, _)| *id == carrier.obstacle)?;
+        let mut now = *carrier;
+        now.follow(*obstacle, dt.max(f64::MIN_POSITIVE), SLACK)?;
+        Some(Self {
+            from: carrier.point,
+            to: now.point,
+            turn: (now.frame * carrier.frame.conjugate()).normalize(),
+        })
+    }
+
+    /// Straight motion.
+    pub(crate) fn along(way: DVec3) -> Self {
+        Self {
+            from: DVec3::ZERO,
+            to: way,
+            turn: DQuat::IDENTITY,
+        }
+    }
+
+    pub(crate) fn point(&self, point: DVec3) -> DVec3 {
+        self.to + self.turn * (point - self.from)
+    }
+
+    pub(crate) fn vector(&self, vector: DVec3) -> DVec3 {
+        self.turn * vector
+    }
+
+    pub(crate) fn rotation(&self, rotation: DQuat) -> DQuat {
+        (self.turn * rotation).normalize()
+    }
+
+    pub(crate) fn place(&self, place: &Place) -> Place {
+        Place {
+            position: self.point(place.position),
+            rotation: self.rotation(place.rotation),
+        }
+    }
+}
+
+/// How far a material point may be from where it was left, metres; see [`Attachment::follow`].
+pub(crate) const SLACK: f64 = 0.05;

@@ -1,0 +1,63 @@
+use clamber_climber::ClimberState;
+use glam::DVec3;
+
+use super::event::Plant;
+use super::hold::{Hold, Surroundings};
+use super::root::Root;
+use crate::figure::{LimbShape, Place};
+use crate::{Extremity, Figure};
+
+/// What all parts of a body read in one frame.
+pub(crate) struct Context<'a> {
+    pub(crate) figure: &'a Figure,
+    pub(crate) state: &'a ClimberState,
+    pub(crate) around: Surroundings<'a>,
+    pub(crate) up: DVec3,
+    /// Velocity relative to what carries it.
+    pub(crate) motion: DVec3,
+    /// True in the first frame, and after a teleport: everything is at its place at once, and nothing is told.
+    pub(crate) is_fresh: bool,
+    pub(crate) dt: f64,
+    /// Where the clip has hands and feet, in model space, metres.
+    pub(crate) clip: [Place; 4],
+}
+
+impl Context<'_> {
+    pub(crate) fn shape(&self, extremity: Extremity) -> &LimbShape {
+        self.figure.limb(extremity)
+    }
+
+    /// Size of the body relative to that for which lengths in this crate are given.
+    pub(crate) fn size(&self) -> f64 {
+        self.figure.leg_length() / super::walk::LEG
+    }
+
+    /// Where the clip has a hand or foot, in the world.
+    pub(crate) fn clip_in_world(&self, root: &Root, extremity: Extremity) -> Place {
+        let clip = self.clip[extremity.index()];
+        Place {
+            position: root.point(clip.position),
+            rotation: (root.rotation * clip.rotation).normalize(),
+        }
+    }
+
+    /// Tells that a hand or foot came down.
+    pub(crate) fn tell(
+        &self,
+        plants: &mut Vec<Plant>,
+        extremity: Extremity,
+        hold: &Hold,
+        speed: f64,
+    ) {
+        if !self.is_fresh {
+            plants.push(Plant {
+                extremity,
+                obstacle: hold.attachment.obstacle,
+                point: hold.point(),
+                normal: hold.normal(),
+                tag: hold.tag,
+                speed,
+            });
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Feet of somebody who stands or walks: they stay where they came down until it is their turn to step.
+
+use clamber_animation::Spring;
+use clamber_surface::geometry::rotation_from_axis_angle;
+use glam::{DQuat, DVec3};
+
+use super::context::Context;
+use super::event::Plant;
+use super::hold::Hold;
+use super::limb::{Doing, LimbMemory};
+use super::root::Root;
+use super::walk::Walk;
+use crate::figure::{LimbShape, Place};
+use crate::{Extremity, Side};
+
+/// Distance from where it should be at which a foot leaves its place, metres, and angle, radians (Unreal's foot placement:
+/// 0.35 m, 45°); and the same for somebody who stands.
+const UNPLANT: (f64, f64) = (0.35, 0.785);
+const REPLANT: (f64, f64) = (0.13, 0.4);
+
+/// A foot comes down from at most this height without a step of its own, metres.
+const LOW: f64 = 0.04;
+
+/// Times of steps that the gait does not ask for, seconds: to another place, and straight down.
+const STEP: f64 = 0.26;
+const DOWN: f64 = 0.12;
+
+/// How high such a step goes, metres.
+const LIFT: f64 = 0.06;
+
+/// Time for half of a change of the ground's height below a foot in the air, seconds: Unreal's floor spring.
+const FLOOR: f64 = 0.05;
+
+/// Steepest ground that soles lie flat on, as the cosine: 50°.
+const STEEP: f64 = 0.64;
+
+/// Where the ground is looked for below a foot, metres.
+const ABOVE: f64 = 0.6;
+const BELOW: f64 = 0.9;
+
+pub(crate) fn step(
+    context: &Context<'_>,
+    stand: &Root,
+    walk: &Walk,
+    limbs: &mut [LimbMemory; 4],
+    plants: &mut Vec<Plant>,
+) {
+    for side in Side::BOTH {
+        let extremity = Extremity::Foot(side);
+        let other = &limbs[Extremity::Foot(opposite(side)).index()];
+        let other_stands = other.is_planted();
+        let mut foot = Foot {
+            context,
+            stand,
+            walk,
+            side,
+            shape: context.shape(extremity),
+            clip: context.clip_in_world(stand, extremity),
+            memory: limbs[extremity.index()],
+        };
+        foot.step(other_stands, plants);
+        limbs[extremity.index()] = foot.memory;
+    }
+}
+
+/// Where a foot is, after [`step`].
+pub(crate) fn place(context: &Context<'_>, stand: &Root, limb: &LimbMemory, side: Side) -> Place {
+    let extremity = Extremity::Foot(side);
+    let clip = context.clip_in_world(stand, extremity);
+    match &limb.doing {
+        Doing::Free => limb.kept(&raised(&clip, context.up, limb.ground.value)),
+        Doing::Planted(hold) => {
+            let pitch = pitch(&context.clip[extremity.index()]);
+            limb.kept(&rolled(hold, context.shape(extremity), pitch))
+        }
+        Doing::Swinging(swing) => swing.place(),
+    }
+}
+
+struct Foot<'a, 'c> {
+    context: &'a Context<'c>,
+    stand: &'a Root,
+    walk: &'a Walk,
+    side: Side,
+    shape: &'a LimbShape,
+    /// Where the clip has it, on level ground.
+    clip: Place,
+    memory: LimbMemory,
+}
+
+impl Foot<'_, '_> {
+    fn step(&mut self, other_stands: bool, plants: &mut Vec<Plant>) {
+        let air = self
+            .walk
+            .is_going()
+            .then(|| self.walk.stride.step(self.side, self.walk.phase));
+        let air = air.flatten();
+        self.follow();
+        match self.memory.doing {
+            Doing::Planted(_) if air.is_some() => self.lift(),
+            Doing::Planted(hold) => {
+                let (distance, angle) = self.away(&hold);
+                let size = self.context.size();
+                let is_far = |(far, turned): (f64, f64)| distance > far * size || angle > turned;
+                if is_far(UNPLANT) || !self.walk.is_going() && other_stands && is_far(REPLANT) {
+                    match self.find(&self.clip) {
+                        Some(hold) => self.memory.swing_to(hold, STEP, LIFT * size),
+                        None => self.lift(),
+                    }
+                }
+            }
+            Doing::Swinging(_) if air.is_some() => self.lift(),
+            Doing::Swinging(swing) => {
+                if swing.time >= swing.duration {
+                    self.memory.doing = Doing::Planted(swing.to);
+                    self.tell(&swing.to, plants);
+                }
+            }
+            Doing::Free => {}
+        }
+        if !matches!(self.memory.doing, Doing::Free) {
+            return;
+        }
+        self.look_ahead(air);
+        if air.is_none() {
+            self.come_down(plants);
+        }
+    }
+
+    /// Moves on with what it stands on, or steps to.
+    fn follow(&mut self) {
+        let around = &self.context.around;
+        let is_there = match &mut self.memory.doing {
+            Doing::Free => true,
+            Doing::Planted(hold) => hold.follow(around),
+            Doing::Swinging(swing) => swing.to.follow(around),
+        };
+        if !is_there {
+            self.lift();
+        }
+    }
+
+    /// Leaves the ground, and goes on as the clip does.
+    fn lift(&mut self) {
+        let hold = match &self.memory.doing {
+            Doing::Planted(hold) => Some(*hold),
+            _ => None,
+        };
+        let height = hold.map_or(0.0, |hold| {
+            (hold.point() - self.stand.position).dot(self.context.up)
+        });
+        self.memory.ground = Spring::at(height);
+        let target = raised(&self.clip, self.context.up, height);
+        self.memory.let_go(&target);
+    }
+
+    /// How far the ground under the foot is from where the clip has it, along the ground, and the angle about up.
+    fn away(&self, hold: &Hold) -> (f64, f64) {
+        let up = self.context.up;
+        let way = self.clip.point(self.shape.contact) - hold.place().point(self.shape.contact);
+        let level = |v: DVec3| v - up * v.dot(up);
+        let [is, wanted] = [hold.rotation(), self.clip.rotation].map(|turn| level(turn * DVec3::X));
+        let angle = libm::atan2(is.cross(wanted).length(), is.dot(wanted));
+        (level(way).length(), angle)
+    }
+
+    /// Watches the ground below and where it will come down, so that it goes over what is in its way.
+    fn look_ahead(&mut self, air: Option<(f64, f64)>) {
+        let up = self.context.up;
+        let height = |point: DVec3| {
+            let found = self.below(point)?;
+            Some((found.contact.point - self.stand.position).dot(up))
+        };
+        let here = height(self.clip.point(self.shape.contact));
+        let ahead = air.and_then(|(_, left)| {
+            let landing = self.walk.stride.landing[self.side.index()];
+            let motion = self.context.motion;
+            let level = motion - up * motion.dot(up);
+            let time = left / self.walk.rate.max(1e-6);
+            height(self.stand.point(landing) + level * time)
+        });
+        let goal = match (here, ahead) {
+            (Some(here), Some(ahead)) => here.max(ahead),
+            (Some(height), None) | (None, Some(height)) => height,
+            (None, None) => 0.0,
+        };
+        if self.context.is_fresh {
+            self.memory.ground = Spring::at(goal);
+        } else {
+            self.memory.ground.step(goal, FLOOR, self.context.dt);
+        }
+    }
+
+    fn below(&self, point: DVec3) -> Option<super::hold::Found<'_>> {
+        let up = self.context.up;
+        let size = self.context.size();
+        let level = point - up * (point - self.stand.position).dot(up);
+        let from = level + up * (ABOVE * size);
+        let found = self
+            .context
+            .around
+            .cast(from, -up, (ABOVE + BELOW) * size)?;
+        (found.contact.normal.dot(up) > STEEP).then_some(found)
+    }
+
+    /// The ground below the part of a place that comes down first.
+    fn find(&self, place: &Place) -> Option<Hold> {
+        let up = self.context.up;
+        let along = place.rotation * DVec3::X;
+        let touching = if along.dot(up) > 0.0 {
+            self.shape.heel
+        } else {
+            self.shape.ball
+        };
+        let found = self.below(place.point(touching))?;
+        Some(Hold::new(&found, along, found.contact.normal, touching))
+    }
+
+    fn come_down(&mut self, plants: &mut Vec<Plant>) {
+        let target = raised(&self.clip, self.context.up, self.memory.ground.value);
+        let shown = self.memory.kept(&target);
+        let Some(hold) = self.find(&shown) else {
+            return;
+        };
+        let size = self.context.size();
+        let height = (shown.point(hold.touching) - hold.point()).dot(self.context.up);
+        if self.context.is_fresh {
+            self.memory.doing = Doing::Planted(hold);
+        } else if height < LOW * size {
+            let before = rolled(
+                &hold,
+                self.shape,
+                pitch(&self.context.clip[Extremity::Foot(self.side).index()]),
+            );
+            self.memory.doing = Doing::Planted(hold);
+            self.memory.keep(&before);
+            self.tell(&hold, plants);
+        } else if height < BELOW * size {
+            self.memory.swing_to(hold, DOWN, 0.0);
+        }
+    }
+
+    fn tell(&self, hold: &Hold, plants: &mut Vec<Plant>) {
+        let extremity = Extremity::Foot(self.side);
+        self.context.tell(plants, extremity, hold, self.memory.pace);
+    }
+}
+
+fn opposite(side: Side) -> Side {
+    match side {
+        Side::Left => Side::Right,
+        Side::Right => Side::Left,
+    }
+}
+
+fn raised(place: &Place, up: DVec3, height: f64) -> Place {
+    Place {
+        position: place.position + up * height,
+        ..*place
+    }
+}
+
+/// How far a clip has the toes above the heel, radians.
+fn pitch(clip: &Place) -> f64 {
+    libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0))
+}
+
+/// A foot on its hold that rolls over its heel or its ball.
+fn rolled(hold: &Hold, shape: &LimbShape, pitch: f64) -> Place {
+    let flat = hold.place();
+    // Z is to the right: a positive turn raises the toes.
+    let turn: DQuat = rotation_from_axis_angle(DVec3::Z, pitch);
+    let rotation = flat.rotation * turn;
+    let pivot = if pitch > 0.0 { shape.heel } else { shape.ball };
+    Place::with_point_at(flat.point(pivot), pivot, rotation)
+}

@@ -1,0 +1,187 @@
+//! What a body remembers of a hand or a foot.
+
+use clamber_animation::Spring;
+use clamber_animation::ik::PoleMemory;
+use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector, slerp};
+use glam::{DQuat, DVec3};
+
+use super::carry::Carry;
+use super::hold::Hold;
+use crate::figure::Place;
+
+/// How long an extremity that was let go takes for half of the way back to its clip, seconds.
+const LET_GO: f64 = 0.07;
+
+/// Over which time the speed of an extremity is remembered, seconds.
+const PACE: f64 = 0.06;
+
+/// What a hand or foot does.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum Doing {
+    /// As its clip.
+    #[default]
+    Free,
+    /// Is on something.
+    Planted(Hold),
+    /// Is on its way to something.
+    Swinging(Swing),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swing {
+    pub(crate) from: Place,
+    pub(crate) to: Hold,
+    pub(crate) time: f64,
+    pub(crate) duration: f64,
+    /// How far it goes around, away from what it goes to.
+    pub(crate) lift: f64,
+}
+
+impl Swing {
+    /// Where it is: on a curve without jerk at its ends (Flash and Hogan 1985, "The coordination of arm movements").
+    pub(crate) fn place(&self) -> Place {
+        let t = (self.time / self.duration).clamp(0.0, 1.0);
+        let share = t * t * t * (10.0 + t * (6.0 * t - 15.0));
+        let to = self.to.place();
+        let bow = 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
+        let lift = self.to.normal() * (self.lift * bow);
+        Place {
+            position: self.from.position.lerp(to.position, share) + lift,
+            rotation: slerp(self.from.rotation, to.rotation, share),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LimbMemory {
+    pub(crate) doing: Doing,
+    /// Where it was shown, in world space, and how fast relative to what carries the body.
+    pub(crate) shown: Place,
+    pub(crate) velocity: DVec3,
+    /// How fast it was lately.
+    pub(crate) pace: f64,
+    /// Difference from its clip after it was let go.
+    offset: Spring<DVec3>,
+    turn: Spring<DVec3>,
+    pub(crate) pole: PoleMemory,
+    /// Height of the ground below a foot that steps, above the root.
+    pub(crate) ground: Spring<f64>,
+    /// It should move to another place, and waits for its turn.
+    pub(crate) waits: bool,
+}
+
+impl LimbMemory {
+    pub(crate) fn at(place: Place) -> Self {
+        Self {
+            doing: Doing::Free,
+            shown: place,
+            velocity: DVec3::ZERO,
+            pace: 0.0,
+            offset: Spring::default(),
+            turn: Spring::default(),
+            pole: PoleMemory::default(),
+            ground: Spring::default(),
+            waits: false,
+        }
+    }
+
+    pub(crate) fn carry(&mut self, carry: &Carry) {
+        self.shown = carry.place(&self.shown);
+        self.velocity = carry.vector(self.velocity);
+        for spring in [&mut self.offset, &mut self.turn] {
+            spring.value = carry.vector(spring.value);
+            spring.velocity = carry.vector(spring.velocity);
+        }
+        if let Doing::Swinging(swing) = &mut self.doing {
+            swing.from = carry.place(&swing.from);
+        }
+    }
+
+    pub(crate) fn hold(&self) -> Option<&Hold> {
+        match &self.doing {
+            Doing::Planted(hold) => Some(hold),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn is_planted(&self) -> bool {
+        matches!(self.doing, Doing::Planted(_))
+    }
+
+    pub(crate) fn is_swinging(&self) -> bool {
+        matches!(self.doing, Doing::Swinging(_))
+    }
+
+    /// Starts towards a hold from where it is.
+    pub(crate) fn swing_to(&mut self, to: Hold, duration: f64, lift: f64) {
+        self.waits = false;
+        self.doing = Doing::Swinging(Swing {
+            from: self.shown,
+            to,
+            time: 0.0,
+            duration,
+            lift,
+        });
+    }
+
+    /// Lets go, and keeps on moving as it does; `clip` is where its clip has it.
+    pub(crate) fn let_go(&mut self, clip: &Place) {
+        self.doing = Doing::Free;
+        self.waits = false;
+        self.keep(clip);
+    }
+
+    /// Begins a difference from `target` so that the next place continues the last.
+    pub(crate) fn keep(&mut self, target: &Place) {
+        self.offset.value = self.shown.position - target.position;
+        self.offset.velocity = self.velocity;
+        self.turn = Spring::at(rotation_vector(
+            self.shown.rotation * target.rotation.conjugate(),
+        ));
+    }
+
+    /// Ends the difference: it is where it should be.
+    pub(crate) fn settle(&mut self) {
+        self.offset = Spring::default();
+        self.turn = Spring::default();
+    }
+
+    /// A target with what is left of the difference.
+    pub(crate) fn kept(&self, target: &Place) -> Place {
+        Place {
+            position: target.position + self.offset.value,
+            rotation: (turn_by(self.turn.value) * target.rotation).normalize(),
+        }
+    }
+
+    /// How far it still is from its target, metres.
+    pub(crate) fn kept_distance(&self) -> f64 {
+        self.offset.value.length()
+    }
+
+    pub(crate) fn advance(&mut self, dt: f64) {
+        self.offset.step(DVec3::ZERO, LET_GO, dt);
+        self.turn.step(DVec3::ZERO, LET_GO, dt);
+        if let Doing::Swinging(swing) = &mut self.doing {
+            swing.time += dt;
+        }
+    }
+
+    /// Remembers where it is shown.
+    pub(crate) fn show(&mut self, place: Place, dt: f64) {
+        if dt > 0.0 {
+            self.velocity = (place.position - self.shown.position) / dt;
+            self.pace = (self.pace * libm::exp(-dt / PACE)).max(self.velocity.length());
+        }
+        self.shown = place;
+    }
+}
+
+fn turn_by(vector: DVec3) -> DQuat {
+    let angle = vector.length();
+    if angle < 1e-9 {
+        DQuat::IDENTITY
+    } else {
+        rotation_from_axis_angle(vector / angle, angle)
+    }
+}

@@ -1,0 +1,211 @@
+//! Which clips are played for what the climber does.
+
+use clamber_animation::{AnimationError, AnimationEvent, Animator, Layer, PoseBuffers};
+use clamber_climber::ClimberState;
+use clamber_surface::rig::{Playback, Pose};
+
+use super::stance::Stance;
+use super::walk::Walk;
+use crate::figure::STRIDES;
+use crate::{BodyClip, Figure};
+
+/// Length of a fade between clips, seconds.
+const FADE: f64 = 0.22;
+
+/// The lowest layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Base {
+    /// Standing and all that goes, mixed.
+    Walk,
+    Loop(BodyClip),
+    Once(BodyClip),
+    /// At the time that the pull-up says.
+    Mantle,
+}
+
+/// A clip over the body's own, for weapons and gestures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Act {
+    /// The clip, how it is mixed in, and for which joints; [`Figure::upper_body`](crate::Figure::upper_body) is a mask of
+    /// the joints above the hips.
+    pub layer: Layer,
+    /// Which hands follow the clip, left and right. The others keep what they hold.
+    pub hands: [bool; 2],
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Player {
+    animator: Animator,
+    base: Option<Base>,
+    act: Option<[bool; 2]>,
+    buffers: PoseBuffers,
+    events: Vec<AnimationEvent>,
+    gets_up: bool,
+}
+
+impl Player {
+    pub(crate) fn new() -> Self {
+        Self {
+            animator: Animator::default(),
+            base: None,
+            act: None,
+            buffers: PoseBuffers::default(),
+            events: Vec::new(),
+            gets_up: false,
+        }
+    }
+
+    /// Forgets what it played, so that the next frame begins without a fade.
+    pub(crate) fn restart(&mut self) {
+        self.base = None;
+    }
+
+    pub(crate) fn act_mut(&mut self) -> Option<&mut Layer> {
+        self.act?;
+        self.animator.layers_mut().last_mut()
+    }
+
+    /// The hands that follow a clip instead of holding.
+    pub(crate) fn busy_hands(&self) -> [bool; 2] {
+        self.act.unwrap_or_default()
+    }
+
+    pub(crate) fn set_act(
+        &mut self,
+        figure: &Figure,
+        act: Option<Act>,
+        fade: f64,
+    ) -> Result<(), AnimationError> {
+        let had = self.act.is_some();
+        self.animator.change(figure.animations(), fade, |layers| {
+            if had {
+                layers.pop();
+            }
+            layers.extend(act.map(|act| act.layer));
+        })?;
+        self.act = act.map(|act| act.hands);
+        Ok(())
+    }
+
+    /// Lets `dt` seconds pass, and writes the clips' pose.
+    pub(crate) fn step(
+        &mut self,
+        figure: &Figure,
+        state: &ClimberState,
+        [before, stance]: [Stance; 2],
+        walk: &Walk,
+        pose: &mut Pose,
+        dt: f64,
+    ) -> Result<(), AnimationError> {
+        let lay = matches!(before, Stance::Lie | Stance::Tumble);
+        let stands = stance == Stance::Upright;
+        self.gets_up = stands && (self.gets_up || lay) && walk.going < 0.3;
+        let base = self.base_of(state, stance);
+        self.change_to(figure, base)?;
+        self.animator
+            .set_scale(figure.leg_length() / super::walk::LEG)?;
+        let rate = self.animator.rate();
+        match base {
+            Base::Walk => drive(self.animator.layers_mut(), figure, walk, rate, dt)?,
+            Base::Mantle => {
+                let clip = figure
+                    .animations()
+                    .clip(figure.clips().get(BodyClip::Mantle))?;
+                if let Some(layer) = self.animator.layers_mut().first_mut() {
+                    layer.time = state.ledge_hanging.pull_up.clamp(0.0, 1.0) * clip.duration();
+                }
+            }
+            Base::Loop(_) | Base::Once(_) => {}
+        }
+        self.events.clear();
+        self.animator
+            .advance(figure.animations(), dt, &mut self.events)?;
+        let ended =
+            |event: &AnimationEvent| matches!(event, AnimationEvent::Ended { layer: 0, .. });
+        self.gets_up &= !self.events.iter().any(ended);
+        self.animator
+            .pose_into(figure.animations(), pose, &mut self.buffers)
+    }
+
+    fn base_of(&self, state: &ClimberState, stance: Stance) -> Base {
+        let is_dead = state.hit_points <= 0.0;
+        match stance {
+            Stance::Upright | Stance::Lie if is_dead => Base::Once(BodyClip::Die),
+            Stance::Upright if state.crushed => Base::Loop(BodyClip::Crushed),
+            Stance::Upright if state.crouched => Base::Loop(BodyClip::Crouch),
+            Stance::Upright if self.gets_up => Base::Once(BodyClip::GetUp),
+            Stance::Upright => Base::Walk,
+            Stance::Air if state.flying.jumping => Base::Once(BodyClip::Jump),
+            Stance::Air => Base::Loop(BodyClip::Fall),
+            Stance::Tumble => Base::Loop(BodyClip::Tumble),
+            Stance::Lie => Base::Loop(BodyClip::Lie),
+            Stance::Wall => Base::Loop(BodyClip::Climb),
+            Stance::Hang => Base::Loop(BodyClip::Hang),
+            Stance::Ledge if state.ledge_hanging.pull_up > 0.0 => Base::Mantle,
+            Stance::Ledge => Base::Loop(BodyClip::Ledge),
+        }
+    }
+
+    fn change_to(&mut self, figure: &Figure, base: Base) -> Result<(), AnimationError> {
+        if self.base == Some(base) {
+            return Ok(());
+        }
+        let fade = if self.base.is_some() { FADE } else { 0.0 };
+        let clip = |clip: BodyClip| figure.clips().get(clip);
+        let keeps = usize::from(self.act.is_some());
+        self.animator.change(figure.animations(), fade, |layers| {
+            let own = layers.len() - keeps;
+            layers.drain(..own);
+            let new: &[Layer] = match base {
+                Base::Walk => {
+                    let idle = Layer::new(clip(BodyClip::Idle));
+                    let [a, b, c, d, e] = STRIDES.map(|stride| Layer {
+                        weight: 0.0,
+                        ..Layer::new(clip(stride))
+                    });
+                    &[idle, a, b, c, d, e]
+                }
+                Base::Loop(kind) => &[Layer::new(clip(kind))],
+                Base::Once(kind) => &[Layer::once(clip(kind))],
+                Base::Mantle => &[Layer {
+                    speed: 0.0,
+                    ..Layer::once(clip(BodyClip::Mantle))
+                }],
+            };
+            layers.splice(0..0, new.iter().copied());
+        })?;
+        self.base = Some(base);
+        Ok(())
+    }
+}
+
+/// Weights and times of the clips of walking, from before this frame on.
+fn drive(
+    layers: &mut [Layer],
+    figure: &Figure,
+    walk: &Walk,
+    rate: f64,
+    dt: f64,
+) -> Result<(), AnimationError> {
+    let strides = figure.gait().strides();
+    let mut sum = 1.0 - walk.going;
+    let was = walk.phase - walk.rate * dt;
+    for (index, stride) in strides.iter().enumerate() {
+        let Some(layer) = layers.get_mut(index + 1) else {
+            break;
+        };
+        let duration = figure.animations().clip(layer.clip)?.duration();
+        let wanted = walk.going * walk.shares[index];
+        sum += wanted;
+        // Each layer is mixed over all below it.
+        layer.weight = if wanted > 1e-6 {
+            (wanted / sum).min(1.0)
+        } else {
+            0.0
+        };
+        layer.time = (was + stride.start).rem_euclid(1.0) * duration;
+        layer.speed = walk.rate * duration / rate;
+        layer.playback = Playback::Loop;
+    }
+    Ok(())
+}

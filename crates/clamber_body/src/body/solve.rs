@@ -1,0 +1,65 @@
+//! From where hands and feet should be to the pose of the joints.
+
+use clamber_animation::ik::{IkError, Reach, TwoBoneGoal, aim};
+use clamber_animation::{ik::PoleMemory, joint_in_model};
+use clamber_surface::rig::Pose;
+use glam::{DAffine3, DVec3};
+
+use super::root::Root;
+use crate::figure::{LimbShape, Place};
+use crate::{Figure, LimbEnd};
+
+/// How a limb is solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    /// Where hand or foot should be, in the world.
+    pub(crate) place: Place,
+    /// Share of the limb from which it is reached softly.
+    pub(crate) soft: f64,
+}
+
+/// Turns a limb's joints, and its hand or foot. Returns where it got.
+pub(crate) fn limb(
+    figure: &Figure,
+    pose: &mut Pose,
+    root: &Root,
+    shape: &LimbShape,
+    wanted: &Wanted,
+    (pole, dt): (&mut PoleMemory, f64),
+) -> Result<Place, IkError> {
+    let (skeleton, scale) = (figure.skeleton(), figure.scale());
+    let target = root.inverse_point(wanted.place.position) / scale;
+    let goal = TwoBoneGoal {
+        target,
+        pole: None,
+        soft: wanted.soft,
+    };
+    let reach = shape.ik.solve(skeleton, pose, &goal, Some((pole, dt)))?;
+    if let LimbEnd::Beside(joint, point) = shape.end {
+        let lower = joint_in_model(skeleton, pose, shape.lower).unwrap_or_default();
+        let parent = skeleton.joints()[joint.index()].parent;
+        let parent = parent.and_then(|parent| joint_in_model(skeleton, pose, parent));
+        let inverse = parent.unwrap_or(DAffine3::IDENTITY).inverse();
+        let local = inverse.transform_point3(lower.transform_point3(point));
+        if local.is_finite() {
+            pose.transforms[joint.index()].translation = local.as_vec3();
+        }
+    }
+    if let Some(joint) = shape.end.joint() {
+        let turn = root.rotation.conjugate() * wanted.place.rotation;
+        let directions = [turn * DVec3::Y, turn * DVec3::X];
+        // A hand below joints that scale unevenly keeps its clip's turn.
+        match aim(skeleton, pose, joint, shape.aim_axes(), directions) {
+            Ok(()) | Err(IkError::Sheared(_) | IkError::NotInvertible(_)) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let position = match reach {
+        Reach::Reached => wanted.place.position,
+        Reach::Short(_) | Reach::TooNear(_) => root.point(shape.ik.end(skeleton, pose)? * scale),
+    };
+    Ok(Place {
+        position,
+        ..wanted.place
+    })
+}

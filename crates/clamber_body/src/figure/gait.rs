@@ -1,0 +1,190 @@
+//! When feet stand in the clips of walking, and how far a step goes: measured once from the clips.
+
+use clamber_animation::{AnimationError, AnimationSet};
+use clamber_surface::rig::{Playback, Pose, Skeleton};
+use glam::DVec3;
+
+use super::{BodyClip, Clips, Extremity, LimbShape};
+use crate::Side;
+
+/// The clips of walking, in the order of their weights.
+pub(crate) const STRIDES: [BodyClip; 5] = [
+    BodyClip::Walk,
+    BodyClip::Run,
+    BodyClip::WalkBack,
+    BodyClip::StrafeLeft,
+    BodyClip::StrafeRight,
+];
+
+/// Phases of a clip at which feet are looked at.
+const SAMPLES: usize = 96;
+
+/// A foot stands while its sole is at most this high above its lowest, as a share of the leg, and is slower than this over
+/// ground, as a share of the gait's speed: Unreal's foot placement has 0.6 m/s for a walk.
+const LOW: f64 = 0.04;
+const SLOW: f64 = 0.45;
+
+/// A stride where clips do not tell one: as a share of the leg, and when feet come down and leave the ground.
+const STRIDE: f64 = 1.6;
+const DOWN: [f64; 2] = [0.0, 0.5];
+const UP: [f64; 2] = [0.6, 0.1];
+
+/// One cycle of a gait: each foot steps once. Phases are shares of the cycle; at 0 the left foot comes down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stride {
+    /// Metres per cycle.
+    pub(crate) length: f64,
+    /// Metres a second for which the clip was made.
+    pub(crate) speed: f64,
+    /// When each foot comes down, and when it leaves the ground.
+    pub(crate) down: [f64; 2],
+    pub(crate) up: [f64; 2],
+    /// Where the sole of each foot is when it comes down, metres in model space.
+    pub(crate) landing: [DVec3; 2],
+    /// Phase 0, as a share of the clip.
+    pub(crate) start: f64,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Gait {
+    strides: [Stride; STRIDES.len()],
+}
+
+impl Gait {
+    pub(crate) fn new(
+        skeleton: &Skeleton,
+        set: &AnimationSet,
+        clips: &Clips,
+        limbs: &[LimbShape; 4],
+        facing: DVec3,
+        scale: f64,
+    ) -> Result<Self, AnimationError> {
+        let left = DVec3::Y.cross(facing);
+        let ways = [facing, facing, -facing, left, -left];
+        let mut strides = Vec::with_capacity(STRIDES.len());
+        for (clip, way) in STRIDES.into_iter().zip(ways) {
+            let clip = set.clip(clips.get(clip))?;
+            let speed = clip.ground_speed().map(|speed| speed * scale);
+            let mut soles = [[DVec3::ZERO; SAMPLES]; 2];
+            let mut heights = [[0.0; SAMPLES]; 2];
+            let mut pose = Pose::default();
+            for index in 0..SAMPLES {
+                pose.transforms.clone_from(&set.rest().transforms);
+                let time = clip.duration() * index as f64 / SAMPLES as f64;
+                clip.sample_into(time, Playback::Loop, &mut pose)?;
+                for side in Side::BOTH {
+                    let shape = &limbs[Extremity::Foot(side).index()];
+                    let Some(place) = shape.place(skeleton, &pose, scale) else {
+                        continue;
+                    };
+                    soles[side.index()][index] = place.point(shape.contact);
+                    let ends = [shape.heel, shape.ball].map(|point| place.point(point).y);
+                    heights[side.index()][index] = ends[0].min(ends[1]);
+                }
+            }
+            let leg = limbs[2].length;
+            strides.push(measure(&soles, &heights, way, clip.duration(), speed, leg));
+        }
+        let strides = core::array::from_fn(|index| strides[index]);
+        Ok(Self { strides })
+    }
+
+    pub(crate) fn strides(&self) -> &[Stride; STRIDES.len()] {
+        &self.strides
+    }
+
+    /// The stride of clips that are mixed; the shares sum to 1.
+    pub(crate) fn mixed(&self, shares: &[f64; STRIDES.len()]) -> Stride {
+        let mut mixed = Stride {
+            length: 0.0,
+            speed: 0.0,
+            down: [0.0; 2],
+            up: [0.0; 2],
+            landing: [DVec3::ZERO; 2],
+            start: 0.0,
+        };
+        let mut turns = [[0.0; 2]; 4];
+        for (stride, share) in self.strides.iter().zip(shares) {
+            mixed.length += stride.length * share;
+            mixed.speed += stride.speed * share;
+            for side in 0..2 {
+                mixed.landing[side] += stride.landing[side] * *share;
+                for (turn, phase) in [(side, stride.down[side]), (2 + side, stride.up[side])] {
+                    let (sin, cos) = libm::sincos(core::f64::consts::TAU * phase);
+                    turns[turn][0] += cos * share;
+                    turns[turn][1] += sin * share;
+                }
+            }
+        }
+        let phase = |turn: [f64; 2]| {
+            (libm::atan2(turn[1], turn[0]) / core::f64::consts::TAU).rem_euclid(1.0)
+        };
+        mixed.down = [phase(turns[0]), phase(turns[1])];
+        mixed.up = [phase(turns[2]), phase(turns[3])];
+        mixed
+    }
+}
+
+impl Stride {
+    /// Whether a foot stands at a phase; if not, how much of its step is done, 0 to 1, and how much of the cycle is left.
+    pub(crate) fn step(&self, side: Side, phase: f64) -> Option<(f64, f64)> {
+        let (down, up) = (self.down[side.index()], self.up[side.index()]);
+        let air = (down - up).rem_euclid(1.0);
+        let since = (phase - up).rem_euclid(1.0);
+        (since < air).then(|| (since / air, air - since))
+    }
+}
+
+fn measure(
+    soles: &[[DVec3; SAMPLES]; 2],
+    heights: &[[f64; SAMPLES]; 2],
+    way: DVec3,
+    duration: f64,
+    speed: Option<f64>,
+    leg: f64,
+) -> Stride {
+    let mut stride = Stride {
+        length: speed.map_or(STRIDE * leg, |speed| speed * duration),
+        speed: speed.unwrap_or(STRIDE * leg),
+        down: DOWN,
+        up: UP,
+        landing: [0, 1].map(|side| soles[side][0]),
+        start: 0.0,
+    };
+    let Some(speed) = speed.filter(|speed| *speed > 0.0 && duration > 0.0) else {
+        return stride;
+    };
+    let step = duration / SAMPLES as f64;
+    for side in 0..2 {
+        let floor = heights[side].iter().copied().fold(f64::INFINITY, f64::min);
+        let stands: [bool; SAMPLES] = core::array::from_fn(|index| {
+            let moved = soles[side][(index + 1) % SAMPLES] - soles[side][index];
+            let over_ground = moved / step + way * speed;
+            let level = DVec3::new(over_ground.x, 0.0, over_ground.z).length();
+            heights[side][index] - floor < LOW * leg && level < SLOW * speed
+        });
+        if let Some((first, count)) = longest(&stands) {
+            stride.down[side] = first as f64 / SAMPLES as f64;
+            stride.up[side] = ((first + count) % SAMPLES) as f64 / SAMPLES as f64;
+            stride.landing[side] = soles[side][first];
+        }
+    }
+    stride.start = stride.down[0];
+    for phase in stride.down.iter_mut().chain(&mut stride.up) {
+        *phase = (*phase - stride.start).rem_euclid(1.0);
+    }
+    stride
+}
+
+/// The longest run of true in a circle: where it starts, and how long it is. `None` if all are the same.
+fn longest(circle: &[bool; SAMPLES]) -> Option<(usize, usize)> {
+    let starts = (0..SAMPLES).filter(|&k| circle[k] && !circle[(k + SAMPLES - 1) % SAMPLES]);
+    let run = |start: usize| {
+        (0..SAMPLES)
+            .take_while(|k| circle[(start + k) % SAMPLES])
+            .count()
+    };
+    starts
+        .map(|start| (start, run(start)))
+        .max_by_key(|(start, count)| (*count, SAMPLES - start))
+}

@@ -1,0 +1,126 @@
+//! Where hands and feet are on walls and ledges: measured once from the clips.
+
+use clamber_animation::{AnimationError, AnimationSet, joint_in_model};
+use clamber_surface::rig::{Playback, Pose, Skeleton};
+use glam::DVec3;
+
+use super::{BodyClip, Clips, LimbShape};
+use crate::Humanoid;
+
+/// The hero's own measures, as shares of the leg: hips; hands and feet on a wall; its distance; a ledge's edge; hands above.
+const HIPS: f64 = 0.97;
+const HANDS: [f64; 2] = [0.31, 1.64];
+const FEET: [f64; 2] = [0.13, 0.23];
+const WALL: f64 = 0.54;
+const EDGE: [f64; 2] = [1.94, 0.43];
+const ABOVE: f64 = 2.39;
+
+/// In model space, metres: what the clips of climbing are made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Postures {
+    /// Where hands and feet touch the wall.
+    pub(crate) wall: [DVec3; 4],
+    /// The hips before the wall.
+    pub(crate) wall_hips: DVec3,
+    /// The edge of a ledge, between the hands.
+    pub(crate) edge: DVec3,
+    /// Half of the distance between the hands on a ledge.
+    pub(crate) edge_width: f64,
+    /// Where feet touch the wall below a ledge.
+    pub(crate) edge_feet: [DVec3; 2],
+    /// What is held while hanging, between the hands.
+    pub(crate) above: DVec3,
+    /// Half of the distance between hands that hang.
+    pub(crate) above_width: f64,
+    /// The hips while hanging, and while tumbling.
+    pub(crate) hang_hips: DVec3,
+    pub(crate) tumble_hips: DVec3,
+    /// The hips while standing.
+    pub(crate) hips: DVec3,
+}
+
+impl Postures {
+    pub(crate) fn new(
+        skeleton: &Skeleton,
+        humanoid: &Humanoid,
+        set: &AnimationSet,
+        clips: &Clips,
+        limbs: &[LimbShape; 4],
+        scale: f64,
+    ) -> Result<Self, AnimationError> {
+        let (ahead, leg) = (humanoid.facing, limbs[2].length);
+        let left = DVec3::Y.cross(ahead);
+        let sampled = |clip: BodyClip| -> Result<([DVec3; 4], DVec3), AnimationError> {
+            let clip = set.clip(clips.get(clip))?;
+            let mut pose = Pose {
+                transforms: set.rest().transforms.clone(),
+            };
+            clip.sample_into(0.0, Playback::Clamp, &mut pose)?;
+            let touch = |index: usize| {
+                let place = limbs[index].place(skeleton, &pose, scale)?;
+                // Feet stand on walls with their balls.
+                Some(place.point(limbs[index].ball))
+            };
+            let hips = joint_in_model(skeleton, &pose, humanoid.hips);
+            let hips = hips.map_or(DVec3::Y * (HIPS * leg), |hips| hips.translation * scale);
+            let touches = core::array::from_fn(|index| touch(index).unwrap_or_default());
+            Ok((touches, hips))
+        };
+        let at = |aside: f64, up: f64, far: f64| (left * aside + DVec3::Y * up + ahead * far) * leg;
+        let (_, hips) = sampled(BodyClip::Idle)?;
+        let mut postures = Self {
+            wall: [
+                at(HANDS[0], HANDS[1], WALL),
+                at(-HANDS[0], HANDS[1], WALL),
+                at(FEET[0], FEET[1], WALL),
+                at(-FEET[0], FEET[1], WALL),
+            ],
+            wall_hips: at(0.0, 0.82, 0.0),
+            edge: at(0.0, EDGE[0], EDGE[1]),
+            edge_width: 0.27 * leg,
+            edge_feet: [
+                at(FEET[0], FEET[1], EDGE[1]),
+                at(-FEET[0], FEET[1], EDGE[1]),
+            ],
+            above: at(0.0, ABOVE, 0.0),
+            above_width: 0.2 * leg,
+            hang_hips: hips,
+            tumble_hips: hips,
+            hips,
+        };
+        if clips.has(BodyClip::Climb) {
+            let (touches, hips) = sampled(BodyClip::Climb)?;
+            // One wall for all: where the palms are. Both sides at the same height.
+            let far = 0.5 * (touches[0] + touches[1]).dot(ahead);
+            postures.wall = core::array::from_fn(|index| {
+                let pair = [touches[index & !1], touches[index | 1]];
+                let up = 0.5 * (pair[0].y + pair[1].y);
+                let apart = 0.5 * (pair[0] - pair[1]).dot(left);
+                let aside = if index & 1 == 0 { apart } else { -apart };
+                left * aside + DVec3::Y * up + ahead * far
+            });
+            postures.wall_hips = hips;
+        }
+        let middle = |touches: &[DVec3; 4]| {
+            let both = 0.5 * (touches[0] + touches[1]);
+            DVec3::Y * both.y + ahead * both.dot(ahead)
+        };
+        let half = |touches: &[DVec3; 4]| 0.5 * (touches[0] - touches[1]).dot(left).abs();
+        if clips.has(BodyClip::Ledge) {
+            let (touches, _) = sampled(BodyClip::Ledge)?;
+            postures.edge = middle(&touches);
+            postures.edge_width = half(&touches);
+            postures.edge_feet = [touches[2], touches[3]];
+        }
+        if clips.has(BodyClip::Hang) {
+            let (touches, hips) = sampled(BodyClip::Hang)?;
+            postures.above = middle(&touches);
+            postures.above_width = half(&touches);
+            postures.hang_hips = hips;
+        }
+        if clips.has(BodyClip::Tumble) {
+            postures.tumble_hips = sampled(BodyClip::Tumble)?.1;
+        }
+        Ok(postures)
+    }
+}

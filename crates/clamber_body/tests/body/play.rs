@@ -1,0 +1,36 @@
+use clamber_body::{Body, BodyFrame, Figure};
+use clamber_scenes::bodies::{Scene, Stage};
+
+/// Plays a scene with a frame per tick, and shows each to `see`.
+pub(crate) fn play(
+    scene: &Scene,
+    figure: &Figure,
+    rate: f64,
+    mut see: impl FnMut(&Stage<'_>, &Body),
+) {
+    let mut stage = Stage::new(scene).unwrap();
+    let mut body = Body::new(figure);
+    let ticks = (scene.seconds * rate).round() as usize;
+    for _ in 0..ticks {
+        stage.tick(1.0 / rate).unwrap();
+        let obstacles = stage.obstacles();
+        body.update(
+            figure,
+            &BodyFrame::new(&stage.climber, &obstacles),
+            1.0 / rate,
+        )
+        .unwrap();
+        drop(obstacles);
+        see(&stage, &body);
+    }
+}
+
+/// A share of values in ascending order; 0 of none.
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    values
+        .get((last as f64 * share).round() as usize)
+        .copied()
+        .unwrap_or(0.0)
+}

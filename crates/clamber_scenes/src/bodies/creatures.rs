@@ -1,0 +1,111 @@
+//! Creatures of 20 m to hold on to.
+
+use std::error::Error;
+
+use clamber_climber::{ClimberConfig, ClimberInput};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::Obstacle;
+use glam::DVec3;
+
+use super::stage::{Scene, Thing};
+use crate::Creature;
+
+/// Height of the creatures, metres.
+const HEIGHT: f64 = 20.0;
+
+/// A creature with a place on it to start from.
+pub struct Mount {
+    /// Clip that it plays.
+    pub clip: &'static str,
+    /// Height of the start, as a share of the creature's.
+    pub height: f64,
+    /// Direction from which the start is looked for.
+    pub from: DVec3,
+}
+
+/// The creature 20 m high, playing a clip whose name contains the mount's; and where a climber starts:
+/// a ball of radius `radius` that touches it.
+///
+/// # Errors
+/// If the clip is missing, or nothing is found at the height.
+pub fn mount(
+    creature: &Creature,
+    mount: &Mount,
+    radius: f64,
+) -> Result<(Thing, DVec3), Box<dyn Error>> {
+    let clip = creature
+        .clip_like(&[mount.clip])
+        .ok_or("the creature has no such clip")?;
+    let rest = creature.skeleton.rest_pose();
+    let (low, high) = creature.bounds(&rest)?;
+    let scale = HEIGHT / f64::from(high.y - low.y);
+    let place = Similarity {
+        scale,
+        translation: DVec3::Y * (-f64::from(low.y) * scale),
+        ..Similarity::IDENTITY
+    };
+    let collider = creature.collider.clone();
+    let mut surface = SkinnedSurface::new(collider.clone());
+    let pose = clip.sample(&rest, 0.0, clamber_surface::rig::Playback::Loop)?;
+    surface.place(&creature.skeleton.palette(&pose)?, place)?;
+    // Towards the nearest skin at that height.
+    let eye = DVec3::Y * (mount.height * HEIGHT) + mount.from * (2.0 * HEIGHT);
+    let mut found = None;
+    for aside in 0..9 {
+        let shift = mount.from.cross(DVec3::Y) * (f64::from(aside - 4) * 0.1 * HEIGHT);
+        let hit = surface.cast_ray(eye + shift, -mount.from, 4.0 * HEIGHT);
+        let nearer = |other: f64| hit.is_some_and(|hit| hit.distance < other);
+        if found.is_none_or(|(distance, _)| nearer(distance)) {
+            found = hit
+                .map(|hit| (hit.distance, hit.point + hit.normal * radius))
+                .or(found);
+        }
+    }
+    let (_, start) = found.ok_or("nothing to hold at this height")?;
+    // Froude: as slow as a creature of this size.
+    let rate = 1.0 / (scale * f64::from(high.y - low.y) / 2.0).sqrt().max(1.0);
+    let animation = (creature.skeleton.clone(), clip.clone());
+    Ok((
+        Thing::creature(collider, animation, rate, move |_| place),
+        start,
+    ))
+}
+
+/// Holds on to a creature and climbs: up for a second, still for a second, aside, down, and so on.
+///
+/// # Errors
+/// As [`mount`].
+pub fn climb(creature: &Creature, at: &Mount, speed: f64) -> Result<Scene, Box<dyn Error>> {
+    let mut config = ClimberConfig::colossus_climber();
+    config.stamina = None;
+    if let Some(grip) = &mut config.grip {
+        grip.climb_speed = speed;
+        grip.hang_acceleration = 60.0;
+    }
+    let (thing, start) = mount(creature, at, config.body.radius)?;
+    let aside = at.from.cross(DVec3::Y);
+    let name = creature.name.clone();
+    Ok(Scene {
+        name: format!("{name} at {speed} m/s"),
+        seconds: 60.0,
+        config,
+        start,
+        things: vec![thing],
+        grips_all: true,
+        input: Box::new(move |moment| {
+            let climb = match (moment.time / 1.5) as u64 % 8 {
+                0 | 4 => DVec3::Y,
+                2 => aside,
+                6 => -aside,
+                3 => DVec3::NEG_Y,
+                _ => DVec3::ZERO,
+            };
+            ClimberInput {
+                grip: true,
+                climb,
+                ..ClimberInput::IDLE
+            }
+        }),
+    })
+}

@@ -1,0 +1,196 @@
+use std::error::Error;
+use std::sync::Arc;
+
+use clamber_climber::{
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, StepRules,
+};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+};
+use clamber_surface::rig::{Clip, JointId, Palette, Playback, Pose, Skeleton};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+
+use crate::controllers::Solid;
+
+/// A pose as a function of time, seconds.
+pub type Motion = Box<dyn Fn(f64) -> Similarity>;
+
+/// Something to stand on or hold.
+pub struct Thing {
+    mesh: Arc<ColliderMesh>,
+    motion: Motion,
+    animation: Option<(Skeleton, Clip)>,
+    /// How much of the clip's seconds pass in a second.
+    rate: f64,
+}
+
+impl Thing {
+    /// A solid that moves. Fur can be gripped, stone has ledges.
+    ///
+    /// # Errors
+    /// If the solid is no mesh.
+    pub fn solid(
+        solid: &Solid,
+        kind: SurfaceKind,
+        motion: impl Fn(f64) -> Similarity + 'static,
+    ) -> Result<Self, Box<dyn Error>> {
+        let mesh = solid.mesh();
+        let positions: Vec<_> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
+        let whole = Influence {
+            joint: JointId(0),
+            weight: 1.0,
+        };
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &mesh.triangles,
+            influences: &vec![whole; positions.len()],
+            joint_count: 1,
+            tags: &vec![SurfaceTag::new(kind); mesh.triangles.len()],
+            ..MeshSource::default()
+        };
+        Ok(Self {
+            mesh: Arc::new(ColliderMesh::build(&source, &BuildOptions::default())?.0),
+            motion: Box::new(motion),
+            animation: None,
+            rate: 1.0,
+        })
+    }
+
+    /// A creature that plays a clip.
+    pub fn creature(
+        mesh: Arc<ColliderMesh>,
+        animation: (Skeleton, Clip),
+        rate: f64,
+        motion: impl Fn(f64) -> Similarity + 'static,
+    ) -> Self {
+        Self {
+            mesh,
+            motion: Box::new(motion),
+            animation: Some(animation),
+            rate,
+        }
+    }
+
+    fn palette(&self, time: f64) -> Result<Palette, Box<dyn Error>> {
+        let Some((skeleton, clip)) = &self.animation else {
+            return Ok(Palette::from_matrices([Affine::IDENTITY]));
+        };
+        let rest: Pose = skeleton.rest_pose();
+        let pose = clip.sample(&rest, time * self.rate, Playback::Loop)?;
+        Ok(skeleton.palette(&pose)?)
+    }
+}
+
+/// What the player sees before a tick.
+pub struct Moment<'a> {
+    /// Seconds since the start.
+    pub time: f64,
+    /// The climber.
+    pub state: &'a ClimberState,
+}
+
+/// What there is, who climbs, and what the player does.
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// Its length.
+    pub seconds: f64,
+    /// The climber.
+    pub config: ClimberConfig,
+    /// Where the climber's ball starts.
+    pub start: DVec3,
+    /// What there is; the index is the obstacle's id.
+    pub things: Vec<Thing>,
+    /// True if all of it can be gripped, and not only fur.
+    pub grips_all: bool,
+    /// What the player does.
+    pub input: Box<dyn Fn(&Moment<'_>) -> ClimberInput>,
+}
+
+/// A scene that is played.
+pub struct Stage<'s> {
+    scene: &'s Scene,
+    /// What there is, as it is now.
+    pub surfaces: Vec<SkinnedSurface>,
+    /// The climber.
+    pub climber: Climber,
+    /// What happened to it in the last tick.
+    pub events: Vec<ClimberEvent>,
+    /// Seconds since the start.
+    pub time: f64,
+}
+
+impl<'s> Stage<'s> {
+    /// At the start.
+    ///
+    /// # Errors
+    /// For a scene with bad numbers.
+    pub fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
+        let mut surfaces = Vec::new();
+        for thing in &scene.things {
+            let mut surface = SkinnedSurface::new(thing.mesh.clone());
+            surface.place(&thing.palette(0.0)?, (thing.motion)(0.0))?;
+            surfaces.push(surface);
+        }
+        Ok(Self {
+            scene,
+            surfaces,
+            climber: Climber::new(scene.config, scene.start)?,
+            events: Vec::new(),
+            time: 0.0,
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'s Scene {
+        self.scene
+    }
+
+    /// What there is, for bodies.
+    pub fn obstacles(&self) -> Vec<(ObstacleId, &dyn Obstacle)> {
+        let surfaces = self.surfaces.iter().enumerate();
+        surfaces
+            .map(|(index, surface)| (ObstacleId(index as u64), surface as &dyn Obstacle))
+            .collect()
+    }
+
+    /// The palette of a thing now.
+    ///
+    /// # Errors
+    /// If its clip is not its skeleton's.
+    pub fn palette(&self, thing: usize) -> Result<Palette, Box<dyn Error>> {
+        self.scene.things[thing].palette(self.time)
+    }
+
+    /// Lets a tick pass: everything moves, then the climber steps. Everything can be gripped that is fur.
+    ///
+    /// # Errors
+    /// For a scene with bad numbers.
+    pub fn tick(&mut self, dt: f64) -> Result<(), Box<dyn Error>> {
+        let input = (self.scene.input)(&Moment {
+            time: self.time,
+            state: self.climber.state(),
+        });
+        self.time += dt;
+        for (thing, surface) in self.scene.things.iter().zip(&mut self.surfaces) {
+            surface.advance(&thing.palette(self.time)?, (thing.motion)(self.time))?;
+        }
+        let obstacles: Vec<(ObstacleId, &dyn Obstacle)> = self
+            .surfaces
+            .iter()
+            .enumerate()
+            .map(|(index, surface)| (ObstacleId(index as u64), surface as &dyn Obstacle))
+            .collect();
+        let rules = if self.scene.grips_all {
+            StepRules::gripping(&|_, _| true)
+        } else {
+            StepRules::default()
+        };
+        let report = self.climber.step_with(&input, &obstacles, &rules, dt)?;
+        self.events = report.events;
+        Ok(())
+    }
+}
