@@ -329,8 +329,10 @@ impl<'a> Retarget<'a> {
             return;
         };
         let toes = |rest: &[DAffine3], limb: &Limb, end: JointId| {
+            // Level: how far the toes are below the ankle differs, but soles are flat.
             let toes = limb.toes.map(|toes| place(rest, toes) - place(rest, end));
-            toes.filter(|way| way.length() > 1e-6)
+            let level = toes.map(|way| DVec3::new(way.x, 0.0, way.z));
+            level.filter(|way| way.length() > 1e-6)
         };
         let ends = [toes(&self.bound[0], from, a), toes(&self.bound[1], to, b)];
         match ends {

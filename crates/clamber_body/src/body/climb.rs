@@ -31,6 +31,9 @@ const STILL: f64 = 0.22;
 const CATCH: f64 = 0.1;
 const FOLLOW: f64 = 0.16;
 
+/// Longest step of a limb that is out of reach.
+const HURRIES: f64 = 0.12;
+
 /// How far a step goes around, away from the skin, metres.
 const LIFT: f64 = 0.05;
 
@@ -40,9 +43,26 @@ const SLOW: f64 = 0.05;
 const RESTS: f64 = 0.2;
 const TIDY: f64 = 0.14;
 
-/// Share of the limb's length at which it has to move on, and the most of it with which it takes a hold.
-const FAR: f64 = 1.03;
+/// The most of a limb's length with which it takes a hold.
 const TAKES: f64 = 0.93;
+
+/// A limb that is stretched more than this may move although another one does.
+const URGENT: f64 = 1.25;
+
+/// A limb that is stretched more than this has to move on.
+const FAR: f64 = 1.0;
+
+/// A limb on its way to something that is farther than this looks for another place.
+const LOST: f64 = 1.4;
+
+/// The body leans towards a place that is farther by up to this share of the limb's length.
+const LEANS: f64 = 0.35;
+
+/// How often a place is looked for, and how often of these nearer to the shoulder; and how far beside what carries the
+/// climber the last ones are, metres.
+const TRIES: usize = 8;
+const SHIFTS: usize = 3;
+const BESIDE: f64 = 0.1;
 
 /// How far from a lost hold another one is taken without a step, metres.
 const SLIPS: f64 = 0.06;
@@ -69,6 +89,10 @@ pub(crate) struct Schedule<'a, 'c> {
     pub(crate) shoulders: [DVec3; 4],
     /// Where the clip has hands and feet.
     pub(crate) root: &'a Root,
+    /// How fast it climbs, relative to what it holds.
+    pub(crate) motion: DVec3,
+    /// The material point that carries the climber.
+    pub(crate) held: DVec3,
     /// Seconds since it took hold.
     pub(crate) since: f64,
 }
@@ -86,7 +110,7 @@ impl Climb {
         }
         let size = context.size();
         // Along what is held; a body of another size moves faster by the root of its size.
-        let speed = context.motion.length() / size.sqrt();
+        let speed = schedule.motion.length() / size.sqrt();
         let is_fast = speed >= FAST;
         let length = (STEP + STEP_PER_SPEED * speed).clamp(STEPS[0], STEPS[1]);
         let is_still = speed < SLOW;
@@ -112,9 +136,9 @@ impl Climb {
             };
             (share * cycle).clamp(TIMES[0], longest.max(TIMES[0]))
         } * size.sqrt();
-        let way = context.motion.normalize_or_zero();
+        let way = schedule.motion.normalize_or_zero();
         // At its landing, a hold is half of the way of its stance ahead of where it belongs then.
-        let swung = context.motion.length() * time;
+        let swung = schedule.motion.length() * time;
         let ahead = way * (swung + 0.5 * (length * size - swung).max(0.0));
         for (index, limb) in limbs.iter_mut().enumerate() {
             let Some(goal) = schedule.goals[index] else {
@@ -144,8 +168,11 @@ impl Climb {
         order.sort_by(|a, b| stretches[*b].total_cmp(&stretches[*a]));
         for index in order {
             let enters = schedule.since < ENTERS || context.is_fresh;
-            if limbs[index].waits && (enters || schedule.may_move(index, is_fast, limbs)) {
+            let is_urgent = stretches[index] > URGENT && stretches[index].is_finite();
+            if limbs[index].waits && (enters || schedule.may_move(index, is_fast, is_urgent, limbs))
+            {
                 let goal = if enters { DVec3::ZERO } else { ahead };
+                let time = if is_urgent { time.min(HURRIES) } else { time };
                 let swings = match (enters, Extremity::ALL[index].is_hand()) {
                     (false, _) => time,
                     (true, true) => CATCH,
@@ -184,7 +211,9 @@ impl Schedule<'_, '_> {
                 }
             }
             Doing::Swinging(swing) => {
-                if !swing.to.follow(&context.around) {
+                let is_there = swing.to.follow(&context.around);
+                let to = swing.to;
+                if !is_there || self.stretch(extremity.index(), &to) > LOST {
                     limb.let_go(&clip);
                 } else if swing.time >= swing.duration {
                     let hold = swing.to;
@@ -217,18 +246,36 @@ impl Schedule<'_, '_> {
         hold.place().position.distance(self.shoulders[index]) / length
     }
 
-    /// True if enough of the others hold.
-    fn may_move(&self, index: usize, is_fast: bool, limbs: &[LimbMemory; 4]) -> bool {
+    /// True if enough of the others hold: never both hands off, and never fewer than two.
+    fn may_move(
+        &self,
+        index: usize,
+        is_fast: bool,
+        is_urgent: bool,
+        limbs: &[LimbMemory; 4],
+    ) -> bool {
+        if !limbs[index].is_planted() {
+            return true;
+        }
         let mut off = (0..4).filter(|&other| {
             other != index && self.goals[other].is_some() && !limbs[other].is_planted()
         });
         // A hand goes with the opposite foot.
         let partner = [3, 2, 1, 0][index];
+        let is_hand = Extremity::ALL[index].is_hand();
         match (off.next(), off.next()) {
             (None, _) => true,
+            (Some(other), None) if is_urgent => !(is_hand && Extremity::ALL[other].is_hand()),
             (Some(other), None) => is_fast && other == partner,
             _ => false,
         }
+    }
+
+    /// Takes a limb from a hold that is out of reach, to another one.
+    pub(crate) fn replace(&self, index: usize, limbs: &mut [LimbMemory; 4]) {
+        let clip = self.context.clip_in_world(self.root, Extremity::ALL[index]);
+        limbs[index].let_go(&clip);
+        self.start(index, DVec3::ZERO, CATCH, limbs);
     }
 
     /// Begins a step of a limb towards its goal, or nearer if that is too far.
@@ -237,27 +284,12 @@ impl Schedule<'_, '_> {
         let Some(goal) = self.goals[index] else {
             return;
         };
-        let length = context.shape(extremity).length;
-        let shoulder = self.shoulders[index] + context.motion * time;
         let mut way = ahead;
-        let mut found = None;
-        for _ in 0..3 {
-            let moved = goal.moved(way);
-            let Some(hold) = moved.find(context, extremity) else {
-                way *= 0.5;
-                continue;
-            };
-            let reach = hold.place().position - shoulder;
-            let beyond = reach.length() - TAKES * length;
-            found = Some(hold);
-            if beyond <= 0.0 {
-                break;
-            }
-            // Back along the skin, by what is too far.
-            let along = reach - goal.out * reach.dot(goal.out);
-            let back = beyond * reach.length() / along.length().max(0.3 * length);
-            way -= along.normalize_or_zero() * back.min(length);
+        if let Some(hold) = limbs[index].hold() {
+            let step = goal.point + way - hold.point();
+            way += step.clamp_length_max(STEPS[1] * context.size()) - step;
         }
+        let found = self.choose(extremity, &goal.moved(way), time);
         let limb = &mut limbs[index];
         let Some(hold) = found else {
             return;
@@ -269,5 +301,45 @@ impl Schedule<'_, '_> {
         } else {
             limb.swing_to(hold, time, LIFT * context.size());
         }
+    }
+
+    /// A place to hold near a goal: nearer to the shoulder if that is too far, and nearer to what carries the climber if
+    /// there is nothing to hold.
+    fn choose(&self, extremity: Extremity, goal: &Goal, time: f64) -> Option<Hold> {
+        let length = self.context.shape(extremity).length;
+        let shoulder = self.shoulders[extremity.index()] + self.motion * time;
+        let mut goal = *goal;
+        let mut best: Option<(f64, Hold)> = None;
+        for attempt in 0..TRIES {
+            if let Some(hold) = goal.find(self.context, extremity) {
+                let reach = hold.place().position - shoulder;
+                let beyond = reach.length() / length - TAKES;
+                if beyond <= 0.0 {
+                    return Some(hold);
+                }
+                if best.is_none_or(|(other, _)| beyond < other) {
+                    best = Some((beyond, hold));
+                }
+                if attempt + 1 < SHIFTS {
+                    // Back along the skin, by what is too far.
+                    let along = reach - goal.out * reach.dot(goal.out);
+                    let back = beyond * length * reach.length() / along.length().max(0.3 * length);
+                    goal.point -= along.normalize_or_zero() * back.min(length);
+                    continue;
+                }
+            }
+            let to = self.held + goal.aside * (BESIDE * self.context.size());
+            goal.point = goal.point.lerp(to, 0.4);
+        }
+        if let Some((beyond, hold)) = best
+            && beyond < LEANS
+        {
+            return Some(hold);
+        }
+        // Whatever is near.
+        goal.point = shoulder - goal.out * (0.4 * length);
+        let hold = goal.near(self.context, extremity, 1.1 * length)?;
+        let beyond = hold.place().position.distance(shoulder) / length - TAKES;
+        (beyond < LEANS).then_some(hold)
     }
 }

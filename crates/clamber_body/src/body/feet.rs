@@ -8,7 +8,9 @@ use super::context::Context;
 use super::event::Plant;
 use super::hold::Hold;
 use super::limb::{Doing, LimbMemory};
+use super::reach::LEG;
 use super::root::Root;
+use super::stance::arc;
 use super::walk::Walk;
 use crate::figure::{LimbShape, Place};
 use crate::{Extremity, Side};
@@ -19,11 +21,14 @@ const UNPLANT: (f64, f64) = (0.35, 0.785);
 const REPLANT: (f64, f64) = (0.13, 0.4);
 
 /// A foot comes down from at most this height without a step of its own, metres.
-const LOW: f64 = 0.04;
+const LOW: f64 = 0.01;
 
 /// Times of steps that the gait does not ask for, seconds: to another place, and straight down.
 const STEP: f64 = 0.26;
 const DOWN: f64 = 0.12;
+
+/// Height from which it takes all of the time straight down, metres.
+const HIGH: f64 = 0.08;
 
 /// How high such a step goes, metres.
 const LIFT: f64 = 0.06;
@@ -34,6 +39,16 @@ const FLOOR: f64 = 0.05;
 /// Steepest ground that soles lie flat on, as the cosine: 50°.
 const STEEP: f64 = 0.64;
 
+/// Slopes on which feet do not roll any more, and up to which they roll as in the clip, as cosines: 33° and 8°.
+const ROLLS: [f64; 2] = [0.84, 0.99];
+
+/// How far a heel is lifted for a leg that is too short, radians, and how often that is halved to find how far.
+const HEEL_UP: f64 = 0.9;
+const HALVINGS: usize = 12;
+
+/// A foot that is out of reach by more than this share of the leg leaves its place early.
+const EARLY: f64 = 1.0;
+
 /// Where the ground is looked for below a foot, metres.
 const ABOVE: f64 = 0.6;
 const BELOW: f64 = 0.9;
@@ -42,6 +57,7 @@ pub(crate) fn step(
     context: &Context<'_>,
     stand: &Root,
     walk: &Walk,
+    hips: [DVec3; 2],
     limbs: &mut [LimbMemory; 4],
     plants: &mut Vec<Plant>,
 ) {
@@ -54,6 +70,7 @@ pub(crate) fn step(
             stand,
             walk,
             side,
+            hip: hips[side.index()],
             shape: context.shape(extremity),
             clip: context.clip_in_world(stand, extremity),
             memory: limbs[extremity.index()],
@@ -63,15 +80,41 @@ pub(crate) fn step(
     }
 }
 
-/// Where a foot is, after [`step`].
-pub(crate) fn place(context: &Context<'_>, stand: &Root, limb: &LimbMemory, side: Side) -> Place {
+/// Where a foot is, after [`step`]. `hip` is where its leg begins: somebody who walks lifts the heel of a foot that stays
+/// behind before the leg is too short.
+pub(crate) fn place(
+    context: &Context<'_>,
+    stand: &Root,
+    walk: &Walk,
+    limb: &LimbMemory,
+    (side, hip): (Side, DVec3),
+) -> Place {
     let extremity = Extremity::Foot(side);
     let clip = context.clip_in_world(stand, extremity);
     match &limb.doing {
-        Doing::Free => limb.kept(&raised(&clip, context.up, limb.ground.value)),
+        Doing::Free => limb.kept(&over_ground(context, &clip, limb, extremity)),
         Doing::Planted(hold) => {
-            let pitch = pitch(&context.clip[extremity.index()]);
-            limb.kept(&rolled(hold, context.shape(extremity), pitch))
+            let pitch = pitch(context, extremity, hold);
+            let shape = context.shape(extremity);
+            let at = |pitch: f64| limb.kept_about(&rolled(hold, shape, pitch), hold.touching);
+            let place = at(pitch);
+            let reach = LEG * shape.length;
+            let is_behind = (place.position - hip).dot(context.motion) < 0.0;
+            // Down stairs, toes come first.
+            let may_roll = is_behind || hold.normal().dot(context.up) > ROLLS[1];
+            if !walk.is_going() || !may_roll || place.position.distance(hip) <= reach {
+                return place;
+            }
+            let (mut low, mut high) = (0.0, HEEL_UP);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if at(pitch.min(0.0) - middle).position.distance(hip) > reach {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            at(pitch.min(0.0) - high)
         }
         Doing::Swinging(swing) => swing.place(),
     }
@@ -82,6 +125,8 @@ struct Foot<'a, 'c> {
     stand: &'a Root,
     walk: &'a Walk,
     side: Side,
+    /// Where its leg begins.
+    hip: DVec3,
     shape: &'a LimbShape,
     /// Where the clip has it, on level ground.
     clip: Place,
@@ -98,6 +143,10 @@ impl Foot<'_, '_> {
         self.follow();
         match self.memory.doing {
             Doing::Planted(_) if air.is_some() => self.lift(),
+            Doing::Planted(hold) if self.walk.is_going() && self.is_left_behind(&hold) => {
+                self.lift();
+                self.memory.waits = true;
+            }
             Doing::Planted(hold) => {
                 let (distance, angle) = self.away(&hold);
                 let size = self.context.size();
@@ -122,7 +171,9 @@ impl Foot<'_, '_> {
             return;
         }
         self.look_ahead(air);
-        if air.is_none() {
+        // A foot that left the ground early waits for its turn.
+        self.memory.waits &= air.is_none() && self.walk.is_going();
+        if air.is_none() && !self.memory.waits {
             self.come_down(plants);
         }
     }
@@ -140,17 +191,23 @@ impl Foot<'_, '_> {
         }
     }
 
+    fn over_ground(&self) -> Place {
+        let extremity = Extremity::Foot(self.side);
+        over_ground(self.context, &self.clip, &self.memory, extremity)
+    }
+
     /// Leaves the ground, and goes on as the clip does.
     fn lift(&mut self) {
         let hold = match &self.memory.doing {
             Doing::Planted(hold) => Some(*hold),
             _ => None,
         };
-        let height = hold.map_or(0.0, |hold| {
-            (hold.point() - self.stand.position).dot(self.context.up)
-        });
-        self.memory.ground = Spring::at(height);
-        let target = raised(&self.clip, self.context.up, height);
+        let up = self.context.up;
+        if let Some(hold) = hold {
+            self.memory.ground = Spring::at((hold.point() - self.stand.position).dot(up));
+            self.memory.tilt = Spring::at(hold.normal());
+        }
+        let target = self.over_ground();
         self.memory.let_go(&target);
     }
 
@@ -164,12 +221,19 @@ impl Foot<'_, '_> {
         (level(way).length(), angle)
     }
 
+    /// True if the body has walked away from it, so that even on its toes it does not reach.
+    fn is_left_behind(&self, hold: &Hold) -> bool {
+        let toes = rolled(hold, self.shape, -HEEL_UP).position - self.hip;
+        toes.dot(self.context.motion) < 0.0 && toes.length() > EARLY * self.shape.length
+    }
+
     /// Watches the ground below and where it will come down, so that it goes over what is in its way.
     fn look_ahead(&mut self, air: Option<(f64, f64)>) {
         let up = self.context.up;
         let height = |point: DVec3| {
-            let found = self.below(point)?;
-            Some((found.contact.point - self.stand.position).dot(up))
+            let contact = self.below(point)?.contact;
+            let height = (contact.point - self.stand.position).dot(up);
+            Some((height, contact.normal))
         };
         let here = height(self.clip.point(self.shape.contact));
         let ahead = air.and_then(|(_, left)| {
@@ -179,15 +243,17 @@ impl Foot<'_, '_> {
             let time = left / self.walk.rate.max(1e-6);
             height(self.stand.point(landing) + level * time)
         });
-        let goal = match (here, ahead) {
-            (Some(here), Some(ahead)) => here.max(ahead),
-            (Some(height), None) | (None, Some(height)) => height,
-            (None, None) => 0.0,
+        let (height, normal) = match (here, ahead) {
+            (Some(here), Some(ahead)) => (here.0.max(ahead.0), ahead.1),
+            (Some(ground), None) | (None, Some(ground)) => ground,
+            (None, None) => (0.0, up),
         };
         if self.context.is_fresh {
-            self.memory.ground = Spring::at(goal);
+            self.memory.ground = Spring::at(height);
+            self.memory.tilt = Spring::at(normal);
         } else {
-            self.memory.ground.step(goal, FLOOR, self.context.dt);
+            self.memory.ground.step(height, FLOOR, self.context.dt);
+            self.memory.tilt.step(normal, FLOOR, self.context.dt);
         }
     }
 
@@ -205,9 +271,8 @@ impl Foot<'_, '_> {
 
     /// The ground below the part of a place that comes down first.
     fn find(&self, place: &Place) -> Option<Hold> {
-        let up = self.context.up;
         let along = place.rotation * DVec3::X;
-        let touching = if along.dot(up) > 0.0 {
+        let touching = if along.dot(self.memory.tilt.value) > 0.0 {
             self.shape.heel
         } else {
             self.shape.ball
@@ -217,7 +282,7 @@ impl Foot<'_, '_> {
     }
 
     fn come_down(&mut self, plants: &mut Vec<Plant>) {
-        let target = raised(&self.clip, self.context.up, self.memory.ground.value);
+        let target = self.over_ground();
         let shown = self.memory.kept(&target);
         let Some(hold) = self.find(&shown) else {
             return;
@@ -227,16 +292,19 @@ impl Foot<'_, '_> {
         if self.context.is_fresh {
             self.memory.doing = Doing::Planted(hold);
         } else if height < LOW * size {
-            let before = rolled(
-                &hold,
-                self.shape,
-                pitch(&self.context.clip[Extremity::Foot(self.side).index()]),
-            );
+            let pitch = pitch(self.context, Extremity::Foot(self.side), &hold);
+            let now = rolled(&hold, self.shape, pitch);
+            // It has come down on the ground below it: only its height and its turn differ.
+            let raised = Place {
+                position: now.position + self.context.up * height.max(0.0),
+                rotation: shown.rotation,
+            };
             self.memory.doing = Doing::Planted(hold);
-            self.memory.keep(&before);
+            self.memory.stop(&raised, &now);
             self.tell(&hold, plants);
         } else if height < BELOW * size {
-            self.memory.swing_to(hold, DOWN, 0.0);
+            let share = (height / (HIGH * size)).clamp(0.2, 1.0);
+            self.memory.swing_to(hold, DOWN * share, 0.0);
         }
     }
 
@@ -253,16 +321,28 @@ fn opposite(side: Side) -> Side {
     }
 }
 
-fn raised(place: &Place, up: DVec3, height: f64) -> Place {
-    Place {
-        position: place.position + up * height,
-        ..*place
-    }
+/// A place on level ground, taken to the height and the slope of the ground below it.
+fn over_ground(
+    context: &Context<'_>,
+    clip: &Place,
+    limb: &LimbMemory,
+    extremity: Extremity,
+) -> Place {
+    let contact = context.shape(extremity).contact;
+    let normal = limb.tilt.value.normalize_or(context.up);
+    let rotation = (arc(context.up, normal) * clip.rotation).normalize();
+    let sole = clip.point(contact) + context.up * limb.ground.value;
+    Place::with_point_at(sole, contact, rotation)
 }
 
-/// How far a clip has the toes above the heel, radians.
-fn pitch(clip: &Place) -> f64 {
-    libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0))
+/// How far the toes are above the heel, radians: as in the clip on level ground, and not at all on steep slopes, where feet
+/// go flat.
+fn pitch(context: &Context<'_>, extremity: Extremity, hold: &Hold) -> f64 {
+    let clip = &context.clip[extremity.index()];
+    let pitch = libm::asin((clip.rotation * DVec3::X).y.clamp(-1.0, 1.0));
+    let [steep, level] = ROLLS;
+    let upright = hold.normal().dot(context.up);
+    pitch * ((upright - steep) / (level - steep)).clamp(0.0, 1.0)
 }
 
 /// A foot on its hold that rolls over its heel or its ball.

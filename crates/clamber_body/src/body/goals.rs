@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::context::Context;
-use super::hold::Hold;
+use super::hold::{Found, Hold};
 use super::root::Root;
 use super::stance::Stance;
 use crate::Extremity;
@@ -41,7 +41,7 @@ pub(crate) struct Goal {
     above: DVec3,
     ahead: DVec3,
     /// The body's left or right, as the hand or foot is.
-    aside: DVec3,
+    pub(crate) aside: DVec3,
     kind: Kind,
 }
 
@@ -157,6 +157,21 @@ impl Goal {
             // What is nearest from within a wall would be its back.
             (found.contact.normal.dot(self.out) > -0.5).then_some(found)
         })?;
+        Some(self.hold(context, extremity, &found))
+    }
+
+    /// Whatever is nearest to the goal, within a distance.
+    pub(crate) fn near(
+        &self,
+        context: &Context<'_>,
+        extremity: Extremity,
+        reach: f64,
+    ) -> Option<Hold> {
+        let found = context.around.nearest(self.point, reach)?;
+        Some(self.hold(context, extremity, &found))
+    }
+
+    fn hold(&self, context: &Context<'_>, extremity: Extremity, found: &Found<'_>) -> Hold {
         let normal = found.contact.normal;
         let shape = context.shape(extremity);
         let (along, outward, touching) = if extremity.is_hand() {
@@ -170,6 +185,6 @@ impl Goal {
             let tip = DVec3::new(shape.ball.x * TIP, 0.6 * shape.ball.y, shape.ball.z);
             (into, self.above, tip)
         };
-        Some(Hold::new(&found, along, outward, touching))
+        Hold::new(found, along, outward, touching)
     }
 }

@@ -106,6 +106,11 @@ impl Ground {
         self.rate = rate;
     }
 
+    /// The ground's rise per metre of the way.
+    pub(crate) fn slope(&self, speed: f64) -> f64 {
+        if speed > 0.1 { self.rate / speed } else { 0.0 }
+    }
+
     pub(crate) fn height(&self) -> f64 {
         self.found + self.error.value
     }

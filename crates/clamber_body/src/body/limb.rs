@@ -66,7 +66,9 @@ pub(crate) struct LimbMemory {
     pub(crate) pole: PoleMemory,
     /// Height of the ground below a foot that steps, above the root.
     pub(crate) ground: Spring<f64>,
-    /// It should move to another place, and waits for its turn.
+    /// Normal of that ground.
+    pub(crate) tilt: Spring<DVec3>,
+    /// It should move to another place or, for a foot that left the ground early, come down, and waits for its turn.
     pub(crate) waits: bool,
 }
 
@@ -81,6 +83,7 @@ impl LimbMemory {
             turn: Spring::default(),
             pole: PoleMemory::default(),
             ground: Spring::default(),
+            tilt: Spring::default(),
             waits: false,
         }
     }
@@ -88,7 +91,7 @@ impl LimbMemory {
     pub(crate) fn carry(&mut self, carry: &Carry) {
         self.shown = carry.place(&self.shown);
         self.velocity = carry.vector(self.velocity);
-        for spring in [&mut self.offset, &mut self.turn] {
+        for spring in [&mut self.offset, &mut self.turn, &mut self.tilt] {
             spring.value = carry.vector(spring.value);
             spring.velocity = carry.vector(spring.velocity);
         }
@@ -140,6 +143,12 @@ impl LimbMemory {
         ));
     }
 
+    /// Comes down where it is now, and is at rest: what is left is the difference to `target`.
+    pub(crate) fn stop(&mut self, now: &Place, target: &Place) {
+        self.offset = Spring::at(now.position - target.position);
+        self.turn = Spring::at(rotation_vector(now.rotation * target.rotation.conjugate()));
+    }
+
     /// Ends the difference: it is where it should be.
     pub(crate) fn settle(&mut self) {
         self.offset = Spring::default();
@@ -152,6 +161,12 @@ impl LimbMemory {
             position: target.position + self.offset.value,
             rotation: (turn_by(self.turn.value) * target.rotation).normalize(),
         }
+    }
+
+    /// [`LimbMemory::kept`], turned about a point of the hand or foot, at `pivot` from its joint.
+    pub(crate) fn kept_about(&self, target: &Place, pivot: DVec3) -> Place {
+        let rotation = (turn_by(self.turn.value) * target.rotation).normalize();
+        Place::with_point_at(target.point(pivot) + self.offset.value, pivot, rotation)
     }
 
     /// How far it still is from its target, metres.

@@ -21,6 +21,8 @@ pub(crate) struct Memory {
     pub(crate) stance: Stance,
     /// Seconds in this stance.
     pub(crate) since: f64,
+    /// Seconds without ground.
+    pub(crate) in_air: f64,
     /// Where the model was shown, and how fast it moved relative to the carrier.
     pub(crate) root: Root,
     pub(crate) velocity: DVec3,

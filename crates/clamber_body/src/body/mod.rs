@@ -135,6 +135,25 @@ impl Body {
         Some([shape.heel, shape.ball].map(|point| root.point(place.point(point))))
     }
 
+    #[doc(hidden)]
+    pub fn describe(&self, extremity: Extremity) -> String {
+        let m = self.memory.as_ref().unwrap();
+        let limb = &m.limbs[extremity.index()];
+        let text: String = match &limb.doing {
+            limb::Doing::Free => format!("free {}", limb.waits),
+            limb::Doing::Planted(_) => "planted".into(),
+            limb::Doing::Swinging(s) => format!("swing {:.2}/{:.2}", s.time, s.duration),
+        };
+        format!(
+            "{text} drop {:.3} ground {:.3} going {:.2} rate {:.2} off {:.3}",
+            m.drop,
+            m.ground.height(),
+            m.walk.going,
+            m.walk.rate,
+            m.offset.value.y
+        )
+    }
+
     /// Forgets all places, as after a teleport: the next update puts the body in place at once, and tells nothing.
     pub fn reset(&mut self) {
         self.memory = None;

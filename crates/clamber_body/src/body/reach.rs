@@ -12,7 +12,10 @@ pub(crate) const LEG: f64 = 0.992;
 const ROUNDS: usize = 8;
 
 /// How far the body moves for its limbs, metres.
-const MOST: f64 = 0.35;
+const MOST: f64 = 0.8;
+
+/// Nearer than this share of their length, limbs push the body away.
+const NEAR: f64 = 0.25;
 
 /// How far and how fast the pelvis goes down for its feet, metres and metres a second, and the time for half of the way up
 /// again, seconds (Unreal's foot placement: 0.5 m, and 0.09 s).
@@ -20,12 +23,18 @@ const DEEPEST: f64 = 0.5;
 const SINKS: f64 = 1.2;
 const RISES: f64 = 0.09;
 
+/// The same for who walks, seconds: from step to step it stays down.
+const STEADY: f64 = 2.0;
+const SINKS_WALKING: f64 = 0.5;
+
 /// A limb's root in the world, where its end should be, and how long it may get.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tie {
     pub(crate) root: DVec3,
     pub(crate) end: DVec3,
     pub(crate) reach: f64,
+    /// Of the straight limb.
+    pub(crate) length: f64,
 }
 
 /// The displacement of the body by which all ties are within reach, if that is not too far: onto one ball after the other.
@@ -34,13 +43,23 @@ pub(crate) fn pulled(ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
     for _ in 0..ROUNDS {
         for tie in ties.iter().flatten() {
             let way = tie.end - (tie.root + moved);
-            let beyond = way.length() - tie.reach;
-            if beyond > 0.0 {
-                moved += way.normalize_or_zero() * beyond;
-            }
+            let distance = way.length();
+            let wanted = distance.clamp(NEAR * tie.length, tie.reach);
+            moved += way.normalize_or_zero() * (distance - wanted);
         }
     }
     moved.clamp_length_max(MOST * size)
+}
+
+/// The limb that is farthest out of reach after the body moved; `None` if all reach.
+pub(crate) fn out_of_reach(ties: &[Option<Tie>; 4], moved: DVec3) -> Option<usize> {
+    let beyond = ties.iter().enumerate().filter_map(|(index, tie)| {
+        let tie = tie.as_ref()?;
+        let share = (tie.end - (tie.root + moved)).length() / tie.length;
+        (share > 1.0).then_some((index, share))
+    });
+    let worst = beyond.max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.map(|(index, _)| index)
 }
 
 /// How far the pelvis has to go down for its feet: the hip above each foot meets the ball about the ankle (Johansen 2009,
@@ -56,12 +75,13 @@ pub(crate) fn needed_drop(ties: &[Option<Tie>; 2], up: DVec3) -> f64 {
     drops.fold(0.0, f64::max)
 }
 
-/// The pelvis's way down after another `dt` seconds.
-pub(crate) fn dropped(drop: f64, needed: f64, size: f64, dt: f64) -> f64 {
+/// The pelvis's way down after another `dt` seconds. Who walks keeps the pelvis steady.
+pub(crate) fn dropped(drop: f64, needed: f64, walks: bool, size: f64, dt: f64) -> f64 {
     let needed = needed.min(DEEPEST * size);
     if needed > drop {
-        needed.min(drop + SINKS * size.sqrt() * dt)
+        let sinks = if walks { SINKS_WALKING } else { SINKS };
+        needed.min(drop + sinks * size.sqrt() * dt)
     } else {
-        damp(drop, needed, RISES, dt)
+        damp(drop, needed, if walks { STEADY } else { RISES }, dt)
     }
 }

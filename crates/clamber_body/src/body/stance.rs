@@ -92,10 +92,10 @@ impl Stance {
             (Self::Wall, Some(support)) => {
                 let normal = support.normal_in_world();
                 let away = (state.position - support.attachment.point).dot(normal);
-                let skin = state.position - normal * away;
-                let far = postures.wall[0].dot(ahead);
+                // By the ball's centre, so that around corners it turns and does not jump.
+                let far = postures.wall[0].dot(ahead) - away;
                 let waist = DVec3::Y * (postures.wall_hips.y + WAIST * leg) + ahead * far;
-                Root::with_point_at(waist, skin, rotation)
+                Root::with_point_at(waist, state.position, rotation)
             }
             (Self::Hang, Some(_)) => {
                 let hips = state.position - above * (BELOW * leg);

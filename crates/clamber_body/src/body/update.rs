@@ -1,6 +1,7 @@
 //! One frame of a body: what carries it, how it stands, where hands and feet are, and the pose that follows.
 
 use clamber_animation::{RotationSpring, Spring, joint_in_model};
+use clamber_climber::ClimberMode;
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::rig::Pose;
 use glam::{DQuat, DVec3};
@@ -27,6 +28,10 @@ use crate::{BodyError, Extremity, Figure};
 
 /// Times for half of a turn of the body, and of a difference between two stances, seconds.
 const TURN: f64 = 0.11;
+
+/// The same on a wall, where hands and feet have to follow around corners.
+const TURN_ON_WALL: f64 = 0.22;
+
 const OFFSET: f64 = 0.09;
 
 /// The fastest difference between two stances that is kept, metres a second: a body that lands from higher goes down as far.
@@ -49,6 +54,10 @@ const ROLLS: f64 = 8.0;
 /// Time for half of a change of the gaze's weight, seconds.
 const GAZE: f64 = 0.15;
 
+/// Depth of what is stepped down from, as a share of the leg, and how long that takes at most, seconds.
+const STEP_DOWN: f64 = 0.5;
+const STEP_DOWN_TIME: f64 = 0.3;
+
 /// Softness of limbs on their way, and how far from its clip a limb is reached like that, metres.
 const SOFT: f64 = 0.03;
 const SOFT_WITHIN: f64 = 0.05;
@@ -62,6 +71,8 @@ pub(crate) struct Update<'a> {
     dt: f64,
     up: DVec3,
     stance: Stance,
+    /// Seconds without ground, while it stands all the same.
+    in_air: f64,
     carry: Carry,
     /// Of the last frame; `None` in the first, and after a teleport.
     memory: Option<Memory>,
@@ -85,14 +96,36 @@ impl<'a> Update<'a> {
                 TELEPORT * figure.leg_length() + WAYS * (speed + memory.motion.length()) * dt;
             state.position.distance(expected) <= most
         };
-        Self {
+        let memory = memory.filter(is_here);
+        let mut update = Self {
             figure,
             frame,
             dt,
             up: frame.config.up(),
             stance: Stance::of(state),
+            in_air: 0.0,
             carry,
-            memory: memory.filter(is_here),
+            memory,
+        };
+        update.step_down();
+        update
+    }
+
+    /// Who steps down from something low is not in the air yet.
+    fn step_down(&mut self) {
+        let state = self.frame.state;
+        let Some(memory) = &self.memory else {
+            return;
+        };
+        let falls = state.mode == ClimberMode::Falling && !state.flying.jumping;
+        if !falls || memory.stance != Stance::Upright {
+            return;
+        }
+        self.in_air = memory.in_air + self.dt;
+        let below = self.frame.config.body.radius + STEP_DOWN * self.figure.leg_length();
+        let ground = self.around().cast(state.position, -self.up, below);
+        if self.in_air < STEP_DOWN_TIME && ground.is_some() {
+            self.stance = Stance::Upright;
         }
     }
 
@@ -119,7 +152,9 @@ impl<'a> Update<'a> {
             self.dt,
         )?;
         let context = self.context(pose, motion);
-        let ground = self.ground(motion);
+        let kept = self.kept_offset();
+        let aside = kept.map_or(DVec3::ZERO, |offset| self.level(offset.value));
+        let ground = self.ground(motion, aside);
         let target = self.stance.root(
             self.figure,
             state,
@@ -127,7 +162,7 @@ impl<'a> Update<'a> {
             turn.rotation,
             ground.height(),
         );
-        let offset = self.offset(&target, motion);
+        let offset = kept.unwrap_or_else(|| self.new_offset(&target, motion));
         let level = offset.value - self.up * offset.value.dot(self.up);
         let stand = Root {
             position: target.position + level,
@@ -143,72 +178,45 @@ impl<'a> Update<'a> {
         let mut climb = self.memory.map_or(Climb::default(), |memory| memory.climb);
         let since = self.memory.map_or(0.0, |memory| memory.since + self.dt);
         let since = if before == self.stance { since } else { 0.0 };
+        let mut goals = goals::goals(&context, self.stance, &target);
+        for (goal, busy) in goals.iter_mut().zip(player.busy_hands()) {
+            *goal = goal.filter(|_| !busy);
+        }
+        let is_new = before.is_held() && before != self.stance;
+        let shown_before = root;
+        let schedule = Schedule {
+            context: &context,
+            goals,
+            shoulders,
+            root: &shown_before,
+            motion: self.climbing(motion),
+            held: state
+                .support
+                .map_or(state.position, |support| support.attachment.point),
+            since: if is_new { ENTERED } else { since },
+        };
         if self.stance.is_held() {
-            let mut goals = goals::goals(&context, self.stance, &target);
-            for (goal, busy) in goals.iter_mut().zip(player.busy_hands()) {
-                *goal = goal.filter(|_| !busy);
-            }
-            let held_since = if before.is_held() && before != self.stance {
-                ENTERED
-            } else {
-                since
-            };
-            let schedule = Schedule {
-                context: &context,
-                goals,
-                shoulders,
-                root: &root,
-                since: held_since,
-            };
             climb.step(&schedule, &mut limbs, plants);
         } else if self.stance == Stance::Upright {
-            feet::step(&context, &stand, &walk, &mut limbs, plants);
+            let hips = [shoulders[2], shoulders[3]];
+            feet::step(&context, &stand, &walk, hips, &mut limbs, plants);
         }
-        // Where hands and feet have to be, whatever the body does.
-        let mut ends: [Option<Place>; 4] = [None; 4];
-        for extremity in Extremity::ALL {
-            let limb = &limbs[extremity.index()];
-            ends[extremity.index()] = match (&limb.doing, extremity) {
-                (_, Extremity::Foot(side)) if self.stance == Stance::Upright => {
-                    Some(feet::place(&context, &stand, limb, side))
-                }
-                (Doing::Free, _) => None,
-                (Doing::Planted(hold), _) => Some(limb.kept(&hold.place())),
-                (Doing::Swinging(swing), _) => Some(swing.place()),
-            };
-        }
-        let tie = |index: usize, share: f64| {
-            let end = ends[index]?;
-            let is_on = !matches!(limbs[index].doing, Doing::Free);
-            let reach = share * self.figure.limb(Extremity::ALL[index]).length;
-            is_on.then_some(Tie {
-                root: shoulders[index],
-                end: end.position,
-                reach,
-            })
-        };
+        let mut ends = self.ends(&context, (&stand, &walk), &shoulders, &limbs);
         let size = context.size();
         let mut drop = 0.0;
         if self.stance == Stance::Upright {
-            let was = self
-                .memory
-                .filter(|_| before == self.stance)
-                .map_or(0.0, |memory| memory.drop);
-            let needed = reach::needed_drop(&[tie(2, reach::LEG), tie(3, reach::LEG)], self.up);
+            let was = self.memory.filter(|_| before == self.stance);
+            let ties = self.ties(&ends, &shoulders);
+            let needed = reach::needed_drop(&[ties[2], ties[3]], self.up);
+            let was = was.map_or(0.0, |memory| memory.drop);
             drop = if context.is_fresh {
                 needed
             } else {
-                reach::dropped(was, needed, size, self.dt)
+                reach::dropped(was, needed, walk.is_going(), size, self.dt)
             };
             root.position -= self.up * drop;
         } else if self.stance.is_held() {
-            let ties = [
-                tie(0, reach::ARM),
-                tie(1, reach::ARM),
-                tie(2, reach::LEG),
-                tie(3, reach::LEG),
-            ];
-            root.position += reach::pulled(&ties, size);
+            root.position += self.pull(&context, (&stand, &walk), &schedule, &mut limbs, &mut ends);
         }
         let legs = self.legs(&context, pose, &root, before);
         let down = root.rotation * DVec3::NEG_Y;
@@ -267,6 +275,7 @@ impl<'a> Update<'a> {
             position: state.position,
             stance: self.stance,
             since,
+            in_air: self.in_air,
             velocity: self.velocity(&root),
             base: state.base_velocity,
             root,
@@ -303,6 +312,17 @@ impl<'a> Update<'a> {
                 motion - normal * motion.dot(normal)
             }
             _ => motion,
+        }
+    }
+
+    /// How fast it climbs along what it holds: hands that hang stay.
+    fn climbing(&self, motion: DVec3) -> DVec3 {
+        let state = self.frame.state;
+        let aside = self.up.cross(state.heading);
+        match self.stance {
+            Stance::Wall => motion,
+            Stance::Ledge if state.ledge_hanging.pull_up == 0.0 => aside * aside.dot(motion),
+            _ => DVec3::ZERO,
         }
     }
 
@@ -343,7 +363,12 @@ impl<'a> Update<'a> {
                 (rotation_from_axis_angle(axis, rate * self.dt) * turn.rotation).normalize();
             turn.velocity = DVec3::ZERO;
         } else {
-            turn.step(wanted, TURN, self.dt);
+            let half = if self.stance == Stance::Wall {
+                TURN_ON_WALL
+            } else {
+                TURN
+            };
+            turn.step(wanted, half, self.dt);
         }
         (turn, slow)
     }
@@ -359,13 +384,14 @@ impl<'a> Update<'a> {
         match &self.memory {
             Some(memory) => {
                 let mut walk = memory.walk;
-                walk.step(self.figure, level, directions, self.dt);
+                let slope = memory.ground.slope(memory.motion.length());
+                walk.step(self.figure, level, directions, slope, self.dt);
                 walk
             }
             None => {
                 let mut walk = Walk::standing(self.figure);
                 // Long enough for every mix.
-                walk.step(self.figure, level, directions, 10.0);
+                walk.step(self.figure, level, directions, 0.0, 10.0);
                 walk.phase = 0.0;
                 walk
             }
@@ -400,9 +426,9 @@ impl<'a> Update<'a> {
         }
     }
 
-    fn ground(&self, motion: DVec3) -> Ground {
+    fn ground(&self, motion: DVec3, aside: DVec3) -> Ground {
         let state = self.frame.state;
-        let bottom = state.position - self.up * self.frame.config.body.radius;
+        let bottom = state.position + aside - self.up * self.frame.config.body.radius;
         let around = self.around();
         let look = Look {
             around: &around,
@@ -423,18 +449,29 @@ impl<'a> Update<'a> {
         }
     }
 
-    /// The difference between where the model is shown and where its stance has it.
-    fn offset(&self, target: &Root, motion: DVec3) -> Spring<DVec3> {
+    /// What is left of the difference between where the model is shown and where its stance has it; `None` where the stance
+    /// is new.
+    fn kept_offset(&self) -> Option<Spring<DVec3>> {
+        let memory = self.memory.filter(|memory| memory.stance == self.stance)?;
+        let mut offset = memory.offset;
+        offset.value = self.carry.vector(offset.value);
+        offset.velocity = self.carry.vector(offset.velocity);
+        if self.stance == Stance::Upright {
+            // A step up or a push moves the climber at once, and the body after it.
+            let state = self.frame.state;
+            let motion = self.level(state.velocity - state.base_velocity);
+            let expected = self.carry.point(memory.position) + motion * self.dt;
+            offset.value += self.level(expected - state.position);
+        }
+        offset.step(DVec3::ZERO, OFFSET, self.dt);
+        Some(offset)
+    }
+
+    /// That difference in a new stance, so that the model goes on as it did.
+    fn new_offset(&self, target: &Root, motion: DVec3) -> Spring<DVec3> {
         let Some(memory) = &self.memory else {
             return Spring::default();
         };
-        if memory.stance == self.stance {
-            let mut offset = memory.offset;
-            offset.value = self.carry.vector(offset.value);
-            offset.velocity = self.carry.vector(offset.velocity);
-            offset.step(DVec3::ZERO, OFFSET, self.dt);
-            return offset;
-        }
         // It goes on as it did, and comes to rest at its new place.
         let velocity =
             self.carry.vector(memory.velocity) + memory.base - self.frame.state.base_velocity;
@@ -481,6 +518,84 @@ impl<'a> Update<'a> {
                 limb.let_go(&clip);
             }
         }
+    }
+
+    /// The way of the body by which hands and feet reach what they hold. What cannot be reached is let go: limbs on their
+    /// way first, then feet, and the last hand never, unless all of the way does not suffice.
+    fn pull(
+        &self,
+        context: &Context<'_>,
+        stand: (&Root, &Walk),
+        schedule: &Schedule<'_, '_>,
+        limbs: &mut [LimbMemory; 4],
+        ends: &mut [Option<Place>; 4],
+    ) -> DVec3 {
+        let size = context.size();
+        let mut ties = self.ties(ends, &schedule.shoulders);
+        // Each limb is dropped at most once while it is on its way, and once from its hold.
+        for _ in 0..2 * Extremity::ALL.len() {
+            let pulled = reach::pulled(&ties, size);
+            let Some(worst) = reach::out_of_reach(&ties, pulled) else {
+                return pulled;
+            };
+            let is_last_hand = worst < 2 && !limbs[1 - worst].is_planted();
+            let on_its_way =
+                (0..4).find(|index| ties[*index].is_some() && !limbs[*index].is_planted());
+            let foot = (2..4).find(|index| ties[*index].is_some());
+            let dropped = match (on_its_way, foot) {
+                (Some(index), _) if is_last_hand || index == worst => index,
+                (None, Some(foot)) if is_last_hand => foot,
+                _ => worst,
+            };
+            if limbs[dropped].is_planted() {
+                schedule.replace(dropped, limbs);
+                *ends = self.ends(context, stand, &schedule.shoulders, limbs);
+            }
+            ties[dropped] = None;
+        }
+        DVec3::ZERO
+    }
+
+    /// Where hands and feet have to be, whatever the body does.
+    fn ends(
+        &self,
+        context: &Context<'_>,
+        (stand, walk): (&Root, &Walk),
+        shoulders: &[DVec3; 4],
+        limbs: &[LimbMemory; 4],
+    ) -> [Option<Place>; 4] {
+        Extremity::ALL.map(|extremity| {
+            let limb = &limbs[extremity.index()];
+            match (&limb.doing, extremity) {
+                (_, Extremity::Foot(side)) if self.stance == Stance::Upright => {
+                    let hip = shoulders[extremity.index()];
+                    Some(feet::place(context, stand, walk, limb, (side, hip)))
+                }
+                (Doing::Free, _) => None,
+                (Doing::Planted(hold), _) => Some(limb.kept(&hold.place())),
+                (Doing::Swinging(swing), _) => Some(swing.place()),
+            }
+        })
+    }
+
+    /// What the body has to stay near to.
+    fn ties(&self, ends: &[Option<Place>; 4], shoulders: &[DVec3; 4]) -> [Option<Tie>; 4] {
+        Extremity::ALL.map(|extremity| {
+            let index = extremity.index();
+            let end = ends[index]?;
+            let length = self.figure.limb(extremity).length;
+            let share = if extremity.is_hand() {
+                reach::ARM
+            } else {
+                reach::LEG
+            };
+            Some(Tie {
+                root: shoulders[index],
+                end: end.position,
+                reach: share * length,
+                length,
+            })
+        })
     }
 
     /// Where shoulders and hips are in the clip's pose.

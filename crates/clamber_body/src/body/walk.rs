@@ -12,6 +12,9 @@ const MIX: f64 = 0.08;
 /// Share of a walk's speed at which all of the walk is shown; below it, steps get shorter.
 const FULL: f64 = 0.7;
 
+/// How much shorter steps are on a slope, per rise.
+const SHORTER: f64 = 1.8;
+
 /// Leg for which clips are made, metres: speeds change with the square root of its length (Froude).
 pub(crate) const LEG: f64 = 0.831;
 
@@ -46,6 +49,7 @@ impl Walk {
         figure: &Figure,
         velocity: DVec3,
         [ahead, left]: [DVec3; 2],
+        slope: f64,
         dt: f64,
     ) {
         let speed = velocity.length();
@@ -71,7 +75,9 @@ impl Walk {
                 *share = damp(*share, wanted / sum.max(1e-9), MIX, dt);
             }
         }
-        self.going = damp(self.going, goes.sqrt(), MIX, dt);
+        // Shorter steps on slopes and stairs, so that legs reach.
+        let most = 1.0 / (1.0 + SHORTER * slope.abs());
+        self.going = damp(self.going, goes.sqrt().min(most), MIX, dt);
         self.stride = figure.gait().mixed(&self.shares);
         // Shorter steps where only a part of the walk is shown.
         let length = self.stride.length * self.going.max(0.3);

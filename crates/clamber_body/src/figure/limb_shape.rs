@@ -77,11 +77,8 @@ impl LimbShape {
             let along = (tip - elbow).normalize_or(DVec3::NEG_Y);
             let palm = palm(skeleton, humanoid, bound, (limb, side), tip, along);
             let center = DVec3::new(PALM * lower, -PALM_SKIN * lower, 0.0);
-            let center = if joint.is_some() {
-                center
-            } else {
-                DVec3::new(0.0, -PALM_SKIN * lower, 0.0)
-            };
+            // A hand without a joint cannot be turned: its end is what touches.
+            let center = if joint.is_some() { center } else { DVec3::ZERO };
             (along, -palm, center, center, center)
         } else {
             let toes = limb.toes.map(|toes| place(toes) - tip);

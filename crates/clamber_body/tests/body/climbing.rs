@@ -65,6 +65,21 @@ fn held(scene: &Scene, figure: &Figure, from: f64) -> Held {
         }
         seen.plants += body.plants().len();
         seen.least_held = seen.least_held.min(count);
+        if (hands == 0
+            || (stage.time > 42.08 && stage.time < 42.2)
+            || count < 3 && scene.name.contains("wall at 0.80"))
+            && std::env::var_os("SHOW").is_some()
+        {
+            let st = stage.climber.state();
+            println!(
+                "{:.3} {mode:?} {:.2} {:.2} v {:.2} {:?}",
+                stage.time,
+                st.position,
+                st.support.unwrap().normal_in_world(),
+                (st.velocity - st.base_velocity).length(),
+                Extremity::ALL.map(|e| body.describe(e))
+            );
+        }
         seen.hands_off += usize::from(hands == 0);
     });
     seen.median = quantile(&mut errors, 0.5);

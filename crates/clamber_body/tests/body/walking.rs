@@ -1,70 +1,96 @@
-use clamber_body::{Extremity, Side};
-use clamber_scenes::bodies::{self, Scene};
+use clamber_body::{Body, Extremity, Figure, Side};
+use clamber_scenes::bodies::{self, Scene, Stage};
+use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::figures;
 use crate::play::{play, quantile};
 
-/// How feet slip over what they stand on.
-#[derive(Debug)]
-struct Slip {
-    median: f64,
-    p99: f64,
-    stance: f64,
-    stances: usize,
-    /// Largest distance of the lower end of the sole from the ground plane.
-    gap: f64,
+/// Height of a point above the nearest skin.
+fn above(stage: &Stage<'_>, point: DVec3) -> f64 {
+    let surfaces = stage.surfaces.iter();
+    let hits = surfaces.filter_map(|surface| surface.closest_point(point, 1.0));
+    let nearest = hits
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))
+        .unwrap();
+    let out = (point - nearest.point).dot(nearest.normal);
+    nearest.distance.copysign(out)
 }
 
-fn slip(scene: &Scene, figure: &clamber_body::Figure) -> Slip {
-    // Per foot: material, place of heel and ball in its frame, way in this stance.
-    let mut last: [Option<(u64, [DVec3; 2], f64)>; 2] = [None; 2];
-    let (mut speeds, mut ways, mut gap) = (Vec::new(), Vec::new(), 0.0f64);
-    let mut stances = 0;
+/// How feet stand in a scene.
+#[derive(Debug, Default)]
+struct Stances {
+    /// Speeds of the lower end of a sole along what it stands on, from frame to frame, metres a second.
+    speeds: Vec<f64>,
+    /// Ways of these in each stance, metres.
+    ways: Vec<f64>,
+    /// Heights of the lower end of a sole above the skin, metres, either way.
+    gaps: Vec<f64>,
+    /// The same of the other end, while the foot is flat: in the middle of its stance.
+    flat: Vec<f64>,
+}
+
+/// A foot's place in the frame of what it stands on.
+#[derive(Clone, Copy)]
+struct Stand {
+    key: u64,
+    sole: [DVec3; 2],
+    way: f64,
+    frames: u32,
+}
+
+fn stances(scene: &Scene, figure: &Figure) -> Stances {
+    let mut seen = Stances::default();
+    let mut last: [Option<Stand>; 2] = [None; 2];
     play(scene, figure, 60.0, |stage, body| {
-        if stage.time < 1.2 {
+        if stage.time < 1.5 {
             return;
         }
         for side in Side::BOTH {
-            let place = &mut last[side.index()];
+            let was = &mut last[side.index()];
             let Some(hold) = body.hold(Extremity::Foot(side)) else {
-                if let Some((_, _, way)) = place.take() {
-                    ways.push(way);
-                }
+                seen.ways.extend(was.take().map(|stand| stand.way));
                 continue;
             };
             let sole = body.sole(figure, side).unwrap();
             let local = sole.map(|p| hold.frame.conjugate() * (p - hold.point));
-            // The ground's normal in its own frame: what rigid ground has in common in these scenes.
-            let up = DVec3::Y;
-            let low = usize::from(local[1].dot(up) < local[0].dot(up));
-            gap = gap.max(local[low].dot(up).abs());
-            let key = hold.material.key;
-            match place {
-                Some((was_key, was, way)) if *was_key == key => {
-                    let moved = local[low] - was[low];
-                    let along = moved - up * moved.dot(up);
-                    speeds.push(along.length() * 60.0);
-                    *way += along.length();
-                    *was = local;
+            let heights = sole.map(|p| above(stage, p));
+            let low = usize::from(heights[1] < heights[0]);
+            seen.gaps.push(heights[low].abs());
+            let surface = &stage.surfaces[hold.obstacle.0 as usize];
+            let normal = surface.closest_point(hold.point, 1.0).unwrap().normal;
+            let normal = hold.frame.conjugate() * normal;
+            match was {
+                Some(stand) if stand.key == hold.material.key => {
+                    let moved = local[low] - stand.sole[low];
+                    let along = (moved - normal * moved.dot(normal)).length();
+                    seen.speeds.push(along * 60.0);
+                    stand.way += along;
+                    stand.sole = local;
+                    stand.frames += 1;
+                    if stand.frames == 6 {
+                        seen.flat.push(heights[1 - low].abs());
+                    }
                 }
                 _ => {
-                    stances += 1;
-                    *place = Some((key, local, 0.0));
+                    *was = Some(Stand {
+                        key: hold.material.key,
+                        sole: local,
+                        way: 0.0,
+                        frames: 0,
+                    });
                 }
             }
         }
     });
-    Slip {
-        median: quantile(&mut speeds, 0.5),
-        p99: quantile(&mut speeds, 0.99),
-        stance: ways.iter().copied().fold(0.0, f64::max),
-        stances,
-        gap,
-    }
+    seen
 }
 
-/// Scene B19.
+fn most(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+/// Scene B19: feet do not slide over what they stand on, be it the ground, a lift or a turntable.
 #[test]
 fn feet_stay_where_they_stand() {
     for (name, figure) in figures::all() {
@@ -74,69 +100,157 @@ fn feet_stay_where_they_stand() {
                 bodies::lift(speed).unwrap(),
                 bodies::turntable(speed).unwrap(),
             ] {
-                let slip = slip(&scene, &figure);
-                println!("{name} {}: {slip:?}", scene.name);
+                let mut seen = stances(&scene, &figure);
+                let what = format!("{name}, {}", scene.name);
+                let [median, p99] = [0.5, 0.99].map(|share| quantile(&mut seen.speeds, share));
+                assert!(seen.ways.len() >= 3, "{what}: {seen:?}");
+                assert!(median <= 0.02 && p99 <= 0.05, "{what}: {median} {p99} m/s");
+                assert!(most(&seen.ways) <= 0.01, "{what}: {} m", most(&seen.ways));
+                assert!(most(&seen.gaps) <= 0.015, "{what}: {} m", most(&seen.gaps));
             }
         }
     }
 }
 
-/// Scene B18.
+/// The height of the hips above a ramp of a slope through the treads, for each frame between two places.
+fn hips_above_ramp(scene: &Scene, figure: &Figure, slope: f64, rate: f64) -> Vec<DVec3> {
+    let mut way = Vec::new();
+    play(scene, figure, rate, |stage, body| {
+        let hips = figure.humanoid().hips;
+        let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
+        let place = body
+            .world_from_model()
+            .transform_point(model.unwrap().translation);
+        if (3.0..15.0).contains(&stage.climber.state().position.z) {
+            way.push(place - DVec3::Y * (slope * place.z));
+        }
+    });
+    way
+}
+
+/// Scene B18: on stairs the pelvis goes along a line, without bobbing at each step.
 #[test]
 fn the_pelvis_goes_straight_up_and_down_stairs() {
     for (name, figure) in figures::all() {
         for (up, speed) in [(true, 1.0), (true, 3.0), (false, 1.0), (false, 3.0)] {
             let scene = bodies::stairs(up, speed).unwrap();
-            let mut way: Vec<DVec3> = Vec::new();
-            play(&scene, &figure, 60.0, |stage, body| {
-                let world = body.world_from_model();
-                let hips = figure.humanoid().hips;
-                let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), hips);
-                let z = stage.climber.state().position.z;
-                if (3.0..15.0).contains(&z) {
-                    way.push(world.transform_point(model.unwrap().translation));
-                }
-            });
             let slope = if up { 2.0 / 3.0 } else { -2.0 / 3.0 };
-            let heights: Vec<f64> = way.iter().map(|p| p.y - slope * p.z).collect();
-            let mean = heights.iter().sum::<f64>() / heights.len() as f64;
-            let off = heights.iter().map(|h| (h - mean).abs()).fold(0.0, f64::max);
-            let velocity: Vec<f64> = way.windows(2).map(|p| p[1].y - p[0].y).collect();
-            let turns = velocity.windows(2).filter(|v| v[0] * v[1] < 0.0).count();
-            println!(
-                "{name} {}: off {off:.3} turns {turns} of {} steps, mean {mean:.3}",
-                scene.name,
-                12.0 / 0.3
-            );
+            for rate in [30.0, 60.0, 144.0] {
+                let way = hips_above_ramp(&scene, &figure, slope, rate);
+                let mean = way.iter().map(|p| p.y).sum::<f64>() / way.len() as f64;
+                let off = way.iter().map(|p| (p.y - mean).abs()).fold(0.0, f64::max);
+                let what = format!("{name}, {} at {rate} Hz", scene.name);
+                assert!(way.len() > 20 && off <= 0.06, "{what}: {off} m");
+                let rises = |p: &[DVec3]| (p[1].y - p[0].y) + slope * (p[1].z - p[0].z);
+                let speeds: Vec<f64> = way.windows(2).map(rises).collect();
+                let turns = speeds.windows(2).filter(|v| v[0] * v[1] < 0.0);
+                let steps = (way[way.len() - 1].z - way[0].z).abs() / 0.3;
+                assert!(turns.count() as f64 <= 2.0 * steps, "{what}");
+            }
         }
     }
 }
 
-/// Scenes B17 and B20.
+/// Scene B20, and the way up: soles lie flat on slopes in the middle of their stance.
 #[test]
-fn soles_lie_on_slopes_and_blocks() {
+fn soles_lie_flat_on_slopes() {
     for (name, figure) in figures::all() {
-        for scene in [
-            bodies::block().unwrap(),
-            bodies::ramp(-0.61, 1.4).unwrap(),
-            bodies::ramp(0.52, 1.4).unwrap(),
-            bodies::ramp(0.52, 0.0).unwrap(),
-        ] {
-            let slip = slip(&scene, &figure);
-            let mut soles = String::new();
-            play(&scene, &figure, 60.0, |stage, body| {
-                if stage.time > scene.seconds - 0.02 {
-                    for side in Side::BOTH {
-                        let hold = body.hold(Extremity::Foot(side)).copied();
-                        let sole = body.sole(&figure, side).unwrap();
-                        let gaps = hold.map(|hold| {
-                            sole.map(|p| (hold.frame.conjugate() * (p - hold.point)).y)
-                        });
-                        soles += &format!("{gaps:.4?} ");
-                    }
-                }
-            });
-            println!("{name} {}: {slip:?} {soles}", scene.name);
+        for (angle, speed) in [(-0.611, 1.4), (-0.611, 0.8), (0.524, 1.4), (0.524, 0.0)] {
+            let scene = bodies::ramp(angle, speed).unwrap();
+            let mut seen = stances(&scene, &figure);
+            let what = format!("{name}, {}", scene.name);
+            assert!(speed == 0.0 || seen.flat.len() >= 4, "{what}: {seen:?}");
+            assert!(most(&seen.gaps) <= 0.01, "{what}: {} m", most(&seen.gaps));
+            // On the way up, the heel of the foot behind is lifted.
+            let flat = if angle > 0.0 && speed > 0.0 {
+                &[]
+            } else {
+                &seen.flat[..]
+            };
+            assert!(most(flat) <= 0.01, "{what}: {} m", most(flat));
+            let p99 = quantile(&mut seen.speeds, 0.99);
+            assert!(p99 <= 0.05, "{what}: {p99} m/s");
         }
+    }
+}
+
+/// Angle between thigh and shin, radians: pi is straight.
+fn knee(figure: &Figure, body: &Body, side: Side) -> f64 {
+    let leg = figure.humanoid().leg(side);
+    let at = |joint| {
+        let model = clamber_animation::joint_in_model(figure.skeleton(), body.pose(), joint);
+        model.unwrap().translation
+    };
+    let [hip, knee] = [leg.upper, leg.lower].map(at);
+    let ankle = leg.ik.end(figure.skeleton(), body.pose()).unwrap();
+    let (a, b) = (hip - knee, ankle - knee);
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}
+
+/// Scene B17: one foot on a block of 0.4 m with a slope of 30 degrees, the other on the ground.
+#[test]
+fn one_foot_stands_on_a_block() {
+    for (name, figure) in figures::all() {
+        let scene = bodies::block().unwrap();
+        let mut lowest: f64 = 0.0;
+        let mut last: Option<f64> = None;
+        play(&scene, &figure, 60.0, |stage, body| {
+            let root = body.world_from_model().translation;
+            let down = stage.climber.state().position.y - 0.3 - root.y;
+            if let Some(was) = last.replace(down) {
+                lowest = lowest.max((down - was) * 60.0);
+            }
+            if stage.time < 1.0 {
+                return;
+            }
+            for side in Side::BOTH {
+                let what = format!("{name}, {side:?}, {:.2} s", stage.time);
+                assert!(body.hold(Extremity::Foot(side)).is_some(), "{what}");
+                for point in body.sole(&figure, side).unwrap() {
+                    let gap = above(stage, point).abs();
+                    assert!(gap <= 0.005, "{what}: {gap} m");
+                }
+                let knee = knee(&figure, body, side).to_degrees();
+                assert!((20.0..=177.5).contains(&knee), "{what}: {knee}°");
+            }
+            assert!(down <= 0.5, "{name}: {down} m down");
+        });
+        assert!(lowest <= 1.2, "{name}: goes down at {lowest} m/s");
+    }
+}
+
+/// Feet tell where they come down, on what, and how fast.
+#[test]
+fn steps_are_told() {
+    let figure = figures::hero();
+    let scene = bodies::flat(1.4).unwrap();
+    let mut steps = Vec::new();
+    play(&scene, &figure, 60.0, |stage, body| {
+        if (0.2..0.4).contains(&stage.time) {
+            assert!(
+                body.plants().is_empty(),
+                "nothing comes down while it stands"
+            );
+        }
+        for plant in body.plants() {
+            println!(
+                "{:.3} {:?} {:.3} {:.2}",
+                stage.time, plant.extremity, plant.point, plant.speed
+            );
+            if stage.time > 1.0 {
+                steps.push(*plant);
+            }
+        }
+    });
+    // 4 s at 1.4 m/s with a stride of 1.4 m: eight steps, in turn.
+    assert_eq!(steps.len(), 8, "{steps:?}");
+    for pair in steps.windows(2) {
+        assert_ne!(pair[0].extremity, pair[1].extremity);
+        let way = pair[1].point.z - pair[0].point.z;
+        assert!((0.3..1.0).contains(&way), "{way} m");
+    }
+    for step in &steps {
+        assert!((0.5..6.0).contains(&step.speed), "{} m/s", step.speed);
+        assert!(step.point.y.abs() < 1e-6 && step.normal.y > 0.999);
     }
 }

@@ -157,14 +157,8 @@ pub fn stairs(up: bool, speed: f64) -> Result<Scene, Box<dyn Error>> {
 pub fn block() -> Result<Scene, Box<dyn Error>> {
     let ground = Thing::solid(&Solid::floor(60.0), STONE, still)?;
     // Up to the right of it; the figure faces +Z, so its left is +X.
-    let (near, far, tilt) = (0.0, 2.0, libm::tan(0.5236));
-    let top = |x: f64, z: f64| {
-        DVec3::new(
-            x,
-            0.4 + (z.max(-1.0)) * tilt * 0.0 + (x - near) * tilt * 0.3,
-            z,
-        )
-    };
+    let (near, far, tilt) = (0.03, 2.0, libm::tan(0.5236));
+    let top = |x: f64, z: f64| DVec3::new(x, 0.4 + (x - near) * tilt, z);
     let corner = |x: f64, z: f64| DVec3::new(x, -0.5, z);
     let positions = vec![
         top(near, -1.0),
@@ -195,7 +189,7 @@ pub fn block() -> Result<Scene, Box<dyn Error>> {
         "one foot on a block".into(),
         0.0,
         vec![ground, block],
-        DVec3::new(0.03, 0.45, 0.0),
+        DVec3::new(0.0, 0.4, 0.0),
     );
     scene.input = Box::new(|_| ClimberInput::IDLE);
     Ok(scene)
