@@ -21,7 +21,7 @@ const UNPLANT: (f64, f64) = (0.35, 0.785);
 const REPLANT: (f64, f64) = (0.13, 0.4);
 
 /// A foot comes down from at most this height without a step of its own, metres.
-const LOW: f64 = 0.01;
+const LOW: f64 = 0.006;
 
 /// Times of steps that the gait does not ask for, seconds: to another place, and straight down.
 const STEP: f64 = 0.26;

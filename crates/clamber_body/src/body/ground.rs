@@ -12,15 +12,15 @@ const BELOW: f64 = 1.2;
 const HALF_WINDOW: f64 = 0.36;
 
 /// Points at which the ground is looked for, each way.
-const POINTS: i32 = 2;
+const POINTS: i32 = 3;
 
 /// How much higher or lower than below the feet the ground counts, as a share of the leg and of the distance.
 const STEP: f64 = 0.3;
 const SLOPE: f64 = 1.4;
 
-/// Time for half of the way to the ground's height, seconds: half of Unreal's spring of the pelvis, since the average is
-/// smooth already.
-const SETTLE: f64 = 0.045;
+/// Time for half of the way to the ground's height, seconds: Unreal's spring of the pelvis. It does not lag on slopes, since
+/// it follows with the slope's own speed.
+const SETTLE: f64 = 0.09;
 
 /// The ground below the feet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,7 +59,7 @@ impl Look<'_> {
         let middle = middle.filter(|height| (height - bottom).abs() < 0.5 * self.leg);
         let middle = middle.unwrap_or(bottom);
         let speed = self.velocity.length();
-        let walks = (speed / (0.6 * self.leg)).min(1.0);
+        let walks = (speed / (0.3 * self.leg)).min(1.0);
         if walks < 1e-3 {
             return (middle, 0.0);
         }
