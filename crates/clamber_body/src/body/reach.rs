@@ -23,7 +23,8 @@ const DEEPEST: f64 = 0.5;
 const SINKS: f64 = 1.2;
 const RISES: f64 = 0.09;
 
-/// The same for who walks, seconds: from step to step it stays down.
+/// The same for who walks: from step to step it stays down.
+const DEEPEST_WALKING: f64 = 0.18;
 const STEADY: f64 = 2.0;
 const SINKS_WALKING: f64 = 0.8;
 
@@ -77,7 +78,8 @@ pub(crate) fn needed_drop(ties: &[Option<Tie>; 2], up: DVec3) -> f64 {
 
 /// The pelvis's way down after another `dt` seconds. Who walks keeps the pelvis steady.
 pub(crate) fn dropped(drop: f64, needed: f64, walks: bool, size: f64, dt: f64) -> f64 {
-    let needed = needed.min(DEEPEST * size);
+    let deepest = if walks { DEEPEST_WALKING } else { DEEPEST };
+    let needed = needed.min(deepest * size);
     if needed > drop {
         let sinks = if walks { SINKS_WALKING } else { SINKS };
         needed.min(drop + sinks * size.sqrt() * dt)
