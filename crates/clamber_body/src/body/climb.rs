@@ -22,17 +22,24 @@ const STEP: f64 = 0.35;
 const STEP_PER_SPEED: f64 = 0.2;
 const STEPS: [f64; 2] = [0.3, 0.65];
 
+/// Arms for which that is, metres.
+const ARM: f64 = 0.537;
+
 /// Share of the time of a step in which the limb is on its way, one at a time and two together; bounds of that time, seconds.
 const SHARE: [f64; 2] = [0.24, 0.4];
 const TIMES: [f64; 2] = [0.12, 0.30];
 
 /// Times of a step of somebody who is still, of a hand that catches, and of a foot that follows, seconds.
 const STILL: f64 = 0.22;
-const CATCH: f64 = 0.1;
+const CATCH: f64 = 0.14;
 const FOLLOW: f64 = 0.16;
 
+/// Largest acceleration of a hand that catches, metres a second squared, and the peak of a step of 1 m in 1 s.
+const FORCE: f64 = 60.0;
+const PEAK: f64 = 5.77;
+
 /// Longest step of a limb that is out of reach.
-const HURRIES: f64 = 0.12;
+const HURRIES: f64 = 0.14;
 
 /// How far a step goes around, away from the skin, metres.
 const LIFT: f64 = 0.05;
@@ -47,10 +54,10 @@ const TIDY: f64 = 0.14;
 const TAKES: f64 = 0.93;
 
 /// A limb that is stretched more than this may move although another one does.
-const URGENT: f64 = 1.25;
+const URGENT: f64 = 1.4;
 
 /// A limb that is stretched more than this has to move on.
-const FAR: f64 = 1.0;
+const FAR: f64 = 1.12;
 
 /// A limb on its way to something that is farther than this looks for another place.
 const LOST: f64 = 1.4;
@@ -112,13 +119,19 @@ impl Climb {
         // Along what is held; a body of another size moves faster by the root of its size.
         let speed = schedule.motion.length() / size.sqrt();
         let is_fast = speed >= FAST;
-        let length = (STEP + STEP_PER_SPEED * speed).clamp(STEPS[0], STEPS[1]);
+        // Short arms make short steps.
+        let arms = (context.figure.arm_length() / (ARM * size)).min(1.0);
+        let length = arms * (STEP + STEP_PER_SPEED * speed).clamp(STEPS[0], STEPS[1]);
         let is_still = speed < SLOW;
         self.still = if is_still {
             self.still + context.dt
         } else {
             0.0
         };
+        if is_still {
+            // The first limb steps when the body sets off.
+            self.clock = -f64::MIN_POSITIVE;
+        }
         let was = self.clock;
         if !is_still {
             self.clock += speed * context.dt / (length * size.sqrt());
@@ -152,8 +165,8 @@ impl Climb {
             let away = goal.point - hold.point();
             let behind = away.dot(way);
             let turn = (self.clock - offsets[index]).floor() > (was - offsets[index]).floor();
-            let is_due = turn && behind > 0.12 * length * size;
-            let lags = !is_still && behind > 0.62 * length * size;
+            let is_due = turn && behind > 0.85 * length * size;
+            let lags = !is_still && behind > 0.85 * length * size;
             let is_untidy = self.still > RESTS && away.length() > TIDY * size;
             let is_far = schedule.stretch(index, hold) > FAR;
             limb.waits |= is_due || lags || is_untidy || is_far;
@@ -299,6 +312,14 @@ impl Schedule<'_, '_> {
             limb.settle();
             limb.waits = false;
         } else {
+            let way = hold.place().position.distance(limb.shown.position);
+            let soft = (PEAK * way / FORCE).sqrt();
+            // A step of somebody who climbs is timed; all others take the time that they need.
+            let time = if ahead == DVec3::ZERO {
+                time.max(soft)
+            } else {
+                time
+            };
             limb.swing_to(hold, time, LIFT * context.size());
         }
     }

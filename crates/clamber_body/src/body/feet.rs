@@ -46,6 +46,13 @@ const ROLLS: [f64; 2] = [0.84, 0.99];
 const HEEL_UP: f64 = 0.9;
 const HALVINGS: usize = 12;
 
+/// Who stands has a foot on the ground if the clip's sole is at most so high, metres, and its top faces up, as a cosine.
+const DOWN_TO: f64 = 0.15;
+const LEVEL: f64 = 0.8;
+
+/// How fast a heel is lifted at most, radians a second.
+const HEEL_SPEED: f64 = 8.0;
+
 /// A foot that is out of reach by more than this share of the leg leaves its place early.
 const EARLY: f64 = 1.0;
 
@@ -76,48 +83,39 @@ pub(crate) fn step(
             memory: limbs[extremity.index()],
         };
         foot.step(other_stands, plants);
+        foot.lift_heel();
         limbs[extremity.index()] = foot.memory;
     }
 }
 
-/// Where a foot is, after [`step`]. `hip` is where its leg begins: somebody who walks lifts the heel of a foot that stays
-/// behind before the leg is too short.
-pub(crate) fn place(
-    context: &Context<'_>,
-    stand: &Root,
-    walk: &Walk,
-    limb: &LimbMemory,
-    (side, hip): (Side, DVec3),
-) -> Place {
+/// Where a foot is, after [`step`].
+pub(crate) fn place(context: &Context<'_>, stand: &Root, limb: &LimbMemory, side: Side) -> Place {
     let extremity = Extremity::Foot(side);
     let clip = context.clip_in_world(stand, extremity);
     match &limb.doing {
         Doing::Free => limb.kept(&over_ground(context, &clip, limb, extremity)),
-        Doing::Planted(hold) => {
-            let pitch = pitch(context, extremity, hold);
-            let shape = context.shape(extremity);
-            let at = |pitch: f64| limb.kept_about(&rolled(hold, shape, pitch), hold.touching);
-            let place = at(pitch);
-            let reach = LEG * shape.length;
-            let is_behind = (place.position - hip).dot(context.motion) < 0.0;
-            // Down stairs, toes come first.
-            let may_roll = is_behind || hold.normal().dot(context.up) > ROLLS[1];
-            if !walk.is_going() || !may_roll || place.position.distance(hip) <= reach {
-                return place;
-            }
-            let (mut low, mut high) = (0.0, HEEL_UP);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if at(pitch.min(0.0) - middle).position.distance(hip) > reach {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            at(pitch.min(0.0) - high)
-        }
+        Doing::Planted(hold) => on_hold(context, limb, hold, extremity, limb.heel),
         Doing::Swinging(swing) => swing.place(),
     }
+}
+
+/// A foot on its hold, with its heel up by an angle beyond its clip's, radians.
+fn on_hold(
+    context: &Context<'_>,
+    limb: &LimbMemory,
+    hold: &Hold,
+    extremity: Extremity,
+    heel: f64,
+) -> Place {
+    let pitch = pitch(context, extremity, hold);
+    // A heel that is lifted takes the toes' place on the ground.
+    let pitch = if heel > 0.0 {
+        pitch.min(pitch * (1.0 - heel / HEEL_UP)) - heel
+    } else {
+        pitch
+    };
+    let rolled = rolled(hold, context.shape(extremity), pitch);
+    limb.kept_about(&rolled, hold.touching)
 }
 
 struct Foot<'a, 'c> {
@@ -140,9 +138,10 @@ impl Foot<'_, '_> {
             .is_going()
             .then(|| self.walk.stride.step(self.side, self.walk.phase));
         let air = air.flatten();
+        let stands = air.is_none() && self.is_down();
         self.follow();
         match self.memory.doing {
-            Doing::Planted(_) if air.is_some() => self.lift(),
+            Doing::Planted(_) if !stands => self.lift(),
             Doing::Planted(hold) if self.walk.is_going() && self.is_left_behind(&hold) => {
                 self.lift();
                 self.memory.waits = true;
@@ -158,7 +157,7 @@ impl Foot<'_, '_> {
                     }
                 }
             }
-            Doing::Swinging(_) if air.is_some() => self.lift(),
+            Doing::Swinging(_) if !stands => self.lift(),
             Doing::Swinging(swing) => {
                 if swing.time >= swing.duration {
                     self.memory.doing = Doing::Planted(swing.to);
@@ -173,9 +172,16 @@ impl Foot<'_, '_> {
         self.look_ahead(air);
         // A foot that left the ground early waits for its turn.
         self.memory.waits &= air.is_none() && self.walk.is_going();
-        if air.is_none() && !self.memory.waits {
+        if stands && !self.memory.waits {
             self.come_down(plants);
         }
+    }
+
+    /// True if the clip has the foot on the ground: not while it gets up, or falls down.
+    fn is_down(&self) -> bool {
+        let clip = &self.context.clip[Extremity::Foot(self.side).index()];
+        let height = clip.point(self.shape.contact).y / self.context.size();
+        self.walk.is_going() || height < DOWN_TO && (clip.rotation * DVec3::Y).y > LEVEL
     }
 
     /// Moves on with what it stands on, or steps to.
@@ -194,6 +200,36 @@ impl Foot<'_, '_> {
     fn over_ground(&self) -> Place {
         let extremity = Extremity::Foot(self.side);
         over_ground(self.context, &self.clip, &self.memory, extremity)
+    }
+
+    /// Somebody who walks lifts the heel of a foot that stays behind before the leg is too short; down stairs, toes come
+    /// first.
+    fn lift_heel(&mut self) {
+        let extremity = Extremity::Foot(self.side);
+        let mut wanted = 0.0;
+        if let Doing::Planted(hold) = &self.memory.doing
+            && self.walk.is_going()
+        {
+            let at =
+                |heel: f64| on_hold(self.context, &self.memory, hold, extremity, heel).position;
+            let reach = LEG * self.shape.length;
+            let is_behind = (at(0.0) - self.hip).dot(self.context.motion) < 0.0;
+            let is_level = hold.normal().dot(self.context.up) > ROLLS[1];
+            if (is_behind || is_level) && at(0.0).distance(self.hip) > reach {
+                let (mut low, mut high) = (0.0, HEEL_UP);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    if at(middle).distance(self.hip) > reach {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                wanted = high;
+            }
+        }
+        let most = HEEL_SPEED * self.context.dt;
+        self.memory.heel += (wanted - self.memory.heel).clamp(-most, most);
     }
 
     /// Leaves the ground, and goes on as the clip does.
@@ -300,6 +336,7 @@ impl Foot<'_, '_> {
                 rotation: shown.rotation,
             };
             self.memory.doing = Doing::Planted(hold);
+            self.memory.heel = 0.0;
             self.memory.stop(&raised, &now);
             self.tell(&hold, plants);
         } else if height < BELOW * size {

@@ -9,8 +9,11 @@ use super::carry::Carry;
 use super::hold::Hold;
 use crate::figure::Place;
 
-/// How long an extremity that was let go takes for half of the way back to its clip, seconds.
+/// How long an extremity that was let go takes for half of the way back to its clip at least, seconds.
 const LET_GO: f64 = 0.07;
+
+/// The fastest that a hand or foot still is when it turns to something else, metres a second.
+const FASTEST: f64 = 6.0;
 
 /// Over which time the speed of an extremity is remembered, seconds.
 const PACE: f64 = 0.06;
@@ -30,6 +33,8 @@ pub(crate) enum Doing {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swing {
     pub(crate) from: Place,
+    /// How fast it was then, relative to what carries the body.
+    velocity: DVec3,
     pub(crate) to: Hold,
     pub(crate) time: f64,
     pub(crate) duration: f64,
@@ -38,15 +43,17 @@ pub(crate) struct Swing {
 }
 
 impl Swing {
-    /// Where it is: on a curve without jerk at its ends (Flash and Hogan 1985, "The coordination of arm movements").
+    /// Where it is: on the quintic that begins with its velocity and ends at rest, both without acceleration (Flash and Hogan
+    /// 1985, "The coordination of arm movements").
     pub(crate) fn place(&self) -> Place {
         let t = (self.time / self.duration).clamp(0.0, 1.0);
         let share = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         let to = self.to.place();
+        let run = self.velocity * (self.duration * t * (1.0 + t * t * (t * (8.0 - 3.0 * t) - 6.0)));
         let bow = 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
         let lift = self.to.normal() * (self.lift * bow);
         Place {
-            position: self.from.position.lerp(to.position, share) + lift,
+            position: self.from.position.lerp(to.position, share) + run + lift,
             rotation: slerp(self.from.rotation, to.rotation, share),
         }
     }
@@ -58,16 +65,24 @@ pub(crate) struct LimbMemory {
     /// Where it was shown, in world space, and how fast relative to what carries the body.
     pub(crate) shown: Place,
     pub(crate) velocity: DVec3,
+    /// How fast the body moved, relative to the same.
+    pub(crate) carried: DVec3,
     /// How fast it was lately.
     pub(crate) pace: f64,
     /// Difference from its clip after it was let go.
     offset: Spring<DVec3>,
     turn: Spring<DVec3>,
+    /// Time for half of it, seconds.
+    half: f64,
     pub(crate) pole: PoleMemory,
     /// Height of the ground below a foot that steps, above the root.
     pub(crate) ground: Spring<f64>,
     /// Normal of that ground.
     pub(crate) tilt: Spring<DVec3>,
+    /// Length of this frame, seconds.
+    frame: f64,
+    /// How far a heel is lifted because its leg is too short, radians.
+    pub(crate) heel: f64,
     /// It should move to another place or, for a foot that left the ground early, come down, and waits for its turn.
     pub(crate) waits: bool,
 }
@@ -78,17 +93,23 @@ impl LimbMemory {
             doing: Doing::Free,
             shown: place,
             velocity: DVec3::ZERO,
+            carried: DVec3::ZERO,
             pace: 0.0,
             offset: Spring::default(),
             turn: Spring::default(),
+            half: LET_GO,
             pole: PoleMemory::default(),
             ground: Spring::default(),
             tilt: Spring::default(),
+            frame: 0.0,
+            heel: 0.0,
             waits: false,
         }
     }
 
-    pub(crate) fn carry(&mut self, carry: &Carry) {
+    /// `carried` is the body's own velocity before.
+    pub(crate) fn carry(&mut self, carry: &Carry, carried: DVec3) {
+        self.carried = carry.vector(carried);
         self.shown = carry.place(&self.shown);
         self.velocity = carry.vector(self.velocity);
         for spring in [&mut self.offset, &mut self.turn, &mut self.tilt] {
@@ -97,6 +118,7 @@ impl LimbMemory {
         }
         if let Doing::Swinging(swing) = &mut self.doing {
             swing.from = carry.place(&swing.from);
+            swing.velocity = carry.vector(swing.velocity);
         }
     }
 
@@ -120,8 +142,10 @@ impl LimbMemory {
         self.waits = false;
         self.doing = Doing::Swinging(Swing {
             from: self.shown,
+            velocity: self.velocity.clamp_length_max(FASTEST),
             to,
-            time: 0.0,
+            // It was shown before this frame.
+            time: self.frame,
             duration,
             lift,
         });
@@ -136,8 +160,10 @@ impl LimbMemory {
 
     /// Begins a difference from `target` so that the next place continues the last.
     pub(crate) fn keep(&mut self, target: &Place) {
-        self.offset.value = self.shown.position - target.position;
-        self.offset.velocity = self.velocity;
+        let expected = self.shown.position + self.velocity * self.frame;
+        self.offset.value = expected - target.position;
+        self.offset.velocity = self.velocity - self.carried;
+        self.half = LET_GO.max(soft_half(self.offset.value.length()));
         self.turn = Spring::at(rotation_vector(
             self.shown.rotation * target.rotation.conjugate(),
         ));
@@ -145,6 +171,7 @@ impl LimbMemory {
 
     /// Comes down where it is now, and is at rest: what is left is the difference to `target`.
     pub(crate) fn stop(&mut self, now: &Place, target: &Place) {
+        self.half = LET_GO;
         self.offset = Spring::at(now.position - target.position);
         self.turn = Spring::at(rotation_vector(now.rotation * target.rotation.conjugate()));
     }
@@ -175,8 +202,9 @@ impl LimbMemory {
     }
 
     pub(crate) fn advance(&mut self, dt: f64) {
-        self.offset.step(DVec3::ZERO, LET_GO, dt);
-        self.turn.step(DVec3::ZERO, LET_GO, dt);
+        self.frame = dt;
+        self.offset.step(DVec3::ZERO, self.half, dt);
+        self.turn.step(DVec3::ZERO, self.half, dt);
         if let Doing::Swinging(swing) = &mut self.doing {
             swing.time += dt;
         }
@@ -190,6 +218,12 @@ impl LimbMemory {
         }
         self.shown = place;
     }
+}
+
+/// Time for half of a way for which a critically damped spring does not start with more than 144 metres a second squared: 4 cm
+/// a sixtieth beyond the last one.
+pub(crate) fn soft_half(way: f64) -> f64 {
+    0.14 * way.sqrt()
 }
 
 fn turn_by(vector: DVec3) -> DQuat {

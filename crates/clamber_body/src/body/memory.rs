@@ -19,8 +19,8 @@ pub(crate) struct Memory {
     /// The climber's position.
     pub(crate) position: DVec3,
     pub(crate) stance: Stance,
-    /// Seconds in this stance.
-    pub(crate) since: f64,
+    /// Seconds since hands took hold.
+    pub(crate) held: f64,
     /// Seconds without ground.
     pub(crate) in_air: f64,
     /// Where the model was shown, and how fast it moved relative to the carrier.
@@ -31,6 +31,8 @@ pub(crate) struct Memory {
     pub(crate) turn: RotationSpring,
     /// Difference from the stance's own place.
     pub(crate) offset: Spring<DVec3>,
+    /// Time for half of it, seconds.
+    pub(crate) offset_half: f64,
     pub(crate) ground: Ground,
     /// How far the pelvis is down for the feet.
     pub(crate) drop: f64,
@@ -38,6 +40,8 @@ pub(crate) struct Memory {
     pub(crate) slow: Spring<DVec3>,
     /// Velocity of the climber relative to the carrier.
     pub(crate) motion: DVec3,
+    /// The same, and not only along what it stands on or holds.
+    pub(crate) full_motion: DVec3,
     pub(crate) walk: Walk,
     pub(crate) climb: Climb,
     pub(crate) legs: Legs,

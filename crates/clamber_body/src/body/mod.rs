@@ -69,8 +69,8 @@ impl Body {
     /// something else.
     ///
     /// # Errors
-    /// [`BodyError`] for numbers that are not finite, another figure's body, or limbs that cannot be posed. The body is as
-    /// it was, but for the time of its clips.
+    /// [`BodyError`] for numbers that are not finite, another figure's body, or limbs that cannot be posed, such as those
+    /// that a clip scales to nothing. The body is where it was; in the last case its pose is the clips' own.
     pub fn update(
         &mut self,
         figure: &Figure,
@@ -133,25 +133,6 @@ impl Body {
         let shape = figure.limb(Extremity::Foot(side));
         let place: Place = shape.place(figure.skeleton(), &self.pose, figure.scale())?;
         Some([shape.heel, shape.ball].map(|point| root.point(place.point(point))))
-    }
-
-    #[doc(hidden)]
-    pub fn describe(&self, extremity: Extremity) -> String {
-        let m = self.memory.as_ref().unwrap();
-        let limb = &m.limbs[extremity.index()];
-        let text: String = match &limb.doing {
-            limb::Doing::Free => format!("free {}", limb.waits),
-            limb::Doing::Planted(_) => "planted".into(),
-            limb::Doing::Swinging(s) => format!("swing {:.2}/{:.2}", s.time, s.duration),
-        };
-        format!(
-            "{text} drop {:.3} ground {:.3} going {:.2} rate {:.2} off {:.3}",
-            m.drop,
-            m.ground.height(),
-            m.walk.going,
-            m.walk.rate,
-            m.offset.value.y
-        )
     }
 
     /// Forgets all places, as after a teleport: the next update puts the body in place at once, and tells nothing.

@@ -12,6 +12,9 @@ use crate::{BodyClip, Figure};
 /// Length of a fade between clips, seconds.
 const FADE: f64 = 0.22;
 
+/// The marker of the time at which a jump leaves the ground.
+const TAKE_OFF: &str = "take_off";
+
 /// The lowest layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Base {
@@ -153,6 +156,7 @@ impl Player {
         let fade = if self.base.is_some() { FADE } else { 0.0 };
         let clip = |clip: BodyClip| figure.clips().get(clip);
         let keeps = usize::from(self.act.is_some());
+        let start = start_of(figure, base);
         self.animator.change(figure.animations(), fade, |layers| {
             let own = layers.len() - keeps;
             layers.drain(..own);
@@ -166,7 +170,10 @@ impl Player {
                     &[idle, a, b, c, d, e]
                 }
                 Base::Loop(kind) => &[Layer::new(clip(kind))],
-                Base::Once(kind) => &[Layer::once(clip(kind))],
+                Base::Once(kind) => &[Layer {
+                    time: start,
+                    ..Layer::once(clip(kind))
+                }],
                 Base::Mantle => &[Layer {
                     speed: 0.0,
                     ..Layer::once(clip(BodyClip::Mantle))
@@ -177,6 +184,17 @@ impl Player {
         self.base = Some(base);
         Ok(())
     }
+}
+
+/// Where a clip that is played once begins: a jump when the feet leave the ground, since they have.
+fn start_of(figure: &Figure, base: Base) -> f64 {
+    let Base::Once(BodyClip::Jump) = base else {
+        return 0.0;
+    };
+    let clip = figure.animations().clip(figure.clips().get(BodyClip::Jump));
+    let markers = clip.map_or(&[][..], |clip| clip.markers());
+    let off = markers.iter().find(|marker| marker.name == TAKE_OFF);
+    off.map_or(0.0, |marker| marker.time)
 }
 
 /// Weights and times of the clips of walking, from before this frame on.

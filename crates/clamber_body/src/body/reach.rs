@@ -8,6 +8,9 @@ use glam::DVec3;
 pub(crate) const ARM: f64 = 0.97;
 pub(crate) const LEG: f64 = 0.992;
 
+/// Share of the leg's length at which a foot is let go: hands must not slip, toes may stay back a little.
+const FEET: f64 = 1.03;
+
 /// Rounds of moving the body to one limb after the other.
 const ROUNDS: usize = 8;
 
@@ -57,7 +60,8 @@ pub(crate) fn out_of_reach(ties: &[Option<Tie>; 4], moved: DVec3) -> Option<usiz
     let beyond = ties.iter().enumerate().filter_map(|(index, tie)| {
         let tie = tie.as_ref()?;
         let share = (tie.end - (tie.root + moved)).length() / tie.length;
-        (share > 1.0).then_some((index, share))
+        let most = if index < 2 { 1.0 } else { FEET };
+        (share > most).then_some((index, share))
     });
     let worst = beyond.max_by(|a, b| a.1.total_cmp(&b.1));
     worst.map(|(index, _)| index)

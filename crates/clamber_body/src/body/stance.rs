@@ -61,7 +61,8 @@ impl Stance {
             }
             (Self::Hang, Some(support)) => {
                 let arm = support.attachment.point - state.position;
-                [state.heading, arm.normalize_or(up)]
+                // Half upright: arms give way before the trunk does.
+                [state.heading, arm.normalize_or(up) + up]
             }
             _ => [state.heading, up],
         }

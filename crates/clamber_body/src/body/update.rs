@@ -1,6 +1,6 @@
 //! One frame of a body: what carries it, how it stands, where hands and feet are, and the pose that follows.
 
-use clamber_animation::{RotationSpring, Spring, joint_in_model};
+use clamber_animation::{RotationSpring, Spring, damp, joint_in_model};
 use clamber_climber::ClimberMode;
 use clamber_surface::geometry::rotation_from_axis_angle;
 use clamber_surface::rig::Pose;
@@ -14,7 +14,7 @@ use super::frame::BodyFrame;
 use super::ground::{Ground, Look};
 use super::hold::Surroundings;
 use super::legs::Legs;
-use super::limb::{Doing, LimbMemory};
+use super::limb::{Doing, LimbMemory, Swing, soft_half};
 use super::memory::Memory;
 use super::play::Player;
 use super::reach::{self, Tie};
@@ -34,6 +34,9 @@ const TURN_ON_WALL: f64 = 0.22;
 
 const OFFSET: f64 = 0.09;
 
+/// The same per change of speed, seconds for a metre a second.
+const OFFSET_PER_SPEED: f64 = 0.0233;
+
 /// The fastest difference between two stances that is kept, metres a second: a body that lands from higher goes down as far.
 const FASTEST: f64 = 9.0;
 
@@ -51,6 +54,9 @@ const WAYS: f64 = 3.0;
 /// How fast a tumbling body rolls at most, radians a second.
 const ROLLS: f64 = 8.0;
 
+/// Time for half of a change of that, seconds.
+const ROLL_TIME: f64 = 0.1;
+
 /// Time for half of a change of the gaze's weight, seconds.
 const GAZE: f64 = 0.15;
 
@@ -61,6 +67,9 @@ const STEP_DOWN_TIME: f64 = 0.3;
 /// Softness of limbs on their way, and how far from its clip a limb is reached like that, metres.
 const SOFT: f64 = 0.03;
 const SOFT_WITHIN: f64 = 0.05;
+
+/// How deep in something a hand or foot on its way is still led out of it, metres.
+const THROUGH: f64 = 0.15;
 
 /// A free limb within this distance of its clip is left to it, metres.
 const AT_CLIP: f64 = 1e-3;
@@ -173,16 +182,15 @@ impl<'a> Update<'a> {
             ..target
         };
         let mut limbs = self.limbs(&context, &root);
-        self.leave(&context, &root, &mut limbs);
+        self.leave(&context, [&root, &stand], &mut limbs);
         let shoulders = self.shoulders(pose, &root);
         let mut climb = self.memory.map_or(Climb::default(), |memory| memory.climb);
-        let since = self.memory.map_or(0.0, |memory| memory.since + self.dt);
-        let since = if before == self.stance { since } else { 0.0 };
+        let held = self.memory.filter(|_| before.is_held());
+        let held = held.map_or(0.0, |memory| memory.held + self.dt);
         let mut goals = goals::goals(&context, self.stance, &target);
         for (goal, busy) in goals.iter_mut().zip(player.busy_hands()) {
             *goal = goal.filter(|_| !busy);
         }
-        let is_new = before.is_held() && before != self.stance;
         let shown_before = root;
         let schedule = Schedule {
             context: &context,
@@ -193,7 +201,7 @@ impl<'a> Update<'a> {
             held: state
                 .support
                 .map_or(state.position, |support| support.attachment.point),
-            since: if is_new { ENTERED } else { since },
+            since: held,
         };
         if self.stance.is_held() {
             climb.step(&schedule, &mut limbs, plants);
@@ -201,7 +209,7 @@ impl<'a> Update<'a> {
             let hips = [shoulders[2], shoulders[3]];
             feet::step(&context, &stand, &walk, hips, &mut limbs, plants);
         }
-        let mut ends = self.ends(&context, (&stand, &walk), &shoulders, &limbs);
+        let mut ends = self.ends(&context, &stand, &limbs);
         let size = context.size();
         let mut drop = 0.0;
         if self.stance == Stance::Upright {
@@ -216,75 +224,31 @@ impl<'a> Update<'a> {
             };
             root.position -= self.up * drop;
         } else if self.stance.is_held() {
-            root.position += self.pull(&context, (&stand, &walk), &schedule, &mut limbs, &mut ends);
+            root.position += self.pull(&context, &stand, &schedule, &mut limbs, &mut ends);
         }
         let legs = self.legs(&context, pose, &root, before);
-        let down = root.rotation * DVec3::NEG_Y;
-        let swings = matches!(self.stance, Stance::Hang | Stance::Ledge);
-        for extremity in Extremity::ALL {
-            let index = extremity.index();
-            let limb = &mut limbs[index];
-            let shape = self.figure.limb(extremity);
-            let place = match ends[index] {
-                Some(place) => place,
-                None => {
-                    let mut clip = context.clip_in_world(&root, extremity);
-                    if swings && !extremity.is_hand() {
-                        let hip =
-                            shoulders[index] + (root.position - (target.position + offset.value));
-                        let turn = legs.turn(down);
-                        clip.position = hip + turn * (clip.position - hip);
-                        clip.rotation = turn * clip.rotation;
-                    }
-                    limb.kept(&clip)
-                }
-            };
-            let is_free = matches!(limb.doing, Doing::Free);
-            let far = limb.kept_distance();
-            let as_clip = is_free
-                && ends[index].is_none()
-                && far < AT_CLIP
-                && !(swings && !extremity.is_hand());
-            let shown = if as_clip {
-                limb.pole.forget();
-                context.clip_in_world(&root, extremity)
-            } else {
-                let soft = match limb.doing {
-                    Doing::Planted(_) => 1.0,
-                    Doing::Swinging(_) => 1.0 - SOFT,
-                    Doing::Free => 1.0 - SOFT * (far / (SOFT_WITHIN * size)).min(1.0),
-                };
-                let wanted = Wanted { place, soft };
-                solve::limb(
-                    self.figure,
-                    pose,
-                    &root,
-                    shape,
-                    &wanted,
-                    (&mut limb.pole, self.dt),
-                )?
-            };
-            if context.is_fresh {
-                limb.shown = shown;
-            } else {
-                limb.show(shown, self.dt);
-            }
-        }
+        let moved = root.position - shown_before.position;
+        let swung = matches!(self.stance, Stance::Hang | Stance::Ledge);
+        let swung = swung.then(|| legs.turn(root.rotation * DVec3::NEG_Y));
+        let hips = [shoulders[2], shoulders[3]].map(|hip| hip + moved);
+        self.pose_limbs(&context, pose, &root, &ends, (swung, hips), &mut limbs)?;
         let mut memory = Memory {
             carrier: state.support.map(|support| support.attachment),
             position: state.position,
             stance: self.stance,
-            since,
+            held,
             in_air: self.in_air,
             velocity: self.velocity(&root),
             base: state.base_velocity,
             root,
             turn,
             offset,
+            offset_half: self.offset_half(&offset),
             ground,
             drop,
             slow,
             motion,
+            full_motion: state.velocity - state.base_velocity,
             walk,
             climb,
             legs,
@@ -300,6 +264,59 @@ impl<'a> Update<'a> {
         };
         self.look(pose, &mut memory)?;
         Ok(memory)
+    }
+
+    /// Bends limbs to where they have to be. Those that are free follow their clip; legs that hang are turned by `swung`
+    /// about their hips.
+    fn pose_limbs(
+        &self,
+        context: &Context<'_>,
+        pose: &mut Pose,
+        root: &Root,
+        ends: &[Option<Place>; 4],
+        (swung, hips): (Option<DQuat>, [DVec3; 2]),
+        limbs: &mut [LimbMemory; 4],
+    ) -> Result<(), BodyError> {
+        for extremity in Extremity::ALL {
+            let index = extremity.index();
+            let limb = &mut limbs[index];
+            let clip = context.clip_in_world(root, extremity);
+            let turn = match extremity {
+                Extremity::Foot(side) => swung.map(|turn| (turn, hips[side.index()])),
+                Extremity::Hand(_) => None,
+            };
+            let place = ends[index].unwrap_or_else(|| {
+                let swung = turn.map_or(clip, |(turn, hip)| Place {
+                    position: hip + turn * (clip.position - hip),
+                    rotation: (turn * clip.rotation).normalize(),
+                });
+                limb.kept(&swung)
+            });
+            let far = limb.kept_distance();
+            let shown = if ends[index].is_none() && turn.is_none() && far < AT_CLIP {
+                limb.pole.forget();
+                clip
+            } else {
+                let soft = match limb.doing {
+                    Doing::Planted(_) => 1.0,
+                    // By degrees, since a limb may begin straight.
+                    Doing::Swinging(swing) => {
+                        1.0 - SOFT * (2.0 * swing.time / swing.duration).min(1.0)
+                    }
+                    Doing::Free => 1.0 - SOFT * (far / (SOFT_WITHIN * context.size())).min(1.0),
+                };
+                let wanted = Wanted { place, soft };
+                let shape = self.figure.limb(extremity);
+                let pole = (&mut limb.pole, self.dt);
+                solve::limb(self.figure, pose, root, shape, &wanted, pole)?
+            };
+            if context.is_fresh {
+                limb.shown = shown;
+            } else {
+                limb.show(shown, self.dt);
+            }
+        }
+        Ok(())
     }
 
     /// The climber's velocity relative to what carries it, along the ground or the skin.
@@ -358,15 +375,18 @@ impl<'a> Update<'a> {
         if self.stance == Stance::Tumble {
             // Over, in the direction of motion.
             let rate = (level.length() / self.frame.config.body.radius).min(ROLLS);
-            let axis = self.up.cross(level).normalize_or(turn.rotation * DVec3::X);
-            turn.rotation =
-                (rotation_from_axis_angle(axis, rate * self.dt) * turn.rotation).normalize();
-            turn.velocity = DVec3::ZERO;
+            let wanted = self.up.cross(level).normalize_or_zero() * rate;
+            let roll = damp(turn.velocity, wanted, ROLL_TIME, self.dt);
+            let angle = roll.length() * self.dt;
+            if angle > 0.0 {
+                let turned = rotation_from_axis_angle(roll.normalize(), angle);
+                turn.rotation = (turned * turn.rotation).normalize();
+            }
+            turn.velocity = roll;
         } else {
-            let half = if self.stance == Stance::Wall {
-                TURN_ON_WALL
-            } else {
-                TURN
+            let half = match self.stance {
+                Stance::Wall | Stance::Hang => TURN_ON_WALL,
+                _ => TURN,
             };
             turn.step(wanted, half, self.dt);
         }
@@ -456,14 +476,26 @@ impl<'a> Update<'a> {
         let mut offset = memory.offset;
         offset.value = self.carry.vector(offset.value);
         offset.velocity = self.carry.vector(offset.velocity);
+        let state = self.frame.state;
+        let motion = state.velocity - state.base_velocity;
+        // The body takes up changes of speed softly, but for those by gravity.
+        let falls = matches!(self.stance, Stance::Air | Stance::Tumble);
+        let gravity = if falls {
+            self.frame.config.gravity
+        } else {
+            DVec3::ZERO
+        };
+        let expected = self.carry.vector(memory.full_motion) + gravity * self.dt;
+        let change = expected - motion;
         if self.stance == Stance::Upright {
+            offset.velocity += self.level(change);
             // A step up or a push moves the climber at once, and the body after it.
-            let state = self.frame.state;
-            let motion = self.level(state.velocity - state.base_velocity);
-            let expected = self.carry.point(memory.position) + motion * self.dt;
+            let expected = self.carry.point(memory.position) + self.level(motion) * self.dt;
             offset.value += self.level(expected - state.position);
+        } else {
+            offset.velocity += change;
         }
-        offset.step(DVec3::ZERO, OFFSET, self.dt);
+        offset.step(DVec3::ZERO, memory.offset_half, self.dt);
         Some(offset)
     }
 
@@ -482,6 +514,17 @@ impl<'a> Update<'a> {
         }
     }
 
+    /// Time for half of a difference between two stances: longer after a hard change of speed, so that the body gives way
+    /// softly.
+    fn offset_half(&self, offset: &Spring<DVec3>) -> f64 {
+        match &self.memory {
+            Some(memory) if memory.stance == self.stance => memory.offset_half,
+            _ => OFFSET
+                .max(OFFSET_PER_SPEED * offset.velocity.length())
+                .max(soft_half(offset.value.length())),
+        }
+    }
+
     fn limbs(&self, context: &Context<'_>, root: &Root) -> [LimbMemory; 4] {
         let Some(memory) = &self.memory else {
             return Extremity::ALL
@@ -489,14 +532,14 @@ impl<'a> Update<'a> {
         };
         let mut limbs = memory.limbs;
         for limb in &mut limbs {
-            limb.carry(&self.carry);
+            limb.carry(&self.carry, memory.velocity);
             limb.advance(self.dt);
         }
         limbs
     }
 
     /// Takes hands and feet from what another stance had them on.
-    fn leave(&self, context: &Context<'_>, root: &Root, limbs: &mut [LimbMemory; 4]) {
+    fn leave(&self, context: &Context<'_>, [root, stand]: [&Root; 2], limbs: &mut [LimbMemory; 4]) {
         let Some(memory) = &self.memory else {
             return;
         };
@@ -510,8 +553,13 @@ impl<'a> Update<'a> {
                 Extremity::Foot(_) => self.stance.is_held() || self.stance == Stance::Upright,
             };
             let limb = &mut limbs[extremity.index()];
-            let clip = context.clip_in_world(root, extremity);
-            if has_changed && matches!(limb.doing, Doing::Free) {
+            let mut clip = context.clip_in_world(root, extremity);
+            if has_changed && !extremity.is_hand() {
+                if self.stance == Stance::Upright {
+                    clip = context.clip_in_world(stand, extremity);
+                    limb.ground = Spring::default();
+                    limb.tilt = Spring::at(self.up);
+                }
                 limb.keep(&clip);
             }
             if !keeps && !matches!(limb.doing, Doing::Free) {
@@ -525,7 +573,7 @@ impl<'a> Update<'a> {
     fn pull(
         &self,
         context: &Context<'_>,
-        stand: (&Root, &Walk),
+        stand: &Root,
         schedule: &Schedule<'_, '_>,
         limbs: &mut [LimbMemory; 4],
         ends: &mut [Option<Place>; 4],
@@ -549,7 +597,7 @@ impl<'a> Update<'a> {
             };
             if limbs[dropped].is_planted() {
                 schedule.replace(dropped, limbs);
-                *ends = self.ends(context, stand, &schedule.shoulders, limbs);
+                *ends = self.ends(context, stand, limbs);
             }
             ties[dropped] = None;
         }
@@ -560,20 +608,18 @@ impl<'a> Update<'a> {
     fn ends(
         &self,
         context: &Context<'_>,
-        (stand, walk): (&Root, &Walk),
-        shoulders: &[DVec3; 4],
+        stand: &Root,
         limbs: &[LimbMemory; 4],
     ) -> [Option<Place>; 4] {
         Extremity::ALL.map(|extremity| {
             let limb = &limbs[extremity.index()];
             match (&limb.doing, extremity) {
                 (_, Extremity::Foot(side)) if self.stance == Stance::Upright => {
-                    let hip = shoulders[extremity.index()];
-                    Some(feet::place(context, stand, walk, limb, (side, hip)))
+                    Some(feet::place(context, stand, limb, side))
                 }
                 (Doing::Free, _) => None,
                 (Doing::Planted(hold), _) => Some(limb.kept(&hold.place())),
-                (Doing::Swinging(swing), _) => Some(swing.place()),
+                (Doing::Swinging(swing), _) => Some(around_skin(context, swing)),
             }
         })
     }
@@ -662,5 +708,14 @@ impl<'a> Update<'a> {
     }
 }
 
-/// Seconds after which a hold counts as taken: a climber that holds already keeps its rules in another mode.
-const ENTERED: f64 = 1.0;
+/// Where a hand or foot is on its way: never deeper in the skin than its ball may be.
+fn around_skin(context: &Context<'_>, swing: &Swing) -> Place {
+    let mut place = swing.place();
+    let touching = place.point(swing.to.touching);
+    let near = context.around.nearest(touching, THROUGH * context.size());
+    if let Some(found) = near {
+        let depth = (found.contact.point - touching).dot(found.contact.normal);
+        place.position += found.contact.normal * depth.max(0.0);
+    }
+    place
+}

@@ -77,10 +77,11 @@ impl Walk {
         }
         // Shorter steps on slopes and stairs, so that legs reach.
         let most = 1.0 / (1.0 + SHORTER * slope.abs());
-        self.going = damp(self.going, goes.sqrt().min(most), MIX, dt);
+        let wanted = goes.sqrt().min(most);
+        self.going = damp(self.going, wanted, MIX, dt);
         self.stride = figure.gait().mixed(&self.shares);
         // Shorter steps where only a part of the walk is shown.
-        let length = self.stride.length * self.going.max(0.3);
+        let length = self.stride.length * wanted.max(0.3);
         self.rate = if speed > 0.02 {
             speed / length.max(1e-6)
         } else {

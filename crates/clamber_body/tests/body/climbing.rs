@@ -1,138 +1,229 @@
-use clamber_body::{Body, Extremity, Figure, Side};
-use clamber_scenes::bodies::{self, Scene, Stage};
-use clamber_scenes::giant;
+use clamber_body::{Body, Extremity, Figure};
+use clamber_scenes::bodies::{self, Mount, Scene, Stage};
+use clamber_scenes::{Creature, giant, test_data};
+use clamber_world::Obstacle;
 use glam::DVec3;
 
 use crate::figures;
 use crate::play::{play, quantile};
 
-#[derive(Default, Debug)]
-struct Held {
-    drift: f64,
-    median: f64,
-    p99: f64,
-    most: f64,
-    least_held: usize,
-    hands_off: usize,
+/// Seconds after it took hold in which hands and feet are still on their way.
+const TAKES_HOLD: f64 = 0.5;
+
+/// How hands and feet hold on in a scene.
+#[derive(Debug, Default)]
+struct Holds {
+    /// Distances of palms from what they hold, metres, per frame.
+    palms: Vec<f64>,
+    /// Ways of palms over the skin in each stance, metres.
+    drifts: Vec<f64>,
+    /// Distances from one hold to the next, metres.
+    steps: Vec<f64>,
+    /// How deep balls of 3 cm in the palms are in the skin, metres, per frame.
+    depths: Vec<f64>,
+    /// How many hold at least, and frames in which no hand does.
+    least: usize,
+    no_hand: usize,
     frames: usize,
-    stride: f64,
-    plants: usize,
+    /// The frames in which something was taken hold of, and what: hands 0 and 1, feet 2 and 3.
+    plants: Vec<(f64, usize)>,
 }
 
-fn held(scene: &Scene, figure: &Figure, from: f64) -> Held {
-    let mut seen = Held {
-        least_held: 4,
-        ..Held::default()
+/// A palm on its hold, in the frame of the skin.
+#[derive(Clone, Copy)]
+struct Palm {
+    key: u64,
+    local: DVec3,
+    point: DVec3,
+}
+
+fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
+    let mut seen = Holds {
+        least: 4,
+        ..Holds::default()
     };
-    let mut errors = Vec::new();
-    let mut last: [Option<DVec3>; 4] = [None; 4];
-    let mut start: [Option<(u64, DVec3)>; 4] = [None; 4];
-    play(scene, figure, 60.0, |stage: &Stage<'_>, body: &Body| {
-        let mode = stage.climber.state().mode;
-        if stage.time < from || !mode.is_holding() {
-            start = [None; 4];
+    let mut palms: [Option<Palm>; 2] = [None; 2];
+    let mut since = 0.0;
+    play(scene, figure, rate, |stage: &Stage<'_>, body: &Body| {
+        let holding = stage.climber.state().mode.is_holding();
+        since = if holding { since + 1.0 / rate } else { 0.0 };
+        if since < TAKES_HOLD {
+            palms = [None; 2];
             return;
         }
         seen.frames += 1;
-        let mut count = 0;
-        let mut hands = 0;
-        for extremity in Extremity::ALL {
-            let index = extremity.index();
-            let Some(hold) = body.hold(extremity) else {
-                start[index] = None;
+        let plants = body.plants().iter();
+        seen.plants
+            .extend(plants.map(|plant| (stage.time, plant.extremity.index())));
+        let held = Extremity::ALL.map(|extremity| body.hold(extremity).copied());
+        let count = held.iter().flatten().count();
+        seen.least = seen.least.min(count);
+        seen.no_hand += usize::from(held[0].is_none() && held[1].is_none());
+        for (index, palm) in palms.iter_mut().enumerate() {
+            let touch = body.touching_point(figure, Extremity::ALL[index]).unwrap();
+            let surface = &stage.surfaces[0];
+            let nearest = surface.closest_point(touch, 1.0);
+            if let Some(nearest) = nearest {
+                let out = (touch - nearest.point).dot(nearest.normal);
+                let height = nearest.distance.copysign(out);
+                // A ball that rests on the skin with the palm.
+                seen.depths.push((-height).max(0.0));
+            }
+            let Some(hold) = held[index] else {
                 continue;
             };
-            count += 1;
-            hands += usize::from(extremity.is_hand());
-            let touch = body.touching_point(figure, extremity).unwrap();
-            if !extremity.is_hand() {
-                continue;
-            }
-            errors.push(touch.distance(hold.point));
+            seen.palms.push(touch.distance(hold.point));
             let local = hold.frame.conjugate() * (touch - hold.point);
-            match start[index] {
-                Some((key, was)) if key == hold.material.key => {
-                    seen.drift = seen.drift.max(was.distance(local))
+            let key = hold.material.key;
+            match palm {
+                Some(palm) if palm.key == key => {
+                    seen.drifts.push(palm.local.distance(local));
+                    palm.point = hold.point;
                 }
                 _ => {
-                    start[index] = Some((hold.material.key, local));
-                    if let Some(before) = last[index] {
-                        seen.stride = seen.stride.max(before.distance(hold.point));
+                    if let Some(palm) = palm {
+                        // Where the last hold is now, or was a few frames ago.
+                        seen.steps.push(palm.point.distance(hold.point));
                     }
+                    *palm = Some(Palm {
+                        key,
+                        local,
+                        point: hold.point,
+                    });
                 }
             }
-            last[index] = Some(hold.point);
         }
-        seen.plants += body.plants().len();
-        seen.least_held = seen.least_held.min(count);
-        if (hands == 0
-            || (stage.time > 42.08 && stage.time < 42.2)
-            || count < 3 && scene.name.contains("wall at 0.80"))
-            && std::env::var_os("SHOW").is_some()
-        {
-            let st = stage.climber.state();
-            println!(
-                "{:.3} {mode:?} {:.2} {:.2} v {:.2} {:?}",
-                stage.time,
-                st.position,
-                st.support.unwrap().normal_in_world(),
-                (st.velocity - st.base_velocity).length(),
-                Extremity::ALL.map(|e| body.describe(e))
-            );
-        }
-        seen.hands_off += usize::from(hands == 0);
     });
-    seen.median = quantile(&mut errors, 0.5);
-    seen.p99 = quantile(&mut errors, 0.99);
-    seen.most = quantile(&mut errors, 1.0);
     seen
 }
 
-/// Scene B14.
+fn most(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+impl Holds {
+    fn check(&mut self, what: &str) {
+        assert!(self.palms.len() > 50, "{what}: {}", self.palms.len());
+        let p99 = quantile(&mut self.palms, 0.99);
+        assert!(p99 <= 0.002, "{what}: palms {p99} m");
+        assert!(
+            most(&self.palms) <= 0.01,
+            "{what}: palms {} m",
+            most(&self.palms)
+        );
+        assert!(
+            most(&self.drifts) <= 0.001,
+            "{what}: drift {} m",
+            most(&self.drifts)
+        );
+    }
+}
+
+/// Scene B14 on a wall: enough hold at every speed, steps have their length and time, and frame rates do not matter.
 #[test]
 fn enough_of_them_hold_at_every_speed() {
+    let diagonal = DVec3::new(-1.0, 1.0, 0.0).normalize();
     for (name, figure) in figures::all() {
-        for way in [0.2, 0.5333, 1.0] {
-            for direction in [
-                DVec3::Y,
-                DVec3::X,
-                DVec3::NEG_Y,
-                DVec3::new(-1.0, 1.0, 0.0).normalize(),
-            ] {
-                let scene = bodies::wall(direction * way).unwrap();
-                println!(
-                    "{name} {direction} {}: {:?}",
-                    scene.name,
-                    held(&scene, &figure, 1.0)
-                );
+        for speed in [0.3, 0.79, 1.5] {
+            for way in [DVec3::Y, DVec3::X, DVec3::NEG_Y, diagonal] {
+                let scene = bodies::wall(way * (speed / 1.5)).unwrap();
+                let mut seen = holds(&scene, &figure, 60.0);
+                let what = format!("{name}, {way}, {}", scene.name);
+                seen.check(&what);
+                assert_eq!(seen.no_hand, 0, "{what}");
+                let least = if speed < 0.8 { 3 } else { 2 };
+                assert!(seen.least >= least, "{what}: {} hold", seen.least);
+                assert!(most(&seen.steps) <= 0.66, "{what}: {} m", most(&seen.steps));
             }
         }
     }
 }
 
-/// Scenes B12 and B13.
+/// Scene B14: the same sequence of hands and feet at any frame rate.
+#[test]
+fn the_sequence_does_not_depend_on_the_frame_rate() {
+    let figure = figures::hero();
+    for speed in [0.3, 0.79, 1.5] {
+        let scene = bodies::wall(DVec3::Y * (speed / 1.5)).unwrap();
+        // From when all hold, and it climbs.
+        let sequence = |rate: f64| -> Vec<(f64, usize)> {
+            let plants = holds(&scene, &figure, rate).plants;
+            plants.into_iter().filter(|plant| plant.0 > 1.55).collect()
+        };
+        let usual = sequence(60.0);
+        assert!(usual.len() >= 8, "{usual:?}");
+        for rate in [30.0, 120.0] {
+            let other = sequence(rate);
+            for limb in 0..4 {
+                let of = |plants: &[(f64, usize)]| -> Vec<f64> {
+                    let own = plants.iter().filter(|plant| plant.1 == limb);
+                    own.map(|plant| plant.0).collect()
+                };
+                let (a, b) = (of(&usual), of(&other));
+                let what = format!("{speed} m/s at {rate} Hz, limb {limb}: {a:?} {b:?}");
+                assert!(a.len() >= 2 && a.len().abs_diff(b.len()) <= 1, "{what}");
+                // Two ticks of the slowest.
+                let late = a
+                    .iter()
+                    .rev()
+                    .zip(b.iter().rev())
+                    .map(|(a, b)| (a - b).abs());
+                assert!(late.fold(0.0, f64::max) <= 2.0 / 30.0, "{what}");
+            }
+        }
+    }
+}
+
+/// Giant, Trex and Stag, 20 m high.
+fn creatures() -> Vec<Creature> {
+    let mut all = vec![giant::giant().unwrap()];
+    for name in ["Trex", "Stag"] {
+        let file = test_data::file("bodies on creatures", &format!("models/{name}.glb"));
+        all.extend(file.map(|file| Creature::load(&file).unwrap()));
+    }
+    all
+}
+
+/// Scenes B12 and B13 on walking creatures.
 #[test]
 fn palms_stay_on_skin() {
-    let giant = giant::giant().unwrap();
-    for (name, figure) in figures::all() {
-        for (height, from) in [(0.35, DVec3::Z), (0.7, DVec3::NEG_Z)] {
-            let mount = bodies::Mount {
+    let mut played = 0;
+    let figures = figures::all();
+    for creature in creatures() {
+        for (height, from) in [(0.35, DVec3::Z), (0.6, DVec3::X), (0.7, DVec3::NEG_Z)] {
+            let mount = Mount {
                 clip: "walk",
                 height,
                 from,
             };
-            let scene = bodies::climb(&giant, &mount, 1.0).unwrap();
-            println!("{name} {}: {:?}", scene.name, held(&scene, &figure, 0.7));
+            for (name, figure) in &figures {
+                let Ok(scene) = bodies::climb(&creature, &mount, 1.0) else {
+                    continue;
+                };
+                let mut seen = holds(&scene, figure, 60.0);
+                let what = format!("{name}, {} at {height}", scene.name);
+                if seen.frames < 300 {
+                    continue;
+                }
+                seen.check(&what);
+                // Both hands are off only when the climber itself has just caught hold.
+                assert!(seen.no_hand <= 15, "{what}: {} frames", seen.no_hand);
+                let depth = quantile(&mut seen.depths, 0.999);
+                assert!(depth <= 0.02, "{what}: {depth} m deep");
+                played += 1;
+            }
         }
     }
+    assert!(played >= 3, "{played} rides");
 }
 
-/// Scene B23.
+/// Scene B23: arms and trunk under a shake of 3 Hz.
 #[test]
 fn a_body_that_is_shaken_hangs_on() {
     for (name, figure) in figures::all() {
         let scene = bodies::hang(3.0, 0.25).unwrap();
-        println!("{name} {}: {:?}", scene.name, held(&scene, &figure, 1.3));
+        let mut seen = holds(&scene, &figure, 60.0);
+        seen.check(&format!("{name}, {}", scene.name));
+        assert_eq!(seen.no_hand, 0, "{name}");
     }
-    let _ = Side::Left;
 }

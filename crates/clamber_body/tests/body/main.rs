@@ -3,7 +3,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
+mod changes;
 mod climbing;
 mod figures;
+mod mending;
 mod play;
 mod walking;

@@ -159,7 +159,7 @@ pub fn stairs(up: bool, speed: f64) -> Result<Scene, Box<dyn Error>> {
 pub fn block() -> Result<Scene, Box<dyn Error>> {
     let ground = Thing::solid(&Solid::floor(60.0), STONE, still)?;
     // Up to the right of it; the figure faces +Z, so its left is +X.
-    let (near, far, tilt) = (0.03, 2.0, libm::tan(0.5236));
+    let (near, far, tilt) = (0.03, 2.0, libm::tan(core::f64::consts::FRAC_PI_6));
     let top = |x: f64, z: f64| DVec3::new(x, 0.4 + (x - near) * tilt, z);
     let corner = |x: f64, z: f64| DVec3::new(x, -0.5, z);
     let positions = vec![

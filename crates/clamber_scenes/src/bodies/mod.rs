@@ -11,4 +11,6 @@ mod walls;
 pub use creatures::{Mount, climb, mount};
 pub use grounds::{block, flat, lift, ramp, stairs, turntable};
 pub use stage::{Moment, Motion, Scene, Stage, Thing};
-pub use walls::{crouch, fall, hang, knock, ledge, mantle, squeeze, wall};
+pub use walls::{
+    all_holds, crouch, drop_off, fall, hang, knock, ledge, mantle, squeeze, step_off, wall,
+};

@@ -2,12 +2,12 @@
 
 use std::error::Error;
 
-use clamber_climber::{Blow, ClimberConfig, ClimberInput};
+use clamber_climber::{Blow, ClimberConfig, ClimberInput, ClimberMode};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::SurfaceKind;
 use glam::DVec3;
 
-use super::stage::{Scene, Thing};
+use super::stage::{Moment, Scene, Thing};
 use crate::controllers::{Solid, shifted};
 
 fn still(_: f64) -> Similarity {
@@ -67,8 +67,11 @@ pub fn wall(way: DVec3) -> Result<Scene, Box<dyn Error>> {
 pub fn hang(hertz: f64, size: f64) -> Result<Scene, Box<dyn Error>> {
     let wall = block(DVec3::new(-50.0, -40.0, 0.0), DVec3::new(50.0, 60.0, 8.0));
     let motion = move |time: f64| {
-        let angle = core::f64::consts::TAU * hertz * (time - 1.0).max(0.0);
-        shifted(DVec3::X * (size * libm::sin(angle)))
+        let time = (time - 1.0).max(0.0);
+        // Not at once.
+        let grown = (time / 0.5).min(1.0);
+        let angle = core::f64::consts::TAU * hertz * time;
+        shifted(DVec3::X * (size * grown * grown * libm::sin(angle)))
     };
     Ok(Scene {
         name: format!("hang at {hertz} Hz"),
@@ -82,6 +85,15 @@ pub fn hang(hertz: f64, size: f64) -> Result<Scene, Box<dyn Error>> {
             ..ClimberInput::IDLE
         }),
     })
+}
+
+/// Towards the ledge, until it is caught.
+fn towards(moment: &Moment<'_>) -> DVec3 {
+    if moment.state.mode == ClimberMode::Falling {
+        DVec3::Z
+    } else {
+        DVec3::ZERO
+    }
 }
 
 fn cliff() -> Result<Thing, Box<dyn Error>> {
@@ -103,7 +115,7 @@ pub fn ledge() -> Result<Scene, Box<dyn Error>> {
         grips_all: false,
         input: Box::new(|moment| ClimberInput {
             grip: true,
-            walk: DVec3::ZERO,
+            walk: towards(moment),
             climb: if moment.time > 1.5 {
                 DVec3::NEG_X
             } else {
@@ -123,10 +135,10 @@ pub fn mantle() -> Result<Scene, Box<dyn Error>> {
     scene.name = "mantle".into();
     scene.input = Box::new(|moment| ClimberInput {
         grip: true,
-        walk: if moment.time > 1.5 && moment.time < 2.6 {
+        walk: if moment.time > 1.5 && moment.state.mode == ClimberMode::LedgeHanging {
             DVec3::Z
         } else {
-            DVec3::ZERO
+            towards(moment)
         },
         ..ClimberInput::IDLE
     });
@@ -156,6 +168,83 @@ pub fn fall() -> Result<Scene, Box<dyn Error>> {
             ..ClimberInput::IDLE
         }),
     })
+}
+
+/// Steps off a wall of half a metre.
+///
+/// # Errors
+/// None.
+pub fn step_off() -> Result<Scene, Box<dyn Error>> {
+    let top = block(DVec3::new(-3.0, -1.0, -3.0), DVec3::new(3.0, 0.45, 0.6));
+    Ok(Scene {
+        name: "steps off".into(),
+        seconds: 3.0,
+        config: climber(),
+        start: DVec3::new(0.0, 0.86, 0.0),
+        things: vec![floor()?, Thing::solid(&top, SurfaceKind::Stone, still)?],
+        grips_all: false,
+        input: Box::new(|moment| ClimberInput {
+            walk: if moment.time > 0.4 && moment.time < 1.4 {
+                DVec3::Z * 0.5
+            } else {
+                DVec3::ZERO
+            },
+            ..ClimberInput::IDLE
+        }),
+    })
+}
+
+/// Stands before a wall of fur, grips it, climbs, shakes, holds again, lets go and lands.
+///
+/// # Errors
+/// None.
+pub fn all_holds() -> Result<Scene, Box<dyn Error>> {
+    let wall = block(DVec3::new(-50.0, -4.0, 0.0), DVec3::new(50.0, 60.0, 8.0));
+    let motion = |time: f64| {
+        let shakes = ((time - 3.0) / 0.4).clamp(0.0, 1.0) * ((5.0 - time) / 0.4).clamp(0.0, 1.0);
+        shifted(DVec3::X * (0.2 * shakes * libm::sin(12.0 * (time - 3.0))))
+    };
+    Ok(Scene {
+        name: "all holds".into(),
+        seconds: 9.0,
+        config: climber(),
+        start: DVec3::new(0.0, 0.42, -0.5),
+        things: vec![floor()?, Thing::solid(&wall, SurfaceKind::Fur, motion)?],
+        grips_all: false,
+        input: Box::new(|moment| ClimberInput {
+            grip: moment.time > 0.8 && moment.time < 7.5,
+            walk: if moment.time < 1.0 && moment.time > 0.6 {
+                DVec3::Z
+            } else {
+                DVec3::ZERO
+            },
+            climb: match moment.time {
+                1.0..1.6 => DVec3::Y,
+                6.2..6.6 => DVec3::NEG_Y,
+                _ => DVec3::ZERO,
+            },
+            ..ClimberInput::IDLE
+        }),
+    })
+}
+
+/// Hangs from a ledge, lets go, falls and lands.
+///
+/// # Errors
+/// None.
+pub fn drop_off() -> Result<Scene, Box<dyn Error>> {
+    let mut scene = ledge()?;
+    scene.name = "drops off a ledge".into();
+    scene.input = Box::new(|moment| ClimberInput {
+        grip: moment.time < 1.5,
+        walk: if moment.time < 1.5 {
+            towards(moment)
+        } else {
+            DVec3::ZERO
+        },
+        ..ClimberInput::IDLE
+    });
+    Ok(scene)
 }
 
 /// Stands, and is knocked over; tumbles, lies and gets up.

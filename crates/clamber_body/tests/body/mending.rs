@@ -1,0 +1,307 @@
+//! What is held goes, stretches, or was never there.
+
+use clamber_animation::{Layer, LayerKind};
+use clamber_body::{Act, Body, BodyError, BodyFrame, Extremity, Side};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, StepRules};
+use clamber_scenes::bodies::{self, Stage};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{BuildOptions, ColliderMesh, Influence, MeshSource, TriangleId};
+use clamber_surface::rig::{JointId, Palette};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+use glam::{DAffine3, DVec3};
+
+use crate::figures;
+
+const DT: f64 = 1.0 / 60.0;
+
+/// A wall at z = 0, 8 m wide and high, of squares of 5 cm. Its upper half hangs from joint 1, the lower from joint 0, with
+/// a soft border between heights 3.8 and 4.2 m.
+fn wall() -> SkinnedSurface {
+    let cells = 160u32;
+    let place = |k: u32| f64::from(k) * 0.05;
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..=cells {
+        for column in 0..=cells {
+            positions.push(DVec3::new(place(column) - 4.0, place(row), 0.0).as_vec3());
+            if row < cells && column < cells {
+                let [a, b] = [row, row + 1].map(|row| row * (cells + 1) + column);
+                triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
+            }
+        }
+    }
+    let mut influences = Vec::new();
+    let mut ends = Vec::new();
+    for p in &positions {
+        let upper = ((p.y - 3.8) / 0.4).clamp(0.0, 1.0);
+        for (joint, weight) in [(0, 1.0 - upper), (1, upper)] {
+            if weight > 0.0 {
+                let joint = JointId(joint);
+                influences.push(Influence { joint, weight });
+            }
+        }
+        ends.push(influences.len() as u32);
+    }
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &influences,
+        influence_ends: &ends,
+        joint_count: 2,
+        ..MeshSource::default()
+    };
+    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+        .unwrap()
+        .0;
+    let mut surface = SkinnedSurface::new(mesh.into());
+    surface.place(&palette(0.0), Similarity::IDENTITY).unwrap();
+    surface
+}
+
+/// The upper half moved up.
+fn palette(up: f32) -> Palette {
+    let upper = Affine::from_f64(&DAffine3::from_translation(DVec3::Y * f64::from(up)));
+    Palette::from_matrices([Affine::IDENTITY, upper])
+}
+
+struct Cling {
+    surface: SkinnedSurface,
+    climber: Climber,
+    body: Body,
+}
+
+impl Cling {
+    /// Holds on with its shoulders at the border between the halves.
+    fn new(figure: &clamber_body::Figure) -> Self {
+        let mut config = ClimberConfig::colossus_climber();
+        config.stamina = None;
+        if let Some(grip) = &mut config.grip {
+            grip.hang_acceleration = 1e6;
+        }
+        let start = DVec3::new(0.0, 3.7, -0.41);
+        let mut cling = Self {
+            surface: wall(),
+            climber: Climber::new(config, start).unwrap(),
+            body: Body::new(figure),
+        };
+        for _ in 0..90 {
+            cling.step(figure, 0.0);
+        }
+        for extremity in Extremity::ALL {
+            assert!(cling.body.hold(extremity).is_some(), "{extremity:?}");
+        }
+        cling
+    }
+
+    fn step(&mut self, figure: &clamber_body::Figure, up: f32) {
+        self.surface
+            .advance(&palette(up), Similarity::IDENTITY)
+            .unwrap();
+        let obstacles = [(ObstacleId(0), &self.surface as &dyn Obstacle)];
+        let input = ClimberInput {
+            grip: true,
+            ..ClimberInput::IDLE
+        };
+        let rules = StepRules::gripping(&|_, _| true);
+        self.climber
+            .step_with(&input, &obstacles, &rules, DT)
+            .unwrap();
+        let frame = BodyFrame::new(&self.climber, &obstacles);
+        self.body.update(figure, &frame, DT).unwrap();
+    }
+
+    fn palm(&self, figure: &clamber_body::Figure, side: Side) -> DVec3 {
+        self.body
+            .touching_point(figure, Extremity::Hand(side))
+            .unwrap()
+    }
+}
+
+/// Scene B15: the triangle under a hand is gone in the next tick.
+#[test]
+fn a_hand_whose_skin_is_gone_takes_hold_beside_it() {
+    for (name, figure) in figures::all() {
+        let mut cling = Cling::new(&figure);
+        let hand = Extremity::Hand(Side::Left);
+        let hold = *cling.body.hold(hand).unwrap();
+        let triangle = TriangleId(hold.material.key as u32);
+        cling.surface.disable_triangle(triangle).unwrap();
+        for frame in 0..30 {
+            cling.step(&figure, 0.0);
+            let palm = cling.palm(&figure, Side::Left);
+            let skin = cling.surface.closest_point(palm, 1.0).unwrap();
+            assert!(
+                skin.distance <= 0.02,
+                "{name}, frame {frame}: {} m off",
+                skin.distance
+            );
+            let is_lost = cling
+                .body
+                .hold(hand)
+                .is_some_and(|now| now.material.key == hold.material.key);
+            assert!(!is_lost, "{name}, frame {frame}: holds what is gone");
+        }
+        assert!(cling.body.hold(hand).is_some(), "{name}: no new hold");
+    }
+}
+
+/// Scene B16: skin that stretches between hands and feet takes no limb with it.
+#[test]
+fn skin_that_stretches_is_let_go() {
+    for (name, figure) in figures::all() {
+        let mut cling = Cling::new(&figure);
+        let skeleton = figure.skeleton();
+        let lengths = |body: &Body| {
+            let limbs = figure.humanoid().arms.iter().chain(&figure.humanoid().legs);
+            let lengths = limbs.map(|limb| limb.ik.lengths(skeleton, body.pose()).unwrap());
+            lengths.collect::<Vec<_>>().concat()
+        };
+        let before = lengths(&cling.body);
+        let mut moved = false;
+        for frame in 0..60 {
+            cling.step(&figure, 1.2 * frame as f32 / 60.0);
+            for (was, is) in before.iter().zip(lengths(&cling.body)) {
+                assert!(
+                    (is / was - 1.0).abs() < 1e-3,
+                    "{name}: bones stretch from {was} to {is}"
+                );
+            }
+            moved |= !cling.body.plants().is_empty();
+            for side in Side::BOTH {
+                let Some(hold) = cling.body.hold(Extremity::Hand(side)) else {
+                    continue;
+                };
+                let off = cling.palm(&figure, side).distance(hold.point);
+                assert!(off <= 0.01, "{name}, frame {frame}: {off} m off its hold");
+            }
+        }
+        assert!(moved, "{name}: nothing was let go");
+    }
+}
+
+/// A weapon's clip takes one hand; the others hold on.
+#[test]
+fn a_hand_with_a_weapon_leaves_its_hold() {
+    let figure = figures::hero();
+    let mut cling = Cling::new(&figure);
+    let clip = figure.animations().find("swing").unwrap();
+    let act = Act {
+        layer: Layer {
+            mask: Some(figure.upper_body()),
+            ..Layer::once(clip)
+        },
+        hands: [false, true],
+    };
+    cling.body.set_act(&figure, Some(act), 0.2).unwrap();
+    assert_eq!(cling.body.act_mut().unwrap().kind, LayerKind::Override);
+    for _ in 0..20 {
+        cling.step(&figure, 0.0);
+    }
+    assert!(cling.body.hold(Extremity::Hand(Side::Right)).is_none());
+    assert!(cling.body.hold(Extremity::Hand(Side::Left)).is_some());
+    cling.body.set_act(&figure, None, 0.2).unwrap();
+    assert!(cling.body.act_mut().is_none());
+    for _ in 0..40 {
+        cling.step(&figure, 0.0);
+    }
+    assert!(cling.body.hold(Extremity::Hand(Side::Right)).is_some());
+    let mut wrong = act;
+    wrong.layer.clip.0 = 1000;
+    assert!(cling.body.set_act(&figure, Some(wrong), 0.2).is_err());
+}
+
+/// Bad numbers are refused, and the body is as it was.
+#[test]
+fn bad_frames_are_refused() {
+    let figure = figures::hero();
+    let scene = bodies::flat(1.4).unwrap();
+    let mut stage = Stage::new(&scene).unwrap();
+    stage.tick(DT).unwrap();
+    let mut body = Body::new(&figure);
+    let obstacles = stage.obstacles();
+    let good = BodyFrame::new(&stage.climber, &obstacles);
+    body.update(&figure, &good, DT).unwrap();
+    let (pose, place) = (body.pose().clone(), body.world_from_model());
+    for dt in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            body.update(&figure, &good, dt),
+            Err(BodyError::Time(_))
+        ));
+    }
+    let mut state = *stage.climber.state();
+    state.position.x = f64::NAN;
+    let bad = BodyFrame {
+        state: &state,
+        ..good
+    };
+    assert!(matches!(
+        body.update(&figure, &bad, DT),
+        Err(BodyError::NotFinite(_))
+    ));
+    let look = BodyFrame {
+        look_at: Some(DVec3::INFINITY),
+        ..good
+    };
+    assert!(matches!(
+        body.update(&figure, &look, DT),
+        Err(BodyError::NotFinite(_))
+    ));
+    assert_eq!(body.pose(), &pose);
+    assert_eq!(body.world_from_model(), place);
+    // A frame without time changes nothing either, and one of a minute is right.
+    body.update(&figure, &good, 0.0).unwrap();
+    body.update(&figure, &good, 60.0).unwrap();
+    assert!(
+        body.pose()
+            .transforms
+            .iter()
+            .all(|transform| transform.is_valid())
+    );
+}
+
+/// Nothing to stand on, no obstacles at all, a climber of another size.
+#[test]
+fn a_body_needs_no_obstacles() {
+    let figure = figures::hero();
+    for radius in [0.1, 0.4, 4.0] {
+        let mut config = ClimberConfig::colossus_climber();
+        config.body.radius = radius;
+        let mut climber = Climber::new(config, DVec3::Y * 50.0).unwrap();
+        let mut body = Body::new(&figure);
+        for _ in 0..60 {
+            climber.step(&ClimberInput::IDLE, &[], DT).unwrap();
+            body.update(&figure, &BodyFrame::new(&climber, &[]), DT)
+                .unwrap();
+            let off = body
+                .world_from_model()
+                .translation
+                .distance(climber.state().position);
+            assert!(off < 1.5 * radius + 0.5, "{off}");
+        }
+    }
+}
+
+/// Scene B25: a steady frame allocates nothing.
+#[test]
+fn steady_frames_allocate_nothing() {
+    let figure = figures::hero();
+    for scene in [
+        bodies::flat(1.4).unwrap(),
+        bodies::flat(0.0).unwrap(),
+        bodies::wall(DVec3::Y * 0.5).unwrap(),
+    ] {
+        let mut stage = Stage::new(&scene).unwrap();
+        let mut body = Body::new(&figure);
+        for tick in 0..200 {
+            stage.tick(DT).unwrap();
+            let obstacles = stage.obstacles();
+            let frame = BodyFrame::new(&stage.climber, &obstacles);
+            let used = allocation_counter::measure(|| body.update(&figure, &frame, DT).unwrap());
+            assert!(
+                tick < 100 || used.count_total == 0,
+                "{}, tick {tick}: {used:?}",
+                scene.name
+            );
+        }
+    }
+}
