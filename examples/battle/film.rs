@@ -86,6 +86,7 @@ impl Film {
         let tick = self.tick;
         self.tick += 1;
         self.overlays.watch(battle);
+        self.stage.watch(battle, TICK)?;
         let camera = self.follow(battle);
         // The rate holds on average, even if it does not divide the ticks of a second.
         if tick < self.from {

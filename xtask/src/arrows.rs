@@ -49,6 +49,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "clamber_surface",
             "clamber_world",
             "clamber_climber",
+            "clamber_body",
             "clamber_gltf",
             "clamber_record",
             "clamber_render",

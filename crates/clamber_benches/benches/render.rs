@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use clamber::prelude::*;
 use clamber::render::{Frame, Gpu, Overlay, RenderError, Renderer};
 use clamber_scenes::Creature;
-use clamber_scenes::battle::{Battle, BattleOptions};
+use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::giant::{self, giant, giant_of};
 use clamber_scenes::measure::{Bound, Cells, is_brief, median_us, quantile};
 use clamber_scenes::picture::{Stage, add_collider, add_visual, light, orbit};
@@ -97,13 +97,14 @@ fn measure_frames(gpu: Gpu, effort: &Effort, cells: &mut Cells) -> Result<(), Bo
     let what = format!("battle of {width} x {rows} on {}", gpu.name());
     let mut renderer = Renderer::new(gpu, width, rows)?;
     let seen = add_visual(&mut renderer, &giant::rig()?)?;
-    let stage = Stage::new(&mut renderer, seen)?;
+    let mut stage = Stage::new(&mut renderer, seen)?;
     // The first frame is not counted.
     let mut measure = |draw: &dyn Fn(&mut Renderer, &Frame<'_>) -> Result<(), RenderError>| {
         let mut battle = Battle::new(&creature, &options)?;
         let mut times = Vec::new();
         for tick in 0..=effort.frames {
             battle.step(options.input_at(tick.into()))?;
+            stage.watch(&battle, TICK)?;
             let frame = Frame {
                 camera: orbit(&battle, height, 0.6),
                 light: light(&battle, height),

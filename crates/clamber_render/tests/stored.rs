@@ -21,7 +21,7 @@ use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
 use clamber_render::{Camera, Frame, Image, Overlay, Renderer};
-use clamber_scenes::battle::{Battle, BattleOptions};
+use clamber_scenes::battle::{Battle, BattleOptions, TICK};
 use clamber_scenes::giant::{self, giant};
 use clamber_scenes::picture::{Stage, add_visual, beside, light, orbit};
 use clamber_surface::geometry::{Affine, rotation_from_axis_angle};
@@ -109,8 +109,8 @@ fn a_battle_looks_as_stored_and_pictures_with_mistakes_do_not() {
         let seen = add_visual(&mut renderer, &rig).unwrap();
         Stage::new(&mut renderer, seen).unwrap()
     };
-    let plain = [SurfaceKind::Fur, SurfaceKind::Stone].map(|kind| (kind, stage(&[kind])));
-    let stage = stage(&[]);
+    let mut plain = [SurfaceKind::Fur, SurfaceKind::Stone].map(|kind| (kind, stage(&[kind])));
+    let mut stage = stage(&[]);
     let options = BattleOptions::ride(0, 1);
     let height = options.height();
     let mut battle = Battle::new(&creature, &options).unwrap();
@@ -118,6 +118,10 @@ fn a_battle_looks_as_stored_and_pictures_with_mistakes_do_not() {
     for shot in SHOTS {
         while battle.tick() < shot.tick {
             battle.step(options.input_at(battle.tick())).unwrap();
+            let all = plain.iter_mut().map(|(_, stage)| stage);
+            for stage in all.chain(core::iter::once(&mut stage)) {
+                stage.watch(&battle, TICK).unwrap();
+            }
         }
         let right = Frame {
             camera: (shot.camera)(&battle, height),

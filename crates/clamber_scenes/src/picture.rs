@@ -1,16 +1,18 @@
 //! A battle for the renderer: meshes of its creature, its climber and the ground, light and cameras.
 
-use clamber_climber::{Climber, ClimberMode};
-use clamber_gltf::Rig;
+use std::path::PathBuf;
+
+use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
+use clamber_gltf::{GltfError, Rig};
 use clamber_render::{
     Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
     visual_meshes,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
-use clamber_surface::rig::Palette;
-use clamber_world::rapier3d::prelude::*;
-use glam::{DQuat, DVec3, Vec3};
+use clamber_surface::rig::{Palette, RigError};
+use glam::{DVec3, Vec3};
+use thiserror::Error;
 
 use crate::battle::Battle;
 use crate::valley;
@@ -18,87 +20,112 @@ use crate::valley;
 /// Distance between neighbouring vertices of the drawn ground, metres.
 const GROUND_CELL: f64 = 2.0;
 
-/// The meshes of a battle, as added to a renderer.
+/// The meshes of a battle, as added to a renderer, and the body of its climber.
 #[derive(Clone, Debug)]
 pub struct Stage {
     creature: Vec<RenderMeshId>,
     ground: RenderMeshId,
     outcrop: RenderMeshId,
-    /// Body, head, and an arm.
-    climber: [RenderMeshId; 3],
+    hero: Vec<RenderMeshId>,
+    figure: Figure,
+    body: Body,
+    /// Of the hero; `None` until the battle is watched.
+    palette: Option<Palette>,
 }
 
-/// The drawn climber, metres. Body and arms are capsules: half the length of the segment, and the radius. The head
-/// is a ball: its radius.
-const BODY: [f32; 2] = [0.42, 0.24];
-const HEAD: f32 = 0.17;
-const ARM: [f32; 2] = [0.24, 0.075];
+/// Why a stage cannot be set.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StageError {
+    /// A mesh cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The hero's file cannot be loaded.
+    #[error(transparent)]
+    Load(#[from] GltfError),
+    /// The hero's skeleton is no humanoid.
+    #[error(transparent)]
+    Humanoid(#[from] HumanoidError),
+    /// The hero's clips do not fit.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// The hero's body cannot be posed.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// The hero's body cannot be posed.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+}
 
-/// Metres from the body's centre along its axis to the shoulders and to the head's centre, and from the axis to a
-/// shoulder.
-const SHOULDER: f64 = 0.45;
-const CROWN: f64 = 0.84;
-const ACROSS: f64 = 0.3;
+/// Path of the hero's file.
+pub fn hero_path() -> PathBuf {
+    PathBuf::from(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../assets/hero.glb"
+    ))
+}
 
 impl Stage {
-    /// Adds the meshes of the ground, the outcrop and the climber to a renderer. `creature` has the ids of the
-    /// creature's meshes in the same renderer, from [`add_visual`] or [`add_collider`].
+    /// Adds the meshes of the ground, the outcrop and the hero to a renderer. `creature` has the ids of the creature's
+    /// meshes in the same renderer, from [`add_visual`] or [`add_collider`].
     ///
     /// # Errors
-    /// [`RenderError`].
-    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, RenderError> {
-        let capsule = |[half, radius]: [f32; 2]| {
-            let shape = SharedShape::capsule_y(half, radius);
-            let capsule = shape.as_capsule().map(|capsule| capsule.to_trimesh(24, 12));
-            capsule.unwrap_or_default()
-        };
-        let head = Ball::new(HEAD).to_trimesh(24, 16);
+    /// [`StageError`].
+    pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, StageError> {
+        let rig = clamber_gltf::load(hero_path())?;
+        let hero = add_visual(renderer, &rig)?;
+        let humanoid = Humanoid::find(&rig.skeleton)?;
+        let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
         Ok(Self {
             creature,
             ground: add_ground(renderer)?,
             outcrop: add_outcrop(renderer)?,
-            climber: [
-                add_plain(renderer, &capsule(BODY), [0.36, 0.08, 0.06])?,
-                add_plain(renderer, &head, [0.55, 0.36, 0.26])?,
-                add_plain(renderer, &capsule(ARM), [0.55, 0.36, 0.26])?,
-            ],
+            hero,
+            body: Body::new(&figure),
+            figure,
+            palette: None,
         })
     }
 
+    /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
+    ///
+    /// # Errors
+    /// [`StageError`].
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), StageError> {
+        let head = battle.creature().skeleton.find("head");
+        let head = head.and_then(|head| battle.palette().model_from_joint(head));
+        let look_at = head.map(|head| {
+            battle
+                .surface()
+                .world_from_model()
+                .transform_point(head.translation)
+        });
+        battle.touched(|obstacles| {
+            let frame = BodyFrame {
+                look_at,
+                ..BodyFrame::new(battle.climber(), obstacles)
+            };
+            self.body.update(&self.figure, &frame, dt)
+        })?;
+        self.palette = Some(self.figure.skeleton().palette(self.body.pose())?);
+        Ok(())
+    }
+
     /// Everything to draw for the battle's current tick, with the creature in the pose `palette`:
-    /// [`Battle::palette`] or another one.
-    pub fn drawn<'a>(&self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
-        let posture = Posture::of(battle.climber());
-        let along = DQuat::from_rotation_arc(DVec3::Y, posture.along);
-        let at = |mesh, rotation, translation| Drawn {
+    /// [`Battle::palette`] or another one. The hero is drawn as it was last [watched](Stage::watch).
+    pub fn drawn<'a>(&'a self, battle: &Battle<'_>, palette: &'a Palette) -> Vec<Drawn<'a>> {
+        let at = |mesh, world_from_model, palette| Drawn {
             mesh,
-            world_from_model: Similarity {
-                rotation,
-                scale: 1.0,
-                translation,
-            },
-            palette: None,
+            world_from_model,
+            palette,
         };
-        let [body, head, arm] = self.climber;
-        let mut drawn = vec![
-            at(self.ground, DQuat::IDENTITY, DVec3::ZERO),
-            at(body, along, posture.middle),
-            at(head, along, posture.middle + posture.along * CROWN),
-        ];
-        for side in [-1.0, 1.0] {
-            let shoulder =
-                posture.middle + posture.along * SHOULDER + posture.across * (side * ACROSS);
-            let reach = posture.hands + posture.across * (side * ACROSS) - shoulder;
-            let direction = reach.normalize_or(-posture.along);
-            let half = f64::from(ARM[0]);
-            drawn.push(at(
-                arm,
-                DQuat::from_rotation_arc(DVec3::Y, direction),
-                shoulder + direction * half,
-            ));
+        let mut drawn = vec![at(self.ground, Similarity::IDENTITY, None)];
+        if let Some(palette) = &self.palette {
+            let place = self.body.world_from_model();
+            drawn.extend(self.hero.iter().map(|mesh| at(*mesh, place, Some(palette))));
         }
         if battle.has_outcrop() {
-            drawn.push(at(self.outcrop, DQuat::IDENTITY, DVec3::ZERO));
+            drawn.push(at(self.outcrop, Similarity::IDENTITY, None));
         }
         drawn.extend(self.creature.iter().map(|mesh| Drawn {
             mesh: *mesh,
@@ -106,77 +133,6 @@ impl Stage {
             palette: Some(palette),
         }));
         drawn
-    }
-}
-
-/// The posture of the drawn figure, by the climber's mode. It stands at the climber's ball.
-struct Posture {
-    /// Centre of the body.
-    middle: DVec3,
-    /// Unit vectors towards the head, and to the figure's right.
-    along: DVec3,
-    across: DVec3,
-    hands: DVec3,
-}
-
-impl Posture {
-    fn of(climber: &Climber) -> Self {
-        let (config, state) = (climber.config(), climber.state());
-        let (up, position) = (config.up(), state.position);
-        let contact = state
-            .support
-            .map_or(position, |support| support.attachment.point);
-        let across = state.heading.cross(up).normalize_or(DVec3::X);
-        let standing = |along: DVec3, hands: DVec3| {
-            let middle = position + along * (0.72 - config.body.radius);
-            Self {
-                middle,
-                along,
-                across,
-                hands: middle + hands,
-            }
-        };
-        match state.mode {
-            ClimberMode::Standing => standing(up, -up * 0.3),
-            ClimberMode::Sliding => {
-                let along = (up - state.heading * 0.5).normalize_or(up);
-                standing(along, state.heading - along * 0.2)
-            }
-            ClimberMode::Falling | ClimberMode::Custom(_) => standing(up, up),
-            ClimberMode::Tumbling => {
-                let middle = position - up * (config.body.radius - f64::from(BODY[1]));
-                Self {
-                    middle,
-                    along: state.heading,
-                    across,
-                    hands: middle + state.heading * 0.2,
-                }
-            }
-            ClimberMode::Holding => {
-                let normal = (position - contact).normalize_or(up);
-                let along = (up - normal * up.dot(normal)).normalize_or(state.heading);
-                Self {
-                    middle: position,
-                    along,
-                    across: along.cross(normal).normalize_or(across),
-                    hands: contact + along * 0.9,
-                }
-            }
-            ClimberMode::Hanging | ClimberMode::LedgeHanging => {
-                let arm = contact - position;
-                let along = if state.mode == ClimberMode::Hanging {
-                    arm.normalize_or(up)
-                } else {
-                    up
-                };
-                Self {
-                    middle: contact - along * (arm.dot(along) + 0.2),
-                    along,
-                    across,
-                    hands: contact,
-                }
-            }
-        }
     }
 }
 
@@ -282,19 +238,6 @@ fn add_outcrop(renderer: &mut Renderer) -> Result<RenderMeshId, RenderError> {
         colors: &vec![[0.3, 0.28, 0.25]; positions.len()],
         looks: &vec![Look::Stone; positions.len()],
         triangles: &triangles,
-        ..RenderMesh::default()
-    })
-}
-
-fn add_plain(
-    renderer: &mut Renderer,
-    (positions, triangles): &(Vec<Vec3>, Vec<[u32; 3]>),
-    color: [f32; 3],
-) -> Result<RenderMeshId, RenderError> {
-    renderer.add_mesh(&RenderMesh {
-        positions,
-        colors: &vec![color; positions.len()],
-        triangles,
         ..RenderMesh::default()
     })
 }

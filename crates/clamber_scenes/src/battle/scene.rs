@@ -7,6 +7,7 @@ use clamber_climber::{
 };
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
+use clamber_world::rapier3d::dynamics::RigidBodySet;
 use clamber_world::rapier3d::geometry::{Collider, ColliderHandle};
 use clamber_world::rapier3d::pipeline::PhysicsWorld;
 use clamber_world::{BodyPoses, Contact, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
@@ -207,12 +208,8 @@ impl<'a> Battle<'a> {
 
     /// The rest of a tick that began at `start`, after the creature is posed.
     fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
-        // The climber and the rocks pass through each other.
         let bodies = &self.world.bodies;
-        let fixed = |_: ColliderHandle, collider: &Collider| {
-            let body = collider.parent().and_then(|body| bodies.get(body));
-            body.is_none_or(|body| body.is_fixed())
-        };
+        let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(TERRAIN, &terrain), (CREATURE, &self.surface)];
@@ -238,6 +235,14 @@ impl<'a> Battle<'a> {
         (self.input, self.report) = (input, report);
         self.record(touched, microseconds);
         self.lift_if_grounded()
+    }
+
+    /// What the climber touches, as it is now: terrain and creature.
+    pub fn touched<T>(&self, touch: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T) -> T {
+        let bodies = &self.world.bodies;
+        let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
+        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
+        touch(&[(TERRAIN, &terrain), (CREATURE, &self.surface)])
     }
 
     fn record(&mut self, touched: Diagnostics, microseconds: f64) {
@@ -428,6 +433,12 @@ impl<'a> Battle<'a> {
     pub(super) fn watch(&self) -> &Watch {
         &self.watch
     }
+}
+
+/// True for terrain: the climber and the rocks pass through each other.
+fn is_fixed(bodies: &RigidBodySet, collider: &Collider) -> bool {
+    let body = collider.parent().and_then(|body| bodies.get(body));
+    body.is_none_or(|body| body.is_fixed())
 }
 
 fn moment<'a>(
