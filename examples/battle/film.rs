@@ -23,6 +23,9 @@ const TICKS_A_SECOND: f64 = 60.0;
 /// Radians a second that the orbiting camera goes round.
 const ORBIT: f64 = 0.08;
 
+/// Distance of a close camera from the climber, metres.
+const CLOSE: f64 = 2.4;
+
 /// Distance that a chasing camera keeps in front of the skin, for the fur, metres.
 const FUR: f64 = 1.2;
 
@@ -150,6 +153,7 @@ impl Film {
                 camera
             }
             CameraKind::Chase => self.chase(battle, middle),
+            CameraKind::Close => close(battle),
         }
     }
 
@@ -196,6 +200,25 @@ impl Film {
         }
         Ok(())
     }
+}
+
+/// A camera a few steps from the climber: outward from the skin that it holds, and to a side, so that hands and face are
+/// seen; in front of skin that would hide it.
+fn close(battle: &Battle<'_>) -> Camera {
+    let (config, state) = (battle.climber().config(), battle.climber().state());
+    let up = config.up();
+    let side = state.heading.cross(up);
+    let out = match state.support {
+        Some(support) if state.mode.is_holding() => support.normal_in_world(),
+        _ => -state.heading,
+    };
+    let target = state.position + up * 0.45;
+    let away = (out * 0.75 + side * 0.75 + up * 0.35).normalize_or(up);
+    let hit = battle.surface().cast_ray(target, away, CLOSE + 0.2);
+    let free = hit.map_or(CLOSE, |hit| (hit.distance - 0.2).max(0.5 * hit.distance));
+    let mut eye = target + away * free;
+    eye.y = eye.y.max(valley::height(eye.x, eye.z) + 0.3);
+    Camera::new(eye, target)
 }
 
 fn add_rock(

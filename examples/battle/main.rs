@@ -123,6 +123,8 @@ enum CameraKind {
     Orbit,
     /// Follows the climber.
     Chase,
+    /// Beside the climber, near enough to see its hands.
+    Close,
     /// Stands in the valley and turns towards the creature.
     Fixed,
 }
