@@ -60,6 +60,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         &[
             "clamber_surface",
             "clamber_animation",
+            "clamber_body",
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",

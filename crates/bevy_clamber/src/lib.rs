@@ -10,6 +10,8 @@ mod controls;
 mod creature;
 #[cfg(feature = "diagnostics")]
 mod diagnostics;
+#[cfg(feature = "clamber_gltf")]
+mod figure;
 #[cfg(feature = "gizmos")]
 mod gizmos;
 mod needs;
@@ -42,6 +44,8 @@ pub use creature::{
 };
 #[cfg(feature = "diagnostics")]
 pub use diagnostics::SurfaceDiagnosticsPlugin;
+#[cfg(feature = "clamber_gltf")]
+pub use figure::{ClimberFigure, ClimberFigurePlugin, ClimberPlant, WrongJoints};
 #[cfg(feature = "gizmos")]
 pub use gizmos::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "avian")]
@@ -61,6 +65,8 @@ pub use surface::{DrawnSurface, PoseError, PoseTiming, PosedSurface, SurfacePlug
 
 #[cfg(feature = "clamber_gltf")]
 pub use clamber_animation;
+#[cfg(feature = "clamber_gltf")]
+pub use clamber_body;
 /// The character.
 pub use clamber_climber;
 #[cfg(feature = "clamber_gltf")]

@@ -62,7 +62,10 @@ pub enum ClamberSystems {
     /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: climbers are moved to
     /// where this frame draws them.
     Draw,
-    /// In `PostUpdate`, after [`ClamberSystems::Draw`], before `TransformSystems::Propagate`: cameras follow climbers.
+    /// In `PostUpdate`, after [`ClamberSystems::Draw`], before `TransformSystems::Propagate`: the figures of climbers are
+    /// posed.
+    Body,
+    /// In `PostUpdate`, after [`ClamberSystems::Body`], before `TransformSystems::Propagate`: cameras follow climbers.
     Follow,
     /// In `PostUpdate`, after [`ClamberSystems::Sample`], before `TransformSystems::Propagate`: anchored
     /// entities are moved to the skin as it is drawn.

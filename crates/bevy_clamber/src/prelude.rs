@@ -13,7 +13,8 @@ pub use crate::{
 pub use crate::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]
 pub use crate::{
-    RigAssets, RigJoints, RigMarkerPassed, RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
+    ClimberFigure, ClimberFigurePlugin, ClimberPlant, RigAssets, RigJoints, RigMarkerPassed,
+    RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
 };
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};

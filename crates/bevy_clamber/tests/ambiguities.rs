@@ -44,6 +44,7 @@ fn no_systems_are_ambiguous_in_any_schedule() {
         ClamberPlugins::default(),
         ClimberPlugin::default(),
         ClimberCameraPlugin,
+        ClimberFigurePlugin,
         bevy_input::InputPlugin,
         ClimberControlsPlugin,
         RigPlayerPlugin::default(),

@@ -227,6 +227,56 @@ pub(crate) struct DrawnTouchable<'w, 's> {
 }
 
 impl DrawnTouchable<'_, '_> {
+    /// Calls `touch` with everything that a climber with this filter touches, but other climbers.
+    #[cfg(feature = "clamber_gltf")]
+    pub(crate) fn around<T>(
+        &self,
+        climber: Entity,
+        filter: Option<&ClimberFilter>,
+        touch: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T,
+    ) -> T {
+        let touches =
+            |entity: &Entity| filter.is_none_or(|filter| !filter.ignored.contains(entity));
+        let id = |entity: Entity| ObstacleId(entity.to_bits());
+        let _ = climber;
+        let mut all: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
+        #[cfg(feature = "avian")]
+        let avian = self
+            .avian
+            .as_ref()
+            .ok()
+            .map(|avian| in_avian(avian, climber, filter).with_origin(self.origin.0));
+        #[cfg(feature = "avian")]
+        all.extend(avian.as_ref().map(|avian| (AVIAN, avian as &dyn Obstacle)));
+        #[cfg(feature = "rapier")]
+        let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
+        #[cfg(feature = "rapier")]
+        let wanted = |handle, collider: &RapierCollider| {
+            is_wanted(filter, climber, collider) && !is_skin(self.debris.as_deref(), handle)
+        };
+        #[cfg(feature = "rapier")]
+        let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
+        #[cfg(feature = "rapier")]
+        all.extend(
+            rapier
+                .as_ref()
+                .map(|rapier| (RAPIER, rapier as &dyn Obstacle)),
+        );
+        for (entity, surface, drawn) in &self.surfaces {
+            if touches(&entity)
+                && let Some(drawn) = drawn.pose(surface)
+            {
+                all.push((id(entity), drawn));
+            }
+        }
+        for (entity, custom) in &self.custom {
+            if touches(&entity) {
+                all.push((id(entity), &*custom.0));
+            }
+        }
+        touch(&all)
+    }
+
     /// The share of a way that a ball can go, 0 to 1, up to the first thing that a climber with this filter touches;
     /// `None` if it can go all of it.
     pub(crate) fn free_way(

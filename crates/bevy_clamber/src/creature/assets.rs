@@ -185,7 +185,7 @@ impl RigAssets {
 }
 
 /// A Bevy `Transform`, whose rotation has unit length.
-pub(super) fn transform(local: &rig::Transform) -> Transform {
+pub(crate) fn transform(local: &rig::Transform) -> Transform {
     let rotation = local.rotation.as_dquat();
     Transform {
         translation: local.translation,

@@ -4,5 +4,6 @@ mod assets;
 mod mesh;
 mod player;
 
+pub(crate) use assets::transform;
 pub use assets::{RigAssets, RigJoints, RigMaterial, SpawnedRig, TooManyJoints};
 pub use player::{RigMarkerPassed, RigPlayer, RigPlayerPlugin};

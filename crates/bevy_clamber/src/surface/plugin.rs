@@ -56,6 +56,7 @@ impl Plugin for SurfacePlugin {
                 (
                     ClamberSystems::Sample,
                     ClamberSystems::Draw,
+                    ClamberSystems::Body,
                     ClamberSystems::Follow,
                     ClamberSystems::Anchor,
                 )

@@ -1,0 +1,27 @@
+//! The body of a climber, drawn: a humanoid rig whose hands and feet are on what the climber touches.
+
+mod component;
+mod pose;
+
+use bevy_app::{App, Plugin, PostUpdate};
+use bevy_ecs::prelude::*;
+
+pub use component::{ClimberFigure, ClimberPlant, WrongJoints};
+
+use crate::needs::need_plugin;
+use crate::{ClamberSystems, ClimberPlugin};
+
+/// Poses [`ClimberFigure`]s, in [`ClamberSystems::Body`]. Add it beside [`ClimberPlugin`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ClimberFigurePlugin;
+
+impl Plugin for ClimberFigurePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<ClimberPlant>()
+            .add_systems(PostUpdate, pose::pose.in_set(ClamberSystems::Body));
+    }
+
+    fn finish(&self, app: &mut App) {
+        need_plugin::<ClimberPlugin>(app, "clamber's ClimberFigurePlugin", "ClimberPlugin");
+    }
+}
