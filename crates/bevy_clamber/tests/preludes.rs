@@ -35,7 +35,8 @@ use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
 use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
 use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
 use_each! { RIGS, cfg(feature = "clamber_gltf"),
-    RigAssets RigJoints RigMarkerPassed RigMaterial RigPlayer RigPlayerPlugin SpawnedRig
+    ClimberFigure ClimberFigurePlugin ClimberPlant RigAssets RigJoints RigMarkerPassed RigMaterial RigPlayer
+    RigPlayerPlugin SpawnedRig
 }
 
 /// Otherwise a name that is added to the prelude would not be checked above.
