@@ -43,6 +43,19 @@ pub enum RecordError {
         /// Matrices of the palette.
         palette: usize,
     },
+    /// A figure's skeleton and palette differ in the number of joints, or the skeleton is another one than before.
+    #[error(
+        "figure {figure} has {skeleton} joints now and a palette of {palette}: pass the palette that posed it, and the \
+         same skeleton each time"
+    )]
+    FigureJoints {
+        /// Name of the figure.
+        figure: String,
+        /// Joints of its skeleton.
+        skeleton: usize,
+        /// Matrices of the palette.
+        palette: usize,
+    },
     /// The recording ended at an earlier error, which was returned then.
     #[error("the recording has ended: an earlier part of it could not be written")]
     Ended,

@@ -17,6 +17,6 @@ mod writing;
 pub use error::RecordError;
 pub use fingerprint::{creature_fingerprint, palette_fingerprint};
 pub use info::RecordingInfo;
-pub use recorder::{RecordOptions, Recorder, TickView};
+pub use recorder::{FigureView, RecordOptions, Recorder, TickView};
 pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording};
 pub use replay::{Difference, ReplayError, Replayed, replay};

@@ -1,14 +1,17 @@
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
 use clamber_climber::{ClimberInput, ClimberState, StepReport};
+use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 
 use crate::taken::Taken;
+use crate::views::{FigureJoints, TakenFigure};
 use crate::writing::Writing;
 use crate::{RecordError, RecordingInfo};
 
@@ -17,7 +20,7 @@ use crate::{RecordError, RecordingInfo};
 /// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks between two messages of transforms; 0 for none. Default 4: 15 messages a second at 60 Hz. A
+    /// Ticks between two messages of transforms, of the creature and of figures; 0 for none. Default 4: 15 messages a second at 60 Hz. A
     /// message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
     pub transforms_every: u32,
     /// Ticks between two views of the skin, with its points and the touched triangles; 0 for none. Default 30: 2
@@ -64,6 +67,20 @@ pub struct TickView<'a> {
     pub scene_fingerprint: u64,
 }
 
+/// What a game passes to [`Recorder::figure`]: a figure as it is drawn at the end of a tick, such as the climber's body.
+#[derive(Clone, Copy, Debug)]
+pub struct FigureView<'a> {
+    /// Name of the figure, for example `"hero"`. The frames of its joints are called `hero/hips` and so on. Choose a name
+    /// that no joint of the creature has.
+    pub name: &'a str,
+    /// Its skeleton: the same at every call with this name.
+    pub skeleton: &'a Skeleton,
+    /// The palette that poses it.
+    pub palette: &'a Palette,
+    /// Where it is drawn.
+    pub world_from_model: Similarity,
+}
+
 /// Writes a recording, chunk by chunk, on a thread of its own.
 ///
 /// [`Recorder::tick`] only copies the tick. Once a chunk is complete, the thread skins, encodes and writes its
@@ -76,6 +93,8 @@ pub struct TickView<'a> {
 pub struct Recorder<W: Write> {
     options: RecordOptions,
     last: Option<u64>,
+    /// The figures that were recorded.
+    figures: Vec<Arc<FigureJoints>>,
     /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
     /// their memory.
     chunk: Vec<Taken>,
@@ -148,6 +167,7 @@ impl<W: Write + Send + 'static> Recorder<W> {
         Ok(Self {
             options,
             last: None,
+            figures: Vec::new(),
             chunk: Vec::new(),
             gathered: 0,
             thread: Some(WriterThread {
@@ -198,6 +218,44 @@ impl<W: Write> Recorder<W> {
         }
         self.gathered += 1;
         self.last = Some(view.tick);
+        Ok(())
+    }
+
+    /// Records the joints of a figure at the tick recorded last, for people to look at: a replay does not compare
+    /// them. Nothing is recorded in ticks in which [`RecordOptions::transforms_every`] lets no transforms be due.
+    ///
+    /// # Errors
+    /// [`RecordError::FigureJoints`] if the palette, the skeleton and the skeleton of this name's first call differ in
+    /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing
+    /// failed. Nothing is recorded then.
+    pub fn figure(&mut self, view: &FigureView<'_>) -> Result<(), RecordError> {
+        if self.thread.is_none() {
+            return Err(RecordError::Ended);
+        }
+        let last = self.chunk[..self.gathered].last_mut();
+        let tick = last.ok_or(RecordError::NoTick {
+            asked: 0,
+            ticks: None,
+        })?;
+        let known = self.figures.iter().find(|known| known.figure == view.name);
+        let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
+        if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
+            return Err(RecordError::FigureJoints {
+                figure: view.name.to_owned(),
+                skeleton,
+                palette,
+            });
+        }
+        if !tick.transforms_due {
+            return Ok(());
+        }
+        let joints = known.cloned().unwrap_or_else(|| {
+            let joints = Arc::new(FigureJoints::new(view.name, view.skeleton));
+            self.figures.push(Arc::clone(&joints));
+            joints
+        });
+        let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
+        tick.figures.push(figure);
         Ok(())
     }
 

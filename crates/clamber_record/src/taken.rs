@@ -10,6 +10,7 @@ use clamber_surface::surface::Diagnostics;
 use glam::DAffine3;
 
 use crate::messages::Report;
+use crate::views::TakenFigure;
 use crate::{RecordOptions, TickView};
 
 /// A copy of a tick. The memory of its vectors is reused from tick to tick.
@@ -28,6 +29,8 @@ pub(crate) struct Taken {
     pub(crate) transforms_due: bool,
     /// Data for the views of the skin; `None` if they are not due.
     pub(crate) skin: Option<TakenSkin>,
+    /// Figures drawn at the end of this tick.
+    pub(crate) figures: Vec<TakenFigure>,
     /// Snapshots of the scene after this tick, as the caller's text.
     pub(crate) snapshots: Vec<String>,
 }
@@ -54,6 +57,7 @@ impl Taken {
             joints: Vec::new(),
             transforms_due: false,
             skin: None,
+            figures: Vec::new(),
             snapshots: Vec::new(),
         };
         taken.take(view, options);
@@ -83,6 +87,7 @@ impl Taken {
             touched: view.surface.diagnostics(),
             triangles: view.surface.touched_triangles().collect(),
         });
+        self.figures.clear();
         self.snapshots.clear();
     }
 }

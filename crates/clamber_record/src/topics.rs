@@ -6,6 +6,8 @@ pub const TICK: &str = "/tick";
 pub const SNAPSHOT: &str = "/snapshot";
 /// Transforms of creature, joints and climber (`foxglove.FrameTransforms`).
 pub const TRANSFORMS: &str = "/transforms";
+/// Joints of drawn figures (`foxglove.FrameTransforms`).
+pub const FIGURE: &str = "/figure";
 /// Triangles that queries reached, the triangle that supports the climber, and the climber's body
 /// (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";

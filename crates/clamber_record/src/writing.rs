@@ -20,6 +20,7 @@ struct Channels {
     tick: u16,
     snapshot: u16,
     transforms: u16,
+    figure: u16,
     scene: u16,
     skin: u16,
     touched: u16,
@@ -70,6 +71,7 @@ impl<W: Write> Writing<W> {
             tick: channel::<Tick, W>(&mut writer, topics::TICK)?,
             snapshot: channel::<Snapshot, W>(&mut writer, topics::SNAPSHOT)?,
             transforms: channel::<FrameTransforms, W>(&mut writer, topics::TRANSFORMS)?,
+            figure: channel::<FrameTransforms, W>(&mut writer, topics::FIGURE)?,
             scene: channel::<SceneUpdate, W>(&mut writer, topics::SCENE)?,
             skin: channel::<PointCloud, W>(&mut writer, topics::SKIN)?,
             touched: channel::<Touched, W>(&mut writer, topics::TOUCHED)?,
@@ -133,6 +135,10 @@ impl<W: Write> Writing<W> {
             let frames = self.frames.update(now, taken);
             encode(&mut self.buffer, topics::TRANSFORMS, frames)?;
             self.write(self.channels.transforms, now)?;
+        }
+        for figure in taken.figures.drain(..) {
+            let message = figure.message(now);
+            self.send(self.channels.figure, topics::FIGURE, now, &message)?;
         }
         // The mesh is released as soon as possible: until then an edit has to copy it.
         if let Some(skin) = taken.skin.take() {

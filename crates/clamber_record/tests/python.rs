@@ -7,6 +7,7 @@ use std::process::Command;
 use clamber_record::RecordOptions;
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
 use clamber_scenes::giant::giant;
+use clamber_scenes::hero::Hero;
 
 #[test]
 fn python_decodes_a_recording() {
@@ -27,7 +28,8 @@ fn python_decodes_a_recording() {
     let options = BattleOptions::ride(4, 1);
     let mut battle = Battle::new(&creature, &options).unwrap();
     let how = RecordOptions::default();
-    let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+    let recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+    let mut recorder = recorder.with_hero(Hero::load().unwrap());
     recorder.tick(&battle).unwrap();
     for tick in 0..200 {
         battle.step(options.input_at(tick)).unwrap();

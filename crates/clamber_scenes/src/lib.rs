@@ -10,6 +10,7 @@
 //! - [`rocks`]: rocks that fall on a shaking giant.
 //! - [`valley`]: the terrain of the scenes.
 //! - [`battle`]: the main scene: a climber climbs or rides a walking, shaking creature.
+//! - `hero`, with the feature `record` or `render`: the body of a battle's climber.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
 //! - [`measure`]: tables, plots, quantiles and reference values for benches.
 //! - [`part_bounds`]: spheres and capsules around parts in any pose, in f64.
@@ -26,6 +27,8 @@ pub mod closed;
 pub mod controllers;
 mod creature;
 pub mod giant;
+#[cfg(any(feature = "record", feature = "render"))]
+pub mod hero;
 mod json;
 pub mod measure;
 pub mod part_bounds;

@@ -1,20 +1,18 @@
 //! A battle for the renderer: meshes of its creature, its climber and the ground, light and cameras.
 
-use std::path::PathBuf;
-
-use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
-use clamber_gltf::{GltfError, Rig};
+use clamber_gltf::Rig;
 use clamber_render::{
     Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
     visual_meshes,
 };
 use clamber_surface::geometry::Similarity;
 use clamber_surface::mesh::{ColliderMesh, Influence, VertexId};
-use clamber_surface::rig::{Palette, RigError};
+use clamber_surface::rig::Palette;
 use glam::{DVec3, Vec3};
 use thiserror::Error;
 
 use crate::battle::Battle;
+use crate::hero::{Hero, HeroError, hero_path};
 use crate::valley;
 
 /// Distance between neighbouring vertices of the drawn ground, metres.
@@ -26,11 +24,9 @@ pub struct Stage {
     creature: Vec<RenderMeshId>,
     ground: RenderMeshId,
     outcrop: RenderMeshId,
-    hero: Vec<RenderMeshId>,
-    figure: Figure,
-    body: Body,
-    /// Of the hero; `None` until the battle is watched.
-    palette: Option<Palette>,
+    hero: Hero,
+    hero_meshes: Vec<RenderMeshId>,
+    watched: bool,
 }
 
 /// Why a stage cannot be set.
@@ -40,29 +36,9 @@ pub enum StageError {
     /// A mesh cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The hero's file cannot be loaded.
+    /// There is no hero.
     #[error(transparent)]
-    Load(#[from] GltfError),
-    /// The hero's skeleton is no humanoid.
-    #[error(transparent)]
-    Humanoid(#[from] HumanoidError),
-    /// The hero's clips do not fit.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// The hero's body cannot be posed.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// The hero's body cannot be posed.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-}
-
-/// Path of the hero's file.
-pub fn hero_path() -> PathBuf {
-    PathBuf::from(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../assets/hero.glb"
-    ))
+    Hero(#[from] HeroError),
 }
 
 impl Stage {
@@ -72,42 +48,24 @@ impl Stage {
     /// # Errors
     /// [`StageError`].
     pub fn new(renderer: &mut Renderer, creature: Vec<RenderMeshId>) -> Result<Self, StageError> {
-        let rig = clamber_gltf::load(hero_path())?;
-        let hero = add_visual(renderer, &rig)?;
-        let humanoid = Humanoid::find(&rig.skeleton)?;
-        let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
+        let rig = clamber_gltf::load(hero_path()).map_err(HeroError::from)?;
         Ok(Self {
             creature,
             ground: add_ground(renderer)?,
             outcrop: add_outcrop(renderer)?,
-            hero,
-            body: Body::new(&figure),
-            figure,
-            palette: None,
+            hero_meshes: add_visual(renderer, &rig)?,
+            hero: Hero::new(rig)?,
+            watched: false,
         })
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
     ///
     /// # Errors
-    /// [`StageError`].
+    /// [`StageError::Hero`].
     pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), StageError> {
-        let head = battle.creature().skeleton.find("head");
-        let head = head.and_then(|head| battle.palette().model_from_joint(head));
-        let look_at = head.map(|head| {
-            battle
-                .surface()
-                .world_from_model()
-                .transform_point(head.translation)
-        });
-        battle.touched(|obstacles| {
-            let frame = BodyFrame {
-                look_at,
-                ..BodyFrame::new(battle.climber(), obstacles)
-            };
-            self.body.update(&self.figure, &frame, dt)
-        })?;
-        self.palette = Some(self.figure.skeleton().palette(self.body.pose())?);
+        self.hero.watch(battle, dt)?;
+        self.watched = true;
         Ok(())
     }
 
@@ -120,9 +78,10 @@ impl Stage {
             palette,
         };
         let mut drawn = vec![at(self.ground, Similarity::IDENTITY, None)];
-        if let Some(palette) = &self.palette {
-            let place = self.body.world_from_model();
-            drawn.extend(self.hero.iter().map(|mesh| at(*mesh, place, Some(palette))));
+        if self.watched {
+            let (place, palette) = (self.hero.world_from_model(), self.hero.palette());
+            let meshes = self.hero_meshes.iter();
+            drawn.extend(meshes.map(|mesh| at(*mesh, place, Some(palette))));
         }
         if battle.has_outcrop() {
             drawn.push(at(self.outcrop, Similarity::IDENTITY, None));

@@ -4,7 +4,7 @@ use clamber_surface::rig::Skeleton;
 use foxglove::messages::{FrameTransform, FrameTransforms};
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{CLIMBER, CREATURE, WORLD, Z_UP, rotation, timestamp, vector};
+use super::{CLIMBER, CREATURE, WORLD, Z_UP, place, rotation, timestamp, upright, vector};
 use crate::taken::Taken;
 
 /// Number of transforms before the joints' transforms.
@@ -68,26 +68,8 @@ impl Frames {
     }
 }
 
-fn place(
-    frame: &mut FrameTransform,
-    now: foxglove::messages::Timestamp,
-    translation: DVec3,
-    turn: DQuat,
-) {
-    frame.timestamp = Some(now);
-    frame.translation = Some(vector(translation));
-    frame.rotation = Some(rotation(turn));
-}
-
 /// The rotation that takes +Z to a unit vector and keeps Y as upright as possible.
 fn facing(heading: DVec3) -> DQuat {
     let right = DVec3::Y.cross(heading).normalize_or(DVec3::X);
     DQuat::from_mat3(&DMat3::from_cols(right, heading.cross(right), heading))
-}
-
-/// A rotation from a linear map's first two columns, without scale, shear and mirroring: x keeps its direction.
-fn upright(map: &DMat3) -> DQuat {
-    let x = map.x_axis.normalize_or(DVec3::X);
-    let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());
-    DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
 }

@@ -1,17 +1,19 @@
 //! Views for people, as foxglove's own messages.
 
+mod figure;
 mod frames;
 mod log;
 mod scene;
 mod skin;
 
+pub(crate) use figure::{FigureJoints, TakenFigure};
 pub(crate) use frames::Frames;
 pub(crate) use log::line;
 pub(crate) use scene::Scene;
 pub(crate) use skin::Skin;
 
-use foxglove::messages::{Color, Pose, Quaternion, Timestamp, Vector3};
-use glam::{DQuat, DVec3};
+use foxglove::messages::{Color, FrameTransform, Pose, Quaternion, Timestamp, Vector3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// The frame of world space.
 const WORLD: &str = "world";
@@ -57,4 +59,18 @@ fn pose(position: DVec3) -> Pose {
 
 fn color(r: f64, g: f64, b: f64, a: f64) -> Color {
     Color { r, g, b, a }
+}
+
+/// Sets a transform.
+fn place(frame: &mut FrameTransform, now: Timestamp, translation: DVec3, turn: DQuat) {
+    frame.timestamp = Some(now);
+    frame.translation = Some(vector(translation));
+    frame.rotation = Some(rotation(turn));
+}
+
+/// A rotation from a linear map's first two columns, without scale, shear and mirroring: x keeps its direction.
+fn upright(map: &DMat3) -> DQuat {
+    let x = map.x_axis.normalize_or(DVec3::X);
+    let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());
+    DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
 }

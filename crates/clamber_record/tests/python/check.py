@@ -16,6 +16,7 @@ WANTED = {
     "/tick": "tick.Tick",
     "/snapshot": "snapshot.Snapshot",
     "/transforms": "foxglove.FrameTransforms",
+    "/figure": "foxglove.FrameTransforms",
     "/scene": "foxglove.SceneUpdate",
     "/skin": "foxglove.PointCloud",
     "/touched": "touched.Touched",
@@ -57,6 +58,20 @@ def check_transforms(message):
     return len(parents) - 3
 
 
+def check_figure(message):
+    parents = {t.child_frame_id: t.parent_frame_id for t in message.transforms}
+    check(len(parents) == len(message.transforms), "two joints of a figure with one name")
+    check(parents.get("hero") == "world", f"{parents}")
+    for child, parent in parents.items():
+        known = parent in parents if child != "hero" else True
+        check(known, f"{child}: its parent {parent} is no joint of the figure")
+    for t in message.transforms:
+        v = t.translation
+        near = t.child_frame_id == "hero" or v.x**2 + v.y**2 + v.z**2 < 4
+        check(near, f"{t.child_frame_id} is more than 2 m from its parent")
+    return len(parents) - 1
+
+
 def check_skin(message):
     check([f.name for f in message.fields] == ["x", "y", "z"], "fields of a point")
     check(len(message.data) % message.point_stride == 0, "an incomplete point")
@@ -94,6 +109,8 @@ def main(path):
                 check_tick(decoded, counts[topic])
             elif topic == "/transforms":
                 most["joints"] = max(most["joints"], check_transforms(decoded))
+            elif topic == "/figure":
+                most["joints of the hero"] = max(most["joints of the hero"], check_figure(decoded))
             elif topic == "/skin":
                 most["points"] = max(most["points"], check_skin(decoded))
             elif topic == "/scene":
@@ -112,6 +129,7 @@ def main(path):
     check(abs(last * 1e-9 - (counts["/tick"] - 1) * dt) < 1e-6, "the last tick's time")
     check("seed" in metadata["settings"], "no seed")
     check(most["joints"] > 0 and most["touched"] > 0, f"{dict(most)}")
+    check(most["joints of the hero"] > 20, f"{dict(most)}")
     print(f"{path}: {dict(counts)}; at most {dict(most)}; {metadata['clamber']['creature']}")
 
 

@@ -4,13 +4,14 @@ use std::io::Write;
 use std::path::Path;
 
 use clamber_record::{
-    Difference, Ending, RecordError, RecordOptions, RecordedTick, Recorder, Recording,
+    Difference, Ending, FigureView, RecordError, RecordOptions, RecordedTick, Recorder, Recording,
     RecordingInfo, ReplayError, Replayed, TickView, creature_fingerprint, palette_fingerprint,
 };
 
 use super::options::Progress;
 use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
 use crate::Creature;
+use crate::hero::{Hero, HeroError};
 
 /// Ticks from one snapshot to the next: one second.
 const SNAPSHOT_EVERY: u64 = 60;
@@ -21,8 +22,17 @@ impl From<RecordError> for BattleError {
     }
 }
 
+impl From<HeroError> for BattleError {
+    fn from(error: HeroError) -> Self {
+        Self::Watching(Box::new(error))
+    }
+}
+
 /// Records a battle tick by tick.
-pub struct BattleRecorder<W: Write>(Recorder<W>);
+pub struct BattleRecorder<W: Write> {
+    recorder: Recorder<W>,
+    hero: Option<Hero>,
+}
 
 impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// A recorder for a battle that was made from `options`. It writes to `out`.
@@ -45,17 +55,27 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             settings: options.to_settings()?,
             version: RecordingInfo::VERSION.to_owned(),
         };
-        Ok(Self(Recorder::new(out, &info, &creature.skeleton, how)?))
+        Ok(Self {
+            recorder: Recorder::new(out, &info, &creature.skeleton, how)?,
+            hero: None,
+        })
+    }
+
+    /// Records the joints of this hero too.
+    #[must_use]
+    pub fn with_hero(mut self, hero: Hero) -> Self {
+        self.hero = Some(hero);
+        self
     }
 
     /// Records the current state of the battle: call it before the first tick and after each tick. Adds a snapshot
     /// every second.
     ///
     /// # Errors
-    /// [`BattleError::Watching`] with the errors of [`Recorder::tick`] and [`Recorder::snapshot`];
+    /// [`BattleError::Watching`] with the errors of [`Recorder::tick`], [`Recorder::snapshot`] and [`Hero::watch`];
     /// [`BattleError::Snapshot`].
     pub fn tick(&mut self, battle: &Battle<'_>) -> Result<(), BattleError> {
-        self.0.tick(&TickView {
+        self.recorder.tick(&TickView {
             tick: battle.tick(),
             input: battle.input(),
             state: battle.climber().state(),
@@ -64,8 +84,17 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             palette: battle.palette(),
             scene_fingerprint: battle.rocks_fingerprint(),
         })?;
+        if let Some(hero) = &mut self.hero {
+            hero.watch(battle, TICK)?;
+            self.recorder.figure(&FigureView {
+                name: "hero",
+                skeleton: hero.skeleton(),
+                palette: hero.palette(),
+                world_from_model: hero.world_from_model(),
+            })?;
+        }
         if battle.tick().is_multiple_of(SNAPSHOT_EVERY) {
-            self.0.snapshot(&battle.snapshot().to_json()?)?;
+            self.recorder.snapshot(&battle.snapshot().to_json()?)?;
         }
         Ok(())
     }
@@ -75,7 +104,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
     /// # Errors
     /// [`BattleError::Watching`] with the errors of [`Recorder::finish`].
     pub fn finish(self) -> Result<W, BattleError> {
-        Ok(self.0.finish()?)
+        Ok(self.recorder.finish()?)
     }
 }
 
@@ -104,7 +133,8 @@ pub(super) fn run(
         watch(battle)?;
         if let Some(out) = out.take() {
             let how = RecordOptions::default();
-            recorder = Some(BattleRecorder::new(out, battle, options, how)?);
+            let plain = BattleRecorder::new(out, battle, options, how)?;
+            recorder = Some(plain.with_hero(Hero::load()?));
         }
         recorder
             .as_mut()

@@ -1,0 +1,95 @@
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{JointId, Palette, Skeleton};
+use foxglove::messages::{FrameTransform, FrameTransforms};
+use glam::{DAffine3, DQuat, DVec3};
+
+use super::{WORLD, place, rotation, upright, vector};
+
+/// Names and parents of a figure's joints.
+#[derive(Debug)]
+pub(crate) struct FigureJoints {
+    pub(crate) figure: String,
+    /// For each joint the name of its frame, and its parent's number.
+    joints: Vec<(String, Option<usize>)>,
+}
+
+impl FigureJoints {
+    pub(crate) fn new(figure: &str, skeleton: &Skeleton) -> Self {
+        let mut taken = std::collections::HashSet::new();
+        let named = |(index, joint): (usize, &clamber_surface::rig::Joint)| {
+            let mut name = format!("{figure}/{}", joint.name);
+            if joint.name.is_empty() || !taken.insert(name.clone()) {
+                name = format!("{name}#{index}");
+                taken.insert(name.clone());
+            }
+            (name, joint.parent.map(JointId::index))
+        };
+        Self {
+            figure: figure.to_owned(),
+            joints: skeleton.joints().iter().enumerate().map(named).collect(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.joints.len()
+    }
+}
+
+/// A figure in a tick.
+#[derive(Debug)]
+pub(crate) struct TakenFigure {
+    pub(crate) joints: Arc<FigureJoints>,
+    pub(crate) world_from_model: Similarity,
+    pub(crate) model_from_joint: Vec<DAffine3>,
+}
+
+impl TakenFigure {
+    pub(crate) fn new(
+        joints: Arc<FigureJoints>,
+        palette: &Palette,
+        world_from_model: Similarity,
+    ) -> Self {
+        let model_from_joint = (0..).map_while(|joint| palette.model_from_joint(JointId(joint)));
+        Self {
+            joints,
+            world_from_model,
+            model_from_joint: model_from_joint.copied().collect(),
+        }
+    }
+
+    /// The transforms of the figure and of its joints, each from its parent, so that viewers join them by lines.
+    /// In metres and without scale.
+    pub(crate) fn message(&self, nanoseconds: u64) -> FrameTransforms {
+        let now = super::timestamp(nanoseconds);
+        let frame = |parent: &str, child: &str, translation: DVec3, turn: DQuat| {
+            let mut frame = FrameTransform {
+                timestamp: None,
+                parent_frame_id: parent.to_owned(),
+                child_frame_id: child.to_owned(),
+                translation: Some(vector(DVec3::ZERO)),
+                rotation: Some(rotation(DQuat::IDENTITY)),
+            };
+            place(&mut frame, now, translation, turn);
+            frame
+        };
+        let root = &self.world_from_model;
+        let figure = &self.joints.figure;
+        let mut transforms = vec![frame(WORLD, figure, root.translation, root.rotation)];
+        let placed = self.model_from_joint.iter();
+        let places: Vec<(DVec3, DQuat)> = placed
+            .map(|joint| (joint.translation * root.scale, upright(&joint.matrix3)))
+            .collect();
+        for ((name, parent), (at, turn)) in self.joints.joints.iter().zip(&places) {
+            let above = parent.and_then(|parent| {
+                let (above, place) = (self.joints.joints.get(parent)?, places.get(parent)?);
+                Some((above.0.as_str(), *place))
+            });
+            let (above, (from, back)) = above.unwrap_or((figure, (DVec3::ZERO, DQuat::IDENTITY)));
+            let back = back.inverse();
+            transforms.push(frame(above, name, back * (*at - from), back * *turn));
+        }
+        FrameTransforms { transforms }
+    }
+}

@@ -1,0 +1,111 @@
+//! The project's hero as the body of a battle's climber.
+
+use std::path::PathBuf;
+
+use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
+use clamber_gltf::{GltfError, Rig};
+use clamber_surface::geometry::Similarity;
+use clamber_surface::rig::{Palette, RigError, Skeleton};
+use thiserror::Error;
+
+use crate::battle::Battle;
+
+/// A humanoid that is posed for each tick of a battle.
+#[derive(Clone, Debug)]
+pub struct Hero {
+    figure: Figure,
+    body: Body,
+    palette: Palette,
+}
+
+/// Why there is no hero.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum HeroError {
+    /// Its file cannot be loaded.
+    #[error(transparent)]
+    Load(#[from] GltfError),
+    /// Its skeleton is no humanoid.
+    #[error(transparent)]
+    Humanoid(#[from] HumanoidError),
+    /// Its clips do not fit.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// Its body cannot be posed.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// Its body cannot be posed.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+}
+
+/// Path of the hero's file.
+pub fn hero_path() -> PathBuf {
+    PathBuf::from(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../assets/hero.glb"
+    ))
+}
+
+impl Hero {
+    /// A hero from a file's rig.
+    ///
+    /// # Errors
+    /// [`HeroError`].
+    pub fn new(rig: Rig) -> Result<Self, HeroError> {
+        let humanoid = Humanoid::find(&rig.skeleton)?;
+        let figure = Figure::new(rig.skeleton, humanoid, rig.clips)?;
+        let body = Body::new(&figure);
+        Ok(Self {
+            palette: figure.skeleton().palette(body.pose())?,
+            body,
+            figure,
+        })
+    }
+
+    /// The hero of the project's file.
+    ///
+    /// # Errors
+    /// [`HeroError`].
+    pub fn load() -> Result<Self, HeroError> {
+        Self::new(clamber_gltf::load(hero_path())?)
+    }
+
+    /// Poses the hero for the battle's current tick, `dt` seconds after the last one that it was posed for.
+    ///
+    /// # Errors
+    /// [`HeroError`].
+    pub fn watch(&mut self, battle: &Battle<'_>, dt: f64) -> Result<(), HeroError> {
+        let surface = battle.surface();
+        let head = battle.creature().skeleton.find("head");
+        let head = head.and_then(|head| battle.palette().model_from_joint(head));
+        let look_at = head.map(|head| {
+            let root = surface.world_from_model();
+            root.transform_point(head.translation)
+        });
+        battle.touched(|obstacles| {
+            let frame = BodyFrame {
+                look_at,
+                ..BodyFrame::new(battle.climber(), obstacles)
+            };
+            self.body.update(&self.figure, &frame, dt)
+        })?;
+        self.palette = self.figure.skeleton().palette(self.body.pose())?;
+        Ok(())
+    }
+
+    /// Its skeleton.
+    pub fn skeleton(&self) -> &Skeleton {
+        self.figure.skeleton()
+    }
+
+    /// Its pose: the rest pose until it is [watched](Hero::watch).
+    pub fn palette(&self) -> &Palette {
+        &self.palette
+    }
+
+    /// Where it is drawn.
+    pub fn world_from_model(&self) -> Similarity {
+        self.body.world_from_model()
+    }
+}
