@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::context::Context;
+use super::detour;
 use super::event::Plant;
 use super::goals::Goal;
 use super::hold::Hold;
@@ -35,14 +36,12 @@ const CATCH: f64 = 0.14;
 const FOLLOW: f64 = 0.16;
 
 /// Largest acceleration of a hand that catches, metres a second squared, and the peak of a step of 1 m in 1 s.
-const FORCE: f64 = 60.0;
+const FORCE: f64 = 50.0;
 const PEAK: f64 = 5.77;
 
-/// Longest step of a limb that is out of reach.
+/// Times of a step of a limb that is out of reach: a short one, and the most for a long one, seconds.
 const HURRIES: f64 = 0.14;
-
-/// How far a step goes around, away from the skin, metres.
-const LIFT: f64 = 0.05;
+const LATE: f64 = 0.2;
 
 /// Slower than this is still, metres a second; after this time, seconds, limbs that are farther than this from where they
 /// belong, metres, are put there.
@@ -102,6 +101,8 @@ pub(crate) struct Schedule<'a, 'c> {
     pub(crate) held: DVec3,
     /// Seconds since it took hold.
     pub(crate) since: f64,
+    /// It hangs by its hands: the body follows them, as far as they reach.
+    pub(crate) hangs: bool,
 }
 
 impl Climb {
@@ -168,7 +169,7 @@ impl Climb {
             let is_due = turn && behind > 0.85 * length * size;
             let lags = !is_still && behind > 0.85 * length * size;
             let is_untidy = self.still > RESTS && away.length() > TIDY * size;
-            let is_far = schedule.stretch(index, hold) > FAR;
+            let is_far = !schedule.hangs && schedule.stretch(index, hold) > FAR;
             limb.waits |= is_due || lags || is_untidy || is_far;
         }
         let mut order = [0, 1, 2, 3];
@@ -317,10 +318,13 @@ impl Schedule<'_, '_> {
             // A step of somebody who climbs is timed; all others take the time that they need.
             let time = if ahead == DVec3::ZERO {
                 time.max(soft)
+            } else if time <= HURRIES {
+                time.max(soft.min(LATE * context.size().sqrt()))
             } else {
                 time
             };
-            limb.swing_to(hold, time, LIFT * context.size());
+            let bow = detour::bow(context, &limb.shown, &hold);
+            limb.swing_to(hold, time, bow);
         }
     }
 

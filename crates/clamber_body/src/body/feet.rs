@@ -152,7 +152,10 @@ impl Foot<'_, '_> {
                 let is_far = |(far, turned): (f64, f64)| distance > far * size || angle > turned;
                 if is_far(UNPLANT) || !self.walk.is_going() && other_stands && is_far(REPLANT) {
                     match self.find(&self.clip) {
-                        Some(hold) => self.memory.swing_to(hold, STEP, LIFT * size),
+                        Some(hold) => {
+                            self.memory
+                                .swing_to(hold, STEP, hold.normal() * (LIFT * size))
+                        }
                         None => self.lift(),
                     }
                 }
@@ -341,7 +344,7 @@ impl Foot<'_, '_> {
             self.tell(&hold, plants);
         } else if height < BELOW * size {
             let share = (height / (HIGH * size)).clamp(0.2, 1.0);
-            self.memory.swing_to(hold, DOWN * share, 0.0);
+            self.memory.swing_to(hold, DOWN * share, DVec3::ZERO);
         }
     }
 

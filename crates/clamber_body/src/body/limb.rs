@@ -6,6 +6,7 @@ use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector, slerp
 use glam::{DQuat, DVec3};
 
 use super::carry::Carry;
+use super::detour::Detour;
 use super::hold::Hold;
 use crate::figure::Place;
 
@@ -14,6 +15,9 @@ const LET_GO: f64 = 0.07;
 
 /// The fastest that a hand or foot still is when it turns to something else, metres a second.
 const FASTEST: f64 = 6.0;
+
+/// The fastest turn of a hand or foot that goes on when it turns to something else, radians a second.
+const SPINS: f64 = 20.0;
 
 /// Over which time the speed of an extremity is remembered, seconds.
 const PACE: f64 = 0.06;
@@ -38,8 +42,8 @@ pub(crate) struct Swing {
     pub(crate) to: Hold,
     pub(crate) time: f64,
     pub(crate) duration: f64,
-    /// How far it goes around, away from what it goes to.
-    pub(crate) lift: f64,
+    /// How far and to where it goes around in the middle of its way.
+    bow: DVec3,
 }
 
 impl Swing {
@@ -50,10 +54,9 @@ impl Swing {
         let share = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         let to = self.to.place();
         let run = self.velocity * (self.duration * t * (1.0 + t * t * (t * (8.0 - 3.0 * t) - 6.0)));
-        let bow = 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
-        let lift = self.to.normal() * (self.lift * bow);
+        let bow = self.bow * (16.0 * (t * (1.0 - t)) * (t * (1.0 - t)));
         Place {
-            position: self.from.position.lerp(to.position, share) + run + lift,
+            position: self.from.position.lerp(to.position, share) + run + bow,
             rotation: slerp(self.from.rotation, to.rotation, share),
         }
     }
@@ -65,10 +68,14 @@ pub(crate) struct LimbMemory {
     /// Where it was shown, in world space, and how fast relative to what carries the body.
     pub(crate) shown: Place,
     pub(crate) velocity: DVec3,
+    /// How fast it turned relative to the same, radians a second.
+    spin: DVec3,
     /// How fast the body moved, relative to the same.
     pub(crate) carried: DVec3,
     /// How fast it was lately.
     pub(crate) pace: f64,
+    /// Of its way around things.
+    pub(crate) detour: Detour,
     /// Difference from its clip after it was let go.
     offset: Spring<DVec3>,
     turn: Spring<DVec3>,
@@ -93,8 +100,10 @@ impl LimbMemory {
             doing: Doing::Free,
             shown: place,
             velocity: DVec3::ZERO,
+            spin: DVec3::ZERO,
             carried: DVec3::ZERO,
             pace: 0.0,
+            detour: Detour::default(),
             offset: Spring::default(),
             turn: Spring::default(),
             half: LET_GO,
@@ -112,6 +121,8 @@ impl LimbMemory {
         self.carried = carry.vector(carried);
         self.shown = carry.place(&self.shown);
         self.velocity = carry.vector(self.velocity);
+        self.spin = carry.vector(self.spin);
+        self.detour.carry(carry);
         for spring in [&mut self.offset, &mut self.turn, &mut self.tilt] {
             spring.value = carry.vector(spring.value);
             spring.velocity = carry.vector(spring.velocity);
@@ -119,6 +130,7 @@ impl LimbMemory {
         if let Doing::Swinging(swing) = &mut self.doing {
             swing.from = carry.place(&swing.from);
             swing.velocity = carry.vector(swing.velocity);
+            swing.bow = carry.vector(swing.bow);
         }
     }
 
@@ -137,9 +149,10 @@ impl LimbMemory {
         matches!(self.doing, Doing::Swinging(_))
     }
 
-    /// Starts towards a hold from where it is.
-    pub(crate) fn swing_to(&mut self, to: Hold, duration: f64, lift: f64) {
+    /// Starts towards a hold from where it is; `bow` is how far and to where it goes around in the middle of its way.
+    pub(crate) fn swing_to(&mut self, to: Hold, duration: f64, bow: DVec3) {
         self.waits = false;
+        self.detour = Detour::default();
         self.doing = Doing::Swinging(Swing {
             from: self.shown,
             velocity: self.velocity.clamp_length_max(FASTEST),
@@ -147,7 +160,7 @@ impl LimbMemory {
             // It was shown before this frame.
             time: self.frame,
             duration,
-            lift,
+            bow,
         });
     }
 
@@ -164,9 +177,9 @@ impl LimbMemory {
         self.offset.value = expected - target.position;
         self.offset.velocity = self.velocity - self.carried;
         self.half = LET_GO.max(soft_half(self.offset.value.length()));
-        self.turn = Spring::at(rotation_vector(
-            self.shown.rotation * target.rotation.conjugate(),
-        ));
+        let expected = turn_by(self.spin * self.frame) * self.shown.rotation;
+        self.turn.value = rotation_vector(expected * target.rotation.conjugate());
+        self.turn.velocity = self.spin;
     }
 
     /// Comes down where it is now, and is at rest: what is left is the difference to `target`.
@@ -214,6 +227,8 @@ impl LimbMemory {
     pub(crate) fn show(&mut self, place: Place, dt: f64) {
         if dt > 0.0 {
             self.velocity = (place.position - self.shown.position) / dt;
+            let turned = place.rotation * self.shown.rotation.conjugate();
+            self.spin = (rotation_vector(turned) / dt).clamp_length_max(SPINS);
             self.pace = (self.pace * libm::exp(-dt / PACE)).max(self.velocity.length());
         }
         self.shown = place;

@@ -36,6 +36,8 @@ pub(crate) struct Memory {
     pub(crate) ground: Ground,
     /// How far the pelvis is down for the feet.
     pub(crate) drop: f64,
+    /// How far the body is pulled by hands and feet that hold.
+    pub(crate) pull: Spring<DVec3>,
     /// Velocity along the ground that the body has settled to: it leans into the difference.
     pub(crate) slow: Spring<DVec3>,
     /// Velocity of the climber relative to the carrier.

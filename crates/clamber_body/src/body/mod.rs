@@ -3,6 +3,7 @@
 mod carry;
 mod climb;
 mod context;
+mod detour;
 mod error;
 mod event;
 mod feet;

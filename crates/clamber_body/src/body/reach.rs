@@ -41,9 +41,10 @@ pub(crate) struct Tie {
     pub(crate) length: f64,
 }
 
-/// The displacement of the body by which all ties are within reach, if that is not too far: onto one ball after the other.
-pub(crate) fn pulled(ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
-    let mut moved = DVec3::ZERO;
+/// The displacement of the body by which all ties are within reach, if that is not too far: from `from` onto one ball after
+/// the other.
+pub(crate) fn pulled(from: DVec3, ties: &[Option<Tie>; 4], size: f64) -> DVec3 {
+    let mut moved = from;
     for _ in 0..ROUNDS {
         for tie in ties.iter().flatten() {
             let way = tie.end - (tie.root + moved);

@@ -14,7 +14,7 @@ use super::frame::BodyFrame;
 use super::ground::{Ground, Look};
 use super::hold::Surroundings;
 use super::legs::Legs;
-use super::limb::{Doing, LimbMemory, Swing, soft_half};
+use super::limb::{Doing, LimbMemory, soft_half};
 use super::memory::Memory;
 use super::play::Player;
 use super::reach::{self, Tie};
@@ -60,6 +60,9 @@ const ROLL_TIME: f64 = 0.1;
 /// Time for half of a change of the gaze's weight, seconds.
 const GAZE: f64 = 0.15;
 
+/// Time for half of the body's way to where all limbs reach, seconds.
+const PULLS: f64 = 0.06;
+
 /// Depth of what is stepped down from, as a share of the leg, and how long that takes at most, seconds.
 const STEP_DOWN: f64 = 0.5;
 const STEP_DOWN_TIME: f64 = 0.3;
@@ -67,9 +70,6 @@ const STEP_DOWN_TIME: f64 = 0.3;
 /// Softness of limbs on their way, and how far from its clip a limb is reached like that, metres.
 const SOFT: f64 = 0.03;
 const SOFT_WITHIN: f64 = 0.05;
-
-/// How deep in something a hand or foot on its way is still led out of it, metres.
-const THROUGH: f64 = 0.15;
 
 /// A free limb within this distance of its clip is left to it, metres.
 const AT_CLIP: f64 = 1e-3;
@@ -202,9 +202,15 @@ impl<'a> Update<'a> {
                 .support
                 .map_or(state.position, |support| support.attachment.point),
             since: held,
+            hangs: self.stance == Stance::Hang,
         };
         if self.stance.is_held() {
             climb.step(&schedule, &mut limbs, plants);
+            for limb in &mut limbs {
+                if let Doing::Swinging(swing) = &limb.doing {
+                    limb.detour.step(&context, swing);
+                }
+            }
         } else if self.stance == Stance::Upright {
             let hips = [shoulders[2], shoulders[3]];
             feet::step(&context, &stand, &walk, hips, &mut limbs, plants);
@@ -212,6 +218,7 @@ impl<'a> Update<'a> {
         let mut ends = self.ends(&context, &stand, &limbs);
         let size = context.size();
         let mut drop = 0.0;
+        let mut pull = Spring::default();
         if self.stance == Stance::Upright {
             let was = self.memory.filter(|_| before == self.stance);
             let ties = self.ties(&ends, &shoulders);
@@ -224,7 +231,8 @@ impl<'a> Update<'a> {
             };
             root.position -= self.up * drop;
         } else if self.stance.is_held() {
-            root.position += self.pull(&context, &stand, &schedule, &mut limbs, &mut ends);
+            pull = self.pull(&context, &stand, &schedule, &mut limbs, &mut ends);
+            root.position += pull.value;
         }
         let legs = self.legs(&context, pose, &root, before);
         let moved = root.position - shown_before.position;
@@ -246,6 +254,7 @@ impl<'a> Update<'a> {
             offset_half: self.offset_half(&offset),
             ground,
             drop,
+            pull,
             slow,
             motion,
             full_motion: state.velocity - state.base_velocity,
@@ -577,14 +586,15 @@ impl<'a> Update<'a> {
         schedule: &Schedule<'_, '_>,
         limbs: &mut [LimbMemory; 4],
         ends: &mut [Option<Place>; 4],
-    ) -> DVec3 {
+    ) -> Spring<DVec3> {
         let size = context.size();
         let mut ties = self.ties(ends, &schedule.shoulders);
+        let mut wanted = DVec3::ZERO;
         // Each limb is dropped at most once while it is on its way, and once from its hold.
         for _ in 0..2 * Extremity::ALL.len() {
-            let pulled = reach::pulled(&ties, size);
-            let Some(worst) = reach::out_of_reach(&ties, pulled) else {
-                return pulled;
+            wanted = reach::pulled(DVec3::ZERO, &ties, size);
+            let Some(worst) = reach::out_of_reach(&ties, wanted) else {
+                break;
             };
             let is_last_hand = worst < 2 && !limbs[1 - worst].is_planted();
             let on_its_way =
@@ -601,7 +611,20 @@ impl<'a> Update<'a> {
             }
             ties[dropped] = None;
         }
-        DVec3::ZERO
+        if context.is_fresh {
+            return Spring::at(wanted);
+        }
+        // Softly, since limbs come and go; but what holds, holds. In a new stance, its offset has what was left.
+        let kept = self.memory.filter(|memory| memory.stance == self.stance);
+        let mut pull = kept.map_or(Spring::default(), |memory| memory.pull);
+        pull.value = self.carry.vector(pull.value);
+        pull.velocity = self.carry.vector(pull.velocity);
+        pull.step(wanted, PULLS * size.sqrt(), self.dt);
+        for (tie, limb) in ties.iter_mut().zip(limbs.iter()) {
+            *tie = tie.filter(|_| limb.is_planted());
+        }
+        pull.value = reach::pulled(pull.value, &ties, size);
+        pull
     }
 
     /// Where hands and feet have to be, whatever the body does.
@@ -619,7 +642,7 @@ impl<'a> Update<'a> {
                 }
                 (Doing::Free, _) => None,
                 (Doing::Planted(hold), _) => Some(limb.kept(&hold.place())),
-                (Doing::Swinging(swing), _) => Some(around_skin(context, swing)),
+                (Doing::Swinging(swing), _) => Some(limb.detour.lead(swing)),
             }
         })
     }
@@ -706,16 +729,4 @@ impl<'a> Update<'a> {
         }
         Ok(())
     }
-}
-
-/// Where a hand or foot is on its way: never deeper in the skin than its ball may be.
-fn around_skin(context: &Context<'_>, swing: &Swing) -> Place {
-    let mut place = swing.place();
-    let touching = place.point(swing.to.touching);
-    let near = context.around.nearest(touching, THROUGH * context.size());
-    if let Some(found) = near {
-        let depth = (found.contact.point - touching).dot(found.contact.normal);
-        place.position += found.contact.normal * depth.max(0.0);
-    }
-    place
 }

@@ -117,9 +117,9 @@ fn nothing_jumps_when_the_mode_changes() {
         for scene in scenes() {
             let seen = jumps(&scene, &figure, 60.0);
             let what = format!("{name}, {}", scene.name);
-            // 10 degrees are asked for, and shown as missed: arms that hang straight take 12 to bend to a wall, a
-            // foot in mid-step that lets go up to 19.
-            let most = 20.0;
+            // 10 degrees are asked for, and shown as missed: arms that hang straight take 14 to bend to a wall, and the
+            // short legs of one figure 18 to let go in mid-step.
+            let most = if name == "CesiumMan" { 18.5 } else { 14.0 };
             assert!(
                 seen.joint.0 <= most,
                 "{what}: {:.1}° {}",

@@ -1,3 +1,4 @@
+use clamber_animation::joint_in_model;
 use clamber_body::{Body, Extremity, Figure};
 use clamber_scenes::bodies::{self, Mount, Scene, Stage};
 use clamber_scenes::{Creature, giant, test_data};
@@ -27,6 +28,10 @@ struct Holds {
     frames: usize,
     /// The frames in which something was taken hold of, and what: hands 0 and 1, feet 2 and 3.
     plants: Vec<(f64, usize)>,
+    /// Rates at which elbows and knees bend, radians a second, and for arms that hold the same for a metre of way between
+    /// shoulder and hand, as a share of that of an arm at 97 % of its length.
+    bends: Vec<f64>,
+    shares: Vec<f64>,
 }
 
 /// A palm on its hold, in the frame of the skin.
@@ -44,14 +49,27 @@ fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
     };
     let mut palms: [Option<Palm>; 2] = [None; 2];
     let mut since = 0.0;
+    let mut limbs: Option<[Bent; 4]> = None;
     play(scene, figure, rate, |stage: &Stage<'_>, body: &Body| {
         let holding = stage.climber.state().mode.is_holding();
         since = if holding { since + 1.0 / rate } else { 0.0 };
         if since < TAKES_HOLD {
             palms = [None; 2];
+            limbs = None;
             return;
         }
         seen.frames += 1;
+        let bent = Extremity::ALL.map(|extremity| bent(figure, body, extremity));
+        if let Some(before) = limbs.replace(bent) {
+            for (index, (now, was)) in bent.iter().zip(before).enumerate() {
+                let turned = (now.angle - was.angle).abs();
+                seen.bends.push(turned * rate);
+                let moved = (now.line - was.line).length();
+                if index < 2 && now.holds && was.holds && moved > 1e-3 {
+                    seen.shares.push(turned / moved * now.bone * STRETCH);
+                }
+            }
+        }
         let plants = body.plants().iter();
         seen.plants
             .extend(plants.map(|plant| (stage.time, plant.extremity.index())));
@@ -97,6 +115,43 @@ fn holds(scene: &Scene, figure: &Figure, rate: f64) -> Holds {
     seen
 }
 
+/// An arm or a leg in a frame.
+#[derive(Clone, Copy)]
+struct Bent {
+    /// Of elbow or knee, radians.
+    angle: f64,
+    /// From shoulder to wrist, in the world.
+    line: DVec3,
+    /// Half of its length, metres.
+    bone: f64,
+    holds: bool,
+}
+
+/// Cosine of half the angle of an arm of two equal bones at 97 % of its length.
+const STRETCH: f64 = 0.243;
+
+fn bent(figure: &Figure, body: &Body, extremity: Extremity) -> Bent {
+    let human = figure.humanoid();
+    let limb = match extremity {
+        Extremity::Hand(side) => human.arm(side),
+        Extremity::Foot(side) => human.leg(side),
+    };
+    let root = body.world_from_model();
+    let (skeleton, pose) = (figure.skeleton(), body.pose());
+    let at = |joint| {
+        let placed = joint_in_model(skeleton, pose, joint).unwrap();
+        root.transform_point(placed.translation)
+    };
+    let [upper, lower] = [at(limb.upper), at(limb.lower)];
+    let end = root.transform_point(limb.ik.end(skeleton, pose).unwrap());
+    Bent {
+        angle: between(upper - lower, end - lower),
+        line: end - upper,
+        bone: 0.5 * (upper.distance(lower) + lower.distance(end)),
+        holds: body.hold(extremity).is_some(),
+    }
+}
+
 fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
@@ -116,6 +171,11 @@ impl Holds {
             "{what}: drift {} m",
             most(&self.drifts)
         );
+        // No elbow bends faster for the way of its hand than one at 97 % of the arm: 9.1 rad a metre for bones of 45 cm.
+        let share = most(&self.shares);
+        assert!(share <= 1.0, "{what}: elbows bend by {share}");
+        let bends = quantile(&mut self.bends, 0.999);
+        assert!(bends <= 45.0, "{what}: elbows and knees, {bends} rad/s");
     }
 }
 
@@ -209,7 +269,8 @@ fn palms_stay_on_skin() {
                 // Both hands are off only when the climber itself has just caught hold.
                 assert!(seen.no_hand <= 15, "{what}: {} frames", seen.no_hand);
                 let depth = quantile(&mut seen.depths, 0.999);
-                assert!(depth <= 0.02, "{what}: {depth} m deep");
+                // 5 mm are asked for, and missed in one ride of 36.
+                assert!(depth <= 0.007, "{what}: {depth} m deep");
                 played += 1;
             }
         }
@@ -225,5 +286,15 @@ fn a_body_that_is_shaken_hangs_on() {
         let mut seen = holds(&scene, &figure, 60.0);
         seen.check(&format!("{name}, {}", scene.name));
         assert_eq!(seen.no_hand, 0, "{name}");
+        let again = seen
+            .plants
+            .iter()
+            .filter(|plant| plant.0 > 2.5 && plant.1 < 2);
+        assert_eq!(again.count(), 0, "{name}: hands let go in the shake");
     }
+}
+
+/// The angle between two vectors, radians.
+fn between(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
 }

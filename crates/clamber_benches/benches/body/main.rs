@@ -5,9 +5,15 @@
 //! include its queries, and not the climber's own step. In the same run, one clip of the hero is sampled and its palette is
 //! composed, for comparison.
 //!
-//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds.
+//! Then the same climbs with inverse kinematics alone: the model is fixed to the climber, and its limbs reach for the same
+//! places, as far as the bones do (hard) or softly. See [`compare`].
+//!
+//! Prints a table and writes it to `target/measure/body.csv`: name, value, bound, holds; and draws errors beside costs to
+//! `target/measure/body.svg`.
 //!
 //! Run it with `cargo bench -p clamber_benches --bench body`; briefly with `-- --test`.
+
+mod compare;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -78,6 +84,13 @@ fn run(brief: bool) -> Result<(), Box<dyn Error>> {
             );
         }
     }
+    let climbs = [
+        bodies::wall(DVec3::Y * 0.5)?,
+        bodies::hang(3.0, 0.25)?,
+        bodies::climb(&giant, &mount, 1.0)?,
+        bodies::climb(&giant, &mount, 1.5)?,
+    ];
+    compare::compare(&climbs, &figure, if brief { 120 } else { 3600 }, &mut cells)?;
     cells.finish("body", brief)
 }
 
