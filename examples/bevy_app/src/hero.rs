@@ -1,10 +1,11 @@
-//! The hero: a climber with a figure of capsules. It starts behind the creature, and again when it has died.
+//! The hero: a climber, drawn as a person. It starts behind the creature, and again when it has died.
 
 use bevy::prelude::*;
 use bevy_clamber::clamber_climber::{ClimberConfig, ClimberMode};
 use bevy_clamber::events::ClimberHurt;
 use bevy_clamber::prelude::*;
 
+use crate::body::Person;
 use crate::creature::Creature;
 use crate::giant;
 use crate::hud::Message;
@@ -57,26 +58,9 @@ fn start(creature: &Creature) -> Transform {
 fn spawn(
     creature: Res<Creature>,
     camera: Single<Entity, With<Camera3d>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
+    person: Res<Person>,
     mut commands: Commands,
 ) {
-    let mut matt = |color| {
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: color,
-            perceptual_roughness: 0.8,
-            ..default()
-        }))
-    };
-    let (cloth, skin, cape) = (
-        matt(Color::srgb(0.16, 0.27, 0.52)),
-        matt(Color::srgb(0.85, 0.62, 0.48)),
-        matt(Color::srgb(0.75, 0.12, 0.10)),
-    );
-    let body = Mesh3d(meshes.add(Capsule3d::new(0.26, 0.62)));
-    let head = Mesh3d(meshes.add(Sphere::new(0.19)));
-    let arm = Mesh3d(meshes.add(Capsule3d::new(0.08, 0.45)));
-    let back = Mesh3d(meshes.add(Cuboid::new(0.44, 0.8, 0.05)));
     let mut config = ClimberConfig::colossus_climber();
     config.ground.walk_speed = RUN;
     config.ground.jump_speed = JUMP;
@@ -85,22 +69,9 @@ fn spawn(
         Climber::new(config),
         ClimberControls::default(),
         start(&creature),
-        Visibility::default(),
+        person.figure(&mut commands),
     );
-    // The entity is where the body's ball is: its feet are 0.4 m below.
-    let hero = commands
-        .spawn(hero)
-        .with_children(|parts| {
-            parts.spawn((body, cloth.clone(), Transform::from_xyz(0.0, 0.17, 0.0)));
-            parts.spawn((head, skin, Transform::from_xyz(0.0, 0.92, -0.03)));
-            parts.spawn((back, cape, Transform::from_xyz(0.0, 0.25, 0.29)));
-            for side in [-1.0, 1.0] {
-                let raised = Quat::from_rotation_x(-0.9) * Quat::from_rotation_z(-0.2 * side);
-                let at = Transform::from_xyz(0.33 * side, 0.55, -0.22).with_rotation(raised);
-                parts.spawn((arm.clone(), cloth.clone(), at));
-            }
-        })
-        .id();
+    let hero = commands.spawn(hero).id();
     commands.entity(*camera).insert(ClimberCamera {
         distance: 9.0,
         ..ClimberCamera::new(hero)

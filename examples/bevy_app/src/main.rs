@@ -8,6 +8,7 @@
 
 mod aim;
 mod arrows;
+mod body;
 mod creature;
 mod film;
 mod giant;
@@ -105,6 +106,7 @@ fn run(arguments: Arguments) -> Result<AppExit, String> {
         ClimberPlugin::default(),
         ClimberCameraPlugin,
     ));
+    body::load(&mut app).map_err(|error| format!("the hero: {error}"))?;
     match script {
         Some(script) => app.add_plugins(script::plays(script)),
         None => app.add_plugins(ClimberControlsPlugin),
