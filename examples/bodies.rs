@@ -6,6 +6,7 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clamber::body::{Body, BodyFrame, Figure, Humanoid, Retarget};
 use clamber::geometry::Similarity;
@@ -107,8 +108,17 @@ fn scenes() -> Result<Vec<Scene>, Box<dyn Error>> {
     ])
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let (figure, rig) = figure(options.figure.as_deref())?;
     std::fs::create_dir_all(&options.out)?;
     for (index, scene) in scenes()?.iter().enumerate() {
@@ -118,7 +128,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let name = scene.name.replace([' ', '/', '.'], "_");
         let file = options.out.join(format!("{index:02}_{name}.png"));
-        sheet(scene, &figure, &rig, &options)?.write_png(&file)?;
+        sheet(scene, &figure, &rig, options)?.write_png(&file)?;
         println!("{}", file.display());
     }
     Ok(())

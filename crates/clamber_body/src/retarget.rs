@@ -5,7 +5,8 @@
 //! there.
 //! So a body in a T-pose and one in an A-pose move alike. Turns of whole bones in model space need no knowledge of how
 //! either skeleton lays the axes of its joints (as in Hecker et al. 2008, "Real-time Motion Retargeting to Highly Varied
-//! User-Created Morphologies", whose bodies are far more varied). Hips move as far as the legs are long.
+//! User-Created Morphologies", whose bodies are far more varied). Hips move as far as the legs are long. The target stands at a
+//! height of 0 in model space, wherever its file has that.
 
 use clamber_surface::rig::{
     Channel, Clip, Interpolation, JointId, Keyframes, Playback, Pose, RigError, Skeleton,
@@ -13,6 +14,7 @@ use clamber_surface::rig::{
 use glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use thiserror::Error;
 
+use crate::figure::sole_height;
 use crate::humanoid::reference;
 use crate::{Humanoid, Limb, LimbEnd};
 
@@ -48,6 +50,8 @@ pub struct Retarget<'a> {
     turn: DQuat,
     /// How much longer the target's legs are.
     scale: f64,
+    /// How far the target has to be raised to stand at a height of 0.
+    lift: f64,
     /// The source's joints in model space in its bind pose, and the target's.
     bound: [Vec<DAffine3>; 2],
     /// Feet that stand beside their legs.
@@ -103,6 +107,7 @@ impl<'a> Retarget<'a> {
             hips: [source.hips, target.hips],
             turn,
             scale,
+            lift: lift(target, &bound[1]),
             bound,
             beside: Vec::new(),
         };
@@ -188,7 +193,8 @@ impl<'a> Retarget<'a> {
         let mut pose = self.start.clone();
         let way = moved[self.hips[0].index()].translation
             - self.bound[0][self.hips[0].index()].translation;
-        let hips = self.bound[1][self.hips[1].index()].translation + self.turn * way * self.scale;
+        let hips = self.bound[1][self.hips[1].index()].translation + DVec3::Y * self.lift;
+        let hips = hips + self.turn * way * self.scale;
         for bone in &self.bones {
             let [first, second] = bone.from.map(turned);
             let turn = clamber_surface::geometry::slerp(first, second, bone.share);
@@ -369,6 +375,26 @@ impl<'a> Retarget<'a> {
             to,
             reference,
         });
+    }
+}
+
+/// An ankle that is so far from a height of 0 does not stand there, as a share of the leg.
+const STANDS: f64 = 0.5;
+
+/// How far the lower sole is below a height of 0 in the bind pose; 0 for a model that stands about there.
+fn lift(body: &Humanoid, bound: &[DAffine3]) -> f64 {
+    let ankles = body.legs.iter().map(|leg| match leg.end {
+        LimbEnd::Joint(foot) => bound[foot.index()].translation.y,
+        LimbEnd::Point(point) | LimbEnd::Beside(_, point) => {
+            bound[leg.lower.index()].transform_point3(point).y
+        }
+    });
+    let ankle = ankles.fold(f64::INFINITY, f64::min);
+    let leg = body.legs[0].length();
+    if ankle.abs() < STANDS * leg {
+        0.0
+    } else {
+        sole_height(ankle, leg) - ankle
     }
 }
 

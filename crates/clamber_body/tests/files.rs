@@ -3,15 +3,23 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use clamber_animation::ik::{Reach, TwoBoneGoal};
-use clamber_body::{HumanJoint, Humanoid, HumanoidError, LimbEnd, Side};
+use clamber_body::{HumanJoint, Humanoid, HumanoidError, Limb, LimbEnd, Retarget, Side};
 use clamber_gltf::Rig;
 use clamber_scenes::test_data;
-use clamber_surface::rig::JointId;
+use clamber_surface::rig::{JointId, Pose};
 use glam::DVec3;
 
 fn load(name: &str) -> Option<Rig> {
     let file = test_data::file("bodies", &format!("models/{name}.glb"))?;
     Some(clamber_gltf::load(file).unwrap())
+}
+
+fn hero() -> Rig {
+    clamber_gltf::load(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../assets/hero.glb"
+    ))
+    .unwrap()
 }
 
 /// The name of a joint.
@@ -44,8 +52,7 @@ fn check_limbs(rig: &Rig, body: &Humanoid) {
 
 #[test]
 fn the_hero_has_a_whole_body_and_clips_with_markers() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/hero.glb");
-    let rig = clamber_gltf::load(file).unwrap();
+    let rig = hero();
     let body = Humanoid::find(&rig.skeleton).unwrap();
     assert_eq!(body.joints().len(), 4 + 2 * 8);
     assert_eq!(
@@ -218,12 +225,12 @@ fn joints_without_names_are_named_by_hand() {
     let mut joints = vec![(Hips, joint("Bone.003")), (Head, joint("Bone.002"))];
     let limbs = [
         (
-            Side::Left,
+            Side::Right,
             ["Bone.005", "Bone.006", "Bone.007"],
             ["Bone.014", "Bone.015", "Bone.016"],
         ),
         (
-            Side::Right,
+            Side::Left,
             ["Bone.009", "Bone.010", "Bone.011"],
             ["Bone.018", "Bone.019", "Bone.020"],
         ),
@@ -244,6 +251,20 @@ fn joints_without_names_are_named_by_hand() {
     }
     let body = Humanoid::from_joints(&rig.skeleton, &joints).unwrap();
     check_limbs(&rig, &body);
+    // It faces as games of its engine do, and its origin is at its waist: with the clips of another body it stands.
+    assert!(body.facing.z < -0.999, "{}", body.facing);
+    let hero = hero();
+    let own = Humanoid::find(&hero.skeleton).unwrap();
+    let retarget = Retarget::new((&hero.skeleton, &own), (&rig.skeleton, &body)).unwrap();
+    let rest = retarget.pose(&hero.skeleton.rest_pose()).unwrap();
+    for (leg, heros) in body.legs.iter().zip(&own.legs) {
+        let height = |leg: &Limb, rig: &Rig, pose: &Pose| {
+            leg.ik.end(&rig.skeleton, pose).unwrap().y / leg.length()
+        };
+        let ankle = height(leg, &rig, &rest);
+        let wanted = height(heros, &hero, &hero.skeleton.rest_pose());
+        assert!((ankle - wanted).abs() < 0.05, "{ankle}, {wanted}");
+    }
 
     // What does not fit is refused.
     type Joints = Vec<(HumanJoint, JointId)>;
@@ -269,11 +290,11 @@ fn joints_without_names_are_named_by_hand() {
         joints[3].1 = joints[2].1;
         joints[2].1 = lower;
     });
-    let above = UpperArm(Side::Left);
+    let above = UpperArm(Side::Right);
     assert_eq!(
         error,
         HumanoidError::NotBelow {
-            what: LowerArm(Side::Left),
+            what: LowerArm(Side::Right),
             above
         }
     );

@@ -143,7 +143,7 @@ pub(crate) fn turned(along: DVec3, outward: DVec3) -> DQuat {
 }
 
 /// The ankle's height above the sole. A model stands at a height of 0, unless that is nowhere near its feet.
-fn sole_height(ankle: f64, leg: f64) -> f64 {
+pub(crate) fn sole_height(ankle: f64, leg: f64) -> f64 {
     if (0.03 * leg..=0.25 * leg).contains(&ankle) {
         ankle
     } else {

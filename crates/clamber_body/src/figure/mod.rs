@@ -18,7 +18,7 @@ pub use extremity::Extremity;
 
 pub(crate) use clips::Clips;
 pub(crate) use gait::{Gait, STRIDES, Stride};
-pub(crate) use limb_shape::{LimbShape, Place, turned};
+pub(crate) use limb_shape::{LimbShape, Place, sole_height, turned};
 pub(crate) use posture::Postures;
 
 use crate::humanoid::reference;

@@ -15,27 +15,26 @@ use super::{InspectError, InspectOptions};
 pub(super) fn print(rig: &Rig, options: &InspectOptions) -> Result<bool, InspectError> {
     println!("{}", options.file.display());
     let body = match Humanoid::find(&rig.skeleton) {
-        Ok(body) => body,
+        Ok(body) => Some(body),
         Err(error) => {
             println!("  no human body: {error}");
-            let names = rig
-                .skeleton
-                .joints()
-                .iter()
-                .map(|joint| joint.name.as_str());
-            println!("  its joints: {}", names.collect::<Vec<_>>().join(", "));
-            return Ok(false);
+            let joints = rig.skeleton.joints().iter();
+            let names: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
+            println!("  its joints: {}", names.join(", "));
+            None
         }
     };
-    print!("{}", table(rig, &body));
+    if let Some(body) = &body {
+        print!("{}", table(rig, body));
+    }
     if let Some(file) = &options.draw {
-        draw(rig, &body, file).map_err(|error| InspectError::Draw {
+        draw(rig, body.as_ref(), file).map_err(|error| InspectError::Draw {
             file: file.clone(),
             error,
         })?;
         println!("  drawn in {}", file.display());
     }
-    Ok(true)
+    Ok(body.is_some())
 }
 
 /// The joints that were found, and the sizes that follow.
@@ -79,8 +78,9 @@ fn table(rig: &Rig, body: &Humanoid) -> String {
 /// Width and height of the drawing, pixels.
 const SIZE: (u32, u32) = (1200, 720);
 
-/// Draws the skeleton at rest from the front and from its left, the body's joints with their names.
-fn draw(rig: &Rig, body: &Humanoid, file: &Path) -> Result<(), String> {
+/// Draws the skeleton at rest from the front and from its left: the body's joints with what they are, or without a body all
+/// joints with their names.
+fn draw(rig: &Rig, body: Option<&Humanoid>, file: &Path) -> Result<(), String> {
     let palette = rig.skeleton.palette(&rig.skeleton.rest_pose());
     let palette = palette.map_err(|error| error.to_string())?;
     let place = |joint: JointId| {
@@ -90,9 +90,25 @@ fn draw(rig: &Rig, body: &Humanoid, file: &Path) -> Result<(), String> {
     let all: Vec<DVec3> = (0..rig.skeleton.joints().len() as u32)
         .map(|joint| place(JointId(joint)))
         .collect();
-    let left = DVec3::Y.cross(body.facing);
+    let facing = body.map_or(DVec3::Z, |body| body.facing);
+    let left = DVec3::Y.cross(facing);
+    let is_body = |joint| body.is_some_and(|body| body.role(joint).is_some());
+    let named: Vec<(String, JointId)> = match body {
+        Some(body) => {
+            let joints = body.joints().into_iter();
+            joints
+                .map(|(role, joint)| (role.to_string(), joint))
+                .collect()
+        }
+        None => {
+            let joints = rig.skeleton.joints().iter().zip(0..);
+            joints
+                .map(|(joint, id)| (joint.name.clone(), JointId(id)))
+                .collect()
+        }
+    };
     // Seen from the front, its left is at the right; seen from its left, it faces left.
-    let views = [("from the front", left), ("from its left", -body.facing)];
+    let views = [("from the front", left), ("from its left", -facing)];
     let area = SVGBackend::new(file, SIZE).into_drawing_area();
     let failed = |error: &dyn std::fmt::Display| error.to_string();
     area.fill(&WHITE).map_err(|error| failed(&error))?;
@@ -124,8 +140,7 @@ fn draw(rig: &Rig, body: &Humanoid, file: &Path) -> Result<(), String> {
         for (index, joint) in rig.skeleton.joints().iter().enumerate() {
             let Some(parent) = joint.parent else { continue };
             let child = JointId(index as u32);
-            let is_body = body.role(child).is_some() && body.role(parent).is_some();
-            let color = if is_body {
+            let color = if is_body(child) && is_body(parent) {
                 BLUE.stroke_width(3)
             } else {
                 BLACK.mix(0.3).stroke_width(1)
@@ -134,14 +149,14 @@ fn draw(rig: &Rig, body: &Humanoid, file: &Path) -> Result<(), String> {
             let bone = PathElement::new(bone, color);
             chart.draw_series([bone]).map_err(|error| failed(&error))?;
         }
-        for (role, joint) in body.joints() {
-            let at = flat(place(joint));
+        for (name, joint) in &named {
+            let at = flat(place(*joint));
             let dot = Circle::new(at, 4, RED.filled());
             chart.draw_series([dot]).map_err(|error| failed(&error))?;
             // What is on the far side is not named twice.
-            let is_near = title == "from the front" || !role.to_string().starts_with("right");
+            let is_near = title == "from the front" || !name.starts_with("right ");
             if is_near {
-                let text = Text::new(role.to_string(), (7, -5), ("sans-serif", 12));
+                let text = Text::new(name.clone(), (7, -5), ("sans-serif", 12));
                 let text = EmptyElement::at(at) + text;
                 chart.draw_series([text]).map_err(|error| failed(&error))?;
             }
