@@ -115,7 +115,7 @@ impl LimbShape {
 
     /// Where the limb ends in a pose, in metres in the space of the model.
     pub(crate) fn place(&self, skeleton: &Skeleton, pose: &Pose, scale: f64) -> Option<Place> {
-        let lower = joint_in_model(skeleton, pose, self.lower)?;
+        let lower = || joint_in_model(skeleton, pose, self.lower);
         let (model, tip) = match self.end {
             LimbEnd::Joint(joint) => {
                 let model = joint_in_model(skeleton, pose, joint)?;
@@ -123,9 +123,12 @@ impl LimbShape {
             }
             LimbEnd::Beside(joint, point) => (
                 joint_in_model(skeleton, pose, joint)?,
-                lower.transform_point3(point),
+                lower()?.transform_point3(point),
             ),
-            LimbEnd::Point(point) => (lower, lower.transform_point3(point)),
+            LimbEnd::Point(point) => {
+                let lower = lower()?;
+                (lower, lower.transform_point3(point))
+            }
         };
         let [along, outward] = self.axes.map(|axis| model.matrix3 * axis);
         Some(Place {
