@@ -16,6 +16,8 @@ pub mod debugging {}
 pub mod own_model {}
 #[doc = include_str!("../../../docs/recipes/own_engine.md")]
 pub mod own_engine {}
+#[doc = include_str!("../../../docs/recipes/person.md")]
+pub mod person {}
 #[doc = include_str!("../../../docs/recipes/saving.md")]
 pub mod saving {}
 #[doc = include_str!("../../../docs/recipes/scaling.md")]

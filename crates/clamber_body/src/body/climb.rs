@@ -271,12 +271,16 @@ impl Schedule<'_, '_> {
         if !limbs[index].is_planted() {
             return true;
         }
+        let is_hand = Extremity::ALL[index].is_hand();
+        if is_hand && self.goals[1 - index].is_none() {
+            // The other hand does something else.
+            return false;
+        }
         let mut off = (0..4).filter(|&other| {
             other != index && self.goals[other].is_some() && !limbs[other].is_planted()
         });
         // A hand goes with the opposite foot.
         let partner = [3, 2, 1, 0][index];
-        let is_hand = Extremity::ALL[index].is_hand();
         match (off.next(), off.next()) {
             (None, _) => true,
             (Some(other), None) if is_urgent => !(is_hand && Extremity::ALL[other].is_hand()),

@@ -27,12 +27,29 @@ enum Base {
 }
 
 /// A clip over the body's own, for weapons and gestures.
+///
+/// [`Layer::once`] plays it once, [`Layer::new`] again and again:
+///
+/// ```
+/// use clamber_animation::Layer;
+/// use clamber_body::{Act, Body, Figure};
+///
+/// /// Draws a bow: the left hand follows the clip, and the right one holds on meanwhile.
+/// fn draw(figure: &Figure, body: &mut Body) -> Result<(), Box<dyn std::error::Error>> {
+///     let clip = figure.animations().find("draw").ok_or("no such clip")?;
+///     let layer = Layer { mask: Some(figure.upper_body()), ..Layer::once(clip) };
+///     body.set_act(figure, Some(Act { layer, hands: [true, false] }), 0.2)?;
+///     Ok(()) // `act_mut` tells its time; then "aim", "loose", and `None`
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Act {
     /// The clip, how it is mixed in, and for which joints; [`Figure::upper_body`](crate::Figure::upper_body) is a mask of
     /// the joints above the hips.
     pub layer: Layer,
-    /// Which hands follow the clip, left and right. The others keep what they hold.
+    /// Which hands follow the clip, left and right. They are not kept out of walls. While the climber holds on, a hand leaves
+    /// its hold once the other one holds, and that one stays as long as it reaches: climb at most 0.3 m/s meanwhile, or it
+    /// has to move.
     pub hands: [bool; 2],
 }
 
@@ -61,6 +78,10 @@ impl Player {
     /// Forgets what it played, so that the next frame begins without a fade.
     pub(crate) fn restart(&mut self) {
         self.base = None;
+    }
+
+    pub(crate) fn events(&self) -> &[AnimationEvent] {
+        &self.events
     }
 
     pub(crate) fn act_mut(&mut self) -> Option<&mut Layer> {

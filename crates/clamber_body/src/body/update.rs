@@ -63,6 +63,9 @@ const GAZE: f64 = 0.15;
 /// Time for half of the body's way to where all limbs reach, seconds.
 const PULLS: f64 = 0.06;
 
+/// Least cosine between up and the normal of skin that counts as level.
+const FLAT: f64 = 0.94;
+
 /// Depth of what is stepped down from, as a share of the leg, and how long that takes at most, seconds.
 const STEP_DOWN: f64 = 0.5;
 const STEP_DOWN_TIME: f64 = 0.3;
@@ -188,8 +191,12 @@ impl<'a> Update<'a> {
         let held = self.memory.filter(|_| before.is_held());
         let held = held.map_or(0.0, |memory| memory.held + self.dt);
         let mut goals = goals::goals(&context, self.stance, &target);
-        for (goal, busy) in goals.iter_mut().zip(player.busy_hands()) {
-            *goal = goal.filter(|_| !busy);
+        let busy = player.busy_hands();
+        for hand in 0..2 {
+            // A hand leaves its hold for an act when the other one holds.
+            let other_holds = busy[1 - hand] || limbs[1 - hand].is_planted();
+            goals[hand] =
+                goals[hand].filter(|_| !busy[hand] || !other_holds && limbs[hand].is_planted());
         }
         let shown_before = root;
         let schedule = Schedule {
@@ -360,7 +367,8 @@ impl<'a> Update<'a> {
     fn turned(&self, motion: DVec3) -> (RotationSpring, Spring<DVec3>) {
         let state = self.frame.state;
         let facing = self.figure.humanoid().facing;
-        let [ahead, above] = self.stance.directions(state, self.up);
+        let [ahead, mut above] = self.stance.directions(state, self.up);
+        above = self.crawls().unwrap_or(above);
         let mut wanted = facing_to(facing, ahead, above);
         let level = self.level(motion);
         let Some(memory) = &self.memory else {
@@ -400,6 +408,18 @@ impl<'a> Update<'a> {
             turn.step(wanted, half, self.dt);
         }
         (turn, slow)
+    }
+
+    /// On level skin, where no way is up, the head stays where it came.
+    fn crawls(&self) -> Option<DVec3> {
+        let support = self.frame.state.support.as_ref()?;
+        let normal = support.normal_in_world();
+        if self.stance != Stance::Wall || normal.dot(self.up) < FLAT {
+            return None;
+        }
+        let before = self.memory.filter(|memory| memory.stance == Stance::Wall)?;
+        let head = self.carry.rotation(before.turn.rotation) * DVec3::Y;
+        (head - normal * head.dot(normal)).try_normalize()
     }
 
     fn walk(&self, rotation: DQuat, motion: DVec3) -> Walk {

@@ -210,6 +210,45 @@ fn a_hand_with_a_weapon_leaves_its_hold() {
     assert!(cling.body.set_act(&figure, Some(wrong), 0.2).is_err());
 }
 
+/// An act may begin at any moment of a climb: the other hand holds before the act takes its own, and goes on holding.
+#[test]
+fn an_act_never_takes_both_hands() {
+    let figure = figures::hero();
+    let clip = figure.animations().find("aim").unwrap();
+    for speed in [0.0, 0.3, 0.75, 1.5] {
+        let scene = bodies::wall(DVec3::Y * (speed / 1.5)).unwrap();
+        for begin in 0..24 {
+            let mut stage = Stage::new(&scene).unwrap();
+            let mut body = Body::new(&figure);
+            let (mut lost, mut acts) = (0, 0);
+            for tick in 0..240 {
+                if tick == 120 + begin {
+                    let act = Act {
+                        layer: Layer {
+                            mask: Some(figure.upper_body()),
+                            ..Layer::new(clip)
+                        },
+                        hands: [true, false],
+                    };
+                    body.set_act(&figure, Some(act), 0.2).unwrap();
+                }
+                stage.tick(DT).unwrap();
+                let obstacles = stage.obstacles();
+                let frame = BodyFrame::new(&stage.climber, &obstacles);
+                body.update(&figure, &frame, DT).unwrap();
+                let holds = Side::BOTH.map(|side| body.hold(Extremity::Hand(side)).is_some());
+                lost += u32::from(tick >= 120 && holds == [false; 2]);
+                acts += u32::from(tick >= 120 && holds == [false, true]);
+            }
+            let what =
+                format!("{speed} m/s, from tick {begin}: {lost} without hands, {acts} with one");
+            // Who climbs on fast has to move the hand that is left.
+            let most = if speed < 0.5 { 0 } else { 60 };
+            assert!(lost <= most && acts > 60, "{what}");
+        }
+    }
+}
+
 /// Bad numbers are refused, and the body is as it was.
 #[test]
 fn bad_frames_are_refused() {

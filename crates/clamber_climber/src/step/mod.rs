@@ -40,6 +40,9 @@ const MOST_CHANGES: u32 = 4;
 /// than the wobble of a breathing animal, so that the mode does not flicker.
 const SLOPE_HYSTERESIS: f64 = 0.035;
 
+/// Least share of a direction that is level, for a climber to face it. Less is rounding: the normal of level skin, for example.
+const LEVEL: f64 = 1e-6;
+
 /// Memory that a climber reuses from tick to tick. Of its contents, only the contacts of the last tick are used later.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
@@ -278,11 +281,13 @@ impl<'a> Tick<'a> {
         self.report.events.push(event);
     }
 
-    /// Turns to face the level component of a direction; no change if that is zero.
+    /// Turns to face the level component of a direction; no change if that is no more than rounding.
     fn face(&mut self, direction: DVec3) {
         let up = self.config.up();
         let level = direction - up * direction.dot(up);
-        self.state.heading = level.normalize_or(self.state.heading);
+        if level.length() > LEVEL * direction.length() {
+            self.state.heading = level.normalize_or(self.state.heading);
+        }
     }
 }
 
