@@ -1,7 +1,7 @@
 //! Contact sheets of a climber's body: what it does in every mode, from two sides.
 //!
 //! ```text
-//! cargo run --release --example bodies --features render -- --out sheets
+//! cargo run --release --example bodies --features render
 //! ```
 
 use std::error::Error;
@@ -29,7 +29,7 @@ struct Options {
     #[arg(long)]
     figure: Option<PathBuf>,
     /// Folder for the sheets.
-    #[arg(long, default_value = "sheets")]
+    #[arg(long, default_value = "target/sheets")]
     out: PathBuf,
     /// Pictures a sheet.
     #[arg(long, default_value_t = 8)]
