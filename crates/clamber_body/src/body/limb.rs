@@ -92,6 +92,8 @@ pub(crate) struct LimbMemory {
     pub(crate) heel: f64,
     /// It should move to another place or, for a foot that left the ground early, come down, and waits for its turn.
     pub(crate) waits: bool,
+    /// Seconds since its turn came, if that was in this frame; the whole frame otherwise.
+    pub(crate) late: f64,
 }
 
 impl LimbMemory {
@@ -113,6 +115,7 @@ impl LimbMemory {
             frame: 0.0,
             heel: 0.0,
             waits: false,
+            late: 0.0,
         }
     }
 
@@ -158,7 +161,7 @@ impl LimbMemory {
             velocity: self.velocity.clamp_length_max(FASTEST),
             to,
             // It was shown before this frame.
-            time: self.frame,
+            time: self.late.min(self.frame),
             duration,
             bow,
         });
@@ -216,6 +219,7 @@ impl LimbMemory {
 
     pub(crate) fn advance(&mut self, dt: f64) {
         self.frame = dt;
+        self.late = dt;
         self.offset.step(DVec3::ZERO, self.half, dt);
         self.turn.step(DVec3::ZERO, self.half, dt);
         if let Doing::Swinging(swing) = &mut self.doing {
