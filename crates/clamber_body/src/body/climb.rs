@@ -167,14 +167,14 @@ impl Climb {
             let behind = away.dot(way);
             let turn = (self.clock - offsets[index]).floor() > (was - offsets[index]).floor();
             let is_due = turn && behind > 0.85 * length * size;
+            let lags = !is_still && behind > 0.85 * length * size;
+            let is_untidy = self.still > RESTS && away.length() > TIDY * size;
+            let is_far = !schedule.hangs && schedule.stretch(index, hold) > FAR;
             if is_due && !limb.waits {
                 // Its turn came within this frame.
                 let past = (self.clock - offsets[index]).rem_euclid(1.0);
                 limb.late = past * length * size.sqrt() / speed;
             }
-            let lags = !is_still && behind > 0.85 * length * size;
-            let is_untidy = self.still > RESTS && away.length() > TIDY * size;
-            let is_far = !schedule.hangs && schedule.stretch(index, hold) > FAR;
             limb.waits |= is_due || lags || is_untidy || is_far;
         }
         let mut order = [0, 1, 2, 3];
