@@ -229,14 +229,7 @@ impl<W: Write> Recorder<W> {
     /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing
     /// failed. Nothing is recorded then.
     pub fn figure(&mut self, view: &FigureView<'_>) -> Result<(), RecordError> {
-        if self.thread.is_none() {
-            return Err(RecordError::Ended);
-        }
-        let last = self.chunk[..self.gathered].last_mut();
-        let tick = last.ok_or(RecordError::NoTick {
-            asked: 0,
-            ticks: None,
-        })?;
+        let is_due = self.last_tick()?.transforms_due;
         let known = self.figures.iter().find(|known| known.figure == view.name);
         let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
         if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
@@ -246,7 +239,7 @@ impl<W: Write> Recorder<W> {
                 palette,
             });
         }
-        if !tick.transforms_due {
+        if !is_due {
             return Ok(());
         }
         let joints = known.cloned().unwrap_or_else(|| {
@@ -255,7 +248,7 @@ impl<W: Write> Recorder<W> {
             joints
         });
         let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
-        tick.figures.push(figure);
+        self.last_tick()?.figures.push(figure);
         Ok(())
     }
 
@@ -267,17 +260,21 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
     pub fn snapshot(&mut self, scene: &str) -> Result<(), RecordError> {
+        self.last_tick()?.snapshots.push(scene.to_owned());
+        Ok(())
+    }
+
+    /// The tick recorded last.
+    fn last_tick(&mut self) -> Result<&mut Taken, RecordError> {
         if self.thread.is_none() {
             return Err(RecordError::Ended);
         }
         // A chunk is handed over only when another tick follows, so the last tick is still here.
         let last = self.chunk[..self.gathered].last_mut();
-        let tick = last.ok_or(RecordError::NoTick {
+        last.ok_or(RecordError::NoTick {
             asked: 0,
             ticks: None,
-        })?;
-        tick.snapshots.push(scene.to_owned());
-        Ok(())
+        })
     }
 
     /// Writes the remaining ticks and the index, and gives back `out`.

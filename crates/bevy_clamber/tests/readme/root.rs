@@ -12,7 +12,7 @@ fn climbing(app: &mut App) {
         .add_systems(Startup, |mut commands: Commands| {
             commands.spawn(CustomObstacle::new(HalfSpace::below(0.0))); // ground, if no engine has any
             let hero = (Climber::colossus_climber(), Transform::from_xyz(0.0, 12.0, 0.0));
-            let hero = commands.spawn(hero).id(); // insert a mesh, to see it
+            let hero = commands.spawn(hero).id(); // insert a mesh or a `ClimberFigure`, to see it
             commands.spawn(ClimberCamera::new(hero)); // with a `Camera3d`
         });
 }
