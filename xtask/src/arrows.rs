@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 18] = [
+const ALLOWED: [(&str, &[&str]); 19] = [
     ("clamber_oracle", &[]),
     // Only for its feature `oracle`.
     ("clamber_surface", &["clamber_oracle"]),
@@ -22,6 +22,10 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "clamber_climber",
             "clamber_animation",
         ],
+    ),
+    (
+        "clamber_colossus",
+        &["clamber_surface", "clamber_world", "clamber_animation"],
     ),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),
@@ -91,12 +95,13 @@ const ALLOWED: [(&str, &[&str]); 18] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 13] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 14] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
     ("clamber_body", "clamber_gltf"),
     ("clamber_body", "clamber_scenes"),
+    ("clamber_colossus", "clamber_gltf"),
     ("clamber_benches", "clamber"),
     ("clamber_cli", "clamber_scenes"),
     ("clamber_benches", "clamber_body"),

@@ -1,0 +1,415 @@
+//! From a file to a brain: names become indices, seconds become ticks, and everything is checked.
+
+use std::collections::BTreeMap;
+
+use super::condition::Condition;
+use super::locate::{Step, line_of, state_on};
+use super::{
+    After, Brain, BrainError, BrainFile, BrainProblem, FADE, Gaze, MOST_DEPTH, MOST_MOODS,
+    MOST_STATES, MOST_TRANSITIONS, Mood, State, StateFile, StateId, Transition, TransitionFile,
+};
+
+impl Brain {
+    /// Reads a brain from its file, for ticks of `tick` seconds.
+    ///
+    /// # Errors
+    /// [`BrainError`], with line and state.
+    pub fn from_json(text: &str, tick: f64) -> Result<Self, BrainError> {
+        let file: BrainFile = serde_json::from_str(text).map_err(|error| {
+            let line = error.line();
+            BrainError {
+                line: (line > 0).then_some(line),
+                state: state_on(text, line),
+                problem: BrainProblem::Text(error.to_string()),
+            }
+        })?;
+        Compiler::new(&file, tick, Some(text)).compile()
+    }
+
+    /// A brain that was put together in code, for ticks of `tick` seconds.
+    ///
+    /// # Errors
+    /// [`BrainError`], without a line.
+    pub fn new(file: BrainFile, tick: f64) -> Result<Self, BrainError> {
+        Compiler::new(&file, tick, None).compile()
+    }
+}
+
+struct Compiler<'a> {
+    file: &'a BrainFile,
+    tick: f64,
+    text: Option<&'a str>,
+    states: Vec<State>,
+    files: Vec<&'a StateFile>,
+    ids: BTreeMap<&'a str, StateId>,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(file: &'a BrainFile, tick: f64, text: Option<&'a str>) -> Self {
+        Self {
+            file,
+            tick,
+            text,
+            states: Vec::new(),
+            files: Vec::new(),
+            ids: BTreeMap::new(),
+        }
+    }
+
+    fn compile(mut self) -> Result<Brain, BrainError> {
+        let tick = self.tick;
+        if !(tick > 0.0 && tick.is_finite()) {
+            return Err(self.whole(out_of_range("tick", "finite and more than 0", tick)));
+        }
+        self.gather(&self.file.states, None)?;
+        let found = self.states.len();
+        if found > MOST_STATES {
+            return Err(self.whole(too_many("states", found, MOST_STATES)));
+        }
+        let found = self.file.moods.len();
+        if found > MOST_MOODS {
+            return Err(self.whole(too_many("moods", found, MOST_MOODS)));
+        }
+        let moods = self.moods()?;
+        for index in 0..self.states.len() {
+            self.start_of(index)?;
+        }
+        let start = self.find(&self.file.start);
+        let start = start.map_err(|problem| self.at(&[Step::Key("start")], None, problem))?;
+        let transitions = self.transitions()?;
+        let mut brain = Brain {
+            file: self.file.clone(),
+            tick,
+            states: std::mem::take(&mut self.states),
+            transitions,
+            moods,
+            start,
+        };
+        brain.start = brain.innermost(start);
+        self.check_instants(&brain)?;
+        Ok(brain)
+    }
+
+    /// Appends all states, each before those inside it.
+    fn gather(
+        &mut self,
+        states: &'a BTreeMap<String, StateFile>,
+        parent: Option<StateId>,
+    ) -> Result<(), BrainError> {
+        for (name, file) in states {
+            let outer = parent.map(|parent| &self.states[parent.index()]);
+            let (path, depth) = outer.map_or((name.clone(), 0), |outer| {
+                (format!("{}/{name}", outer.path), outer.depth + 1)
+            });
+            let line = self
+                .text
+                .map_or(0, |text| line_of(text, &state_steps(&path)));
+            let here = |problem| BrainError {
+                line: (line > 0).then_some(line),
+                state: Some(path.clone()),
+                problem,
+            };
+            if name.is_empty() || name.contains('/') {
+                let problem = "a state's name is empty or has a slash in it";
+                return Err(here(BrainProblem::Text(problem.into())));
+            }
+            if self.ids.contains_key(name.as_str()) {
+                let (what, name) = ("states", name.clone());
+                return Err(here(BrainProblem::Twice { what, name }));
+            }
+            if depth >= MOST_DEPTH {
+                let what = "states around each other";
+                return Err(here(too_many(what, depth + 1, MOST_DEPTH)));
+            }
+            let is_outer = !file.states.is_empty();
+            if file.is_final && (is_outer || !file.transitions.is_empty()) {
+                return Err(here(BrainProblem::FinalState));
+            }
+            if is_outer && (file.start.is_none() || file.act.is_some()) {
+                return Err(here(BrainProblem::Composite));
+            }
+            if !is_outer && file.start.is_some() {
+                return Err(here(BrainProblem::Leaf));
+            }
+            let fade = file.fade.unwrap_or(FADE);
+            let cooldown = file.cooldown.unwrap_or(0.0);
+            for (what, found) in [("fade", fade), ("cooldown", cooldown)] {
+                check_seconds(what, found).map_err(here)?;
+            }
+            check_act(file).map_err(here)?;
+            let gaze = outer.map_or(Gaze::Clip, |outer| outer.gaze);
+            let mut exposes = outer.map_or(Vec::new(), |outer| outer.exposes.clone());
+            exposes.extend(file.exposes.iter().cloned());
+            let id = StateId(self.states.len().min(usize::from(u16::MAX)) as u16);
+            self.states.push(State {
+                name: name.clone(),
+                path,
+                parent,
+                depth,
+                start: None,
+                act: file.act.clone(),
+                gaze: file.gaze.unwrap_or(gaze),
+                fade,
+                exposes,
+                cooldown: Brain::ticks(cooldown, self.tick),
+                is_final: file.is_final,
+                transitions: 0..0,
+                line,
+            });
+            self.files.push(file);
+            self.ids.insert(name, id);
+            self.gather(&file.states, Some(id))?;
+        }
+        Ok(())
+    }
+
+    fn moods(&self) -> Result<Vec<Mood>, BrainError> {
+        let mut moods = Vec::new();
+        for (name, file) in &self.file.moods {
+            let steps = [Step::Key("moods"), Step::Key(name)];
+            let here = |problem| self.at(&steps, None, problem);
+            check_seconds("fades", file.fades).map_err(here)?;
+            let fades = Brain::ticks(file.fades, self.tick).max(1);
+            let mut raised = Vec::new();
+            for raise in &file.raised {
+                if !(0.0..=1.0).contains(&raise.to) {
+                    return Err(here(out_of_range("to", "from 0 to 1", raise.to)));
+                }
+                let when = self.conditions(&raise.when).map_err(here)?;
+                let to = (raise.to * f64::from(fades)).round() as u32;
+                raised.push((when, to));
+            }
+            moods.push(Mood { fades, raised });
+        }
+        Ok(moods)
+    }
+
+    fn start_of(&mut self, index: usize) -> Result<(), BrainError> {
+        let Some(name) = &self.files[index].start else {
+            return Ok(());
+        };
+        let start = self.find(name);
+        let start = start.map_err(|problem| self.in_state(index, problem))?;
+        if self.states[start.index()].parent != Some(StateId(index as u16)) {
+            let known = list(self.files[index].states.keys());
+            let (what, name) = ("state inside it called", name.clone());
+            return Err(self.in_state(index, BrainProblem::Unknown { what, name, known }));
+        }
+        self.states[index].start = Some(start);
+        Ok(())
+    }
+
+    fn transitions(&mut self) -> Result<Vec<Transition>, BrainError> {
+        let mut all = Vec::new();
+        for index in 0..self.states.len() {
+            let first = all.len();
+            for (number, file) in self.files[index].transitions.iter().enumerate() {
+                let path = self.states[index].path.clone();
+                let mut steps = state_steps(&path);
+                steps.extend([Step::Key("transitions"), Step::Index(number)]);
+                let line = self.text.map_or(0, |text| line_of(text, &steps));
+                let transition = self.transition(StateId(index as u16), file, line);
+                let transition = transition.map_err(|problem| BrainError {
+                    line: (line > 0).then_some(line),
+                    state: Some(path),
+                    problem,
+                })?;
+                let number = all.len() as u64;
+                all.push(Transition {
+                    number,
+                    ..transition
+                });
+            }
+            self.states[index].transitions = first..all.len();
+        }
+        Ok(all)
+    }
+
+    fn transition(
+        &self,
+        from: StateId,
+        file: &TransitionFile,
+        line: usize,
+    ) -> Result<Transition, BrainProblem> {
+        let weight = file.weight.unwrap_or(1.0);
+        if !(weight > 0.0 && weight.is_finite()) {
+            return Err(out_of_range("weight", "finite and more than 0", weight));
+        }
+        let after = match file.after {
+            None => [0.0; 2],
+            Some(After::Fixed(seconds)) => [seconds; 2],
+            Some(After::Between(seconds)) => seconds,
+        };
+        for seconds in after {
+            check_seconds("after", seconds)?;
+        }
+        if after[0] > after[1] {
+            return Err(out_of_range("after", "in ascending order", after[0]));
+        }
+        Ok(Transition {
+            number: 0,
+            from,
+            to: self.find(&file.to)?,
+            when: self.conditions(&file.when)?,
+            any: self.conditions(&file.any)?,
+            on: file.on.clone(),
+            after: after.map(|seconds| Brain::ticks(seconds, self.tick)),
+            priority: file.priority,
+            weight,
+            interrupts: file.interrupts,
+            line,
+        })
+    }
+
+    fn conditions(&self, texts: &[String]) -> Result<Vec<Condition>, BrainProblem> {
+        let read = |text: &String| {
+            Condition::parse(text, self.file).map_err(|fault| BrainProblem::Condition {
+                text: text.clone(),
+                fault: fault.to_string(),
+            })
+        };
+        texts.iter().map(read).collect()
+    }
+
+    fn find(&self, name: &str) -> Result<StateId, BrainProblem> {
+        let found = self.ids.get(name).copied();
+        found.ok_or_else(|| BrainProblem::Unknown {
+            what: "state",
+            name: name.to_owned(),
+            known: list(self.ids.keys()),
+        })
+    }
+
+    /// Refuses transitions without conditions that lead in a circle, or on for more than a tick takes.
+    fn check_instants(&self, brain: &Brain) -> Result<(), BrainError> {
+        for first in brain.states() {
+            let mut way = vec![brain.innermost(first)];
+            while let Some(next) = brain.instant_from(way[way.len() - 1]) {
+                let next = brain.innermost(next);
+                let here = |problem| BrainError {
+                    line: brain.line(first),
+                    state: Some(brain.path(first).to_owned()),
+                    problem,
+                };
+                if way.contains(&next) {
+                    way.push(next);
+                    let way: Vec<&str> = way.iter().map(|state| brain.path(*state)).collect();
+                    return Err(here(BrainProblem::Circle(way.join(" -> "))));
+                }
+                way.push(next);
+                if way.len() > MOST_TRANSITIONS {
+                    return Err(here(BrainProblem::Chain(way.len() - 1)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn whole(&self, problem: BrainProblem) -> BrainError {
+        BrainError {
+            line: None,
+            state: None,
+            problem,
+        }
+    }
+
+    fn in_state(&self, index: usize, problem: BrainProblem) -> BrainError {
+        let state = &self.states[index];
+        BrainError {
+            line: (state.line > 0).then_some(state.line),
+            state: Some(state.path.clone()),
+            problem,
+        }
+    }
+
+    fn at(&self, steps: &[Step<'_>], state: Option<&str>, problem: BrainProblem) -> BrainError {
+        let line = self.text.map_or(0, |text| line_of(text, steps));
+        BrainError {
+            line: (line > 0).then_some(line),
+            state: state.map(str::to_owned),
+            problem,
+        }
+    }
+}
+
+impl Brain {
+    /// Where a state is left to at once; `None` if it is not, or not always.
+    fn instant_from(&self, state: StateId) -> Option<StateId> {
+        let around = self.around(state).flat_map(|outer| {
+            let range = self
+                .state(outer)
+                .map_or(0..0, |state| state.transitions.clone());
+            self.transitions[range].iter()
+        });
+        let mut instant = around.filter(|transition| transition.is_instant());
+        if self.is_final(state) || self.act(state).is_some_and(super::Act::is_whole) {
+            return None;
+        }
+        instant.next().map(|transition| transition.to)
+    }
+}
+
+/// The place of a state in the file's JSON.
+fn state_steps(path: &str) -> Vec<Step<'_>> {
+    let names = path.split('/');
+    names
+        .flat_map(|name| [Step::Key("states"), Step::Key(name)])
+        .collect()
+}
+
+fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
+    use super::Act;
+    match &file.act {
+        Some(Act::Attack(attack)) => {
+            if !(0.0..=1.0).contains(&attack.damage) {
+                return Err(out_of_range("damage", "from 0 to 1", attack.damage));
+            }
+            check_seconds("throw", attack.throw)?;
+            check_seconds("aim", attack.aim)
+        }
+        Some(Act::Walk(walk)) => check_seconds("within", walk.within),
+        Some(Act::Turn(turn)) => check_seconds("within_deg", turn.within_deg),
+        Some(Act::Play(_) | Act::Once(_)) | None => Ok(()),
+    }
+}
+
+/// Refuses times and lengths that are not finite or negative.
+fn check_seconds(what: &'static str, found: f64) -> Result<(), BrainProblem> {
+    if (0.0..=1e6).contains(&found) {
+        Ok(())
+    } else {
+        Err(out_of_range(what, "from 0 to 1,000,000", found))
+    }
+}
+
+fn out_of_range(what: &'static str, range: &'static str, found: f64) -> BrainProblem {
+    BrainProblem::OutOfRange { what, range, found }
+}
+
+fn too_many(what: &'static str, found: usize, most: usize) -> BrainProblem {
+    BrainProblem::TooMany { what, found, most }
+}
+
+/// Names in a row, for messages.
+pub(crate) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
+    let names: Vec<String> = names
+        .into_iter()
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect();
+    if names.is_empty() {
+        "none".into()
+    } else {
+        names.join(", ")
+    }
+}
+
+impl Brain {
+    /// An error about a state.
+    pub(crate) fn error_in(&self, state: StateId, problem: BrainProblem) -> BrainError {
+        BrainError {
+            line: self.line(state),
+            state: Some(self.path(state).to_owned()),
+            problem,
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! The brain: a hierarchical state machine in a file (Harel 1987, "Statecharts: a visual formalism for complex systems").
+//!
+//! Time counts in ticks, lots are drawn from the brain's own stream of random numbers, and nothing else than senses and
+//! markers comes in. So the same file, seed and senses give the same states, on any machine.
+
+mod compile;
+mod condition;
+mod error;
+mod file;
+mod locate;
+mod report;
+mod state;
+mod unique;
+
+pub(crate) use compile::list;
+
+use condition::Condition;
+pub use error::{BrainError, BrainProblem};
+pub use file::{
+    Act, After, Attack, BrainFile, Gaze, MoodFile, Place, RaiseFile, StateFile, TransitionFile,
+    Turn, Walk,
+};
+pub use report::{BrainReport, Never};
+pub use state::{BrainState, Entered};
+
+/// Index of a state in its [`Brain`].
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub struct StateId(pub u16);
+
+impl StateId {
+    /// The id as an index into a slice.
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// The most transitions in one tick. A state that is entered is left in the same tick only by a transition without
+/// conditions, and files with longer chains of those are refused.
+pub const MOST_TRANSITIONS: usize = 8;
+
+/// The most states inside one another, and the most of other things, so that a brain's state stays below 1 KB.
+const MOST_DEPTH: usize = 4;
+const MOST_STATES: usize = 160;
+const MOST_MOODS: usize = 16;
+
+/// Seconds in which an act fades in, unless its state says otherwise.
+const FADE: f64 = 0.6;
+
+/// A brain: states, moods, and what leads from one state to another. It never changes; what does is its
+/// [`BrainState`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Brain {
+    file: BrainFile,
+    tick: f64,
+    states: Vec<State>,
+    transitions: Vec<Transition>,
+    moods: Vec<Mood>,
+    /// The state in which it begins: one without others inside it.
+    start: StateId,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct State {
+    name: String,
+    /// With those around it, such as `calm/idle`.
+    path: String,
+    parent: Option<StateId>,
+    /// Number of states around it.
+    depth: usize,
+    /// The state inside it that is entered with it.
+    start: Option<StateId>,
+    act: Option<Act>,
+    gaze: Gaze,
+    fade: f64,
+    exposes: Vec<String>,
+    cooldown: u32,
+    is_final: bool,
+    /// Range in `Brain::transitions`.
+    transitions: core::ops::Range<usize>,
+    /// 0 if unknown.
+    line: usize,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Transition {
+    /// Its index in `Brain::transitions`.
+    number: u64,
+    from: StateId,
+    to: StateId,
+    when: Vec<Condition>,
+    any: Vec<Condition>,
+    on: Option<String>,
+    /// Ticks that the state must have lasted: from and to.
+    after: [u32; 2],
+    priority: i32,
+    weight: f64,
+    interrupts: bool,
+    line: usize,
+}
+
+impl Transition {
+    /// True if it needs nothing, and so is taken as soon as its state is entered.
+    fn is_instant(&self) -> bool {
+        self.when.is_empty() && self.any.is_empty() && self.on.is_none() && self.after == [0, 0]
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Mood {
+    /// Ticks in which it fades from 1 to 0.
+    fades: u32,
+    raised: Vec<(Vec<Condition>, u32)>,
+}
+
+impl Act {
+    /// True if it has to be played to its end.
+    fn is_whole(&self) -> bool {
+        matches!(self, Self::Once(_) | Self::Attack(_))
+    }
+
+    /// The clip that it plays; `None` for those of the gait.
+    pub fn clip(&self) -> Option<&str> {
+        match self {
+            Self::Play(clip) | Self::Once(clip) | Self::Attack(Attack { clip, .. }) => Some(clip),
+            Self::Walk(_) | Self::Turn(_) => None,
+        }
+    }
+}
+
+impl Brain {
+    /// The file that it was made from.
+    pub fn file(&self) -> &BrainFile {
+        &self.file
+    }
+
+    /// Length of a tick, seconds.
+    pub fn tick(&self) -> f64 {
+        self.tick
+    }
+
+    /// Number of states, those with others inside them included.
+    pub fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// False: a brain has at least one state.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// All states.
+    pub fn states(&self) -> impl ExactSizeIterator<Item = StateId> + use<> {
+        (0..self.states.len() as u16).map(StateId)
+    }
+
+    /// The state with this name; `None` if there is none.
+    pub fn find(&self, name: &str) -> Option<StateId> {
+        let found = self.states.iter().position(|state| state.name == name)?;
+        Some(StateId(found as u16))
+    }
+
+    /// A state's name and those of the states around it, such as `calm/idle`; empty for a state of another brain.
+    pub fn path(&self, state: StateId) -> &str {
+        self.state(state).map_or("", |state| &state.path)
+    }
+
+    /// What the creature does in a state; `None` if it stands as it stands.
+    pub fn act(&self, state: StateId) -> Option<&Act> {
+        self.state(state)?.act.as_ref()
+    }
+
+    /// Where the creature looks in a state.
+    pub fn gaze(&self, state: StateId) -> Gaze {
+        self.state(state).map_or(Gaze::Clip, |state| state.gaze)
+    }
+
+    /// Seconds in which a state's act fades in.
+    pub fn fade(&self, state: StateId) -> f64 {
+        self.state(state).map_or(FADE, |state| state.fade)
+    }
+
+    /// Weak points that a state exposes, by name.
+    pub fn exposes(&self, state: StateId) -> &[String] {
+        self.state(state).map_or(&[], |state| &state.exposes)
+    }
+
+    /// True if a state is never left.
+    pub fn is_final(&self, state: StateId) -> bool {
+        self.state(state).is_some_and(|state| state.is_final)
+    }
+
+    /// True if the state `inner` is `outer`, or inside it.
+    pub fn is_within(&self, inner: StateId, outer: StateId) -> bool {
+        self.around(inner).any(|state| state == outer)
+    }
+
+    /// The line of a state in its file; `None` if it was not read from one.
+    pub fn line(&self, state: StateId) -> Option<usize> {
+        let line = self.state(state)?.line;
+        (line > 0).then_some(line)
+    }
+
+    /// The names of the moods, in their order.
+    pub fn moods(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.file.moods.keys().map(String::as_str)
+    }
+
+    /// The names of the regions, in their order, with the joints that each one names.
+    pub fn regions(&self) -> impl ExactSizeIterator<Item = (&str, &[String])> {
+        let regions = self.file.regions.iter();
+        regions.map(|(name, joints)| (name.as_str(), joints.as_slice()))
+    }
+
+    /// The names of the game's own senses, in their order.
+    pub fn own_senses(&self) -> &[String] {
+        &self.file.senses
+    }
+
+    /// Senses of nothing, as this brain reads them.
+    pub fn no_senses(&self) -> crate::Senses {
+        crate::Senses::nothing(self.file.regions.len(), self.file.senses.len())
+    }
+
+    fn state(&self, state: StateId) -> Option<&State> {
+        self.states.get(state.index())
+    }
+
+    /// A state and those around it, from the inside out.
+    fn around(&self, state: StateId) -> impl Iterator<Item = StateId> {
+        let first = self.state(state).map(|_| state);
+        core::iter::successors(first, |state| self.state(*state)?.parent)
+    }
+
+    /// The innermost state that is entered with a state.
+    fn innermost(&self, state: StateId) -> StateId {
+        let inside = |state: &StateId| self.state(*state)?.start;
+        core::iter::successors(Some(state), inside)
+            .last()
+            .unwrap_or(state)
+    }
+
+    /// Ticks that are nearest to a time.
+    fn ticks(seconds: f64, tick: f64) -> u32 {
+        (seconds / tick).round().min(f64::from(u32::MAX)) as u32
+    }
+}

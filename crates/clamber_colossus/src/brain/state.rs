@@ -1,0 +1,263 @@
+use serde::{Deserialize, Serialize};
+
+use super::{Brain, MOST_DEPTH, MOST_TRANSITIONS, StateId, Transition};
+use crate::senses::Senses;
+
+/// What changes in a brain: where it is, for how long, its moods and its lots. Below 1 KB, and all that has to be saved.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct BrainState {
+    current: StateId,
+    /// Ticks so far.
+    now: u32,
+    /// The tick in which the current state was entered, and those around it, from the outside in.
+    entered: [u32; MOST_DEPTH],
+    /// A lot that was drawn when each of these was entered.
+    lots: [u64; MOST_DEPTH],
+    /// Of each state, the tick from which on it can be entered again.
+    ready: Vec<u32>,
+    /// Of each mood, ticks until it has faded.
+    moods: Vec<u32>,
+    /// The state of the stream of random numbers.
+    random: u64,
+}
+
+/// A state that was entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entered {
+    /// The state that was left: the innermost one.
+    pub from: StateId,
+    /// The state that was entered: the innermost one.
+    pub to: StateId,
+}
+
+impl BrainState {
+    /// The start of a brain, with a seed for its lots.
+    pub fn new(brain: &Brain, seed: u64) -> Self {
+        let mut state = Self {
+            current: brain.start,
+            now: 0,
+            entered: [0; MOST_DEPTH],
+            lots: [0; MOST_DEPTH],
+            ready: vec![0; brain.states.len()],
+            moods: vec![0; brain.moods.len()],
+            random: fastrand::Rng::with_seed(seed).u64(..),
+        };
+        for depth in 0..MOST_DEPTH {
+            state.lots[depth] = state.draw();
+        }
+        state
+    }
+
+    /// The current state: the innermost one.
+    pub fn current(&self) -> StateId {
+        self.current
+    }
+
+    /// Ticks since it was entered.
+    pub fn ticks_in_state(&self, brain: &Brain) -> u32 {
+        let depth = brain.state(self.current).map_or(0, |state| state.depth);
+        self.now - self.entered[depth].min(self.now)
+    }
+
+    /// A mood, 0 to 1, by its index in [`Brain::moods`]; 0 if there is none.
+    pub fn mood(&self, brain: &Brain, mood: usize) -> f64 {
+        let (Some(left), Some(mood)) = (self.moods.get(mood), brain.moods.get(mood)) else {
+            return 0.0;
+        };
+        f64::from(*left) / f64::from(mood.fades)
+    }
+
+    /// A lot from the brain's own stream.
+    pub(crate) fn draw(&mut self) -> u64 {
+        let mut random = fastrand::Rng::with_seed(self.random);
+        let lot = random.u64(..);
+        self.random = random.get_seed();
+        lot
+    }
+
+    /// Bytes that it takes.
+    pub fn size(&self) -> usize {
+        size_of::<Self>() + size_of_val(&self.ready[..]) + size_of_val(&self.moods[..])
+    }
+
+    /// True if it is a state of this brain.
+    pub(crate) fn fits(&self, brain: &Brain) -> bool {
+        let is_innermost = brain
+            .state(self.current)
+            .is_some_and(|state| state.start.is_none());
+        is_innermost
+            && (self.ready.len(), self.moods.len()) == (brain.states.len(), brain.moods.len())
+    }
+}
+
+impl Brain {
+    /// Lets a tick pass. `passed` are the markers that clips have passed in it. Calls `entered` for every state that is
+    /// entered, at most [`MOST_TRANSITIONS`] times.
+    ///
+    /// A state or senses of another brain change nothing.
+    pub fn step(
+        &self,
+        state: &mut BrainState,
+        senses: &Senses,
+        passed: &[&str],
+        mut entered: impl FnMut(Entered),
+    ) {
+        if !state.fits(self) || !senses.fits(self.file.regions.len(), self.file.senses.len()) {
+            return;
+        }
+        state.now = state.now.saturating_add(1);
+        self.feel(state, senses);
+        for round in 0..MOST_TRANSITIONS {
+            let Some(to) = self.chosen(state, senses, passed, round > 0) else {
+                return;
+            };
+            let from = state.current;
+            self.enter(state, to);
+            let to = state.current;
+            entered(Entered { from, to });
+        }
+    }
+
+    /// Goes to a state at once, as a game may want for a scene of its own. Does nothing for a state of another brain.
+    pub fn go_to(&self, state: &mut BrainState, to: StateId) {
+        if state.fits(self) && self.state(to).is_some() {
+            self.enter(state, to);
+        }
+    }
+
+    /// Moods fade, and are raised.
+    fn feel(&self, state: &mut BrainState, senses: &Senses) {
+        for left in &mut state.moods {
+            *left = left.saturating_sub(1);
+        }
+        for (index, mood) in self.moods.iter().enumerate() {
+            for (when, to) in &mood.raised {
+                let value = |mood: usize| state.mood(self, mood);
+                if when.iter().all(|condition| condition.holds(senses, value)) {
+                    state.moods[index] = state.moods[index].max(*to);
+                }
+            }
+        }
+    }
+
+    /// The state to which a transition leads now.
+    fn chosen(
+        &self,
+        state: &mut BrainState,
+        senses: &Senses,
+        passed: &[&str],
+        at_once: bool,
+    ) -> Option<StateId> {
+        let current = state.current;
+        if self.is_final(current) {
+            return None;
+        }
+        let is_whole = self.act(current).is_some_and(super::Act::is_whole);
+        let is_bound = is_whole && (at_once || senses.get(crate::Sense::Done) == 0.0);
+        let can = |transition: &&Transition| {
+            (!at_once || transition.is_instant())
+                && (!is_bound || transition.interrupts && !at_once)
+                && self.is_open(state, transition, senses, passed)
+        };
+        let all = || {
+            let ranges = self.around(current).filter_map(|outer| self.state(outer));
+            ranges.flat_map(|outer| self.transitions[outer.transitions.clone()].iter())
+        };
+        let priority = all()
+            .filter(can)
+            .map(|transition| transition.priority)
+            .max()?;
+        let best = |transition: &&Transition| transition.priority == priority && can(transition);
+        let (count, weight) = all().filter(best).fold((0, 0.0), |(count, weight), one| {
+            (count + 1, weight + one.weight)
+        });
+        if count == 1 {
+            return all().find(best).map(|transition| transition.to);
+        }
+        let chosen: Vec<(StateId, f64)> =
+            all().filter(best).map(|one| (one.to, one.weight)).collect();
+        let mut left = weight * unit(state.draw());
+        for (to, weight) in &chosen {
+            left -= weight;
+            if left < 0.0 {
+                return Some(*to);
+            }
+        }
+        chosen.last().map(|(to, _)| *to)
+    }
+
+    /// True if a transition's conditions hold and its state can be entered.
+    fn is_open(
+        &self,
+        state: &BrainState,
+        transition: &Transition,
+        senses: &Senses,
+        passed: &[&str],
+    ) -> bool {
+        let from = self.state(transition.from);
+        let depth = from.map_or(0, |from| from.depth);
+        let lasted = state.now - state.entered[depth].min(state.now);
+        if lasted < self.wait(state, transition, depth) {
+            return false;
+        }
+        if let Some(marker) = &transition.on
+            && !passed.contains(&marker.as_str())
+        {
+            return false;
+        }
+        let value = |mood: usize| state.mood(self, mood);
+        let holds = |condition: &super::Condition| condition.holds(senses, value);
+        if !transition.when.iter().all(holds)
+            || !transition.any.is_empty() && !transition.any.iter().any(holds)
+        {
+            return false;
+        }
+        let target = self.innermost(transition.to);
+        let is_ready = |entered: StateId| {
+            self.is_within(state.current, entered) || state.ready[entered.index()] <= state.now
+        };
+        let is_repeated = target == state.current && state.ready[target.index()] > state.now;
+        self.around(target).all(is_ready) && !is_repeated
+    }
+
+    /// Ticks that a transition's state must have lasted.
+    fn wait(&self, state: &BrainState, transition: &Transition, depth: usize) -> u32 {
+        let [from, to] = transition.after;
+        if from == to {
+            return from;
+        }
+        // The same lot as long as the state lasts, and another one for each transition.
+        let seed = state.lots[depth].wrapping_add(transition.number);
+        let share = unit(fastrand::Rng::with_seed(seed).u64(..));
+        from + (share * f64::from(to - from + 1)) as u32
+    }
+
+    fn enter(&self, state: &mut BrainState, to: StateId) {
+        let from = state.current;
+        let target = self.innermost(to);
+        // The states that are left: those that are not around the target, and the target itself if it is entered anew.
+        for left in self.around(from) {
+            let Some(outer) = self.state(left) else {
+                continue;
+            };
+            if !self.is_within(target, left) || left == to || left == target {
+                state.ready[left.index()] = state.now.saturating_add(outer.cooldown);
+            }
+        }
+        for entered in self.around(target) {
+            let Some(inner) = self.state(entered) else {
+                continue;
+            };
+            if !self.is_within(from, entered) || entered == to || entered == target {
+                state.entered[inner.depth] = state.now;
+                state.lots[inner.depth] = state.draw();
+            }
+        }
+        state.current = target;
+    }
+}
+
+/// A lot as a number from 0 to less than 1.
+fn unit(lot: u64) -> f64 {
+    (lot >> 11) as f64 / (1u64 << 53) as f64
+}

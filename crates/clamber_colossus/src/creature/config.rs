@@ -1,0 +1,70 @@
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::error::ColossusError;
+
+/// Where a creature begins, and how large it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CreatureConfig {
+    /// Where its model's origin is at first: between its feet, on the ground, in world space.
+    pub position: DVec3,
+    /// Its heading at first, radians about Y; 0 is +Z, positive turns to its left.
+    pub yaw: f64,
+    /// Metres per unit of its file. Its clips are slowed by the square root of it, as gravity is the same at any size.
+    pub scale: f64,
+    /// Seed of its lots.
+    pub seed: u64,
+    /// It does not walk further from where it began, metres.
+    pub arena: f64,
+    /// It does not walk onto steeper ground, radians.
+    pub most_slope: f64,
+    /// It does not see further, metres.
+    pub sight: f64,
+}
+
+impl Default for CreatureConfig {
+    /// At the origin, of its file's size, with an arena of 100 m, slopes to 25 degrees, and sight to 150 m.
+    fn default() -> Self {
+        Self {
+            position: DVec3::ZERO,
+            yaw: 0.0,
+            scale: 1.0,
+            seed: 0,
+            arena: 100.0,
+            most_slope: 25f64.to_radians(),
+            sight: 150.0,
+        }
+    }
+}
+
+impl CreatureConfig {
+    pub(super) fn check(&self) -> Result<(), ColossusError> {
+        let within = |what, range, found: f64, least: f64, most: f64| {
+            if (least..=most).contains(&found) {
+                Ok(())
+            } else {
+                Err(ColossusError::OutOfRange { what, range, found })
+            }
+        };
+        for found in self.position.to_array() {
+            within("position", "finite", found, f64::MIN, f64::MAX)?;
+        }
+        within("yaw", "finite", self.yaw, f64::MIN, f64::MAX)?;
+        within("scale", "from 0.000001 to 1,000,000", self.scale, 1e-6, 1e6)?;
+        within("arena", "at least 0", self.arena, 0.0, f64::INFINITY)?;
+        let most = core::f64::consts::FRAC_PI_2;
+        within(
+            "most_slope",
+            "from 0 to a quarter turn",
+            self.most_slope,
+            0.0,
+            most,
+        )?;
+        within("sight", "at least 0", self.sight, 0.0, f64::INFINITY)
+    }
+
+    /// The rate at which clips are played (Froude's law).
+    pub(super) fn rate(&self) -> f64 {
+        1.0 / self.scale.sqrt()
+    }
+}

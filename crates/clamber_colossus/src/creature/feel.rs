@@ -1,0 +1,264 @@
+//! From what is around the creature to its senses. It happens first in a step, so that all senses are one tick old.
+
+use clamber_animation::rig::JointId;
+use clamber_surface::mesh::TriangleId;
+use glam::DVec3;
+
+use super::state::{Felt, NO_WALL, Ride, WALLS};
+use super::{Creature, Person, Surroundings};
+use crate::senses::{RegionSense, Sense, Senses};
+
+/// It sees to this angle from ahead of its head, radians.
+const FIELD_OF_VIEW: f64 = 1.8;
+
+/// Seconds for which a rider may leave the skin without the ride being over: a leap, a stumble.
+const LEAP: f64 = 0.6;
+
+/// How much larger than the sole the place under a foot is.
+const UNDER: f64 = 1.2;
+
+impl Creature {
+    /// Takes in what is around it.
+    pub(super) fn feel(&mut self, around: &Surroundings<'_>) {
+        let brain = self.kind.brain();
+        let own: Vec<f64> = (0..brain.own_senses().len())
+            .map(|index| self.state.senses.own(index))
+            .collect();
+        let done = self.state.senses.get(Sense::Done);
+        let mut senses = brain.no_senses();
+        for (index, value) in own.into_iter().enumerate() {
+            senses.set_own(index, value);
+        }
+        senses.set(Sense::Done, done);
+        self.feel_riders(around.people, &mut senses);
+        self.feel_wounds(&mut senses);
+        self.see(around, &mut senses);
+        self.feel_walls(around, &mut senses);
+        self.hear(around, &mut senses);
+        let home = self.state.home - self.state.position;
+        senses.set(
+            Sense::HomeDistance,
+            DVec3::new(home.x, 0.0, home.z).length(),
+        );
+        self.state.senses = senses;
+    }
+
+    fn feel_riders(&mut self, people: &[Person], senses: &mut Senses) {
+        let tick = self.kind.brain().tick();
+        let leap = (LEAP / tick).round() as u32;
+        let mesh = self.surface.mesh();
+        for ride in &mut self.state.rides {
+            ride.off = ride.off.saturating_add(1);
+            ride.ticks = ride.ticks.saturating_add(1);
+        }
+        let (mut highest, mut hanging) = (f64::NEG_INFINITY, 0.0);
+        for person in people {
+            let Some(riding) = person.riding else {
+                continue;
+            };
+            let triangle = u32::try_from(riding.at.key).ok().map(TriangleId);
+            let joint = triangle.and_then(|triangle| mesh.joint_of(triangle));
+            let Some(JointId(joint)) = joint else {
+                continue;
+            };
+            highest = highest.max(person.middle().y - self.state.position.y);
+            hanging += f64::from(u8::from(riding.hangs));
+            match self
+                .state
+                .rides
+                .iter_mut()
+                .find(|ride| ride.person == person.id)
+            {
+                Some(ride) => (ride.joint, ride.off) = (joint, 0),
+                None => self.state.rides.push(Ride {
+                    person: person.id,
+                    ticks: 0,
+                    joint,
+                    off: 0,
+                }),
+            }
+        }
+        self.state.rides.retain(|ride| ride.off <= leap);
+        let seconds = |ticks: u32| f64::from(ticks) * tick;
+        let longest = self.state.rides.iter().map(|ride| ride.ticks).max();
+        senses.set(Sense::Riders, self.state.rides.len() as f64);
+        senses.set(Sense::RiderSeconds, longest.map_or(0.0, seconds));
+        senses.set(Sense::RidersHanging, hanging);
+        senses.set(
+            Sense::RiderHeight,
+            if highest.is_finite() { highest } else { 0.0 },
+        );
+        for region in 0..self.kind.brain().regions().len() {
+            let here = |ride: &&Ride| self.kind.is_in_region(JointId(ride.joint), region);
+            let rides = self.state.rides.iter().filter(here);
+            let longest = rides.clone().map(|ride| ride.ticks).max();
+            senses.set_in_region(RegionSense::Riders, region, rides.count() as f64);
+            senses.set_in_region(
+                RegionSense::RiderSeconds,
+                region,
+                longest.map_or(0.0, seconds),
+            );
+        }
+    }
+
+    fn feel_wounds(&mut self, senses: &mut Senses) {
+        let wounds = std::mem::take(&mut self.state.wounds);
+        let damage =
+            |wounds: &mut dyn Iterator<Item = &Felt>| wounds.map(|felt| felt.damage).sum::<f64>();
+        senses.set(Sense::Struck, wounds.len() as f64);
+        senses.set(Sense::Hurt, damage(&mut wounds.iter()));
+        for region in 0..self.kind.brain().regions().len() {
+            let here = |felt: &&Felt| self.kind.is_in_region(JointId(felt.joint), region);
+            let felt = || wounds.iter().filter(here);
+            senses.set_in_region(RegionSense::Struck, region, felt().count() as f64);
+            senses.set_in_region(RegionSense::Hurt, region, damage(&mut felt()));
+        }
+        let points = self.kind.weak_points().iter().zip(&self.state.hit_points);
+        let (mut full, mut left, mut count, mut dead) = (0.0, 0.0, 0.0, false);
+        for (point, hit_points) in points {
+            full += point.hit_points;
+            left += hit_points;
+            count += f64::from(u8::from(*hit_points > 0.0));
+            dead |= point.major && *hit_points <= 0.0;
+        }
+        let health = if dead {
+            0.0
+        } else if full > 0.0 {
+            left / full
+        } else {
+            1.0
+        };
+        senses.set(Sense::Health, health);
+        senses.set(Sense::WeakPoints, count);
+    }
+
+    /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.
+    fn see(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
+        let eye = self.eye();
+        let mut nearest: Option<(f64, u64, DVec3)> = None;
+        let mut underfoot = 0;
+        for person in around.people {
+            let middle = person.middle();
+            if person.riding.is_some() || !person.body.is_valid() {
+                continue;
+            }
+            underfoot += usize::from(self.is_underfoot(middle));
+            let way = middle - self.state.position;
+            let level = DVec3::new(way.x, 0.0, way.z);
+            let distance = level.length();
+            if distance > self.config.sight || nearest.is_some_and(|(other, ..)| distance >= other)
+            {
+                continue;
+            }
+            // Whoever is right below it is felt rather than seen.
+            let is_near = distance < self.kind.girth() * self.config.scale;
+            let is_ahead = self.bearing(middle).abs() < FIELD_OF_VIEW;
+            if is_near || is_ahead && !is_hidden(around, eye, person) {
+                nearest = Some((distance, person.id, middle));
+            }
+        }
+        let seen = nearest.is_some();
+        match nearest {
+            Some((_, id, place)) => (self.state.prey, self.state.unseen) = (Some((id, place)), 0),
+            None => self.state.unseen = self.state.unseen.saturating_add(1),
+        }
+        senses.set(Sense::PreySeen, f64::from(u8::from(seen)));
+        senses.set(Sense::Underfoot, underfoot as f64);
+        if let Some((_, place)) = self.state.prey {
+            let way = place - self.state.position;
+            senses.set(Sense::PreyDistance, DVec3::new(way.x, 0.0, way.z).length());
+            senses.set(Sense::PreyBearingDeg, self.bearing(place).to_degrees());
+            let unseen = f64::from(self.state.unseen) * self.kind.brain().tick();
+            senses.set(Sense::PreyUnseenSeconds, unseen);
+        }
+    }
+
+    fn feel_walls(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
+        let height = self.kind.height() * self.config.scale;
+        let index = (self.state.ticks % WALLS as u64) as usize;
+        let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
+        let from = self.state.position + DVec3::Y * (0.3 * height);
+        let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+        let hits = around
+            .terrain
+            .iter()
+            .filter_map(|obstacle| obstacle.cast_ray(from, direction, height));
+        let nearest = hits.map(|hit| hit.distance).fold(f64::INFINITY, f64::min);
+        self.state.walls[index] = (nearest as f32).min(NO_WALL);
+        let nearest = self
+            .state
+            .walls
+            .iter()
+            .copied()
+            .fold(f32::INFINITY, f32::min);
+        if nearest < NO_WALL {
+            senses.set(Sense::WallDistance, f64::from(nearest));
+        }
+    }
+
+    fn hear(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
+        let loudest = around
+            .noises
+            .iter()
+            .max_by(|a, b| a.loudness.total_cmp(&b.loudness));
+        let Some(noise) = loudest.filter(|noise| noise.place.is_finite()) else {
+            return;
+        };
+        self.state.noise = noise.place;
+        senses.set(Sense::Noise, noise.loudness);
+        senses.set(
+            Sense::NoiseBearingDeg,
+            self.bearing(noise.place).to_degrees(),
+        );
+    }
+
+    /// Bearing of a place, radians: 0 ahead, positive to the left.
+    pub(super) fn bearing(&self, place: DVec3) -> f64 {
+        let way = place - self.state.position;
+        nearest_turn(libm::atan2(way.x, way.z) - self.state.yaw)
+    }
+
+    /// Where it sees from, in world space.
+    pub(super) fn eye(&self) -> DVec3 {
+        let head = self
+            .kind
+            .look()
+            .and_then(|(_, head)| self.palette.model_from_joint(head));
+        let world = self.surface.world_from_model();
+        let high = DVec3::Y * (0.9 * self.kind.height() * self.config.scale);
+        head.map_or(self.state.position + high, |head| {
+            world.transform_point(head.translation)
+        })
+    }
+
+    fn is_underfoot(&self, place: DVec3) -> bool {
+        let world = self.surface.world_from_model();
+        self.kind.legs().iter().any(|leg| {
+            let Some(ball) = self.palette.model_from_joint(leg.ball) else {
+                return false;
+            };
+            let at = world.inverse_transform_point(place) - ball.translation;
+            let [low, high] = [leg.sole[0] * UNDER, leg.sole[3] * UNDER];
+            at.y < 0.2 * leg.length
+                && (low.x..=high.x).contains(&at.x)
+                && (low.z..=high.z).contains(&at.z)
+        })
+    }
+}
+
+/// True if terrain is between an eye and a person's middle.
+fn is_hidden(around: &Surroundings<'_>, eye: DVec3, person: &Person) -> bool {
+    let way = person.middle() - eye;
+    let distance = way.length() - person.body.radius;
+    distance > 0.0
+        && around
+            .terrain
+            .iter()
+            .any(|obstacle| obstacle.cast_ray(eye, way, distance).is_some())
+}
+
+/// The same angle within half a turn.
+pub(super) fn nearest_turn(angle: f64) -> f64 {
+    use core::f64::consts::TAU;
+    angle - TAU * (angle / TAU).round()
+}

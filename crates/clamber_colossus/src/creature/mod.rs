@@ -1,0 +1,123 @@
+//! A creature: a value that is stepped once a tick.
+
+mod config;
+mod feel;
+mod legs;
+mod move_on;
+mod report;
+mod state;
+mod step;
+mod strike;
+mod world;
+
+use std::sync::Arc;
+
+use clamber_animation::PoseBuffers;
+use clamber_animation::rig::{Palette, Pose};
+use clamber_surface::surface::SkinnedSurface;
+
+pub use config::CreatureConfig;
+pub use report::{Blow, CreatureEvent, CreatureReport};
+pub use state::CreatureState;
+pub use world::{Noise, Person, Riding, Surroundings, Wound};
+
+use crate::error::ColossusError;
+use crate::kind::CreatureKind;
+
+/// A creature that lives: it senses, decides, moves, and hurts whom its limbs strike.
+///
+/// Its [`CreatureState`] is all that changes, and all that has to be saved. What it can be touched by is its
+/// [`SkinnedSurface`], which is posed by each step.
+#[derive(Clone, Debug)]
+pub struct Creature {
+    kind: Arc<CreatureKind>,
+    config: CreatureConfig,
+    state: CreatureState,
+    surface: SkinnedSurface,
+    palette: Palette,
+    buffers: PoseBuffers,
+    report: CreatureReport,
+    events: Vec<clamber_animation::AnimationEvent>,
+}
+
+impl Creature {
+    /// A creature at its place, in its first pose.
+    ///
+    /// # Errors
+    /// [`ColossusError::OutOfRange`] if the configuration is not valid, [`ColossusError::Animation`] or
+    /// [`ColossusError::Surface`] if its clips cannot pose the skin.
+    pub fn new(kind: Arc<CreatureKind>, config: CreatureConfig) -> Result<Self, ColossusError> {
+        config.check()?;
+        let state = CreatureState::new(&kind, &config);
+        let mut creature = Self {
+            surface: SkinnedSurface::new(Arc::clone(kind.mesh())),
+            palette: Palette::default(),
+            buffers: PoseBuffers::default(),
+            report: CreatureReport::default(),
+            events: Vec::new(),
+            kind,
+            config,
+            state,
+        };
+        let clips = Arc::clone(&creature.kind);
+        let CreatureState { animator, pose, .. } = &mut creature.state;
+        animator.pose_into(clips.clips(), pose, &mut creature.buffers)?;
+        creature.place()?;
+        Ok(creature)
+    }
+
+    /// The kind of creature.
+    pub fn kind(&self) -> &Arc<CreatureKind> {
+        &self.kind
+    }
+
+    /// Where it was placed, and how large it is.
+    pub fn config(&self) -> &CreatureConfig {
+        &self.config
+    }
+
+    /// All that changes.
+    pub fn state(&self) -> &CreatureState {
+        &self.state
+    }
+
+    /// The skin, as posed by the last step: the obstacle for climbers and weapons.
+    pub fn surface(&self) -> &SkinnedSurface {
+        &self.surface
+    }
+
+    /// The skin, to disable parts of it or to edit it.
+    pub fn surface_mut(&mut self) -> &mut SkinnedSurface {
+        &mut self.surface
+    }
+
+    /// The pose of the last step.
+    pub fn pose(&self) -> &Pose {
+        &self.state.pose
+    }
+
+    /// The palette of the last step, for drawing.
+    pub fn palette(&self) -> &Palette {
+        &self.palette
+    }
+
+    /// What happened in the last step.
+    pub fn report(&self) -> &CreatureReport {
+        &self.report
+    }
+
+    /// Goes back to a saved state: the skin stands there without motion, and all goes on with the same bits as it did.
+    ///
+    /// # Errors
+    /// [`ColossusError::OtherKind`] if the state is of another kind of creature, and those of posing. Nothing is changed then.
+    pub fn restore(&mut self, state: CreatureState) -> Result<(), ColossusError> {
+        state.check(&self.kind)?;
+        let before = std::mem::replace(&mut self.state, state);
+        if let Err(error) = self.place() {
+            self.state = before;
+            self.place()?;
+            return Err(error);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,323 @@
+//! Where a creature goes: walking, turning, and the height of the ground that it walks on.
+
+use clamber_animation::AnimationEvent;
+use glam::DVec3;
+
+use super::feel::nearest_turn;
+use super::state::{NO_WALL, Playing, WALLS};
+use super::{Creature, CreatureEvent, Surroundings};
+use crate::brain::{Act, Place, Walk};
+use crate::error::ColossusError;
+use crate::feet::Ground;
+use crate::kind::Gait;
+use crate::senses::Sense;
+
+/// How fast its speed changes, metres a second squared, and its turning, radians a second squared: 0.5 g is the most
+/// that a giant's limb may start with, and riders stand on it.
+const SPEEDS_UP: f64 = 1.2;
+const SLOWS_DOWN: f64 = 2.0;
+const TURNS: f64 = 0.12;
+
+/// The slowest walk, as a share of its speed.
+const SLOWEST: f64 = 0.35;
+
+/// It turns on the spot first if its goal is further aside than this, radians; and walks on if it is nearer.
+const TURN_FIRST: f64 = 1.2;
+const WALK_ON: f64 = 0.5;
+
+/// The largest vertical acceleration from following the ground, metres a second squared.
+const CLIMBS: f64 = 0.8;
+
+/// Seconds in which one clip of the gait fades into another.
+const FADE: f64 = 0.8;
+
+/// Where to go, and how.
+struct Way {
+    goal: DVec3,
+    /// Bearing that the goal should have in the end, radians; `None` if any will do.
+    bearing: Option<f64>,
+    /// Level distance at which it has arrived, metres.
+    within: f64,
+    /// Angle within which it has turned, radians.
+    within_angle: f64,
+    walks: bool,
+}
+
+impl Creature {
+    /// Begins a walk or a turn: draws a place, if it goes on patrol.
+    pub(super) fn begin_way(&mut self) {
+        let reach = self
+            .config
+            .arena
+            .min(4.0 * self.kind.height() * self.config.scale);
+        let mut lot = || (self.state.brain.draw() >> 11) as f64 / (1u64 << 53) as f64;
+        let (angle, share) = (core::f64::consts::TAU * lot(), lot().sqrt());
+        let aside = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+        self.state.patrol = self.state.home + aside * (0.9 * reach * share);
+    }
+
+    /// Lets clips and the creature's place move on by a tick, and says whether the act is done.
+    pub(super) fn move_on(
+        &mut self,
+        around: &Surroundings<'_>,
+        dt: f64,
+    ) -> Result<(), ColossusError> {
+        let state = self.state.brain.current();
+        let way = self.way(state);
+        let begun = self.state.acting == Some(state);
+        let mut done = false;
+        let kind = std::sync::Arc::clone(&self.kind);
+        if let Some(gait) = kind.gait() {
+            let way = way.filter(|_| begun);
+            done = self.walk(gait, way.as_ref(), around, dt)?;
+        }
+        self.events.clear();
+        let moved = self
+            .state
+            .animator
+            .advance(kind.clips(), dt, &mut self.events)?;
+        self.state.passed.clear();
+        for event in &self.events {
+            if let AnimationEvent::Marker {
+                layer: 0,
+                clip,
+                marker,
+            } = event
+            {
+                self.state.passed.push([clip.0, *marker as u32]);
+                let name = kind.clips().clip(*clip)?.markers()[*marker].name.clone();
+                self.report.events.push(CreatureEvent::Marker { name });
+            }
+        }
+        let scale = self.config.scale;
+        let rotation = self.state.world_from_model(scale).rotation;
+        self.state.position += rotation * moved.translation * scale;
+        self.state.yaw = nearest_turn(self.state.yaw + moved.yaw + self.state.yaw_rate * dt);
+        self.state.position += self.state.heading() * (self.state.speed * dt);
+        self.follow_ground(around, dt);
+        let is_over = match kind.brain().act(state) {
+            Some(Act::Walk(_) | Act::Turn(_)) => done,
+            Some(Act::Once(_) | Act::Attack(_)) => begun && self.clip_is_over(),
+            Some(Act::Play(_)) => false,
+            None => true,
+        };
+        self.state
+            .senses
+            .set(Sense::Done, f64::from(u8::from(is_over)));
+        Ok(())
+    }
+
+    fn clip_is_over(&self) -> bool {
+        let layer = self.state.animator.layers().first();
+        layer.is_none_or(|layer| {
+            let clip = self.kind.clips().clip(layer.clip);
+            clip.is_ok_and(|clip| layer.time >= clip.duration())
+        })
+    }
+
+    fn way(&self, state: crate::brain::StateId) -> Option<Way> {
+        match self.kind.brain().act(state)? {
+            Act::Walk(Walk { to, within, .. }) => {
+                let goal = self.within_arena(self.place_of(*to));
+                let Some(strike) = &self.kind.act(state).strike else {
+                    return Some(Way {
+                        goal,
+                        bearing: None,
+                        within: *within,
+                        within_angle: 0.0,
+                        walks: true,
+                    });
+                };
+                let spot = strike.spot * self.config.scale;
+                let reach = DVec3::new(spot.x, 0.0, spot.z).length();
+                Some(Way {
+                    goal,
+                    bearing: Some(libm::atan2(spot.x, spot.z)),
+                    within: reach + within,
+                    within_angle: (within / reach.max(1e-3)).min(0.5),
+                    walks: true,
+                })
+            }
+            Act::Turn(turn) => Some(Way {
+                goal: self.place_of(turn.to),
+                bearing: Some(0.0),
+                within: f64::INFINITY,
+                within_angle: turn.within_deg.to_radians(),
+                walks: false,
+            }),
+            _ => None,
+        }
+    }
+
+    fn place_of(&self, place: Place) -> DVec3 {
+        match place {
+            Place::Prey => self.state.prey.map_or(self.state.home, |(_, place)| place),
+            Place::Home => self.state.home,
+            Place::Patrol => self.state.patrol,
+            Place::Noise => self.state.noise,
+            Place::Wall => self.wall(),
+        }
+    }
+
+    /// Beside the nearest wall.
+    fn wall(&self) -> DVec3 {
+        let walls = self.state.walls.iter().enumerate();
+        let Some((index, distance)) = walls.min_by(|a, b| a.1.total_cmp(b.1)) else {
+            return self.state.position;
+        };
+        if *distance >= NO_WALL {
+            return self.state.position;
+        }
+        let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
+        let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+        let room = self.kind.girth() * self.config.scale;
+        self.state.position + direction * (f64::from(*distance) - room).max(0.0)
+    }
+
+    fn within_arena(&self, place: DVec3) -> DVec3 {
+        let way = place - self.state.home;
+        let level = DVec3::new(way.x, 0.0, way.z).length();
+        if level <= self.config.arena {
+            return place;
+        }
+        self.state.home + way * (self.config.arena / level)
+    }
+
+    /// Walks or turns towards a goal, or comes to a stand without one. Returns true if it is there.
+    fn walk(
+        &mut self,
+        gait: &Gait,
+        way: Option<&Way>,
+        around: &Surroundings<'_>,
+        dt: f64,
+    ) -> Result<bool, ColossusError> {
+        let rate = self.config.rate();
+        let full = gait.speed * self.config.scale * rate;
+        let (mut speed, mut turn, mut arrived) = (0.0, 0.0, false);
+        let mut turns_on_spot = false;
+        if let Some(way) = way {
+            let to = way.goal - self.state.position;
+            let distance = DVec3::new(to.x, 0.0, to.z).length();
+            let ahead = self.bearing(way.goal);
+            let is_near = !way.walks || distance <= way.within;
+            let aside = nearest_turn(
+                ahead
+                    - if is_near {
+                        way.bearing.unwrap_or(0.0)
+                    } else {
+                        0.0
+                    },
+            );
+            let is_turned = way.bearing.is_none() || aside.abs() <= way.within_angle;
+            if is_near {
+                arrived = is_turned;
+                turns_on_spot = !is_turned;
+            } else {
+                let turning = matches!(self.state.playing, Playing::Turn(_));
+                turns_on_spot = aside.abs() > if turning { WALK_ON } else { TURN_FIRST };
+                let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
+                speed = full.min(braked).max(SLOWEST * full);
+                turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
+                if !turns_on_spot && self.is_blocked(around) {
+                    (speed, turn, arrived) = (0.0, 0.0, true);
+                }
+            }
+            if turns_on_spot {
+                speed = 0.0;
+                let braked =
+                    (2.0 * 0.7 * TURNS * (aside.abs() - 0.5 * way.within_angle).max(0.0)).sqrt();
+                turn = aside.signum()
+                    * braked
+                        .min(gait.turn_rate * rate)
+                        .max(0.15 * gait.turn_rate * rate);
+                // Not before it stands.
+                if self.state.speed > SLOWEST * full {
+                    turn = 0.0;
+                }
+            }
+        }
+        let change = speed - self.state.speed;
+        self.state.speed += change.clamp(-SLOWS_DOWN * dt, SPEEDS_UP * dt);
+        if speed > 0.0 {
+            // A foot that hardly moves is no walk: the first step already has some speed.
+            self.state.speed = self.state.speed.max(0.02 * full);
+        }
+        let change = turn - self.state.yaw_rate;
+        self.state.yaw_rate += change.clamp(-TURNS * dt, TURNS * dt);
+        let moves = self.state.speed > 0.0;
+        let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
+        let playing = if moves {
+            Playing::Walk
+        } else if turns_on_spot && gait.turn.is_some() {
+            Playing::Turn(u8::from(turn < 0.0))
+        } else if acts {
+            self.state.playing
+        } else {
+            Playing::Idle
+        };
+        self.play(playing, FADE)?;
+        if let Some(layer) = self.state.animator.layers_mut().first_mut() {
+            layer.speed = match playing {
+                Playing::Walk => self.state.speed / full,
+                Playing::Turn(_) => (self.state.yaw_rate.abs() / (gait.turn_rate * rate)).min(1.0),
+                Playing::Idle | Playing::Act(_) => 1.0,
+            };
+        }
+        let stands = self.state.speed == 0.0 && self.state.yaw_rate.abs() < 0.3 * TURNS;
+        Ok(arrived && stands)
+    }
+
+    /// True if the ground ahead is too steep, or there is none, or a wall stands there.
+    fn is_blocked(&self, around: &Surroundings<'_>) -> bool {
+        let height = self.kind.height() * self.config.scale;
+        let girth = self.kind.girth() * self.config.scale;
+        let ground = Ground {
+            terrain: around.terrain,
+            reach: 0.5 * height,
+        };
+        let heading = self.state.heading();
+        // As far ahead as it takes to come to a stand.
+        let brake = self.state.speed * self.state.speed / (2.0 * SLOWS_DOWN);
+        let ahead = self.state.position + heading * (girth + brake);
+        let Some((_, normal)) = ground.below(ahead) else {
+            return true;
+        };
+        let from = self.state.position + DVec3::Y * (0.3 * height);
+        let reach = 1.2 * girth + brake;
+        let wall = around
+            .terrain
+            .iter()
+            .any(|obstacle| obstacle.cast_ray(from, heading, reach).is_some());
+        wall || normal.y < libm::cos(self.config.most_slope)
+    }
+
+    /// Lets the model's origin follow the ground below it, as softly as riders want it.
+    fn follow_ground(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let height = self.kind.height() * self.config.scale;
+        let ground = Ground {
+            terrain: around.terrain,
+            reach: 0.5 * height,
+        };
+        let heading = self.state.heading();
+        // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
+        let (mut sum, mut count) = (0.0, 0.0);
+        for step in -3..=3 {
+            let place = self.state.position + heading * (f64::from(step) * 0.07 * height);
+            if let Some((level, _)) = ground.below(place) {
+                (sum, count) = (sum + level, count + 1.0);
+            }
+        }
+        if count == 0.0 {
+            return;
+        }
+        let away = sum / count - self.state.position.y;
+        // As fast as it can still be stopped, and gently near the goal.
+        let wanted = away.signum()
+            * (2.0 * 0.6 * CLIMBS * away.abs())
+                .sqrt()
+                .min(2.0 * away.abs());
+        let change = (wanted - self.state.climb).clamp(-CLIMBS * dt, CLIMBS * dt);
+        self.state.climb += change;
+        self.state.position.y += self.state.climb * dt;
+    }
+}

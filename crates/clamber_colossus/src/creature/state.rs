@@ -1,0 +1,239 @@
+use clamber_animation::ik::LookMemory;
+use clamber_animation::rig::{Playback, Pose};
+use clamber_animation::{Animator, Layer, LayerKind, Spring};
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::CreatureConfig;
+use crate::brain::{BrainState, StateId};
+use crate::error::ColossusError;
+use crate::feet::Foot;
+use crate::kind::CreatureKind;
+use crate::senses::Senses;
+
+/// All that changes in a creature: a plain value, to be saved and restored.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CreatureState {
+    pub(super) brain: BrainState,
+    pub(super) senses: Senses,
+    pub(super) animator: Animator,
+    pub(super) playing: Playing,
+    /// The state whose act has begun; another one than the brain's while the creature still comes to a stand.
+    pub(super) acting: Option<StateId>,
+    /// Where the model's origin is. Its height follows the ground.
+    pub(super) position: DVec3,
+    pub(super) climb: f64,
+    pub(super) yaw: f64,
+    /// Along its heading, metres a second, and radians a second to the left.
+    pub(super) speed: f64,
+    pub(super) yaw_rate: f64,
+    pub(super) feet: Vec<Foot>,
+    pub(super) look: LookMemory,
+    pub(super) gaze: Spring<DVec3>,
+    pub(super) gaze_weight: Spring<f64>,
+    pub(super) home: DVec3,
+    /// Where it goes on patrol.
+    pub(super) patrol: DVec3,
+    /// Where prey was seen last, and who it was.
+    pub(super) prey: Option<(u64, DVec3)>,
+    pub(super) unseen: u32,
+    pub(super) noise: DVec3,
+    pub(super) rides: Vec<Ride>,
+    /// Distances to walls around it, one looked for in each tick.
+    pub(super) walls: [f32; WALLS],
+    /// Hit points left of each weak point.
+    pub(super) hit_points: Vec<f64>,
+    /// Wounds since the last step.
+    pub(super) wounds: Vec<Felt>,
+    /// Whom the attack has struck already.
+    pub(super) struck: Vec<u64>,
+    /// From where the clip strikes to where this attack does, in world space.
+    pub(super) aim: DVec3,
+    /// The pose of the last step, with feet and head.
+    pub(super) pose: Pose,
+    /// Markers that were passed in the last step: clips, and indices in them.
+    pub(super) passed: Vec<[u32; 2]>,
+    pub(super) ticks: u64,
+}
+
+/// Stands for no wall in reach: JSON has no infinity.
+pub(super) const NO_WALL: f32 = f32::MAX;
+
+/// Directions in which walls are looked for.
+pub(super) const WALLS: usize = 8;
+
+/// What the creature plays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Playing {
+    /// Stands.
+    Idle,
+    /// Walks.
+    Walk,
+    /// Turns to the left (0) or right (1).
+    Turn(u8),
+    /// The clip of a state's act.
+    Act(StateId),
+}
+
+/// Somebody's time on the creature.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Ride {
+    pub(super) person: u64,
+    pub(super) ticks: u32,
+    pub(super) joint: u32,
+    /// Ticks since it was on the creature last: a short leap does not end a ride.
+    pub(super) off: u32,
+}
+
+/// What struck it, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Felt {
+    pub(super) joint: u32,
+    pub(super) damage: f64,
+}
+
+impl CreatureState {
+    pub(super) fn new(kind: &CreatureKind, config: &CreatureConfig) -> Self {
+        let mut layers = Vec::new();
+        if let Some(gait) = kind.gait() {
+            layers.push(Layer::new(gait.idle));
+        } else if !kind.clips().clips().is_empty() {
+            layers.push(Layer::new(clamber_animation::ClipId(0)));
+        }
+        if let Some(breathe) = kind.breathe() {
+            layers.push(Layer {
+                kind: LayerKind::Additive,
+                playback: Playback::Loop,
+                ..Layer::new(breathe)
+            });
+        }
+        let mut animator = Animator::new(layers);
+        // Cannot fail for a finite rate.
+        let _ = animator.set_rate(config.rate());
+        Self {
+            brain: BrainState::new(kind.brain(), config.seed),
+            senses: kind.brain().no_senses(),
+            animator,
+            playing: Playing::Idle,
+            acting: None,
+            position: config.position,
+            climb: 0.0,
+            yaw: config.yaw,
+            speed: 0.0,
+            yaw_rate: 0.0,
+            feet: vec![Foot::new(); kind.legs().len()],
+            look: LookMemory::default(),
+            gaze: Spring::at(config.position),
+            gaze_weight: Spring::at(0.0),
+            home: config.position,
+            patrol: config.position,
+            prey: None,
+            unseen: u32::MAX,
+            noise: config.position,
+            rides: Vec::new(),
+            walls: [NO_WALL; WALLS],
+            hit_points: kind
+                .weak_points()
+                .iter()
+                .map(|point| point.hit_points)
+                .collect(),
+            wounds: Vec::new(),
+            struck: Vec::new(),
+            aim: DVec3::ZERO,
+            pose: kind.clips().rest().clone(),
+            passed: Vec::new(),
+            ticks: 0,
+        }
+    }
+
+    /// The brain's state.
+    pub fn brain(&self) -> &BrainState {
+        &self.brain
+    }
+
+    /// What it sensed last.
+    pub fn senses(&self) -> &Senses {
+        &self.senses
+    }
+
+    /// The state that it is in: the innermost one.
+    pub fn current(&self) -> StateId {
+        self.brain.current()
+    }
+
+    /// Where its model's origin is, in world space.
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// Its heading, radians about Y.
+    pub fn yaw(&self) -> f64 {
+        self.yaw
+    }
+
+    /// Speed along its heading, metres a second.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Hit points left of each weak point.
+    pub fn hit_points(&self) -> &[f64] {
+        &self.hit_points
+    }
+
+    /// Ticks so far.
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    pub(super) fn world_from_model(&self, scale: f64) -> Similarity {
+        Similarity {
+            rotation: rotation_from_axis_angle(DVec3::Y, self.yaw),
+            scale,
+            translation: self.position,
+        }
+    }
+
+    /// Its heading as a unit vector.
+    pub(super) fn heading(&self) -> DVec3 {
+        DVec3::new(libm::sin(self.yaw), 0.0, libm::cos(self.yaw))
+    }
+
+    pub(super) fn check(&self, kind: &CreatureKind) -> Result<(), ColossusError> {
+        let brain = kind.brain();
+        if !self.brain.fits(brain)
+            || !self
+                .senses
+                .fits(brain.regions().len(), brain.own_senses().len())
+        {
+            return Err(ColossusError::OtherKind("its brain has other states"));
+        }
+        if self.feet.len() != kind.legs().len() {
+            return Err(ColossusError::OtherKind("it has another number of legs"));
+        }
+        if self.pose.transforms.len() != kind.skeleton().joints().len() {
+            return Err(ColossusError::OtherKind("it has another number of joints"));
+        }
+        if self.hit_points.len() != kind.weak_points().len() {
+            return Err(ColossusError::OtherKind(
+                "it has another number of weak points",
+            ));
+        }
+        let states = brain.len();
+        let acting = self.acting.is_none_or(|state| state.index() < states);
+        let playing = !matches!(self.playing, Playing::Act(state) if state.index() >= states);
+        if !acting || !playing {
+            return Err(ColossusError::OtherKind(
+                "its act is not one of the brain's",
+            ));
+        }
+        let numbers = [self.yaw, self.speed, self.yaw_rate, self.climb];
+        if !self.position.is_finite() || !numbers.iter().all(|number| number.is_finite()) {
+            return Err(ColossusError::OtherKind(
+                "its place or its motion is not finite",
+            ));
+        }
+        Ok(())
+    }
+}

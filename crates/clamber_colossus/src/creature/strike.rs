@@ -1,0 +1,95 @@
+//! Whom an attack strikes: whoever the skin of its limb touches while it hurts.
+
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::mesh::TriangleId;
+use clamber_surface::surface::TargetMotion;
+use clamber_world::{Obstacle, SweepContact};
+use glam::DVec3;
+
+use super::report::Blow;
+use super::state::Playing;
+use super::{Creature, Surroundings};
+use crate::kind::Strike;
+
+/// A limb strikes whoever is this close to its skin, metres: a climber that it pushes stays at about that distance.
+const REACH: f64 = 0.05;
+
+impl Creature {
+    pub(super) fn strike(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let Playing::Act(state) = self.state.playing else {
+            return;
+        };
+        let kind = std::sync::Arc::clone(&self.kind);
+        let Some(strike) = &kind.act(state).strike else {
+            return;
+        };
+        let time = self
+            .state
+            .animator
+            .layers()
+            .first()
+            .map_or(0.0, |layer| layer.time);
+        if !(strike.active[0]..strike.active[1]).contains(&time) {
+            return;
+        }
+        for person in around.people {
+            if self.state.struck.contains(&person.id) || !person.body.is_valid() {
+                continue;
+            }
+            let body = WorldCapsule {
+                radius: person.body.radius + REACH,
+                ..person.body
+            };
+            let Some(hit) = self.touch(strike, &body) else {
+                continue;
+            };
+            let motion = self.surface.motion(&hit.contact.material, dt);
+            let velocity = motion.map_or(DVec3::ZERO, |motion| motion.velocity);
+            let direction = velocity.try_normalize().unwrap_or(hit.separation_normal);
+            self.state.struck.push(person.id);
+            self.report.blows.push(Blow {
+                person: person.id,
+                velocity: direction * strike.throw,
+                damage: strike.damage,
+                place: hit.contact.point,
+                state,
+            });
+        }
+    }
+
+    /// The first touch of the limb's skin with a body in this tick.
+    fn touch(&self, strike: &Strike, body: &WorldCapsule) -> Option<SweepContact> {
+        let (center, radius) = self.surface.bounding_ball()?;
+        let middle = 0.5 * (body.ends[0] + body.ends[1]);
+        let size = body.radius + 0.5 * body.ends[0].distance(body.ends[1]);
+        if middle.distance(center) > radius + size {
+            return None;
+        }
+        let mesh = self.surface.mesh();
+        let mut is_limb = |hit: &SweepContact| {
+            let triangle = u32::try_from(hit.contact.material.key).ok().map(TriangleId);
+            let joint = triangle.and_then(|triangle| mesh.joint_of(triangle));
+            joint.is_some_and(|joint| strike.hurts(joint))
+        };
+        let still = [DVec3::ZERO; 2];
+        self.surface
+            .cast_capsule_where(body, still, TargetMotion::Moving, &mut is_limb)
+    }
+
+    /// Decides where this attack strikes: at its prey, if that is near enough to where the clip does.
+    pub(super) fn aim(&mut self, strike: &Strike) {
+        let Some((_, prey)) = self.state.prey.filter(|_| self.state.unseen == 0) else {
+            return;
+        };
+        let world = self.state.world_from_model(self.config.scale);
+        let way = prey - world.transform_point(strike.spot);
+        let level = DVec3::new(way.x, 0.0, way.z);
+        let length = level.length();
+        // Further away than it can aim, it goes as far as it can: it shows what it means.
+        self.state.aim = if length > strike.aim {
+            level * (strike.aim / length)
+        } else {
+            level
+        };
+    }
+}

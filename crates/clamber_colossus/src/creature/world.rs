@@ -1,0 +1,61 @@
+use clamber_surface::geometry::WorldCapsule;
+use clamber_world::{MaterialPoint, Obstacle};
+use glam::DVec3;
+
+/// What is around a creature in a tick.
+#[derive(Clone, Copy, Default)]
+pub struct Surroundings<'a> {
+    /// What it walks on, and cannot see through.
+    pub terrain: &'a [&'a dyn Obstacle],
+    /// Everybody who may be seen, felt or struck, as they were at the end of the last tick.
+    pub people: &'a [Person],
+    /// What is to be heard in this tick.
+    pub noises: &'a [Noise],
+}
+
+/// Somebody whom a creature may see, feel or strike: a climber, as the creature needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Person {
+    /// The person's id, which stays the same.
+    pub id: u64,
+    /// The body, in world space.
+    pub body: WorldCapsule,
+    /// Where it stands on this creature or holds it; `None` if it does not.
+    pub riding: Option<Riding>,
+}
+
+/// How somebody is on a creature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Riding {
+    /// The point of the creature's skin.
+    pub at: MaterialPoint,
+    /// True if the person hangs, rather than stands or grips.
+    pub hangs: bool,
+}
+
+/// Something to be heard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Where it comes from, in world space.
+    pub place: DVec3,
+    /// How loud it is at the creature, as the game counts it.
+    pub loudness: f64,
+}
+
+/// A blow or an arrow that struck a creature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wound {
+    /// Where it struck, in world space.
+    pub place: DVec3,
+    /// The point of the skin.
+    pub at: MaterialPoint,
+    /// Damage that it does to a weak point there.
+    pub damage: f64,
+}
+
+impl Person {
+    /// The middle of the body.
+    pub fn middle(&self) -> DVec3 {
+        0.5 * (self.body.ends[0] + self.body.ends[1])
+    }
+}

@@ -1,0 +1,84 @@
+use serde::{Deserialize, Serialize};
+
+/// What a brain file says about the body: which joints are legs and head, and which clips walk. All names are those of
+/// the creature's file. A body without legs keeps its feet where its clips have them, one without a gait does not walk.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyFile {
+    /// The legs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub legs: Vec<LegFile>,
+    /// The clips that move it from place to place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gait: Option<GaitFile>,
+    /// Its head and neck.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub head: Option<HeadFile>,
+    /// A clip that is added to all others, over and over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breathe: Option<String>,
+}
+
+/// A leg.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LegFile {
+    /// Joints at hip, knee and ankle.
+    pub joints: [String; 3],
+    /// The joint at the ball of the foot; `None` if the foot is one piece.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub toe: Option<String>,
+    /// To which side the knee points.
+    #[serde(default)]
+    pub knee: Knee,
+}
+
+/// To which side a knee points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Knee {
+    /// Forward, as a human's.
+    #[default]
+    Forward,
+    /// Backward, as a bird's ankle that is used as a knee.
+    Backward,
+}
+
+/// The clips of walking and turning. The walk is a loop on the spot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GaitFile {
+    /// The clip of standing.
+    pub idle: String,
+    /// The clip of walking.
+    pub walk: String,
+    /// Its speed over ground, in the model's units a second; `None` for the speed in the clip's extras.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// Clips of turning on the spot to the left and to the right; `None` to turn with the idle clip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turn: Option<[String; 2]>,
+    /// How fast it turns on the spot, degrees a second.
+    pub turn_deg: f64,
+    /// How fast it turns while it walks, degrees a second.
+    pub steer_deg: f64,
+}
+
+/// The joints that look at something.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeadFile {
+    /// From the head down, with the share of the turn that each one takes of what the joints above it leave, 0 to 1. The last
+    /// one takes the rest.
+    pub joints: Vec<(String, f64)>,
+    /// The eye, in the head joint's own space, in the model's units.
+    #[serde(default)]
+    pub eye: [f64; 3],
+    /// How far it turns to either side, and up and down, degrees.
+    #[serde(default = "limits")]
+    pub limits_deg: [f64; 2],
+}
+
+fn limits() -> [f64; 2] {
+    [80.0, 60.0]
+}

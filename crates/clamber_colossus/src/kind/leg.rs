@@ -1,0 +1,205 @@
+use clamber_animation::ik::TwoBone;
+use clamber_animation::joint_in_model;
+use clamber_animation::rig::{Clip, JointId, Playback, Pose};
+use clamber_surface::mesh::ColliderMesh;
+use glam::DVec3;
+
+use super::file::{Knee, LegFile};
+use super::{Names, whole};
+use crate::error::ColossusError;
+
+/// How far above its lowest point in a clip a foot still stands, as a share of the leg's length, and how fast its ball
+/// may move against the ground for it, as a share of `sqrt(g * leg)`: 0.6 m/s on a human's leg, as in Unreal's foot
+/// placement, and as much for any size by Froude's law.
+const STANDS_BELOW: f64 = 0.03;
+const STANDS_SLOWER: f64 = 0.2;
+
+/// Samples a second in which a clip is searched for contacts.
+const SAMPLES: f64 = 60.0;
+
+const GRAVITY: f64 = 9.81;
+
+/// A leg of a kind of creature, in the model's units.
+#[derive(Clone, Debug)]
+pub(crate) struct Leg {
+    pub(crate) ik: TwoBone,
+    pub(crate) ankle: JointId,
+    /// The ball of the foot: the toe joint, or the ankle.
+    pub(crate) ball: JointId,
+    /// Length of thigh and shin together.
+    pub(crate) length: f64,
+    /// Height of the ball above the sole at rest.
+    pub(crate) ball_height: f64,
+    /// The sole's corners at rest, relative to the ball: heel and toe, right and left; level.
+    pub(crate) sole: [DVec3; 4],
+}
+
+/// When a foot stands in a clip: from and to, seconds, in ascending order. In a loop the last may end after the clip's
+/// end, which then is a time in its next round.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Contacts {
+    spans: Vec<[f64; 2]>,
+    duration: f64,
+    loops: bool,
+}
+
+impl Leg {
+    pub(crate) fn new(
+        names: &Names<'_>,
+        mesh: &ColliderMesh,
+        file: &LegFile,
+    ) -> Result<Self, ColossusError> {
+        let mut joints = [JointId(0); 3];
+        for (joint, name) in joints.iter_mut().zip(&file.joints) {
+            *joint = names.joint(name).map_err(whole)?;
+        }
+        let ankle = joints[2];
+        let toe = file
+            .toe
+            .as_ref()
+            .map(|name| names.joint(name).map_err(whole))
+            .transpose()?;
+        let ball = toe.unwrap_or(ankle);
+        let knee = match file.knee {
+            Knee::Forward => DVec3::Z,
+            Knee::Backward => -DVec3::Z,
+        };
+        let skeleton = names.skeleton;
+        let ik = TwoBone::new(skeleton, joints, knee)?;
+        let rest = skeleton.rest_pose();
+        let lengths = ik.lengths(skeleton, &rest)?;
+        let place = |joint| {
+            joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)
+        };
+        let at = place(ball);
+        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
+        let moves = |joint: JointId| skeleton.is_descendant_or_self(joint, ankle);
+        let foot: Vec<DVec3> = (mesh.positions().iter().enumerate())
+            .filter(|(vertex, _)| {
+                let influences = mesh.influences(clamber_surface::mesh::VertexId(*vertex as u32));
+                let share: f32 = influences
+                    .filter(|(joint, _)| moves(*joint))
+                    .map(|(_, weight)| weight)
+                    .sum();
+                share > 0.5
+            })
+            .map(|(_, position)| position.as_dvec3())
+            .collect();
+        let length: f64 = lengths.iter().sum();
+        let lowest = foot.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        // The sole: the skin of the foot near its lowest point.
+        for p in foot.iter().filter(|p| p.y < lowest + 0.05 * length) {
+            (low, high) = (low.min(*p), high.max(*p));
+        }
+        if !low.is_finite() {
+            (low, high) = (at, at);
+        }
+        let corner = |x: f64, z: f64| DVec3::new(x - at.x, 0.0, z - at.z);
+        Ok(Self {
+            ik,
+            ankle,
+            ball,
+            length,
+            ball_height: at.y - low.y,
+            sole: [
+                corner(low.x, low.z),
+                corner(high.x, low.z),
+                corner(low.x, high.z),
+                corner(high.x, high.z),
+            ],
+        })
+    }
+
+    /// When the foot stands in a clip. `speed` is how fast the ground passes below the model, along -Z, and `turn` how
+    /// fast the model turns, radians a second. `scale` is metres per unit.
+    pub(crate) fn contacts(
+        &self,
+        names: &Names<'_>,
+        clip: &Clip,
+        playback: Playback,
+        [speed, turn]: [f64; 2],
+    ) -> Result<Contacts, ColossusError> {
+        let duration = clip.duration();
+        let loops = playback == Playback::Loop;
+        let count = (duration * SAMPLES).round().max(1.0) as usize;
+        let mut pose = Pose::default();
+        let mut at = |time: f64| -> Result<DVec3, ColossusError> {
+            pose.transforms.clone_from(&names.clips.rest().transforms);
+            clip.sample_into(time, playback, &mut pose)?;
+            let frame = joint_in_model(names.skeleton, &pose, self.ball);
+            Ok(frame.map_or(DVec3::ZERO, |frame| frame.translation))
+        };
+        let step = duration / count as f64;
+        let mut places = Vec::with_capacity(count + 1);
+        for sample in 0..=count {
+            places.push(at(sample as f64 * step)?);
+        }
+        let lowest = places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let most = STANDS_SLOWER * (GRAVITY * self.length).sqrt();
+        let stands = |sample: usize| {
+            let (a, b) = (places[sample], places[sample + 1]);
+            let way = (b - a) / step.max(1e-9);
+            let middle = 0.5 * (a + b);
+            // The ground below a model that walks along +Z and turns about +Y.
+            let ground = DVec3::new(-turn * middle.z, 0.0, turn * middle.x) - DVec3::Z * speed;
+            let slip = DVec3::new(way.x - ground.x, 0.0, way.z - ground.z).length();
+            middle.y < lowest + STANDS_BELOW * self.length && slip < most
+        };
+        let mut spans: Vec<[f64; 2]> = Vec::new();
+        for sample in 0..count {
+            if !stands(sample) {
+                continue;
+            }
+            let (from, to) = (sample as f64 * step, (sample + 1) as f64 * step);
+            match spans.last_mut() {
+                // A single sample that does not stand is noise.
+                Some(last) if from - last[1] <= 1.5 * step => last[1] = to,
+                _ => spans.push([from, to]),
+            }
+        }
+        spans.retain(|[from, to]| to - from > 3.0 * step || duration < 6.0 * step);
+        let joins = spans.len() > 1
+            && spans[0][0] <= 1.5 * step
+            && spans[spans.len() - 1][1] >= duration - 1.5 * step;
+        if loops && joins {
+            let first = spans.remove(0);
+            if let Some(last) = spans.last_mut() {
+                last[1] = duration + first[1];
+            }
+        }
+        Ok(Contacts {
+            spans,
+            duration,
+            loops,
+        })
+    }
+}
+
+impl Contacts {
+    /// True if the foot stands at a time.
+    pub(crate) fn stands(&self, time: f64) -> bool {
+        let inside = |time: f64| {
+            self.spans
+                .iter()
+                .any(|[from, to]| (*from..*to).contains(&time))
+        };
+        if !self.loops {
+            return inside(time.clamp(0.0, (self.duration - 1e-9).max(0.0)));
+        }
+        inside(time) || inside(time + self.duration)
+    }
+
+    /// Seconds from a time until the foot stands next; `None` if it does not.
+    pub(crate) fn until(&self, time: f64) -> Option<f64> {
+        let ahead = |from: f64| {
+            let wait = from - time;
+            if self.loops && self.duration > 0.0 {
+                wait.rem_euclid(self.duration)
+            } else {
+                wait
+            }
+        };
+        let waits = self.spans.iter().map(|[from, _]| ahead(*from));
+        waits.filter(|wait| *wait >= 0.0).min_by(f64::total_cmp)
+    }
+}

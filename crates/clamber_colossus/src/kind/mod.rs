@@ -1,0 +1,373 @@
+//! What all creatures of one kind share.
+
+mod file;
+mod gait;
+mod leg;
+mod strikes;
+
+use std::sync::Arc;
+
+use clamber_animation::ik::{LookAt, LookLimits};
+use clamber_animation::rig::{Clip, JointId, Playback, Skeleton, WeakPoint};
+use clamber_animation::{AnimationSet, ClipId};
+use clamber_surface::mesh::ColliderMesh;
+use glam::DVec3;
+
+pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile};
+pub(crate) use gait::Gait;
+pub(crate) use leg::{Contacts, Leg};
+pub(crate) use strikes::Strike;
+
+use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, StateId, list};
+use crate::error::ColossusError;
+
+/// A kind of creature: its skeleton, clips and skin, its brain, and how its body is used. It never changes, and many
+/// creatures share it.
+#[derive(Clone, Debug)]
+pub struct CreatureKind {
+    skeleton: Skeleton,
+    clips: AnimationSet,
+    mesh: Arc<ColliderMesh>,
+    weak_points: Vec<WeakPoint>,
+    brain: Brain,
+    /// Of each state, what its act plays.
+    acts: Vec<CompiledAct>,
+    /// Of each joint, the regions that it belongs to, one bit each.
+    regions: Vec<u64>,
+    legs: Vec<Leg>,
+    gait: Option<Gait>,
+    look: Option<LookAt>,
+    head: Option<JointId>,
+    breathe: Option<ClipId>,
+    /// Radius, on the ground, of what is under the creature at rest, in the model's units.
+    girth: f64,
+    /// Height of the skin at rest, in the model's units.
+    height: f64,
+}
+
+/// The clip of a state's act, and what it strikes with.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompiledAct {
+    pub(crate) clip: Option<ClipId>,
+    pub(crate) strike: Option<Strike>,
+    /// Of each leg, when it stands in the clip.
+    pub(crate) contacts: Vec<Contacts>,
+}
+
+/// What a creature's file brings: see `clamber_gltf::Rig`, whose fields these are.
+#[derive(Clone, Debug)]
+pub struct CreatureParts {
+    /// The skeleton.
+    pub skeleton: Skeleton,
+    /// The clips.
+    pub clips: Vec<Clip>,
+    /// The skin that people touch.
+    pub mesh: Arc<ColliderMesh>,
+    /// Where it can be wounded.
+    pub weak_points: Vec<WeakPoint>,
+}
+
+impl CreatureKind {
+    /// Puts a body and a brain together.
+    ///
+    /// # Errors
+    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the state and its line;
+    /// [`ColossusError::Animation`] and [`ColossusError::Ik`] if the parts do not fit each other or a leg cannot be bent.
+    pub fn new(parts: CreatureParts, brain: Brain) -> Result<Self, ColossusError> {
+        let CreatureParts {
+            skeleton,
+            clips,
+            mesh,
+            weak_points,
+        } = parts;
+        let clips = AnimationSet::new(&skeleton, clips)?;
+        let names = Names {
+            skeleton: &skeleton,
+            clips: &clips,
+        };
+        let body = &brain.file().body;
+        let mut legs = Vec::new();
+        for file in &body.legs {
+            legs.push(Leg::new(&names, &mesh, file)?);
+        }
+        let gait = body
+            .gait
+            .as_ref()
+            .map(|file| Gait::new(&names, file, &legs))
+            .transpose()?;
+        let mut acts = Vec::new();
+        for state in brain.states() {
+            acts.push(compile(
+                &brain,
+                state,
+                &names,
+                &legs,
+                gait.as_ref(),
+                &weak_points,
+            )?);
+        }
+        let mut regions = vec![0; skeleton.joints().len()];
+        for (bit, (_, patterns)) in brain.regions().enumerate() {
+            for pattern in patterns {
+                for joint in names.joints(pattern).map_err(whole)? {
+                    regions[joint.index()] |= 1u64 << bit.min(63);
+                }
+            }
+        }
+        let breathe = body
+            .breathe
+            .as_ref()
+            .map(|name| names.clip(name).map_err(whole))
+            .transpose()?;
+        let (look, head) = body
+            .head
+            .as_ref()
+            .map(|file| look(&names, file))
+            .transpose()?
+            .unzip();
+        let (mut low, mut high, mut girth) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
+        for position in mesh.positions() {
+            let p = position.as_dvec3();
+            (low, high) = (low.min(p.y), high.max(p.y));
+            girth = girth.max(p.x.abs().min(p.z.abs()));
+        }
+        Ok(Self {
+            acts,
+            regions,
+            legs,
+            gait,
+            look,
+            head,
+            breathe,
+            girth,
+            height: (high - low).max(0.0),
+            skeleton,
+            clips,
+            mesh,
+            weak_points,
+            brain,
+        })
+    }
+
+    /// The skeleton.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// The clips.
+    pub fn clips(&self) -> &AnimationSet {
+        &self.clips
+    }
+
+    /// The skin that people touch.
+    pub fn mesh(&self) -> &Arc<ColliderMesh> {
+        &self.mesh
+    }
+
+    /// Where it can be wounded.
+    pub fn weak_points(&self) -> &[WeakPoint] {
+        &self.weak_points
+    }
+
+    /// The brain.
+    pub fn brain(&self) -> &Brain {
+        &self.brain
+    }
+
+    /// Height of the skin at rest, in the model's units.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    pub(crate) fn act(&self, state: StateId) -> &CompiledAct {
+        &self.acts[state.index()]
+    }
+
+    pub(crate) fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    pub(crate) fn gait(&self) -> Option<&Gait> {
+        self.gait.as_ref()
+    }
+
+    pub(crate) fn look(&self) -> Option<(&LookAt, JointId)> {
+        self.look.as_ref().zip(self.head)
+    }
+
+    pub(crate) fn breathe(&self) -> Option<ClipId> {
+        self.breathe
+    }
+
+    pub(crate) fn girth(&self) -> f64 {
+        self.girth
+    }
+
+    /// True if a joint belongs to a region.
+    pub(crate) fn is_in_region(&self, joint: JointId, region: usize) -> bool {
+        let regions = self.regions.get(joint.index()).copied().unwrap_or(0);
+        region < 64 && regions >> region & 1 == 1
+    }
+}
+
+/// Looks names up, and says what there is if one is unknown.
+pub(crate) struct Names<'a> {
+    pub(crate) skeleton: &'a Skeleton,
+    pub(crate) clips: &'a AnimationSet,
+}
+
+impl Names<'_> {
+    pub(crate) fn clip(&self, name: &str) -> Result<ClipId, BrainProblem> {
+        self.clips.find(name).ok_or_else(|| BrainProblem::Unknown {
+            what: "clip",
+            name: name.to_owned(),
+            known: list(self.clips.clips().iter().map(|clip| &clip.name)),
+        })
+    }
+
+    pub(crate) fn joint(&self, name: &str) -> Result<JointId, BrainProblem> {
+        self.skeleton.find(name).ok_or_else(|| self.no_joint(name))
+    }
+
+    /// The joints that a pattern names: one, or all that begin with what is before its `*`.
+    pub(crate) fn joints(&self, pattern: &str) -> Result<Vec<JointId>, BrainProblem> {
+        let Some(start) = pattern.strip_suffix('*') else {
+            return Ok(vec![self.joint(pattern)?]);
+        };
+        let all = self.skeleton.joints().iter().enumerate();
+        let found: Vec<JointId> = all
+            .filter(|(_, joint)| joint.name.starts_with(start))
+            .map(|(index, _)| JointId(index as u32))
+            .collect();
+        if found.is_empty() {
+            return Err(self.no_joint(pattern));
+        }
+        Ok(found)
+    }
+
+    fn no_joint(&self, name: &str) -> BrainProblem {
+        BrainProblem::Unknown {
+            what: "joint",
+            name: name.to_owned(),
+            known: list(self.skeleton.joints().iter().map(|joint| &joint.name)),
+        }
+    }
+}
+
+/// An error that no state is at fault for.
+pub(crate) fn whole(problem: BrainProblem) -> BrainError {
+    BrainError {
+        line: None,
+        state: None,
+        problem,
+    }
+}
+
+fn compile(
+    brain: &Brain,
+    state: StateId,
+    names: &Names<'_>,
+    legs: &[Leg],
+    gait: Option<&Gait>,
+    weak_points: &[WeakPoint],
+) -> Result<CompiledAct, ColossusError> {
+    let here = |problem| brain.error_in(state, problem);
+    for name in brain.exposes(state) {
+        if !weak_points.iter().any(|point| point.name == *name) {
+            return Err(here(BrainProblem::Unknown {
+                what: "weak point",
+                name: name.clone(),
+                known: list(weak_points.iter().map(|point| &point.name)),
+            })
+            .into());
+        }
+    }
+    let Some(act) = brain.act(state) else {
+        return Ok(CompiledAct::default());
+    };
+    let clip = act
+        .clip()
+        .map(|name| names.clip(name))
+        .transpose()
+        .map_err(here)?;
+    let strike = match act {
+        Act::Attack(attack) => Some(strike(names, attack, legs).map_err(here)?),
+        Act::Walk(walk) => match &walk.strike {
+            Some(clip) => {
+                let attack = attack_with(brain, clip).ok_or_else(|| {
+                    here(BrainProblem::Unknown {
+                        what: "attack with the clip",
+                        name: clip.clone(),
+                        known: "no other state that attacks with it".into(),
+                    })
+                })?;
+                Some(strike(names, attack, legs).map_err(here)?)
+            }
+            None => None,
+        },
+        _ => None,
+    };
+    if matches!(act, Act::Walk(_) | Act::Turn(_)) && gait.is_none() {
+        return Err(here(BrainProblem::Unknown {
+            what: "part of the body",
+            name: "gait".into(),
+            known: "no walk and no turn without it".into(),
+        })
+        .into());
+    }
+    let mut contacts = Vec::new();
+    if let Some(clip) = clip {
+        let playback = match act {
+            Act::Play(_) => Playback::Loop,
+            _ => Playback::Clamp,
+        };
+        for leg in legs {
+            contacts.push(leg.contacts(names, names.clips.clip(clip)?, playback, [0.0; 2])?);
+        }
+    }
+    Ok(CompiledAct {
+        clip,
+        strike,
+        contacts,
+    })
+}
+
+fn strike(names: &Names<'_>, attack: &Attack, legs: &[Leg]) -> Result<Strike, BrainProblem> {
+    let mut limb = Vec::new();
+    for pattern in &attack.limb {
+        limb.extend(names.joints(pattern)?);
+    }
+    Strike::new(names, attack, limb, legs)
+}
+
+fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<&'a Attack> {
+    brain.states().find_map(|state| match brain.act(state) {
+        Some(Act::Attack(attack)) if attack.clip == clip => Some(attack),
+        _ => None,
+    })
+}
+
+fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), ColossusError> {
+    let mut chain = Vec::new();
+    for (name, share) in &file.joints {
+        chain.push((names.joint(name).map_err(whole)?, *share));
+    }
+    let Some(&(head, _)) = chain.first() else {
+        return Err(
+            clamber_animation::ik::IkError::BadSetUp("a head needs at least one joint").into(),
+        );
+    };
+    let rest = names.skeleton.rest_pose();
+    let model_from_head = clamber_animation::joint_in_model(names.skeleton, &rest, head);
+    let forward = model_from_head.map_or(DVec3::Z, |frame| frame.matrix3.inverse() * DVec3::Z);
+    let [yaw, pitch] = file.limits_deg.map(f64::to_radians);
+    let look = LookAt::new(
+        names.skeleton,
+        &chain,
+        DVec3::from_array(file.eye),
+        forward,
+        DVec3::Y,
+    )?
+    .with_limits(LookLimits { yaw, pitch })?;
+    Ok((look, head))
+}

@@ -1,0 +1,17 @@
+#![doc = include_str!("../README.md")]
+
+pub mod brain;
+mod creature;
+mod error;
+mod feet;
+mod kind;
+pub mod senses;
+
+pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainState};
+pub use creature::{
+    Blow, Creature, CreatureConfig, CreatureEvent, CreatureReport, CreatureState, Noise, Person,
+    Riding, Surroundings, Wound,
+};
+pub use error::ColossusError;
+pub use kind::{BodyFile, CreatureKind, CreatureParts, GaitFile, HeadFile, Knee, LegFile};
+pub use senses::{RegionSense, Sense, Senses};

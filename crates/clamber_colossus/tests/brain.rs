@@ -1,0 +1,219 @@
+//! Brain files: what is refused and where, and what a brain does tick by tick (scenes B37, B38 and B48).
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use clamber_colossus::{Brain, BrainFile, BrainProblem, BrainState, Sense, Senses};
+
+const TICK: f64 = 1.0 / 60.0;
+
+const FILE: &str = r#"{
+  "start": "calm",
+  "moods": { "anger": { "fades": 10, "raised": [{ "when": ["struck >= 1"], "to": 1 }] } },
+  "regions": { "head": ["head"] },
+  "senses": ["storm"],
+  "states": {
+    "calm": {
+      "start": "idle",
+      "transitions": [
+        { "to": "angry", "when": ["anger > 0.5"], "priority": 2 },
+        { "to": "dead", "when": ["health <= 0"], "priority": 9, "interrupts": true }
+      ],
+      "states": {
+        "idle": { "act": { "play": "idle" }, "transitions": [
+          { "to": "shake", "when": ["riders@head >= 1"], "after": [2, 6] },
+          { "to": "roam", "any": ["storm", "prey_distance < 30"] }
+        ] },
+        "roam": { "transitions": [{ "to": "idle", "after": 1 }] },
+        "shake": { "act": { "once": "shake" }, "cooldown": 3, "transitions": [{ "to": "idle" }] }
+      }
+    },
+    "angry": { "act": { "once": "roar" }, "transitions": [
+      { "to": "calm", "weight": 2 }, { "to": "roam" },
+      { "to": "dead", "when": ["health <= 0"], "priority": 9, "interrupts": true }
+    ] },
+    "dead": { "final": true }
+  }
+}"#;
+
+fn brain() -> Brain {
+    Brain::from_json(FILE, TICK).unwrap()
+}
+
+/// The state after some ticks of the same senses.
+fn after(brain: &Brain, state: &mut BrainState, senses: &Senses, ticks: u32) -> String {
+    for _ in 0..ticks {
+        brain.step(state, senses, &[], |_| {});
+    }
+    brain.path(state.current()).to_owned()
+}
+
+#[test]
+fn a_file_is_the_same_after_a_round_trip() {
+    let file = brain().file().clone();
+    let again: BrainFile = serde_json::from_str(&serde_json::to_string(&file).unwrap()).unwrap();
+    assert_eq!(again, file);
+}
+
+#[test]
+fn what_does_not_exist_is_refused_with_line_and_state() {
+    let broken = [
+        (
+            r#""to": "roam", "any""#,
+            r#""to": "rome", "any""#,
+            "calm/idle",
+        ),
+        ("riders@head", "riders@tail", "calm/idle"),
+        (r#""fades": 10"#, r#""fades": -1"#, ""),
+        ("prey_distance < 30", "prey_distance less 30", "calm/idle"),
+        (r#""weight": 2"#, r#""weight": 0"#, "angry"),
+        (r#""final": true"#, r#""finale": true"#, "dead"),
+        (
+            r#""dead": { "final": true }"#,
+            r#""dead": {}, "dead": {}"#,
+            "",
+        ),
+    ];
+    for (right, wrong, state) in broken {
+        let text = FILE.replacen(right, wrong, 1);
+        let line = text.split(wrong).next().unwrap().lines().count();
+        let error = Brain::from_json(&text, TICK).unwrap_err();
+        assert_eq!(error.line, Some(line), "{wrong}: {error}");
+        if !state.is_empty() {
+            assert_eq!(error.state.as_deref(), Some(state), "{wrong}: {error}");
+        }
+    }
+    let text = FILE.replacen(r#""start": "idle""#, r#""start": "dead""#, 1);
+    let error = Brain::from_json(&text, TICK).unwrap_err();
+    assert_eq!(
+        (error.line, error.state.as_deref()),
+        (Some(7), Some("calm")),
+        "{error}"
+    );
+}
+
+#[test]
+fn transitions_without_conditions_may_not_lead_in_a_circle() {
+    let text = r#"{"start": "a", "states": {
+        "a": {"transitions": [{"to": "b"}]}, "b": {"transitions": [{"to": "a"}]}}}"#;
+    let error = Brain::from_json(text, TICK).unwrap_err();
+    assert!(matches!(error.problem, BrainProblem::Circle(_)), "{error}");
+}
+
+#[test]
+fn moods_rise_and_fade_in_their_time() {
+    let brain = brain();
+    let (mut state, mut senses) = (BrainState::new(&brain, 1), brain.no_senses());
+    senses.set(Sense::Struck, 1.0);
+    after(&brain, &mut state, &senses, 1);
+    assert_eq!(state.mood(&brain, 0), 1.0);
+    senses.set(Sense::Struck, 0.0);
+    after(&brain, &mut state, &senses, 599);
+    assert!(state.mood(&brain, 0) > 0.0);
+    after(&brain, &mut state, &senses, 1);
+    assert_eq!(state.mood(&brain, 0), 0.0);
+}
+
+#[test]
+fn an_act_is_played_to_its_end_unless_it_is_interrupted() {
+    let brain = brain();
+    let (mut state, mut senses) = (BrainState::new(&brain, 1), brain.no_senses());
+    senses.set(Sense::Struck, 1.0);
+    assert_eq!(after(&brain, &mut state, &senses, 1), "angry");
+    senses.set(Sense::Struck, 0.0);
+    assert_eq!(after(&brain, &mut state, &senses, 200), "angry");
+    senses.set(Sense::Health, 0.0);
+    assert_eq!(after(&brain, &mut state, &senses, 1), "dead");
+    senses.set(Sense::Health, 1.0);
+    assert_eq!(after(&brain, &mut state, &senses, 1000), "dead");
+}
+
+#[test]
+fn lots_decide_when_the_first_shake_comes() {
+    let brain = brain();
+    let mut times = Vec::new();
+    for seed in 0..40 {
+        let (mut state, mut senses) = (BrainState::new(&brain, seed), brain.no_senses());
+        senses.set_in_region(clamber_colossus::RegionSense::Riders, 0, 1.0);
+        let mut ticks = 0;
+        while brain.path(state.current()) != "calm/shake" {
+            after(&brain, &mut state, &senses, 1);
+            ticks += 1;
+            assert!(ticks <= 361, "seed {seed}");
+        }
+        assert!(ticks >= 120, "seed {seed}: {ticks}");
+        times.push(ticks);
+    }
+    times.sort_unstable();
+    times.dedup();
+    assert!(times.len() > 20, "{times:?}");
+}
+
+/// Random senses for many ticks: few transitions a tick, every state is seen, the end is final, and a state that was
+/// saved and loaded goes on with the same bits. It stays below 1 KB.
+#[test]
+fn a_brain_lives_through_anything() {
+    let brain = brain();
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut seen = std::collections::BTreeSet::new();
+    for seed in 0..50 {
+        let (mut state, mut senses) = (BrainState::new(&brain, seed), brain.no_senses());
+        for tick in 0..2_000 {
+            for sense in Sense::all() {
+                if random.u32(..20) == 0 {
+                    senses.set(sense, f64::from(random.u32(..3)));
+                }
+            }
+            // A blow comes seldom, and the end even less often.
+            senses.set(Sense::Struck, f64::from(u8::from(random.u32(..900) == 0)));
+            senses.set(Sense::Health, f64::from(random.u32(..5_000).min(1)));
+            // Quiet for a while, so that it stays where it is.
+            let is_quiet = tick % 1_000 < 500;
+            senses.set_own(0, f64::from(u8::from(!is_quiet) * random.u8(..2)));
+            if is_quiet {
+                senses.set(Sense::PreyDistance, f64::INFINITY);
+            }
+            senses.set_in_region(
+                clamber_colossus::RegionSense::Riders,
+                0,
+                f64::from(u8::from(is_quiet)),
+            );
+            let text = serde_json::to_string(&state).unwrap();
+            let mut loaded: BrainState = serde_json::from_str(&text).unwrap();
+            let was_final = brain.is_final(state.current());
+            let mut count = 0;
+            brain.step(&mut state, &senses, &[], |_| count += 1);
+            brain.step(&mut loaded, &senses, &[], |_| {});
+            assert_eq!(state, loaded);
+            assert!(
+                count <= clamber_colossus::brain::MOST_TRANSITIONS,
+                "{count}"
+            );
+            assert!(!was_final || count == 0);
+            seen.insert(brain.path(state.current()).to_owned());
+        }
+        assert!(state.size() <= 1024, "{}", state.size());
+    }
+    assert_eq!(seen.len(), 5, "{seen:?}");
+}
+
+#[test]
+fn a_report_tells_what_can_never_happen() {
+    let report = brain().report(|_| None);
+    assert!(report.never.is_empty(), "{report}");
+    let text = FILE.replace(
+        r#""riders@head >= 1""#,
+        r#""riders@head >= 1", "riders@head < 1""#,
+    );
+    let report = Brain::from_json(&text, TICK).unwrap().report(|_| None);
+    let never: Vec<String> = report.never.iter().map(ToString::to_string).collect();
+    assert!(
+        never[0].contains("riders@head cannot hold together"),
+        "{never:?}"
+    );
+    assert!(
+        never
+            .iter()
+            .any(|never| never.contains("nothing leads here")),
+        "{never:?}"
+    );
+}
