@@ -7,7 +7,7 @@ mod feet;
 mod kind;
 pub mod senses;
 
-pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainState};
+pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
 pub use creature::{
     Blow, Creature, CreatureConfig, CreatureEvent, CreatureReport, CreatureState, Noise, Person,
     Riding, Surroundings, Wound,

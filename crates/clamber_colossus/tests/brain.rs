@@ -198,13 +198,13 @@ fn a_brain_lives_through_anything() {
 
 #[test]
 fn a_report_tells_what_can_never_happen() {
-    let report = brain().report(|_| None);
+    let report = brain().report();
     assert!(report.never.is_empty(), "{report}");
     let text = FILE.replace(
         r#""riders@head >= 1""#,
         r#""riders@head >= 1", "riders@head < 1""#,
     );
-    let report = Brain::from_json(&text, TICK).unwrap().report(|_| None);
+    let report = Brain::from_json(&text, TICK).unwrap().report();
     let never: Vec<String> = report.never.iter().map(ToString::to_string).collect();
     assert!(
         never[0].contains("riders@head cannot hold together"),

@@ -2,6 +2,7 @@
 //! people who make creatures, and for measurements on many models.
 
 mod bounds;
+mod brain;
 mod deviation;
 mod humanoid;
 mod options;
@@ -11,6 +12,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clamber_colossus::{BrainError, ColossusError};
 use clamber_gltf::{GltfError, LoadOptions, Rig, load_with};
 use clamber_oracle::agreement::{Agreement, Aims, Comparison, extent};
 use clamber_surface::geometry::{Similarity, Sphere};
@@ -57,6 +59,30 @@ pub enum InspectError {
         /// Why not.
         error: String,
     },
+    /// A brain's file cannot be read.
+    #[error("cannot read {}: {error}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        error: std::io::Error,
+    },
+    /// A brain's file is not valid.
+    #[error("{}: {error}", file.display())]
+    Brain {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        error: BrainError,
+    },
+    /// The brain and the creature do not fit each other.
+    #[error("{}: {error}", file.display())]
+    Colossus {
+        /// The brain's file.
+        file: PathBuf,
+        /// Why not.
+        error: ColossusError,
+    },
     /// The file has no clip of that name.
     #[error("there is no clip {name:?}; the clips are: {clips}")]
     Clip {
@@ -68,11 +94,15 @@ pub enum InspectError {
 }
 
 /// Loads a file, measures the creature, and prints both as they come; returns true if all checks hold. With
-/// [`InspectOptions::humanoid`], prints the human body in it instead; returns true if there is one.
+/// [`InspectOptions::humanoid`], prints the human body in it instead; returns true if there is one. With
+/// [`InspectOptions::brain`], prints a brain; returns true if all of it can happen.
 ///
 /// # Errors
 /// [`InspectError`] if the file cannot be loaded, has no clip of that name, or a clip does not fit the creature.
 pub fn print(options: &InspectOptions) -> Result<bool, InspectError> {
+    if options.brain {
+        return brain::print(options);
+    }
     let mut load = LoadOptions::default();
     load.skin = options.skin;
     let rig = load_with(&options.file, &load)?;

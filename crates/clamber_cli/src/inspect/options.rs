@@ -2,15 +2,31 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-/// Reports what the import finds in a creature's file, and measures the creature in motion.
+/// Reports what the import finds in a creature's file, and measures the creature in motion. Reports on a brain's file.
 ///
 /// Loads the file as the library does and says at once what it found. Then it poses the creature at rest and in its
 /// clips, and compares skinning with exact arithmetic, every query with brute force, and bounds with the vertices that
 /// they must hold. Exits with 1 if a comparison fails, with 2 if the file cannot be loaded.
+///
+/// With --brain it reads a brain's file: it prints states, transitions, and what can never happen. Exits with 1 if there
+/// is such a thing, with 2 if the file is not valid.
 #[derive(Args, Clone, Debug)]
 pub struct InspectOptions {
-    /// A .glb or .gltf file.
+    /// A .glb or .gltf file; with --brain, a .json file.
     pub file: PathBuf,
+
+    /// The file is a creature's brain: print its states and transitions, and what can never happen.
+    #[arg(long, conflicts_with_all = ["json", "skin", "clips", "poses", "thorough", "humanoid"])]
+    pub brain: bool,
+
+    /// With --brain: the .glb or .gltf file of the creature, whose clips, joints and weak points the brain has to fit.
+    #[arg(long, value_name = "FILE", requires = "brain")]
+    pub creature: Option<PathBuf>,
+
+    /// With --brain: ticks a second of the game.
+    #[arg(long, value_name = "COUNT", requires = "brain", default_value_t = 60)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub rate: u32,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
@@ -57,6 +73,9 @@ impl InspectOptions {
     pub fn of(file: PathBuf) -> Self {
         Self {
             file,
+            brain: false,
+            creature: None,
+            rate: 60,
             json: false,
             skin: None,
             clips: Vec::new(),

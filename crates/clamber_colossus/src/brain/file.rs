@@ -18,7 +18,7 @@ pub struct BrainFile {
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub moods: BTreeMap<String, MoodFile>,
     /// Regions of the body by name, each with joints, whose senses are told apart. `"spine.*"` names all joints that
-    /// begin with `spine.`.
+    /// begin with `spine.`, and `"thumb.*.L"` all that also end with `.L`.
     #[serde(default, with = "unique", skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, Vec<String>>,
     /// The game's own senses: numbers that it sets.
@@ -97,7 +97,8 @@ pub struct TransitionFile {
     /// A marker of the clip that must have been passed in this tick.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// Seconds that the state must have lasted.
+    /// Seconds that the state must have lasted. A time that is drawn by lot is the same for all transitions of a state with
+    /// the same range, so that their weights decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<After>,
     /// Of the transitions that can be taken, those of the highest priority are; 0 if it does not say.
@@ -143,7 +144,7 @@ pub enum Act {
 pub struct Attack {
     /// The clip.
     pub clip: String,
-    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`.
+    /// Joints whose skin hurts, such as `["foot.R", "toe.R"]`, or `["thumb.*.R", "hand.R"]`. The last one is its end.
     pub limb: Vec<String>,
     /// Hit points that a blow costs, 0 to 1.
     pub damage: f64,

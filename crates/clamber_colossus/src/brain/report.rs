@@ -50,15 +50,20 @@ impl fmt::Display for BrainReport {
 }
 
 impl Brain {
-    /// Its states and transitions as text, and what can never happen. `markers` are those of a clip, by the clip's name;
-    /// `None` if there is no such clip.
-    pub fn report(&self, markers: impl Fn(&str) -> Option<Vec<String>>) -> BrainReport {
+    /// Its states and transitions as text, and what can never happen, as far as that is known without a creature:
+    /// [`CreatureKind::report`](crate::CreatureKind::report) also looks for the markers that transitions wait for.
+    pub fn report(&self) -> BrainReport {
+        self.report_with(&|_, _| true)
+    }
+
+    /// The same, where `has` tells whether a clip has a marker.
+    pub(crate) fn report_with(&self, has: &dyn Fn(&str, &str) -> bool) -> BrainReport {
         BrainReport {
             states: self
                 .states()
                 .flat_map(|state| self.lines_of(state))
                 .collect(),
-            never: self.never(&markers),
+            never: self.never(has),
         }
     }
 
@@ -130,7 +135,7 @@ impl Brain {
         found
     }
 
-    fn never(&self, markers: &impl Fn(&str) -> Option<Vec<String>>) -> Vec<Never> {
+    fn never(&self, has: &dyn Fn(&str, &str) -> bool) -> Vec<Never> {
         let mut never = Vec::new();
         let reached = self.reached_from(self.start);
         let innermost = |id: &StateId| self.states[id.index()].start.is_none();
@@ -146,7 +151,7 @@ impl Brain {
                     "to `{}`: its conditions on {name} cannot hold together",
                     self.path(transition.to)
                 )
-            } else if let Some(marker) = self.missing_marker(transition, markers) {
+            } else if let Some(marker) = self.missing_marker(transition, has) {
                 format!(
                     "to `{}`: no clip of the state has a marker `{marker}`",
                     self.path(transition.to)
@@ -250,20 +255,20 @@ impl Brain {
     fn missing_marker(
         &self,
         transition: &Transition,
-        markers: &impl Fn(&str) -> Option<Vec<String>>,
+        has: &dyn Fn(&str, &str) -> bool,
     ) -> Option<String> {
         let wanted = transition.on.as_ref()?;
         let mut clips = self
             .states()
             .filter(|state| self.is_within(*state, transition.from))
             .map(|state| (self.act(state), self.act(state).and_then(super::Act::clip)));
-        let has = clips.any(|(act, clip)| match (act, clip) {
+        let found = clips.any(|(act, clip)| match (act, clip) {
             // Walks and turns play the clips of the gait, which this does not know.
             (Some(super::Act::Walk(_) | super::Act::Turn(_)), _) => true,
-            (_, Some(clip)) => markers(clip).is_some_and(|markers| markers.contains(wanted)),
+            (_, Some(clip)) => has(clip, wanted),
             _ => false,
         });
-        (!has).then(|| wanted.clone())
+        (!found).then(|| wanted.clone())
     }
 
     /// True if a transition without conditions and with a higher priority stands beside it.

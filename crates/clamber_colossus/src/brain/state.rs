@@ -28,6 +28,8 @@ pub struct Entered {
     pub from: StateId,
     /// The state that was entered: the innermost one.
     pub to: StateId,
+    /// True if the transition may leave an act that has to be played to its end.
+    pub interrupts: bool,
 }
 
 impl BrainState {
@@ -108,13 +110,18 @@ impl Brain {
         state.now = state.now.saturating_add(1);
         self.feel(state, senses);
         for round in 0..MOST_TRANSITIONS {
-            let Some(to) = self.chosen(state, senses, passed, round > 0) else {
+            let Some(chosen) = self.chosen(state, senses, passed, round > 0) else {
                 return;
             };
+            let interrupts = chosen.interrupts;
             let from = state.current;
-            self.enter(state, to);
+            self.enter(state, chosen.to);
             let to = state.current;
-            entered(Entered { from, to });
+            entered(Entered {
+                from,
+                to,
+                interrupts,
+            });
         }
     }
 
@@ -140,14 +147,14 @@ impl Brain {
         }
     }
 
-    /// The state to which a transition leads now.
+    /// The transition that is taken now.
     fn chosen(
         &self,
         state: &mut BrainState,
         senses: &Senses,
         passed: &[&str],
         at_once: bool,
-    ) -> Option<StateId> {
+    ) -> Option<&Transition> {
         let current = state.current;
         if self.is_final(current) {
             return None;
@@ -172,18 +179,17 @@ impl Brain {
             (count + 1, weight + one.weight)
         });
         if count == 1 {
-            return all().find(best).map(|transition| transition.to);
+            return all().find(best);
         }
-        let chosen: Vec<(StateId, f64)> =
-            all().filter(best).map(|one| (one.to, one.weight)).collect();
+        let chosen: Vec<&Transition> = all().filter(best).collect();
         let mut left = weight * unit(state.draw());
-        for (to, weight) in &chosen {
-            left -= weight;
+        for one in &chosen {
+            left -= one.weight;
             if left < 0.0 {
-                return Some(*to);
+                return Some(one);
             }
         }
-        chosen.last().map(|(to, _)| *to)
+        chosen.last().copied()
     }
 
     /// True if a transition's conditions hold and its state can be entered.
@@ -226,8 +232,8 @@ impl Brain {
         if from == to {
             return from;
         }
-        // The same lot as long as the state lasts, and another one for each transition.
-        let seed = state.lots[depth].wrapping_add(transition.number);
+        // The same lot as long as the state lasts, for all transitions with the same times.
+        let seed = state.lots[depth].wrapping_add(u64::from(from) << 32 | u64::from(to));
         let share = unit(fastrand::Rng::with_seed(seed).u64(..));
         from + (share * f64::from(to - from + 1)) as u32
     }

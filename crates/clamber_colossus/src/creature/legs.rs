@@ -1,37 +1,45 @@
-//! Feet and head of the pose.
+//! The feet of the pose.
 
 use clamber_animation::ik::{TwoBoneGoal, aim};
 use clamber_animation::joint_in_model;
 use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::{DAffine3, DQuat, DVec3};
 
+use super::Creature;
 use super::report::CreatureEvent;
 use super::state::Playing;
-use super::{Creature, Surroundings};
-use crate::brain::Gaze;
-use crate::feet::{Foot, FootGoal, Ground};
+use crate::feet::{Foot, FootGoal, Ground, Sole};
 use crate::kind::{Contacts, Leg};
 
-/// The most that a foot leans on the ground, as a tangent: 30 degrees.
-const MOST_LEAN: f64 = 0.577;
+/// The axes of an ankle that keep their directions.
+const FOOT_AXES: [DVec3; 2] = [DVec3::Y, DVec3::Z];
 
-/// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human size.
-const LOOKS: f64 = 0.25;
-
-/// How long a glance lasts, seconds.
-const GLANCE: f64 = 3.5;
+/// Where a leg is put in a tick, in model space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PutLeg {
+    /// As its clip has it.
+    pub(super) hip: DVec3,
+    /// Where it goes, together with the ball of the foot.
+    pub(super) ankle: DVec3,
+    pub(super) ball: DVec3,
+    /// Length of thigh and shin together.
+    pub(super) reach: f64,
+    directions: [DVec3; 2],
+    pub(super) wants_step: bool,
+    pub(super) is_planted: bool,
+}
 
 impl Creature {
-    /// Puts the feet of the pose on the ground.
+    /// Puts the feet of the pose on the ground, and the hips so that they reach it.
     pub(super) fn put_feet(&mut self, ground: &Ground<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let aims = self.aimed_leg();
+        let mut legs = std::mem::take(&mut self.legs);
+        legs.clear();
         for (index, leg) in kind.legs().iter().enumerate() {
-            let frames = [leg.ankle, leg.ball]
-                .map(|joint| joint_in_model(kind.skeleton(), &self.state.pose, joint));
-            let [Some(ankle), Some(ball)] = frames else {
-                continue;
-            };
+            let [hip, ankle, ball] = [leg.hip, leg.ankle, leg.ball].map(|joint| {
+                joint_in_model(kind.skeleton(), &self.state.pose, joint).unwrap_or_default()
+            });
             let others_stand = (self.state.feet.iter().enumerate())
                 .all(|(other, foot)| other == index || foot.is_planted());
             let goal = self.foot_goal(index, leg, ball.translation, others_stand, aims);
@@ -41,15 +49,43 @@ impl Creature {
                     .transform_vector(corner)
             });
             let foot = &mut self.state.feet[index];
-            let under = |place: DVec3| ground.under_foot(place, &corners, MOST_LEAN);
-            if foot.step(&goal, under, dt) {
+            if foot.step(&goal, &Sole { ground, corners }, dt) {
                 let place = goal.clip + foot.offset();
                 self.report
                     .events
                     .push(CreatureEvent::Plant { leg: index, place });
             }
-            let foot = *foot;
-            self.bend_leg(leg, &foot, [ankle, ball]);
+            legs.push(self.put(leg, &self.state.feet[index], goal.clip, [hip, ankle, ball]));
+        }
+        self.shift_hips(&legs, dt);
+        for (leg, put) in kind.legs().iter().zip(&legs) {
+            self.bend_leg(leg, put);
+        }
+        self.legs = legs;
+    }
+
+    /// Where a leg's ankle goes.
+    fn put(
+        &self,
+        leg: &Leg,
+        foot: &Foot,
+        clip: DVec3,
+        [hip, ankle, ball]: [DAffine3; 3],
+    ) -> PutLeg {
+        let world = self.state.world_from_model(self.config.scale);
+        let lean = DQuat::from_rotation_arc(DVec3::Y, world.rotation.conjugate() * foot.normal());
+        let turn = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw());
+        let ball_at = world.inverse_transform_point(clip + foot.offset());
+        // The foot keeps its own rotation, whatever the shin does.
+        let directions = FOOT_AXES.map(|axis| turn * (ankle.matrix3 * axis));
+        PutLeg {
+            hip: hip.translation,
+            ankle: ball_at + turn * (ankle.translation - ball.translation),
+            reach: leg.length,
+            directions,
+            ball: ball_at,
+            wants_step: foot.wants_step(),
+            is_planted: foot.is_planted(),
         }
     }
 
@@ -75,24 +111,26 @@ impl Creature {
         });
         let contacts = self.contacts(index);
         let stands = contacts.is_none_or(|contacts| contacts.stands(time));
-        let wait = contacts
-            .and_then(|contacts| contacts.until(time))
+        let landing = contacts
+            .and_then(|contacts| contacts.next(time))
             .filter(|_| speed > 0.0);
-        let lands_in = wait.map_or(1.0, |wait| wait / speed.max(1e-3)).min(4.0);
-        // Where the creature will be then; the clip's own motion until then is left out, since only its height counts.
+        let lands_in = landing
+            .map_or(1.0, |(wait, _)| wait / speed.max(1e-3))
+            .min(4.0);
+        // Where the creature will be then.
         let ahead = self.state.heading() * (self.state.speed * lands_in);
-        let is_gait = matches!(self.state.playing, Playing::Walk | Playing::Turn(_));
+        let at = landing.map_or(clip, |(_, place)| world.transform_point(place));
+        let lands_at = if stands { clip } else { at + ahead };
         FootGoal {
             clip,
             stands,
             lands_in,
-            lands_at: clip
-                + ahead * f64::from(u8::from(!stands))
-                + DVec3::Y * (self.state.position.y + leg.ball_height * scale - clip.y),
+            lands_at: lands_at.with_y(self.state.position.y + leg.ball_height * scale),
             turned: self.state.yaw_rate * self.kind.brain().tick(),
             ball_height: leg.ball_height * scale,
             leg: leg.length * scale,
-            may_step: others_stand && !is_gait,
+            may_step: others_stand && self.state.hips.has_shifted(),
+            is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
         }
     }
 
@@ -126,86 +164,14 @@ impl Creature {
         Some((leg, rise * (1.0 - fall)))
     }
 
-    /// Bends a leg so that its ball is where the foot is.
-    fn bend_leg(&mut self, leg: &Leg, foot: &Foot, [ankle, ball]: [DAffine3; 2]) {
-        let world = self.state.world_from_model(self.config.scale);
-        let lean = DQuat::from_rotation_arc(DVec3::Y, world.rotation.conjugate() * foot.normal());
-        let turn = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw());
-        let ball_at = ball.translation + world.inverse_transform_vector(foot.offset());
-        let target = ball_at + turn * (ankle.translation - ball.translation);
+    /// Bends a leg so that its ankle is where the foot wants it.
+    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
-        if leg
-            .ik
-            .solve(
-                skeleton,
-                &mut self.state.pose,
-                &TwoBoneGoal::reach(target),
-                None,
-            )
-            .is_err()
-        {
-            return;
-        }
-        // The foot keeps its own rotation, whatever the shin does.
-        let axes = [DVec3::Y, DVec3::Z];
-        let directions = axes.map(|axis| turn * (ankle.matrix3 * axis));
-        let _ = aim(skeleton, &mut self.state.pose, leg.ankle, axes, directions);
-    }
-
-    /// Turns the head to what the creature looks at.
-    pub(super) fn turn_head(&mut self, around: &Surroundings<'_>, dt: f64) {
-        let kind = std::sync::Arc::clone(&self.kind);
-        let Some((look, _)) = kind.look() else { return };
-        let size = (kind.height() * self.config.scale / 1.75).max(0.1).sqrt();
-        let target = self.target(around);
-        let weight = f64::from(u8::from(target.is_some()));
-        self.state.gaze_weight.step(weight, LOOKS * size, dt);
-        if let Some(target) = target {
-            if self.state.gaze_weight.value < 0.02 {
-                self.state.gaze = clamber_animation::Spring::at(target);
-            }
-            self.state.gaze.step(target, LOOKS * size, dt);
-        }
-        let world = self.state.world_from_model(self.config.scale);
-        let target = world.inverse_transform_point(self.state.gaze.value);
-        let weight = self.state.gaze_weight.value.clamp(0.0, 1.0);
-        if weight > 1e-3 {
-            // A target in its head moves nothing.
-            let _ = look.solve(
-                kind.skeleton(),
-                &mut self.state.pose,
-                target,
-                weight,
-                &mut self.state.look,
-                dt,
-            );
-        }
-    }
-
-    fn target(&self, around: &Surroundings<'_>) -> Option<DVec3> {
-        match self.kind.brain().gaze(self.state.current()) {
-            Gaze::Clip => None,
-            Gaze::Prey => self.state.prey.map(|(_, place)| place),
-            Gaze::Rider => {
-                let ride = self.state.rides.iter().max_by_key(|ride| ride.ticks)?;
-                let rider = around
-                    .people
-                    .iter()
-                    .find(|person| person.id == ride.person)?;
-                Some(rider.middle())
-            }
-            Gaze::Around => {
-                let height = self.kind.height() * self.config.scale;
-                let glance = (self.state.ticks as f64 * self.kind.brain().tick()
-                    / (GLANCE * self.config.scale.sqrt())) as u64;
-                let mut lot = fastrand::Rng::with_seed(
-                    self.config.seed ^ glance.wrapping_mul(0x9e37_79b9_7f4a_7c15),
-                );
-                let angle = self.state.yaw + (lot.f64() - 0.5) * 2.0;
-                let down = lot.f64() * 0.5;
-                let way = DVec3::new(libm::sin(angle), -down, libm::cos(angle));
-                Some(self.eye() + way * (2.0 * height))
-            }
+        let goal = TwoBoneGoal::reach(put.ankle);
+        let pose = &mut self.state.pose;
+        // A leg that cannot be bent stays as its clip has it.
+        if leg.ik.solve(skeleton, pose, &goal, None).is_ok() {
+            let _ = aim(skeleton, pose, leg.ankle, FOOT_AXES, put.directions);
         }
     }
 }

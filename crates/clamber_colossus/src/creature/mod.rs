@@ -2,6 +2,8 @@
 
 mod config;
 mod feel;
+mod head;
+mod hips;
 mod legs;
 mod move_on;
 mod report;
@@ -38,6 +40,7 @@ pub struct Creature {
     buffers: PoseBuffers,
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
+    legs: Vec<legs::PutLeg>,
 }
 
 impl Creature {
@@ -55,6 +58,7 @@ impl Creature {
             buffers: PoseBuffers::default(),
             report: CreatureReport::default(),
             events: Vec::new(),
+            legs: Vec::new(),
             kind,
             config,
             state,

@@ -4,6 +4,7 @@ use clamber_animation::AnimationEvent;
 use glam::DVec3;
 
 use super::feel::nearest_turn;
+use super::hips::approach;
 use super::state::{NO_WALL, Playing, WALLS};
 use super::{Creature, CreatureEvent, Surroundings};
 use crate::brain::{Act, Place, Walk};
@@ -16,6 +17,7 @@ use crate::senses::Sense;
 /// that a giant's limb may start with, and riders stand on it.
 const SPEEDS_UP: f64 = 1.2;
 const SLOWS_DOWN: f64 = 2.0;
+const HALTS: f64 = 6.0;
 const TURNS: f64 = 0.12;
 
 /// The slowest walk, as a share of its speed.
@@ -26,7 +28,7 @@ const TURN_FIRST: f64 = 1.2;
 const WALK_ON: f64 = 0.5;
 
 /// The largest vertical acceleration from following the ground, metres a second squared.
-const CLIMBS: f64 = 0.8;
+const CLIMBS: f64 = 0.5;
 
 /// Seconds in which one clip of the gait fades into another.
 const FADE: f64 = 0.8;
@@ -237,14 +239,16 @@ impl Creature {
             }
         }
         let change = speed - self.state.speed;
-        self.state.speed += change.clamp(-SLOWS_DOWN * dt, SPEEDS_UP * dt);
+        let slows_down = if self.state.halts { HALTS } else { SLOWS_DOWN };
+        self.state.speed += change.clamp(-slows_down * dt, SPEEDS_UP * dt);
+        self.state.halts &= self.state.speed > 0.0;
         if speed > 0.0 {
             // A foot that hardly moves is no walk: the first step already has some speed.
             self.state.speed = self.state.speed.max(0.02 * full);
         }
         let change = turn - self.state.yaw_rate;
         self.state.yaw_rate += change.clamp(-TURNS * dt, TURNS * dt);
-        let moves = self.state.speed > 0.0;
+        let moves = self.state.speed > 0.0 && !self.state.halts;
         let acts = matches!(self.state.playing, Playing::Act(_)) && way.is_none();
         let playing = if moves {
             Playing::Walk
@@ -310,14 +314,13 @@ impl Creature {
         if count == 0.0 {
             return;
         }
-        let away = sum / count - self.state.position.y;
-        // As fast as it can still be stopped, and gently near the goal.
-        let wanted = away.signum()
-            * (2.0 * 0.6 * CLIMBS * away.abs())
-                .sqrt()
-                .min(2.0 * away.abs());
-        let change = (wanted - self.state.climb).clamp(-CLIMBS * dt, CLIMBS * dt);
-        self.state.climb += change;
-        self.state.position.y += self.state.climb * dt;
+        let (height, climb) = approach(
+            self.state.position.y,
+            self.state.climb,
+            sum / count,
+            CLIMBS,
+            dt,
+        );
+        (self.state.position.y, self.state.climb) = (height, climb);
     }
 }

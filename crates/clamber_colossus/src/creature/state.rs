@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::CreatureConfig;
+use super::hips::Hips;
 use crate::brain::{BrainState, StateId};
 use crate::error::ColossusError;
 use crate::feet::Foot;
@@ -21,6 +22,8 @@ pub struct CreatureState {
     pub(super) playing: Playing,
     /// The state whose act has begun; another one than the brain's while the creature still comes to a stand.
     pub(super) acting: Option<StateId>,
+    /// True if it stops abruptly.
+    pub(super) halts: bool,
     /// Where the model's origin is. Its height follows the ground.
     pub(super) position: DVec3,
     pub(super) climb: f64,
@@ -29,6 +32,7 @@ pub struct CreatureState {
     pub(super) speed: f64,
     pub(super) yaw_rate: f64,
     pub(super) feet: Vec<Foot>,
+    pub(super) hips: Hips,
     pub(super) look: LookMemory,
     pub(super) gaze: Spring<DVec3>,
     pub(super) gaze_weight: Spring<f64>,
@@ -117,12 +121,14 @@ impl CreatureState {
             animator,
             playing: Playing::Idle,
             acting: None,
+            halts: false,
             position: config.position,
             climb: 0.0,
             yaw: config.yaw,
             speed: 0.0,
             yaw_rate: 0.0,
             feet: vec![Foot::new(); kind.legs().len()],
+            hips: Hips::default(),
             look: LookMemory::default(),
             gaze: Spring::at(config.position),
             gaze_weight: Spring::at(0.0),

@@ -132,13 +132,14 @@ impl Creature {
             })
             .collect();
         let events = &mut self.report.events;
-        let mut changed = false;
+        let (mut changed, mut interrupts) = (false, false);
         kind.brain().step(
             &mut self.state.brain,
             &self.state.senses,
             &passed,
             |entered| {
                 changed = true;
+                interrupts |= entered.interrupts;
                 events.push(CreatureEvent::Entered {
                     from: entered.from,
                     to: entered.to,
@@ -147,11 +148,13 @@ impl Creature {
         );
         if changed {
             self.state.acting = None;
+            self.state.halts = interrupts;
             self.state.senses.set(Sense::Done, 0.0);
         }
     }
 
-    /// Begins the current state's act, as soon as the creature stands, or goes on with it.
+    /// Begins the current state's act, as soon as the creature stands, or goes on with it. An act that interrupts another
+    /// one begins at once: giants may stop abruptly.
     fn act(&mut self) -> Result<(), ColossusError> {
         let state = self.state.brain.current();
         if self.state.acting == Some(state) {
@@ -163,7 +166,7 @@ impl Creature {
         let speed = kind.gait().map_or(0.0, |gait| {
             gait.speed * self.config.scale * self.config.rate()
         });
-        if !walks && self.state.speed > STANDS * speed {
+        if !walks && !self.state.halts && self.state.speed > STANDS * speed {
             return Ok(());
         }
         self.state.acting = Some(state);

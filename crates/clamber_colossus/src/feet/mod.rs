@@ -7,6 +7,8 @@
 
 mod foot;
 mod ground;
+mod sole;
 
 pub(crate) use foot::{Foot, FootGoal};
 pub(crate) use ground::Ground;
+pub(crate) use sole::{Footing, Sole};

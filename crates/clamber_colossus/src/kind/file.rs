@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a brain file says about the body: which joints are legs and head, and which clips walk. All names are those of
 /// the creature's file. A body without legs keeps its feet where its clips have them, one without a gait does not walk.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFile {
     /// The legs.
@@ -17,6 +17,26 @@ pub struct BodyFile {
     /// A clip that is added to all others, over and over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breathe: Option<String>,
+    /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres a second
+    /// squared. A step gives 15 % of it.
+    #[serde(default = "tremor")]
+    pub tremor: f64,
+}
+
+impl Default for BodyFile {
+    fn default() -> Self {
+        Self {
+            legs: Vec::new(),
+            gait: None,
+            head: None,
+            breathe: None,
+            tremor: tremor(),
+        }
+    }
+}
+
+fn tremor() -> f64 {
+    2.5
 }
 
 /// A leg.

@@ -23,6 +23,7 @@ const GRAVITY: f64 = 9.81;
 #[derive(Clone, Debug)]
 pub(crate) struct Leg {
     pub(crate) ik: TwoBone,
+    pub(crate) hip: JointId,
     pub(crate) ankle: JointId,
     /// The ball of the foot: the toe joint, or the ankle.
     pub(crate) ball: JointId,
@@ -39,6 +40,8 @@ pub(crate) struct Leg {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contacts {
     spans: Vec<[f64; 2]>,
+    /// Of each span, where its ball is when it begins, in model space.
+    places: Vec<DVec3>,
     duration: f64,
     loops: bool,
 }
@@ -97,6 +100,7 @@ impl Leg {
         let corner = |x: f64, z: f64| DVec3::new(x - at.x, 0.0, z - at.z);
         Ok(Self {
             ik,
+            hip: joints[0],
             ankle,
             ball,
             length,
@@ -167,8 +171,14 @@ impl Leg {
                 last[1] = duration + first[1];
             }
         }
+        let sample = |time: f64| ((time / step.max(1e-9)).round() as usize).min(count);
+        let places = spans
+            .iter()
+            .map(|[from, _]| places[sample(*from)])
+            .collect();
         Ok(Contacts {
             spans,
+            places,
             duration,
             loops,
         })
@@ -189,8 +199,8 @@ impl Contacts {
         inside(time) || inside(time + self.duration)
     }
 
-    /// Seconds from a time until the foot stands next; `None` if it does not.
-    pub(crate) fn until(&self, time: f64) -> Option<f64> {
+    /// Seconds from a time until the foot stands next, and where its ball is then, in model space; `None` if it does not.
+    pub(crate) fn next(&self, time: f64) -> Option<(f64, DVec3)> {
         let ahead = |from: f64| {
             let wait = from - time;
             if self.loops && self.duration > 0.0 {
@@ -200,6 +210,9 @@ impl Contacts {
             }
         };
         let waits = self.spans.iter().map(|[from, _]| ahead(*from));
-        waits.filter(|wait| *wait >= 0.0).min_by(f64::total_cmp)
+        waits
+            .zip(self.places.iter().copied())
+            .filter(|(wait, _)| *wait >= 0.0)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }

@@ -18,7 +18,7 @@ pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg};
 pub(crate) use strikes::Strike;
 
-use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, StateId, list};
+use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
 use crate::error::ColossusError;
 
 /// A kind of creature: its skeleton, clips and skin, its brain, and how its body is used. It never changes, and many
@@ -35,6 +35,8 @@ pub struct CreatureKind {
     /// Of each joint, the regions that it belongs to, one bit each.
     regions: Vec<u64>,
     legs: Vec<Leg>,
+    /// The joint that all legs hang from.
+    hips: Option<JointId>,
     gait: Option<Gait>,
     look: Option<LookAt>,
     head: Option<JointId>,
@@ -86,6 +88,10 @@ impl CreatureKind {
             clips: &clips,
         };
         let body = &brain.file().body;
+        if !(0.0..=20.0).contains(&body.tremor) {
+            let (what, range, found) = ("tremor", "from 0 to 20", body.tremor);
+            return Err(whole(BrainProblem::OutOfRange { what, range, found }).into());
+        }
         let mut legs = Vec::new();
         for file in &body.legs {
             legs.push(Leg::new(&names, &mesh, file)?);
@@ -134,6 +140,7 @@ impl CreatureKind {
         Ok(Self {
             acts,
             regions,
+            hips: common_parent(&skeleton, &legs),
             legs,
             gait,
             look,
@@ -174,6 +181,15 @@ impl CreatureKind {
         &self.brain
     }
 
+    /// The brain's states and transitions as text, and what can never happen.
+    pub fn report(&self) -> BrainReport {
+        self.brain.report_with(&|clip, marker| {
+            let clip = self.clips.find(clip);
+            let clip = clip.and_then(|clip| self.clips.clip(clip).ok());
+            clip.is_some_and(|clip| clip.markers().iter().any(|one| one.name == marker))
+        })
+    }
+
     /// Height of the skin at rest, in the model's units.
     pub fn height(&self) -> f64 {
         self.height
@@ -185,6 +201,14 @@ impl CreatureKind {
 
     pub(crate) fn legs(&self) -> &[Leg] {
         &self.legs
+    }
+
+    pub(crate) fn hips(&self) -> Option<JointId> {
+        self.hips
+    }
+
+    pub(crate) fn tremor(&self) -> f64 {
+        self.brain.file().body.tremor
     }
 
     pub(crate) fn gait(&self) -> Option<&Gait> {
@@ -229,14 +253,18 @@ impl Names<'_> {
         self.skeleton.find(name).ok_or_else(|| self.no_joint(name))
     }
 
-    /// The joints that a pattern names: one, or all that begin with what is before its `*`.
+    /// The joints that a pattern names: one, or all that begin and end with what is before and after its `*`.
     pub(crate) fn joints(&self, pattern: &str) -> Result<Vec<JointId>, BrainProblem> {
-        let Some(start) = pattern.strip_suffix('*') else {
+        let Some((start, end)) = pattern.split_once('*') else {
             return Ok(vec![self.joint(pattern)?]);
+        };
+        let fits = |name: &str| {
+            name.strip_prefix(start)
+                .is_some_and(|rest| rest.ends_with(end))
         };
         let all = self.skeleton.joints().iter().enumerate();
         let found: Vec<JointId> = all
-            .filter(|(_, joint)| joint.name.starts_with(start))
+            .filter(|(_, joint)| fits(&joint.name))
             .map(|(index, _)| JointId(index as u32))
             .collect();
         if found.is_empty() {
@@ -261,6 +289,16 @@ pub(crate) fn whole(problem: BrainProblem) -> BrainError {
         state: None,
         problem,
     }
+}
+
+/// The innermost joint that all legs hang from.
+fn common_parent(skeleton: &Skeleton, legs: &[Leg]) -> Option<JointId> {
+    let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+    let first = parent(&legs.first()?.hip);
+    core::iter::successors(first, parent).find(|joint| {
+        legs.iter()
+            .all(|leg| skeleton.is_descendant_or_self(leg.hip, *joint))
+    })
 }
 
 fn compile(

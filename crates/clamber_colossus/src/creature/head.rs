@@ -1,0 +1,71 @@
+//! The head of the pose.
+
+use glam::DVec3;
+
+use super::{Creature, Surroundings};
+use crate::brain::Gaze;
+
+/// Half time of a gaze that goes to something else, and of its beginning and end, seconds, for a creature of human size.
+const LOOKS: f64 = 0.25;
+
+/// How long a glance lasts, seconds.
+const GLANCE: f64 = 3.5;
+
+impl Creature {
+    /// Turns the head to what the creature looks at.
+    pub(super) fn turn_head(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let kind = std::sync::Arc::clone(&self.kind);
+        let Some((look, _)) = kind.look() else { return };
+        let size = (kind.height() * self.config.scale / 1.75).max(0.1).sqrt();
+        let target = self.target(around);
+        let weight = f64::from(u8::from(target.is_some()));
+        self.state.gaze_weight.step(weight, LOOKS * size, dt);
+        if let Some(target) = target {
+            if self.state.gaze_weight.value < 0.02 {
+                self.state.gaze = clamber_animation::Spring::at(target);
+            }
+            self.state.gaze.step(target, LOOKS * size, dt);
+        }
+        let world = self.state.world_from_model(self.config.scale);
+        let target = world.inverse_transform_point(self.state.gaze.value);
+        let weight = self.state.gaze_weight.value.clamp(0.0, 1.0);
+        if weight > 1e-3 {
+            // A target in its head moves nothing.
+            let _ = look.solve(
+                kind.skeleton(),
+                &mut self.state.pose,
+                target,
+                weight,
+                &mut self.state.look,
+                dt,
+            );
+        }
+    }
+
+    fn target(&self, around: &Surroundings<'_>) -> Option<DVec3> {
+        match self.kind.brain().gaze(self.state.current()) {
+            Gaze::Clip => None,
+            Gaze::Prey => self.state.prey.map(|(_, place)| place),
+            Gaze::Rider => {
+                let ride = self.state.rides.iter().max_by_key(|ride| ride.ticks)?;
+                let rider = around
+                    .people
+                    .iter()
+                    .find(|person| person.id == ride.person)?;
+                Some(rider.middle())
+            }
+            Gaze::Around => {
+                let height = self.kind.height() * self.config.scale;
+                let glance = (self.state.ticks as f64 * self.kind.brain().tick()
+                    / (GLANCE * self.config.scale.sqrt())) as u64;
+                let mut lot = fastrand::Rng::with_seed(
+                    self.config.seed ^ glance.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+                );
+                let angle = self.state.yaw + (lot.f64() - 0.5) * 2.0;
+                let down = lot.f64() * 0.5;
+                let way = DVec3::new(libm::sin(angle), -down, libm::cos(angle));
+                Some(self.eye() + way * (2.0 * height))
+            }
+        }
+    }
+}
