@@ -13,5 +13,7 @@ pub use creature::{
     Riding, Surroundings, Wound,
 };
 pub use error::ColossusError;
-pub use kind::{BodyFile, CreatureKind, CreatureParts, GaitFile, HeadFile, Knee, LegFile};
+pub use kind::{
+    BodyFile, CreatureKind, CreatureParts, GaitFile, HeadFile, Knee, LegFile, Plate, PlateFile,
+};
 pub use senses::{RegionSense, Sense, Senses};

@@ -88,6 +88,8 @@ pub(crate) struct WeakPointExtras {
     pub(crate) radius: Option<f32>,
     #[serde(default)]
     pub(crate) major: Flag,
+    /// 0 by default; 1 for a major one, which is hidden until all minor ones are used up.
+    pub(crate) order: Option<u32>,
 }
 
 impl WeakPointExtras {

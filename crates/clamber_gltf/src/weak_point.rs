@@ -43,6 +43,7 @@ pub(crate) fn load(
         weak_point.radius = radius;
         weak_point.hit_points = says.hit_points;
         weak_point.major = says.major.0;
+        weak_point.order = says.order.unwrap_or(u32::from(says.major.0));
         weak_points.push(weak_point);
     }
     Ok(weak_points)

@@ -369,7 +369,7 @@ fn check_act(file: &StateFile) -> Result<(), BrainProblem> {
         }
         Some(Act::Walk(walk)) => check_seconds("within", walk.within),
         Some(Act::Turn(turn)) => check_seconds("within_deg", turn.within_deg),
-        Some(Act::Play(_) | Act::Once(_)) | None => Ok(()),
+        Some(Act::Play(_) | Act::Once(_) | Act::Sleep) | None => Ok(()),
     }
 }
 

@@ -136,6 +136,8 @@ pub enum Act {
     Walk(Walk),
     /// Turns on the spot to a place.
     Turn(Turn),
+    /// Sleeps: holds the pose that its clips have reached, sees nothing, but feels and hears. It costs almost nothing.
+    Sleep,
 }
 
 /// A clip in which limbs hurt whom they touch, from its marker `active` to its marker `recovery`.

@@ -124,7 +124,7 @@ impl Act {
     pub fn clip(&self) -> Option<&str> {
         match self {
             Self::Play(clip) | Self::Once(clip) | Self::Attack(Attack { clip, .. }) => Some(clip),
-            Self::Walk(_) | Self::Turn(_) => None,
+            Self::Walk(_) | Self::Turn(_) | Self::Sleep => None,
         }
     }
 }

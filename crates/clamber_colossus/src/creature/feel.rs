@@ -18,22 +18,16 @@ const LEAP: f64 = 0.6;
 const UNDER: f64 = 1.2;
 
 impl Creature {
-    /// Takes in what is around it.
+    /// Takes in what is around it. Asleep it sees nothing, but feels and hears.
     pub(super) fn feel(&mut self, around: &Surroundings<'_>) {
-        let brain = self.kind.brain();
-        let own: Vec<f64> = (0..brain.own_senses().len())
-            .map(|index| self.state.senses.own(index))
-            .collect();
-        let done = self.state.senses.get(Sense::Done);
-        let mut senses = brain.no_senses();
-        for (index, value) in own.into_iter().enumerate() {
-            senses.set_own(index, value);
-        }
-        senses.set(Sense::Done, done);
+        let mut senses = std::mem::take(&mut self.state.senses);
+        senses.forget();
         self.feel_riders(around.people, &mut senses);
         self.feel_wounds(&mut senses);
-        self.see(around, &mut senses);
-        self.feel_walls(around, &mut senses);
+        if self.state.sleeps == 0 {
+            self.see(around, &mut senses);
+            self.feel_walls(around, &mut senses);
+        }
         self.hear(around, &mut senses);
         let home = self.state.home - self.state.position;
         senses.set(
@@ -129,6 +123,12 @@ impl Creature {
             1.0
         };
         senses.set(Sense::Health, health);
+        senses.set(
+            Sense::Staggered,
+            f64::from(std::mem::take(&mut self.state.staggered)),
+        );
+        let whole = self.state.plates.iter().filter(|plate| plate.left > 0);
+        senses.set(Sense::Plates, whole.count() as f64);
         senses.set(Sense::WeakPoints, count);
     }
 

@@ -4,6 +4,7 @@ mod config;
 mod feel;
 mod head;
 mod hips;
+mod hurt;
 mod legs;
 mod move_on;
 mod report;
@@ -41,6 +42,8 @@ pub struct Creature {
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
     legs: Vec<legs::PutLeg>,
+    /// True while the skin is known to be without motion.
+    is_still: bool,
 }
 
 impl Creature {
@@ -59,6 +62,7 @@ impl Creature {
             report: CreatureReport::default(),
             events: Vec::new(),
             legs: Vec::new(),
+            is_still: false,
             kind,
             config,
             state,
@@ -122,6 +126,8 @@ impl Creature {
             self.place()?;
             return Err(error);
         }
+        self.hide_broken_plates()?;
+        self.is_still = false;
         Ok(())
     }
 }

@@ -100,7 +100,7 @@ impl Creature {
         let is_over = match kind.brain().act(state) {
             Some(Act::Walk(_) | Act::Turn(_)) => done,
             Some(Act::Once(_) | Act::Attack(_)) => begun && self.clip_is_over(),
-            Some(Act::Play(_)) => false,
+            Some(Act::Play(_) | Act::Sleep) => false,
             None => true,
         };
         self.state

@@ -1,4 +1,5 @@
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::brain::StateId;
 
@@ -12,7 +13,7 @@ pub struct CreatureReport {
 }
 
 /// Something that a creature did, or that happened to it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum CreatureEvent {
     /// It went from one state to another.
@@ -42,6 +43,13 @@ pub enum CreatureEvent {
         damage: f64,
         /// True if it is used up by that.
         used_up: bool,
+    },
+    /// A plate took a blow too many.
+    Staggered {
+        /// The plate, by its index.
+        plate: usize,
+        /// True if it breaks off: its triangles are hidden from queries, and people on them fall.
+        breaks: bool,
     },
 }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CreatureConfig;
 use super::hips::Hips;
+use super::report::CreatureEvent;
 use crate::brain::{BrainState, StateId};
 use crate::error::ColossusError;
 use crate::feet::Foot;
@@ -48,6 +49,12 @@ pub struct CreatureState {
     pub(super) walls: [f32; WALLS],
     /// Hit points left of each weak point.
     pub(super) hit_points: Vec<f64>,
+    /// Of each plate, what it has taken and how often it still staggers.
+    pub(super) plates: Vec<PlateState>,
+    /// Plates that staggered since the last step.
+    pub(super) staggered: u32,
+    /// What happened since the last step, for the next report.
+    pub(super) told: Vec<CreatureEvent>,
     /// Wounds since the last step.
     pub(super) wounds: Vec<Felt>,
     /// Whom the attack has struck already.
@@ -58,6 +65,8 @@ pub struct CreatureState {
     pub(super) pose: Pose,
     /// Markers that were passed in the last step: clips, and indices in them.
     pub(super) passed: Vec<[u32; 2]>,
+    /// Ticks for which it has been asleep and still.
+    pub(super) sleeps: u32,
     pub(super) ticks: u64,
 }
 
@@ -88,6 +97,15 @@ pub(super) struct Ride {
     pub(super) joint: u32,
     /// Ticks since it was on the creature last: a short leap does not end a ride.
     pub(super) off: u32,
+}
+
+/// A plate of a creature.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PlateState {
+    /// Damage since it staggered last.
+    pub(super) strain: f64,
+    /// How often it still staggers; 0 if it is broken.
+    pub(super) left: u32,
 }
 
 /// What struck it, and where.
@@ -144,7 +162,18 @@ impl CreatureState {
                 .iter()
                 .map(|point| point.hit_points)
                 .collect(),
+            plates: kind
+                .plates()
+                .iter()
+                .map(|plate| PlateState {
+                    strain: 0.0,
+                    left: plate.count,
+                })
+                .collect(),
+            staggered: 0,
+            told: Vec::new(),
             wounds: Vec::new(),
+            sleeps: 0,
             struck: Vec::new(),
             aim: DVec3::ZERO,
             pose: kind.clips().rest().clone(),
@@ -188,6 +217,11 @@ impl CreatureState {
         &self.hit_points
     }
 
+    /// How often a plate still staggers before it breaks; 0 if it is broken, or if there is none.
+    pub fn plate(&self, index: usize) -> u32 {
+        self.plates.get(index).map_or(0, |plate| plate.left)
+    }
+
     /// Ticks so far.
     pub fn ticks(&self) -> u64 {
         self.ticks
@@ -225,6 +259,18 @@ impl CreatureState {
             return Err(ColossusError::OtherKind(
                 "it has another number of weak points",
             ));
+        }
+        let fits = |state: &PlateState, plate: &crate::kind::Plate| {
+            state.left <= plate.count && (0.0..=f64::MAX).contains(&state.strain)
+        };
+        if self.plates.len() != kind.plates().len()
+            || !self
+                .plates
+                .iter()
+                .zip(kind.plates())
+                .all(|(state, plate)| fits(state, plate))
+        {
+            return Err(ColossusError::OtherKind("it has other plates"));
         }
         let states = brain.len();
         let acting = self.acting.is_none_or(|state| state.index() < states);

@@ -5,8 +5,8 @@ use clamber_animation::{Animator, ClipId};
 use glam::DVec3;
 
 use super::report::CreatureEvent;
-use super::state::{Felt, Playing};
-use super::{Creature, Surroundings, Wound};
+use super::state::Playing;
+use super::{Creature, Surroundings};
 use crate::brain::{Act, StateId};
 use crate::error::ColossusError;
 use crate::feet::Ground;
@@ -15,22 +15,30 @@ use crate::senses::Sense;
 /// An act of another kind begins when the creature has come to a stand: below this share of its walking speed.
 const STANDS: f64 = 0.12;
 
+/// Seconds that a creature of human size needs to come to rest when it falls asleep.
+const SETTLES: f64 = 0.8;
+
 impl Creature {
     /// Lets a tick pass, of the length that its brain was made for.
     ///
     /// In this order: senses of what was around it at the end of the last tick; the brain; the act that it chose begins or
     /// goes on; clips; the place in the world; the pose, with feet on the ground and the head turned; the skin; whom the
-    /// limbs strike. Step the creature before the climbers on it.
+    /// limbs strike. Step the creature before the climbers on it. A creature that is asleep only feels and thinks.
     ///
     /// # Errors
     /// [`ColossusError::Surface`] if the skin cannot be posed, for example since the creature has left the range of numbers.
     pub fn step(&mut self, around: &Surroundings<'_>) -> Result<&CreatureReport, ColossusError> {
         let dt = self.kind.brain().tick();
         self.report.events.clear();
+        self.report.events.append(&mut self.state.told);
         self.report.blows.clear();
         self.state.ticks += 1;
         self.feel(around);
         self.think();
+        if self.sleeps()? {
+            return Ok(&self.report);
+        }
+        self.is_still = false;
         self.act()?;
         self.move_on(around, dt)?;
         self.take_pose(around, dt)?;
@@ -38,69 +46,6 @@ impl Creature {
         self.surface.advance(&self.palette, world_from_model)?;
         self.strike(around, dt);
         Ok(&self.report)
-    }
-
-    /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is no open one
-    /// there. The brain knows in the next step.
-    pub fn hurt(&mut self, wound: &Wound) -> f64 {
-        if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
-            return 0.0;
-        }
-        let triangle = u32::try_from(wound.at.key)
-            .ok()
-            .map(clamber_surface::mesh::TriangleId);
-        let joint = triangle.and_then(|triangle| self.surface.mesh().joint_of(triangle));
-        let Some(joint) = joint else { return 0.0 };
-        let mut done = 0.0;
-        for index in 0..self.kind.weak_points().len() {
-            let point = &self.kind.weak_points()[index];
-            let Some(frame) = self.palette.model_from_joint(point.joint) else {
-                continue;
-            };
-            let place = frame.transform_point3(point.position.as_dvec3());
-            let place = self.surface.world_from_model().transform_point(place);
-            let radius = f64::from(point.radius) * self.config.scale;
-            if place.distance(wound.place) > radius || !self.is_open(index) {
-                continue;
-            }
-            let left = &mut self.state.hit_points[index];
-            let damage = wound.damage.min(*left);
-            *left -= damage;
-            done += damage;
-            let (weak_point, used_up) = (index, *left <= 0.0);
-            self.report.events.push(CreatureEvent::Hurt {
-                weak_point,
-                damage,
-                used_up,
-            });
-            // What is too much for this one is not passed on.
-            break;
-        }
-        self.state.wounds.push(Felt {
-            joint: joint.0,
-            damage: done,
-        });
-        done
-    }
-
-    /// True if a weak point can be hurt now: it is not used up, and it is exposed or a minor one, or all minor ones are used up.
-    pub fn is_open(&self, weak_point: usize) -> bool {
-        let points = self.kind.weak_points();
-        let (Some(point), Some(left)) = (
-            points.get(weak_point),
-            self.state.hit_points.get(weak_point),
-        ) else {
-            return false;
-        };
-        let mut minor = points
-            .iter()
-            .zip(&self.state.hit_points)
-            .filter(|(point, _)| !point.major);
-        let exposed = self.kind.brain().exposes(self.state.current());
-        *left > 0.0
-            && (!point.major
-                || exposed.contains(&point.name)
-                || minor.all(|(_, left)| *left <= 0.0))
     }
 
     /// Sets one of the game's own senses, by its name in the file. Returns false if there is no such sense.
@@ -176,12 +121,39 @@ impl Creature {
             Some(Act::Walk(_) | Act::Turn(_)) => self.begin_way(),
             Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
             Some(Act::Once(_) | Act::Attack(_)) => self.begin(state, Playback::Clamp)?,
+            Some(Act::Sleep) => self.fall_asleep(),
             None => self.play(Playing::Idle, kind.brain().fade(state))?,
         }
         if let (Some(Act::Attack(_)), Some(strike)) = (act, &kind.act(state).strike) {
             self.aim(strike);
         }
         Ok(())
+    }
+
+    /// True if it is asleep, and so still that nothing of it has to be posed.
+    fn sleeps(&mut self) -> Result<bool, ColossusError> {
+        let state = self.state.brain.current();
+        let sleeps = matches!(self.kind.brain().act(state), Some(Act::Sleep))
+            && self.state.acting == Some(state);
+        if !sleeps || self.state.animator.is_fading() || self.state.speed > 0.0 {
+            self.state.sleeps = 0;
+            return Ok(false);
+        }
+        self.state.sleeps = self.state.sleeps.saturating_add(1);
+        // Feet and head come to rest first.
+        let settled = self.state.sleeps as f64 * self.kind.brain().tick()
+            > SETTLES * self.config.scale.sqrt();
+        if !settled {
+            return Ok(false);
+        }
+        // From the second still tick on it is known to be still.
+        if self.is_still {
+            return Ok(true);
+        }
+        let world_from_model = self.state.world_from_model(self.config.scale);
+        self.surface.advance(&self.palette, world_from_model)?;
+        self.is_still = true;
+        Ok(true)
     }
 
     fn begin(&mut self, state: StateId, playback: Playback) -> Result<(), ColossusError> {
@@ -191,6 +163,13 @@ impl Creature {
         self.state.playing = Playing::Act(state);
         let fade = self.kind.brain().fade(state);
         change(&mut self.state.animator, &self.kind, clip, playback, fade)
+    }
+
+    /// Clips stop where they are.
+    fn fall_asleep(&mut self) {
+        for layer in self.state.animator.layers_mut() {
+            layer.speed = 0.0;
+        }
     }
 
     /// Plays a clip of the gait, unless it is being played.
@@ -253,7 +232,10 @@ fn change(
 ) -> Result<(), ColossusError> {
     animator.change(kind.clips(), fade, |layers| {
         if let Some(layer) = layers.first_mut() {
-            (layer.clip, layer.time, layer.speed, layer.playback) = (clip, 0.0, 1.0, playback);
+            (layer.clip, layer.time, layer.playback) = (clip, 0.0, playback);
+        }
+        for layer in layers {
+            layer.speed = 1.0;
         }
     })?;
     Ok(())

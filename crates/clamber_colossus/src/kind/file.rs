@@ -17,6 +17,9 @@ pub struct BodyFile {
     /// A clip that is added to all others, over and over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breathe: Option<String>,
+    /// Pieces of armour that break off.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<PlateFile>,
     /// How much the body trembles when a clip passes its marker `impact`: the largest acceleration at the hips, metres a second
     /// squared. A step gives 15 % of it.
     #[serde(default = "tremor")]
@@ -30,6 +33,7 @@ impl Default for BodyFile {
             gait: None,
             head: None,
             breathe: None,
+            plates: Vec::new(),
             tremor: tremor(),
         }
     }
@@ -82,6 +86,20 @@ pub struct GaitFile {
     pub turn_deg: f64,
     /// How fast it turns while it walks, degrees a second.
     pub steer_deg: f64,
+}
+
+/// A piece of armour that staggers the creature when it has taken a blow too many, and breaks off after some of those.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlateFile {
+    /// Its name, for the game.
+    pub name: String,
+    /// Its triangles: those with this number in `SurfaceTag::user`, `"user"` in a material's extras. More than 0.
+    pub user: u32,
+    /// Damage after which it staggers, more than 0.
+    pub stagger: f64,
+    /// How often it staggers before it breaks, at least 1.
+    pub count: u32,
 }
 
 /// The joints that look at something.

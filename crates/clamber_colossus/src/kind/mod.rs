@@ -3,6 +3,7 @@
 mod file;
 mod gait;
 mod leg;
+mod plate;
 mod strikes;
 
 use std::sync::Arc;
@@ -10,12 +11,13 @@ use std::sync::Arc;
 use clamber_animation::ik::{LookAt, LookLimits};
 use clamber_animation::rig::{Clip, JointId, Playback, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId};
-use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::DVec3;
 
-pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile};
+pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
 pub(crate) use gait::Gait;
 pub(crate) use leg::{Contacts, Leg};
+pub use plate::Plate;
 pub(crate) use strikes::Strike;
 
 use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};
@@ -41,6 +43,9 @@ pub struct CreatureKind {
     look: Option<LookAt>,
     head: Option<JointId>,
     breathe: Option<ClipId>,
+    plates: Vec<Plate>,
+    /// Of each triangle of a plate, in ascending order, the plate's index.
+    plate_of: Vec<(TriangleId, u32)>,
     /// Radius, on the ground, of what is under the creature at rest, in the model's units.
     girth: f64,
     /// Height of the skin at rest, in the model's units.
@@ -120,6 +125,15 @@ impl CreatureKind {
                 }
             }
         }
+        let mut plates = Vec::new();
+        for file in &body.plates {
+            plates.push(Plate::new(file, &mesh)?);
+        }
+        let mut plate_of: Vec<(TriangleId, u32)> = Vec::new();
+        for (index, plate) in plates.iter().enumerate() {
+            plate_of.extend(plate.triangles.iter().map(|one| (*one, index as u32)));
+        }
+        plate_of.sort_unstable();
         let breathe = body
             .breathe
             .as_ref()
@@ -146,6 +160,8 @@ impl CreatureKind {
             look,
             head,
             breathe,
+            plates,
+            plate_of,
             girth,
             height: (high - low).max(0.0),
             skeleton,
@@ -193,6 +209,20 @@ impl CreatureKind {
     /// Height of the skin at rest, in the model's units.
     pub fn height(&self) -> f64 {
         self.height
+    }
+
+    /// Its pieces of armour, in the order of the file.
+    pub fn plates(&self) -> &[Plate] {
+        &self.plates
+    }
+
+    /// The plate that a triangle belongs to, by its index.
+    pub fn plate_of(&self, triangle: TriangleId) -> Option<usize> {
+        let found = self
+            .plate_of
+            .binary_search_by_key(&triangle, |(one, _)| *one)
+            .ok()?;
+        Some(self.plate_of[found].1 as usize)
     }
 
     pub(crate) fn act(&self, state: StateId) -> &CompiledAct {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub use sense::{RegionSense, Sense};
 
 /// All that a creature senses in a tick.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Senses {
     #[serde(with = "bits")]
     numbers: Vec<f64>,
@@ -27,15 +27,24 @@ impl Senses {
             regions: vec![0.0; regions * RegionSense::ALL.len()],
             own: vec![0.0; own],
         };
+        senses.forget();
+        senses
+    }
+
+    /// Nothing is sensed any more; the game's own senses stay, and whether the act is done.
+    pub(crate) fn forget(&mut self) {
+        let done = self.numbers.get(Sense::Done as usize).copied();
+        self.numbers.fill(0.0);
+        self.regions.fill(0.0);
         for far in [
             Sense::PreyDistance,
             Sense::PreyUnseenSeconds,
             Sense::WallDistance,
         ] {
-            senses.set(far, f64::INFINITY);
+            self.set(far, f64::INFINITY);
         }
-        senses.set(Sense::Health, 1.0);
-        senses
+        self.set(Sense::Health, 1.0);
+        self.set(Sense::Done, done.unwrap_or(0.0));
     }
 
     /// A sense.

@@ -19,10 +19,12 @@ pub struct WeakPoint {
     pub hit_points: f64,
     /// True if the creature dies when the weak point is used up.
     pub major: bool,
+    /// It is hidden, and cannot be wounded, until all weak points of lower order are used up.
+    pub order: u32,
 }
 
 impl WeakPoint {
-    /// A minor weak point of radius 0 with 1 hit point.
+    /// A minor weak point of radius 0 with 1 hit point, of order 0.
     pub fn new(name: impl Into<String>, joint: JointId, position: Vec3) -> Self {
         Self {
             name: name.into(),
@@ -31,6 +33,7 @@ impl WeakPoint {
             radius: 0.0,
             hit_points: 1.0,
             major: false,
+            order: 0,
         }
     }
 }

@@ -1,0 +1,124 @@
+//! What a creature takes: wounds in weak points, blows on plates.
+
+use clamber_surface::mesh::TriangleId;
+
+use super::report::CreatureEvent;
+use super::state::Felt;
+use super::{Creature, Wound};
+use crate::error::ColossusError;
+
+impl Creature {
+    /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is no
+    /// open one there, or if a plate took the blow. The brain knows in the next step, whose report tells what happened.
+    pub fn hurt(&mut self, wound: &Wound) -> f64 {
+        if !wound.place.is_finite() || !(0.0..=f64::MAX).contains(&wound.damage) {
+            return 0.0;
+        }
+        let triangle = u32::try_from(wound.at.key).ok().map(TriangleId);
+        let joint = triangle.and_then(|triangle| self.surface.mesh().joint_of(triangle));
+        let (Some(triangle), Some(joint)) = (triangle, joint) else {
+            return 0.0;
+        };
+        let plate = self
+            .kind
+            .plate_of(triangle)
+            .filter(|plate| self.state.plates[*plate].left > 0);
+        let done = match plate {
+            Some(plate) => {
+                self.strain(plate, wound.damage);
+                0.0
+            }
+            None => self.wound(wound),
+        };
+        self.state.wounds.push(Felt {
+            joint: joint.0,
+            damage: done,
+        });
+        done
+    }
+
+    /// A plate takes a blow.
+    fn strain(&mut self, plate: usize, damage: f64) {
+        let stagger = self.kind.plates()[plate].stagger;
+        let state = &mut self.state.plates[plate];
+        state.strain += damage;
+        // What is too much is not passed on: one blow staggers once.
+        if state.strain < stagger {
+            return;
+        }
+        state.strain = 0.0;
+        state.left -= 1;
+        let breaks = state.left == 0;
+        self.state.staggered += 1;
+        self.state
+            .told
+            .push(CreatureEvent::Staggered { plate, breaks });
+        if breaks {
+            // The triangles are those of its own mesh, unless a game has edited them away: then they are hidden already.
+            let _ = self.show_plate(plate, false);
+        }
+    }
+
+    /// The damage that a weak point takes.
+    fn wound(&mut self, wound: &Wound) -> f64 {
+        for index in 0..self.kind.weak_points().len() {
+            let point = &self.kind.weak_points()[index];
+            let Some(frame) = self.palette.model_from_joint(point.joint) else {
+                continue;
+            };
+            let place = frame.transform_point3(point.position.as_dvec3());
+            let place = self.surface.world_from_model().transform_point(place);
+            let radius = f64::from(point.radius) * self.config.scale;
+            if place.distance(wound.place) > radius || !self.is_open(index) {
+                continue;
+            }
+            let left = &mut self.state.hit_points[index];
+            let damage = wound.damage.min(*left);
+            *left -= damage;
+            let (weak_point, used_up) = (index, *left <= 0.0);
+            self.state.told.push(CreatureEvent::Hurt {
+                weak_point,
+                damage,
+                used_up,
+            });
+            // What is too much for this one is not passed on.
+            return damage;
+        }
+        0.0
+    }
+
+    /// True if a weak point can be hurt now: it is not used up, and the current state exposes it, or all of lower order are
+    /// used up.
+    pub fn is_open(&self, weak_point: usize) -> bool {
+        let points = self.kind.weak_points();
+        let hit_points = &self.state.hit_points;
+        let (Some(point), Some(left)) = (points.get(weak_point), hit_points.get(weak_point)) else {
+            return false;
+        };
+        let mut before = points
+            .iter()
+            .zip(hit_points)
+            .filter(|(other, _)| other.order < point.order);
+        let exposed = self.kind.brain().exposes(self.state.current());
+        *left > 0.0 && (exposed.contains(&point.name) || before.all(|(_, left)| *left <= 0.0))
+    }
+
+    /// Hides the plates that are broken, and shows the others.
+    pub(super) fn hide_broken_plates(&mut self) -> Result<(), ColossusError> {
+        for plate in 0..self.kind.plates().len() {
+            self.show_plate(plate, self.state.plates[plate].left > 0)?;
+        }
+        Ok(())
+    }
+
+    fn show_plate(&mut self, plate: usize, shows: bool) -> Result<(), ColossusError> {
+        for triangle in &self.kind.plates()[plate].triangles {
+            if shows {
+                self.surface.enable_triangle(*triangle)?;
+            } else {
+                self.surface.disable_triangle(*triangle)?;
+            }
+        }
+        Ok(())
+    }
+}
