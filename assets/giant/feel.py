@@ -6,6 +6,7 @@ from . import motion, soles
 from .clips import RATE
 from .signs import SIGNS
 from .skeleton import HEADS, JOINTS, TAILS
+from .turns import turned, turned_back
 
 # Skin within this height of a standing foot's lowest point must move with the ground, by so much
 # (metres a second) for 95 % of it; and no skin may be deeper in the ground (metres).
@@ -69,7 +70,7 @@ def starts(clip):
     centres = place + np.einsum("fjab,jb->fja", turn, (TAILS - HEADS) / 2)
     still = round(REST_TIME * RATE)
     before = [centres[:1]] * (still + 1) if not clip.loops else [centres[-2 - still : -1]]
-    centres = np.concatenate([*before, centres])
+    centres = on_ground(np.concatenate([*before, centres]), clip)
     speed = np.linalg.norm(np.diff(centres, axis=0), axis=2) * RATE
     pull = np.linalg.norm(np.diff(centres, 2, axis=0), axis=2) * RATE**2
     blows = [time for name, time in clip.table.markers if name == "impact"]
@@ -85,6 +86,15 @@ def starts(clip):
             if felt.max() > worst[0]:
                 worst = (float(felt.max()), JOINTS[int(felt.argmax())].name, time)
     return worst
+
+
+def on_ground(path, clip):
+    """A path (frames, points, 3) in the clip's place, as it is over the ground."""
+    if not clip.table.speed and not clip.table.turn:
+        return path
+    seconds = np.arange(len(path)) / RATE
+    turn = turned(0.0, clip.table.turn * seconds)
+    return path @ turned_back(turn) - np.array([0.0, clip.table.speed or 0.0, 0.0]) * seconds[:, None, None]
 
 
 def ride(clip, sign, points, weights, fur):

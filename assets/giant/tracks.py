@@ -15,25 +15,37 @@ GRID = 600
 BEFORE = 1.0
 # How much faster than on average a channel arrives at a HIT.
 ARRIVAL = 1.9
-# Around a HIT and around blows nothing is smoothed, for this long; and how long that fades, seconds.
-SHARP, FADE = 0.05, 0.3
+# Corners of one-shots are averaged over this time; not around a HIT, a blow, the start and the end, for
+# so long, and how long that fades; seconds.
+SOFTNESS, SHARP, FADE = 0.16, 0.05, 0.2
+# Seconds at the end of a one-shot in which what lags catches up.
+CATCH_UP = 0.6
+# A giant never starts abruptly: what leaves its rest grows at this rate (per second), whatever its
+# size, for that share of the time to its next key, at most so many seconds.
+GROWTH, GROWING, MOST_GROWING = 10.0, 0.85, 0.7
 
 
 class Tracks:
     """Named channels at `times`; 0 where there is none. `extra` holds additions for each frame."""
 
-    def __init__(self, length, loops, channels, times, base=None, softness=(0.0, 0.0, 0.0), blows=()):
-        self.times, self.base, self.extra = np.asarray(times, float), base, {}
+    def __init__(self, length, loops, channels, times, base=None, blows=()):
+        self.times, self.length, self.loops = np.asarray(times, float), length, loops
+        self.base, self.extra = base, {}
         self.grid = np.arange(-BEFORE * GRID, length * GRID + 1) / GRID
         self.tables = {}
         for name, channel in channels.items():
             self.tables[name] = np.zeros(len(self.grid))
             for keys in channel if isinstance(channel, tuple) else (channel,):
-                values = _values(keys, self.grid, length, loops)
-                if not loops and not callable(keys):
-                    hits = [*blows, *(key[0] for key in keys if len(key) > 2)]
-                    values = _smoothed(values, self.grid, softness, hits)
-                self.tables[name] += values
+                self.tables[name] += self._table(keys, blows)
+
+    def _table(self, keys, blows):
+        if callable(keys):
+            return keys(self.grid)
+        if self.loops:
+            return _values(keys, self.grid, self.length)
+        values = _values(keys, self.grid)
+        hits = [0.0, self.length, *blows, *(key[0] for key in keys if len(key) > 2)]
+        return _smoothed(values, self.grid, hits)
 
     def __contains__(self, name):
         return name in self.tables
@@ -41,7 +53,7 @@ class Tracks:
     def __call__(self, name, lag=0.0):
         result = np.zeros(len(self.times))
         if name in self.tables:
-            result = np.interp(self.times - lag, self.grid, self.tables[name])
+            result = np.interp(self.times - self._lags(lag), self.grid, self.tables[name])
         if self.base is not None and name in self.base:
             start = self.tables[name][0] if name in self.tables else 0.0
             result = result + np.interp(-lag, self.base.grid, self.base.tables[name]) - start
@@ -49,30 +61,59 @@ class Tracks:
             result = result + self.extra[name]
         return result
 
+    def _lags(self, lag):
+        """The lag at each time; it fades at the end of a one-shot, which arrives with all its parts."""
+        if self.loops:
+            return lag
+        return lag * eased((self.length - self.times) / CATCH_UP)
 
-def _values(keys, grid, length, loops):
+
+def _values(keys, grid, cycle=None):
     """A channel on the grid: cubic between keys, without overshoot (F. Fritsch and R. Carlson, 1980)."""
-    if callable(keys):
-        return keys(grid)
     keys = sorted(keys, key=lambda key: key[0])
     hits = np.array([len(key) > 2 for key in keys])
     times, values = np.array([key[0] for key in keys], float), np.array([key[1] for key in keys], float)
-    if loops:
-        times, values, hits = np.append(times, times[0] + length), np.append(values, values[0]), np.append(hits, hits[0])
-        grid = times[0] + (grid - times[0]) % length
+    if cycle:
+        times, values, hits = np.append(times, times[0] + cycle), np.append(values, values[0]), np.append(hits, hits[0])
+        grid = times[0] + (grid - times[0]) % cycle
     elif len(times) == 1:
         return np.full(len(grid), values[0])
-    before, after = _slopes(times, values, hits, loops)
+    before, after = _slopes(times, values, hits, cycle)
     grid = np.clip(grid, times[0], times[-1])
     index = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(times) - 2)
-    step = np.diff(times)[index]
-    s = (grid - times[index]) / step
+    result = _cubic(grid, times[index], times[index + 1], values[index], values[index + 1], after[index], before[index + 1])
+    if not cycle:
+        for number, rise in enumerate(np.diff(values)):
+            if number == 0 or values[number] == values[number - 1] or hits[number]:
+                there = index == number
+                part = (times[number], times[number + 1], rise, before[number + 1])
+                result[there] = values[number] + _departed(grid[there], *part)
+    return result
+
+
+def _cubic(time, start, end, first, last, leaves, arrives):
+    """Cubics with given values and slopes at both ends."""
+    step = end - start
+    s = (time - start) / step
     return (
-        values[index] * (1 + 2 * s) * (1 - s) ** 2
-        + after[index] * step * s * (1 - s) ** 2
-        + values[index + 1] * s * s * (3 - 2 * s)
-        + before[index + 1] * step * s * s * (s - 1)
+        first * (1 + 2 * s) * (1 - s) ** 2
+        + leaves * step * s * (1 - s) ** 2
+        + last * s * s * (3 - 2 * s)
+        + arrives * step * s * s * (s - 1)
     )
+
+
+def _departed(time, start, end, rise, arrives):
+    """From rest to `rise`: exponential growth, then a cubic that goes on with the same acceleration."""
+    grows = min(GROWING * (end - start), MOST_GROWING)
+    rest = GROWTH * (end - start - grows)
+    share = 6.0 / (rest * rest + 4.0 * rest + 6.0)
+    size = share * rise / (np.exp(GROWTH * grows) - 1.0 - GROWTH * grows)
+    turn = start + grows
+    slope = size * GROWTH * (np.exp(GROWTH * grows) - 1.0)
+    since = GROWTH * np.minimum(time - start, grows)
+    later = _cubic(np.maximum(time, turn), turn, end, share * rise, rise, slope, arrives)
+    return np.where(time < turn, size * (np.exp(since) - 1.0 - since), later)
 
 
 def _slopes(times, values, hits, loops):
@@ -86,17 +127,19 @@ def _slopes(times, values, hits, loops):
     return reached, np.where(hits, 0.0, slopes)
 
 
-def _smoothed(values, grid, softness, hits):
-    """Rounds off how a one-shot's channels start to move: widths early and late, and when they change."""
-    early, late, change = softness
-    share = np.clip((change + FADE / 2 - grid) / FADE, 0.0, 1.0)
-    share = share * share * (3 - 2 * share)
-    result = share * _rounded(values, early) + (1 - share) * _rounded(values, late)
+def _smoothed(values, grid, hits):
+    """Rounds off corners of a one-shot's channels, but not near the hits."""
+    result = _rounded(values, SOFTNESS)
     for hit in hits:
-        keep = np.clip((np.abs(grid - hit) - SHARP) / FADE, 0.0, 1.0)
-        keep = keep * keep * (3 - 2 * keep)
+        keep = eased((np.abs(grid - hit) - SHARP) / FADE)
         result = keep * result + (1 - keep) * values
     return result
+
+
+def eased(share):
+    """From 0 to 1, smoothly."""
+    share = np.clip(share, 0.0, 1.0)
+    return share * share * (3 - 2 * share)
 
 
 def _rounded(values, width):

@@ -77,7 +77,7 @@ def sampled(name, points, weights):
         idle = stand.idle()
         base = Tracks(idle.length, True, idle.channels, [0.0])
     blows = [time for marker, time in table.markers if marker == "impact"]
-    tracks = Tracks(table.length, table.loops, table.channels, times, base, table.softness, blows)
+    tracks = Tracks(table.length, table.loops, table.channels, times, base, blows)
     speed = table.speed or 0.0
     if table.settles:
         soles.settle(tracks, points, weights, RATE, table.loops, speed, table.turn)

@@ -24,8 +24,6 @@ class Table:
     # The ground under it: metres a second backwards, degrees a second to the left.
     speed: float | None = None
     turn: float = 0.0
-    # Seconds over which starts are rounded off: early in the clip, later, and when that changes.
-    softness: tuple = (0.0, 0.0, 0.0)
     # Whether it begins in the idle's first pose (not in the rest pose).
     from_idle: bool = True
     # Whether feet and hands are settled on the ground by their skin.
@@ -71,7 +69,7 @@ def mirrored(table):
         channels[other] = _negated(keys) if flips else keys
     words = {"step_left": "step_right", "step_right": "step_left"}
     markers = [(words.get(name, name), time) for name, time in table.markers]
-    return Table(table.length, channels, table.loops, markers, table.speed, -table.turn, table.softness,
+    return Table(table.length, channels, table.loops, markers, table.speed, -table.turn,
                  table.from_idle, table.settles)
 
 

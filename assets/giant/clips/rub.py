@@ -24,4 +24,4 @@ def rub_left():
         "arm.out.R": ([(0, 0), (1.1, 24), (3.1, 24), (t, 0)], drag(4.0, 0.3)), "arm.swing.R": [(0, 0), (1.1, -10), (3.1, -10), (t, 0)],
         "elbow.R": [(0, 0), (1.1, 24), (3.1, 24), (t, 0)], **both("wrist", drag(6.0, 0.4)),
         "loin.side": ([(0, 0), (0.5, 4), (1.2, -6), (3.1, -5), (t, 0)], drag(3.0, 0.4)), "loin": drag(4.0, 0.3),
-    }, markers=[("wind_up", 0.0), ("active", start), ("recovery", end)], softness=(0.6, 0.4, 0.8))
+    }, markers=[("wind_up", 0.0), ("active", start), ("recovery", end)])

@@ -37,7 +37,7 @@ def shrug():
         "shoulder.forward.L": roll(6.0, 0.25), "shoulder.forward.R": roll(-6.0, 0.25),
         "arm.swing.L": roll(4.0, 0.3), "arm.swing.R": roll(-4.0, 0.3), **both("arm.out", [(0, 0), (0.6, 6), (1.4, 6), (t, 0)]),
         **both("elbow", [(0, 0), (0.6, 10), (1.4, 10), (t, 0)]), **both("curl", [(0, 0), (0.7, 10), (t, 0)]),
-    }, markers=strike(start, end), softness=(0.4, 0.4, 0.5))
+    }, markers=strike(start, end))
 
 
 def shake():
@@ -59,7 +59,7 @@ def shake():
         **both("curl", [(0, 0), (0.7, 18), (2.5, 16), (t, 0)]), **both("wrist", rattle(7.0, 0.4)),
         "shoulder.lift.L": rattle(2.0, 0.2), "shoulder.lift.R": rattle(-2.0, 0.2),
         "loin.front": [(0, 0), (0.7, -6), (2.5, -6), (t, 0)], "loin.side": rattle(9.0, 0.15),
-    }, markers=strike(start, end), softness=(0.5, 0.4, 0.6))
+    }, markers=strike(start, end))
 
 
 def shake_head():
@@ -74,7 +74,7 @@ def shake_head():
         "jaw": ([(0, 0), (0.5, 2), (1.2, 12), (2.0, 10), (t, 0)], rattle(5.0, 0.3)),
         "shoulder.lift.L": ([(0, 0), (0.6, 4), (2.0, 3), (t, 0)], rattle(1.0, 0.2)), "shoulder.lift.R": ([(0, 0), (0.6, 4), (2.0, 3), (t, 0)], rattle(-1.0, 0.2)),
         **both("arm.out", [(0, 0), (0.8, 7), (2.0, 6), (t, 0)]), **both("elbow", [(0, 0), (0.8, 12), (2.0, 10), (t, 0)]),
-    }, markers=strike(start, end), softness=(0.4, 0.3, 0.5))
+    }, markers=strike(start, end))
 
 
 def shake_arm_left():
@@ -93,7 +93,7 @@ def shake_arm_left():
         "elbow.L": ([(0, 0), (0.65, 52), (1.3, 36), (2.1, 30), (2.5, 8), (t, 0)], fling(12.0)), "forearm.in.L": fling(5.0, 0.2),
         "wrist.L": ([(0, 0), (0.7, 14), (2.1, 4), (t, 0)], fling(22.0, 0.2)), "curl.L": ([(0, 0), (0.7, 34), (1.3, 6), (2.1, 8), (t, 0)], fling(16.0, 0.3)),
         "arm.swing.R": [(0, 0), (0.7, -6), (2.0, -6), (t, 0)], "arm.out.R": [(0, 0), (0.7, 10), (2.0, 10), (t, 0)], "elbow.R": [(0, 0), (0.7, 16), (2.0, 16), (t, 0)],
-    }, markers=strike(start, end), softness=(0.6, 0.3, 0.6))
+    }, markers=strike(start, end))
 
 
 def rage():
@@ -120,4 +120,4 @@ def rage():
         **both("shoulder.lift", [(0, 0), (0.7, 3), (2.3, 3), (3.0, 17), (3.6, 15), (4.2, -2), (t, 0)]),
         **both("shoulder.forward", [(0, 0), (2.3, 8), (3.0, -8), (3.6, -6), (t, 0)]),
         "loin.front": [(0, 0), (0.7, -8), (2.3, -8), (3.0, -2), (t, 0)], "loin.side": rattle(10.0, 0.15), "loin": [(0, 0), (2.3, 0), (3.0, 6), (3.6, -3), (4.2, -5), (t, 0)],
-    }, markers=strike(start, end), softness=(0.6, 0.4, 0.8))
+    }, markers=strike(start, end))

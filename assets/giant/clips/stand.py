@@ -52,7 +52,7 @@ def roar():
         **both("curl", [(0, 0), (0.75, 34), (1.4, -4), (2.2, 16), (t, 0)]),
         **both("wrist", [(0, 0), (0.75, 12), (1.4, -14), (2.2, 6), (t, 0)]),
         "loin": [(0, 0), (0.75, 2), (1.4, 6), (2.0, -6), (2.6, 2), (t, 0)],
-    }, markers=strike(1.1, 2.4), softness=(0.7, 0.3, 1.0))
+    }, markers=strike(1.1, 2.4))
 
 
 def expose():
@@ -90,4 +90,4 @@ def expose():
         "foot.yaw.L": [(0, 0)],
         "loin.front": [(0, 0), (0.8, -4), (down, -40), (2.6, -34), (up, -34), (8.2, -10), (t, 0)],
         "loin.back": [(0, 0), (down, 10), (2.5, -6), (up, -4), (t, 0)],
-    }, markers=[("impact", down), ("impact", down + 0.1), ("exposed", 2.6), ("covered", up)], softness=(0.8, 0.4, 1.2))
+    }, markers=[("impact", down), ("impact", down + 0.1), ("exposed", 2.6), ("covered", up)])

@@ -33,4 +33,4 @@ def sweep_right():
         "elbow.L": [(0, 0), (1.3, 34), (2.2, 30), (t, 0)], "curl.L": [(0, 0), (1.4, 24), (t, 0)],
         "loin.front": [(0, 0), (1.3, -20), (2.2, -24), (t, 0)], "loin.side": [(0, 0), (1.4, 6), (2.3, -10), (2.9, 4), (t, 0)],
         "loin.back": [(0, 0), (1.3, -6), (2.2, -12), (t, 0)],
-    }, markers=strike(start, end), softness=(0.7, 0.25, 1.1))
+    }, markers=strike(start, end))
