@@ -45,7 +45,7 @@ def build(arguments):
 
     path = HERE / "colossus.glb"
     blender.export(str(path))
-    glb.tidy(path)
+    glb.tidy(path, moves)
     check.check_file(path)
     check.check_shapes(coarse, fine)
     check.check_motion(moves, coarse.mesh.points, coarse_weights)

@@ -6,14 +6,17 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import clips, motion, nets, visual
+from . import clips, nets, visual
 from .signs import SIGNS
-from .skeleton import INDEX, JOINTS
+from .skeleton import JOINTS
+from .turns import quaternions
 
 # Stone edges sharper than this, in degrees, are shaded as edges.
 CREASE = 38.0
 # Exported influences below this are dropped.
 LEAST_WEIGHT = 1e-4
+# A joint that turns less than this in a whole clip has no channel there.
+STILL = 1e-9
 
 
 def start():
@@ -153,23 +156,30 @@ def animate(rig, clip):
     """One action for a clip, on an NLA track of its name."""
     action = bpy.data.actions.new(clip.name)
     frames = np.arange(len(clip.poses), dtype=float)
-    local = np.stack([pose.local for pose in clip.poses])
-    for joint, bone in enumerate(rig.data.bones[j.name] for j in JOINTS):
-        if clip.poses and np.abs(local[:, joint] - np.eye(3)).max() < 1e-9:
+    for number, joint in enumerate(JOINTS):
+        local = clip.poses.local[:, number]
+        if np.abs(local - np.eye(3)).max() < STILL:
             continue
-        rest = np.array(bone.matrix_local.to_3x3())
-        turns = motion.quaternions(rest.T @ local[:, joint] @ rest)
+        turns = _bone_turns(rig.data.bones[joint.name], local)
         for index in range(1, len(turns)):
             if turns[index] @ turns[index - 1] < 0.0:
                 turns[index] = -turns[index]
-        _add_curves(action, bone.name, "rotation_quaternion", frames, turns)
-    rest = np.array(rig.data.bones["pelvis"].matrix_local.to_3x3())
-    _add_curves(action, "pelvis", "location", frames, np.stack([pose.shift for pose in clip.poses]) @ rest)
+        _add_curves(action, joint.name, "rotation_quaternion", frames, turns)
+    _add_curves(action, "pelvis", "location", frames, clip.poses.shift @ _rest(rig.data.bones["pelvis"]))
     rig.animation_data_create()
     track = rig.animation_data.nla_tracks.new()
     track.name = clip.name
     track.strips.new(clip.name, 0, action)
     track.mute = True
+
+
+def _rest(bone):
+    return np.array(bone.matrix_local.to_3x3())
+
+
+def _bone_turns(bone, local):
+    """Rotations (frames, 3, 3) in the model's axes, as quaternions in the bone's own axes."""
+    return quaternions(_rest(bone).T @ local @ _rest(bone))
 
 
 def _add_curves(action, bone, kind, frames, values):
@@ -181,13 +191,13 @@ def _add_curves(action, bone, kind, frames, values):
             point.interpolation = "LINEAR"
 
 
-def pose(rig, pose_of_clip):
-    """Puts the armature into a pose, for pictures."""
-    for joint, bone in zip(JOINTS, (rig.pose.bones[j.name] for j in JOINTS)):
-        rest = np.array(bone.bone.matrix_local.to_3x3())
-        bone.rotation_quaternion = motion.quaternions((rest.T @ pose_of_clip.local[INDEX[joint.name]] @ rest)[None])[0]
-    rest = np.array(rig.data.bones["pelvis"].matrix_local.to_3x3())
-    rig.pose.bones["pelvis"].location = pose_of_clip.shift @ rest
+def pose(rig, clip, frame):
+    """Puts the armature into the pose of a clip's frame, for pictures."""
+    poses = clip.poses.part(slice(frame, frame + 1))
+    for number, joint in enumerate(JOINTS):
+        bone = rig.pose.bones[joint.name]
+        bone.rotation_quaternion = _bone_turns(bone.bone, poses.local[:, number])[0]
+    rig.pose.bones["pelvis"].location = poses.shift[0] @ _rest(rig.data.bones["pelvis"])
 
 
 def export(path):

@@ -1,4 +1,4 @@
-"""Reading a GLB's parts, and two corrections to what Blender's exporter writes."""
+"""Reading a GLB's parts, and three corrections to what Blender's exporter writes."""
 
 import json
 import struct
@@ -39,8 +39,8 @@ def accessor(document, binary, number):
     return values.reshape(entry["count"], width)
 
 
-def tidy(path):
-    """Turns the flags that Blender stores as 0 and 1 into booleans, in all of `extras`."""
+def tidy(path, moves):
+    """Turns the flags that Blender stores as 0 and 1 into booleans, and writes the clips' extras."""
     document, binary = read(path)
     for entry in document["nodes"] + document["materials"]:
         tag = entry.get("extras", {}).get("clamber")
@@ -48,4 +48,7 @@ def tidy(path):
             tag["ledge"] = bool(tag["ledge"])
         if tag and "weak_point" in tag:
             tag["weak_point"]["major"] = bool(tag["weak_point"]["major"])
+    extras = {move.name: move.extras for move in moves}
+    for animation in document["animations"]:
+        animation["extras"] = {"clamber": extras[animation["name"]]}
     write(path, document, binary)

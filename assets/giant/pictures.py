@@ -36,7 +36,7 @@ def render_all(folder, rig, shown, moves):
     folder.mkdir(parents=True, exist_ok=True)
     prepare(rig, shown)
     by_name = {move.name: move for move in moves}
-    blender.pose(rig, by_name["idle"].poses[30])
+    blender.pose(rig, by_name["idle"], 30)
     save(folder / "colossus.png", [shoot(folder / "tile.png", "three_quarter", BEAUTY, BEAUTY_SAMPLES)], 1)
     tiles = []
     for view in ("front", "side", "back", "top", "head", "shoulder"):
@@ -53,7 +53,7 @@ def strip(folder, rig, move, count, view="three_quarter"):
     for number in range(count):
         last = len(move.poses) - 1
         frame = last * number // count if move.loops else last * number // (count - 1)
-        blender.pose(rig, move.poses[frame])
+        blender.pose(rig, move, frame)
         tiles.append(shoot(folder / "tile.png", view, TILE, TILE_SAMPLES))
     return tiles
 

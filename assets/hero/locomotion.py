@@ -1,7 +1,7 @@
 """Clips that stand and go: idle, walk, run, walk_back, strafes, turns."""
 
 import numpy as np
-from giant.motion import Curves
+from giant.curves import Curves
 
 from .table import both, standing, wave
 

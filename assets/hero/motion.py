@@ -7,8 +7,9 @@ by a two-bone IK, or the limbs are turned directly, or something between.
 """
 
 import numpy as np
+from giant.curves import Curves
 from giant.field import smooth_step
-from giant.motion import Curves, quaternions
+from giant.turns import quaternions
 
 from .skeleton import (
     ALONG,

@@ -2,7 +2,7 @@
 
 import numpy as np
 from giant import glb
-from giant.motion import quaternions
+from giant.turns import quaternions
 
 from .motion import Pose
 from .palette import MATERIALS
