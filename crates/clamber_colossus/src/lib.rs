@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod angle;
 pub mod brain;
 mod creature;
 mod error;

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::state::{Felt, NO_WALL, Ride, WALLS};
 use super::{Creature, Person, Surroundings};
+use crate::angle::nearest_turn;
 use crate::senses::{RegionSense, Sense, Senses};
 
 /// It sees to this angle from ahead of its head, radians.
@@ -238,7 +239,7 @@ impl Creature {
                 return false;
             };
             let at = world.inverse_transform_point(place) - ball.translation;
-            let [low, high] = [leg.sole[0] * UNDER, leg.sole[3] * UNDER];
+            let [low, high] = [leg.sole.corners[0] * UNDER, leg.sole.corners[3] * UNDER];
             at.y < 0.2 * leg.length
                 && (low.x..=high.x).contains(&at.x)
                 && (low.z..=high.z).contains(&at.z)
@@ -255,10 +256,4 @@ fn is_hidden(around: &Surroundings<'_>, eye: DVec3, person: &Person) -> bool {
             .terrain
             .iter()
             .any(|obstacle| obstacle.cast_ray(eye, way, distance).is_some())
-}
-
-/// The same angle within half a turn.
-pub(super) fn nearest_turn(angle: f64) -> f64 {
-    use core::f64::consts::TAU;
-    angle - TAU * (angle / TAU).round()
 }

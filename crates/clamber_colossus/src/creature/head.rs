@@ -64,7 +64,8 @@ impl Creature {
                 let angle = self.state.yaw + (lot.f64() - 0.5) * 2.0;
                 let down = lot.f64() * 0.5;
                 let way = DVec3::new(libm::sin(angle), -down, libm::cos(angle));
-                Some(self.eye() + way * (2.0 * height))
+                let level = self.state.position + DVec3::Y * (0.85 * height);
+                Some(level + way * (2.0 * height))
             }
         }
     }

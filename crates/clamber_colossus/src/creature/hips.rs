@@ -20,6 +20,9 @@ const STRETCH: f64 = 0.985;
 /// How far hips drop at most, as a share of the leg's length.
 const MOST_DROP: f64 = 0.35;
 
+/// How low hips are on a slope before legs need it, as a share of the leg's length and the slope's tangent.
+const SLOPE_DROP: f64 = 0.25;
+
 /// Half time in which hips rise again when they need not be low any more, seconds: longer than a step.
 const RISES: f64 = 3.0;
 
@@ -107,7 +110,8 @@ impl Creature {
         let scale = self.config.scale;
         let length = legs.iter().map(|leg| leg.reach).fold(0.0, f64::max) * scale;
         let before = self.state.hips.drop;
-        let needed = legs.iter().map(drop_of).fold(0.0, f64::max) * scale;
+        let steep = SLOPE_DROP * self.state.steepness * length;
+        let needed = (legs.iter().map(drop_of).fold(0.0, f64::max) * scale).max(steep);
         // It rises slowly, so that it does not bob with each step.
         let risen = before * libm::exp2(-dt / (RISES * scale.sqrt()));
         self.state.hips.drop = needed.max(risen).min(MOST_DROP * length);
@@ -126,6 +130,10 @@ impl Creature {
             }
         }
         to += shift;
+        if self.state.ticks <= 1 {
+            // It has just been put there.
+            self.state.hips.offset = to;
+        }
         self.state
             .hips
             .go(to, DVec3::new(SHIFTS, DROPS, SHIFTS), dt);

@@ -8,8 +8,14 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::Creature;
 use super::report::CreatureEvent;
 use super::state::Playing;
-use crate::feet::{Foot, FootGoal, Ground, Sole};
-use crate::kind::{Contacts, Leg};
+use crate::feet::{Foot, FootGoal, Ground, SHARES, Sole};
+use crate::kind::{Contacts, Leg, rotation_of};
+
+/// From which share of its length on a leg in flight is stretched softly.
+const SOFT: f64 = 0.93;
+
+/// Times of a clip that are compared with the feet when it begins.
+const PHASES: u32 = 48;
 
 /// The axes of an ankle that keep their directions.
 const FOOT_AXES: [DVec3; 2] = [DVec3::Y, DVec3::Z];
@@ -25,6 +31,8 @@ pub(super) struct PutLeg {
     /// Length of thigh and shin together.
     pub(super) reach: f64,
     directions: [DVec3; 2],
+    /// How flat its foot is, from 0 to 1.
+    flat: f64,
     pub(super) wants_step: bool,
     pub(super) is_planted: bool,
 }
@@ -34,56 +42,59 @@ impl Creature {
     pub(super) fn put_feet(&mut self, ground: &Ground<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let aims = self.aimed_leg();
-        let mut legs = std::mem::take(&mut self.legs);
-        legs.clear();
+        let mut legs = Vec::with_capacity(kind.legs().len());
         for (index, leg) in kind.legs().iter().enumerate() {
             let [hip, ankle, ball] = [leg.hip, leg.ankle, leg.ball].map(|joint| {
                 joint_in_model(kind.skeleton(), &self.state.pose, joint).unwrap_or_default()
             });
             let others_stand = (self.state.feet.iter().enumerate())
                 .all(|(other, foot)| other == index || foot.is_planted());
-            let goal = self.foot_goal(index, leg, ball.translation, others_stand, aims);
-            let corners = leg.sole.map(|corner| {
-                self.state
-                    .world_from_model(self.config.scale)
-                    .transform_vector(corner)
-            });
+            let heading = yaw_of(rotation_of(&ankle) * leg.level.conjugate());
+            let goal = self.foot_goal(index, leg, (ball.translation, heading), others_stand, aims);
+            let foot = &self.state.feet[index];
+            let sole = Sole {
+                ground,
+                shape: &leg.sole,
+                turn: rotation_from_axis_angle(DVec3::Y, goal.heading + foot.yaw()),
+                scale: self.config.scale,
+            };
             let foot = &mut self.state.feet[index];
-            if foot.step(&goal, &Sole { ground, corners }, dt) {
+            if self.state.ticks <= 1 && goal.stands {
+                foot.place(&goal, &sole);
+            }
+            if foot.step(&goal, &sole, dt) {
                 let place = goal.clip + foot.offset();
                 self.report
                     .events
                     .push(CreatureEvent::Plant { leg: index, place });
             }
-            legs.push(self.put(leg, &self.state.feet[index], goal.clip, [hip, ankle, ball]));
+            legs.push(self.put(leg, &self.state.feet[index], goal.clip, [hip, ankle]));
         }
         self.shift_hips(&legs, dt);
-        for (leg, put) in kind.legs().iter().zip(&legs) {
-            self.bend_leg(leg, put);
+        for (index, (leg, put)) in kind.legs().iter().zip(&legs).enumerate() {
+            let distance = self.bend_leg(leg, put);
+            self.state.feet[index].set_stretched(distance > put.reach);
         }
-        self.legs = legs;
     }
 
     /// Where a leg's ankle goes.
-    fn put(
-        &self,
-        leg: &Leg,
-        foot: &Foot,
-        clip: DVec3,
-        [hip, ankle, ball]: [DAffine3; 3],
-    ) -> PutLeg {
+    fn put(&self, leg: &Leg, foot: &Foot, clip: DVec3, [hip, ankle]: [DAffine3; 2]) -> PutLeg {
         let world = self.state.world_from_model(self.config.scale);
         let lean = DQuat::from_rotation_arc(DVec3::Y, world.rotation.conjugate() * foot.normal());
+        let clip_rotation = rotation_of(&ankle);
+        let heading =
+            rotation_from_axis_angle(DVec3::Y, yaw_of(clip_rotation * leg.level.conjugate()));
         let turn = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw());
+        // The foot keeps its own rotation, whatever the shin does: that of its clip, or flat on the ground.
+        let rotation = turn * clip_rotation.slerp(heading * leg.level, foot.flat());
         let ball_at = world.inverse_transform_point(clip + foot.offset());
-        // The foot keeps its own rotation, whatever the shin does.
-        let directions = FOOT_AXES.map(|axis| turn * (ankle.matrix3 * axis));
         PutLeg {
             hip: hip.translation,
-            ankle: ball_at + turn * (ankle.translation - ball.translation),
+            ankle: ball_at + rotation * leg.from_ball,
             reach: leg.length,
-            directions,
+            directions: FOOT_AXES.map(|axis| rotation * axis),
             ball: ball_at,
+            flat: foot.flat(),
             wants_step: foot.wants_step(),
             is_planted: foot.is_planted(),
         }
@@ -93,7 +104,7 @@ impl Creature {
         &self,
         index: usize,
         leg: &Leg,
-        ball: DVec3,
+        (ball, heading): (DVec3, f64),
         others_stand: bool,
         aims: Option<(usize, f64)>,
     ) -> FootGoal {
@@ -110,7 +121,9 @@ impl Creature {
             (layer.time, layer.speed * self.state.animator.rate())
         });
         let contacts = self.contacts(index);
-        let stands = contacts.is_none_or(|contacts| contacts.stands(time));
+        let is_idle = self.state.playing == Playing::Idle;
+        let stands = is_idle || contacts.is_none_or(|contacts| contacts.stands(time));
+        let settled = contacts.map_or(clip, |contacts| world.transform_point(contacts.ball(time)));
         let landing = contacts
             .and_then(|contacts| contacts.next(time))
             .filter(|_| speed > 0.0);
@@ -121,17 +134,56 @@ impl Creature {
         let ahead = self.state.heading() * (self.state.speed * lands_in);
         let at = landing.map_or(clip, |(_, place)| world.transform_point(place));
         let lands_at = if stands { clip } else { at + ahead };
+        let is_walk = self.state.playing == Playing::Walk;
+        let shorter = landing
+            .filter(|_| is_walk)
+            .map_or(DVec3::ZERO, |(_, place)| {
+                self.state.heading() * (place.z * scale * (self.stride() - 1.0))
+            });
+        let ahead = SHARES.map(|share| {
+            let Some((contacts, (wait, _))) = contacts.zip(landing) else {
+                return clip.y;
+            };
+            let ball = contacts.ball((time + wait * share).rem_euclid(contacts.duration()));
+            world.transform_point(ball).y
+        });
         FootGoal {
             clip,
+            settled,
+            ahead,
+            shorter,
             stands,
             lands_in,
-            lands_at: lands_at.with_y(self.state.position.y + leg.ball_height * scale),
-            turned: self.state.yaw_rate * self.kind.brain().tick(),
-            ball_height: leg.ball_height * scale,
+            lands_at: lands_at.with_y(self.state.position.y + leg.sole.ball_height * scale),
+            heading: self.state.yaw + heading,
+            ball_height: leg.sole.ball_height * scale,
             leg: leg.length * scale,
             may_step: others_stand && self.state.hips.has_shifted(),
             is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
         }
+    }
+
+    /// The time of the clip that is begun at which its feet are where the creature's are.
+    pub(super) fn step_in(&self) -> f64 {
+        let legs = self.kind.legs();
+        let duration = self.contacts(0).map_or(0.0, Contacts::duration);
+        let cost = |time: f64| -> f64 {
+            let costs = legs.iter().enumerate().map(|(index, leg)| {
+                let at = self.palette.model_from_joint(leg.ball);
+                let (Some(contacts), Some(at)) = (self.contacts(index), at) else {
+                    return 0.0;
+                };
+                let way = (contacts.ball(time) - at.translation) / leg.length;
+                let is_other = contacts.stands(time) != self.state.feet[index].is_planted();
+                way.length_squared() + f64::from(u8::from(is_other))
+            });
+            costs.sum()
+        };
+        let times = (0..PHASES).map(|phase| f64::from(phase) / f64::from(PHASES) * duration);
+        let costs = times.map(|time| (cost(time), time));
+        costs
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(0.0, |(_, time)| time)
     }
 
     fn contacts(&self, leg: usize) -> Option<&Contacts> {
@@ -139,7 +191,7 @@ impl Creature {
         match self.state.playing {
             Playing::Walk => gait?.walk_contacts.get(leg),
             Playing::Turn(side) => gait?.turn_contacts[usize::from(side.min(1))].get(leg),
-            Playing::Idle => None,
+            Playing::Idle => gait?.idle_contacts.get(leg),
             Playing::Act(state) => self.kind.act(state).contacts.get(leg),
         }
     }
@@ -164,14 +216,30 @@ impl Creature {
         Some((leg, rise * (1.0 - fall)))
     }
 
-    /// Bends a leg so that its ankle is where the foot wants it.
-    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
+    /// Bends a leg so that its ankle is where the foot wants it. Returns how far that is from the hip.
+    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) -> f64 {
         let skeleton = self.kind.skeleton();
-        let goal = TwoBoneGoal::reach(put.ankle);
+        // A leg in flight is not stretched to its end, so that its knee does not snap.
+        let goal = TwoBoneGoal {
+            soft: SOFT + (1.0 - SOFT) * put.flat,
+            ..TwoBoneGoal::reach(put.ankle)
+        };
         let pose = &mut self.state.pose;
+        let hip = joint_in_model(skeleton, pose, leg.hip);
         // A leg that cannot be bent stays as its clip has it.
         if leg.ik.solve(skeleton, pose, &goal, None).is_ok() {
             let _ = aim(skeleton, pose, leg.ankle, FOOT_AXES, put.directions);
+            if leg.ball != leg.ankle {
+                let rest = self.kind.clips().rest().transforms[leg.ball.index()].rotation;
+                let toe = &mut pose.transforms[leg.ball.index()].rotation;
+                *toe = toe.slerp(rest, put.flat as f32);
+            }
         }
+        hip.map_or(0.0, |hip| hip.translation.distance(put.ankle))
     }
+}
+
+/// The turn about up of a rotation: its twist about Y.
+fn yaw_of(rotation: DQuat) -> f64 {
+    2.0 * libm::atan2(rotation.y, rotation.w)
 }

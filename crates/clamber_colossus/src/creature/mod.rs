@@ -41,7 +41,6 @@ pub struct Creature {
     buffers: PoseBuffers,
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
-    legs: Vec<legs::PutLeg>,
     /// True while the skin is known to be without motion.
     is_still: bool,
 }
@@ -61,7 +60,6 @@ impl Creature {
             buffers: PoseBuffers::default(),
             report: CreatureReport::default(),
             events: Vec::new(),
-            legs: Vec::new(),
             is_still: false,
             kind,
             config,

@@ -3,10 +3,10 @@
 use clamber_animation::AnimationEvent;
 use glam::DVec3;
 
-use super::feel::nearest_turn;
 use super::hips::approach;
 use super::state::{NO_WALL, Playing, WALLS};
 use super::{Creature, CreatureEvent, Surroundings};
+use crate::angle::nearest_turn;
 use crate::brain::{Act, Place, Walk};
 use crate::error::ColossusError;
 use crate::feet::Ground;
@@ -23,6 +23,12 @@ const TURNS: f64 = 0.12;
 /// The slowest walk, as a share of its speed.
 const SLOWEST: f64 = 0.35;
 
+/// How much shorter its steps are where it goes up and down: on a slope of 45 degrees, by one over one and this.
+const CAREFUL: f64 = 1.2;
+
+/// Time constant with which it takes the ground ahead into account, seconds.
+const LOOKS_AHEAD: f64 = 1.0;
+
 /// It turns on the spot first if its goal is further aside than this, radians; and walks on if it is nearer.
 const TURN_FIRST: f64 = 1.2;
 const WALK_ON: f64 = 0.5;
@@ -30,8 +36,10 @@ const WALK_ON: f64 = 0.5;
 /// The largest vertical acceleration from following the ground, metres a second squared.
 const CLIMBS: f64 = 0.5;
 
-/// Seconds in which one clip of the gait fades into another.
-const FADE: f64 = 0.8;
+/// Seconds in which one clip of the gait fades into another, for a creature of a human's height. Larger ones take longer, by
+/// the square root of their height (Froude's law).
+const FADE: f64 = 0.35;
+const HUMAN: f64 = 1.75;
 
 /// Where to go, and how.
 struct Way {
@@ -195,6 +203,9 @@ impl Creature {
     ) -> Result<bool, ColossusError> {
         let rate = self.config.rate();
         let full = gait.speed * self.config.scale * rate;
+        let stride = self.stride();
+        // Steps are shorter, and take longer.
+        let careful = full * stride * stride;
         let (mut speed, mut turn, mut arrived) = (0.0, 0.0, false);
         let mut turns_on_spot = false;
         if let Some(way) = way {
@@ -218,7 +229,7 @@ impl Creature {
                 let turning = matches!(self.state.playing, Playing::Turn(_));
                 turns_on_spot = aside.abs() > if turning { WALK_ON } else { TURN_FIRST };
                 let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
-                speed = full.min(braked).max(SLOWEST * full);
+                speed = careful.min(braked).max(SLOWEST * careful);
                 turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
                 if !turns_on_spot && self.is_blocked(around) {
                     (speed, turn, arrived) = (0.0, 0.0, true);
@@ -259,13 +270,17 @@ impl Creature {
         } else {
             Playing::Idle
         };
-        self.play(playing, FADE)?;
-        if let Some(layer) = self.state.animator.layers_mut().first_mut() {
-            layer.speed = match playing {
-                Playing::Walk => self.state.speed / full,
-                Playing::Turn(_) => (self.state.yaw_rate.abs() / (gait.turn_rate * rate)).min(1.0),
-                Playing::Idle | Playing::Act(_) => 1.0,
-            };
+        let clip_speed = match playing {
+            Playing::Walk => self.state.speed / (full * stride),
+            Playing::Turn(_) => (self.state.yaw_rate.abs() / (gait.turn_rate * rate)).min(1.0),
+            Playing::Idle | Playing::Act(_) => 1.0,
+        };
+        let size = (self.kind.height() * self.config.scale / HUMAN).sqrt();
+        self.play(playing, clip_speed, FADE * size)?;
+        if let Some(layer) = self.state.animator.layers_mut().first_mut()
+            && !matches!(playing, Playing::Act(_))
+        {
+            layer.speed = clip_speed;
         }
         let stands = self.state.speed == 0.0 && self.state.yaw_rate.abs() < 0.3 * TURNS;
         Ok(arrived && stands)
@@ -295,6 +310,11 @@ impl Creature {
         wall || normal.y < libm::cos(self.config.most_slope)
     }
 
+    /// How long its steps are, as a share of those of its clip.
+    pub(super) fn stride(&self) -> f64 {
+        1.0 / (1.0 + CAREFUL * self.state.steepness)
+    }
+
     /// Lets the model's origin follow the ground below it, as softly as riders want it.
     fn follow_ground(&mut self, around: &Surroundings<'_>, dt: f64) {
         let height = self.kind.height() * self.config.scale;
@@ -305,14 +325,34 @@ impl Creature {
         let heading = self.state.heading();
         // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
         let (mut sum, mut count) = (0.0, 0.0);
+        let (mut before, mut steepest) = (None, 0f64);
+        let spacing = 0.07 * height;
         for step in -3..=3 {
-            let place = self.state.position + heading * (f64::from(step) * 0.07 * height);
+            let place = self.state.position + heading * (f64::from(step) * spacing);
             if let Some((level, _)) = ground.below(place) {
                 (sum, count) = (sum + level, count + 1.0);
+                if let Some(before) = before.filter(|_| step >= 0) {
+                    let rise: f64 = level - before;
+                    steepest = steepest.max(rise.abs() / spacing);
+                }
+                before = Some(level);
             }
         }
         if count == 0.0 {
             return;
+        }
+        let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
+        let sides = [aside, -aside].map(|side| ground.below(self.state.position + side));
+        if let [Some((left, _)), Some((right, _))] = sides {
+            steepest = steepest.max((left - right).abs() / (2.0 * spacing));
+        }
+        // Gradually, since a stride depends on it.
+        let share = 1.0 - libm::exp(-dt / LOOKS_AHEAD);
+        self.state.steepness += (steepest - self.state.steepness) * share;
+        if self.state.ticks <= 1 {
+            // It has just been put there.
+            self.state.position.y = sum / count;
+            self.state.steepness = steepest;
         }
         let (height, climb) = approach(
             self.state.position.y,

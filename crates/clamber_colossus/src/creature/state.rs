@@ -28,6 +28,8 @@ pub struct CreatureState {
     /// Where the model's origin is. Its height follows the ground.
     pub(super) position: DVec3,
     pub(super) climb: f64,
+    /// How steep the ground ahead is, as a tangent.
+    pub(super) steepness: f64,
     pub(super) yaw: f64,
     /// Along its heading, metres a second, and radians a second to the left.
     pub(super) speed: f64,
@@ -142,6 +144,7 @@ impl CreatureState {
             halts: false,
             position: config.position,
             climb: 0.0,
+            steepness: 0.0,
             yaw: config.yaw,
             speed: 0.0,
             yaw_rate: 0.0,
@@ -192,6 +195,11 @@ impl CreatureState {
         &self.senses
     }
 
+    /// Its clips, as they play: without feet on the ground and without a gaze.
+    pub fn animator(&self) -> &Animator {
+        &self.animator
+    }
+
     /// The state that it is in: the innermost one.
     pub fn current(&self) -> StateId {
         self.brain.current()
@@ -210,6 +218,11 @@ impl CreatureState {
     /// Speed along its heading, metres a second.
     pub fn speed(&self) -> f64 {
         self.speed
+    }
+
+    /// True if a foot stands, by its index in the file.
+    pub fn is_planted(&self, leg: usize) -> bool {
+        self.feet.get(leg).is_some_and(Foot::is_planted)
     }
 
     /// Hit points left of each weak point.
@@ -280,7 +293,13 @@ impl CreatureState {
                 "its act is not one of the brain's",
             ));
         }
-        let numbers = [self.yaw, self.speed, self.yaw_rate, self.climb];
+        let numbers = [
+            self.yaw,
+            self.speed,
+            self.yaw_rate,
+            self.climb,
+            self.steepness,
+        ];
         if !self.position.is_finite() || !numbers.iter().all(|number| number.is_finite()) {
             return Err(ColossusError::OtherKind(
                 "its place or its motion is not finite",

@@ -122,7 +122,7 @@ impl Creature {
             Some(Act::Play(_)) => self.begin(state, Playback::Loop)?,
             Some(Act::Once(_) | Act::Attack(_)) => self.begin(state, Playback::Clamp)?,
             Some(Act::Sleep) => self.fall_asleep(),
-            None => self.play(Playing::Idle, kind.brain().fade(state))?,
+            None => self.play(Playing::Idle, 1.0, kind.brain().fade(state))?,
         }
         if let (Some(Act::Attack(_)), Some(strike)) = (act, &kind.act(state).strike) {
             self.aim(strike);
@@ -162,7 +162,13 @@ impl Creature {
         };
         self.state.playing = Playing::Act(state);
         let fade = self.kind.brain().fade(state);
-        change(&mut self.state.animator, &self.kind, clip, playback, fade)
+        change(
+            &mut self.state.animator,
+            &self.kind,
+            (clip, playback),
+            [0.0, 1.0],
+            fade,
+        )
     }
 
     /// Clips stop where they are.
@@ -173,7 +179,12 @@ impl Creature {
     }
 
     /// Plays a clip of the gait, unless it is being played.
-    pub(super) fn play(&mut self, playing: Playing, fade: f64) -> Result<(), ColossusError> {
+    pub(super) fn play(
+        &mut self,
+        playing: Playing,
+        speed: f64,
+        fade: f64,
+    ) -> Result<(), ColossusError> {
         let Some(gait) = self.kind.gait().filter(|_| self.state.playing != playing) else {
             return Ok(());
         };
@@ -183,11 +194,12 @@ impl Creature {
             _ => gait.idle,
         };
         self.state.playing = playing;
+        let time = self.step_in();
         change(
             &mut self.state.animator,
             &self.kind,
-            clip,
-            Playback::Loop,
+            (clip, Playback::Loop),
+            [time, speed],
             fade,
         )
     }
@@ -222,20 +234,21 @@ impl Creature {
 
 use super::CreatureReport;
 
-/// Plays a clip on the lowest layer.
+/// Plays a clip on the lowest layer from a time on, at a speed: a fade has to know how fast what it goes to moves.
 fn change(
     animator: &mut Animator,
     kind: &crate::kind::CreatureKind,
-    clip: ClipId,
-    playback: Playback,
+    (clip, playback): (ClipId, Playback),
+    [time, speed]: [f64; 2],
     fade: f64,
 ) -> Result<(), ColossusError> {
     animator.change(kind.clips(), fade, |layers| {
-        if let Some(layer) = layers.first_mut() {
-            (layer.clip, layer.time, layer.playback) = (clip, 0.0, playback);
-        }
-        for layer in layers {
+        for layer in layers.iter_mut() {
             layer.speed = 1.0;
+        }
+        if let Some(layer) = layers.first_mut() {
+            (layer.clip, layer.playback) = (clip, playback);
+            (layer.time, layer.speed) = (time, speed);
         }
     })?;
     Ok(())

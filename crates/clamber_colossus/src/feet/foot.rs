@@ -4,16 +4,25 @@ use serde::{Deserialize, Serialize};
 use clamber_animation::Spring;
 
 use super::{Footing, Sole};
+use crate::angle::nearest_turn;
 
 /// How a foot is held.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Hold {
     /// It stands here, on ground that was at this height below its ball.
-    Planted { at: Footing, below: f64 },
+    Planted {
+        at: Footing,
+        heading: f64,
+        below: f64,
+    },
     /// It is where its clip has it, but for an offset that goes to where it lands.
     Swings,
     /// It comes down where its clip stands, although it was in the air when that clip began; seconds until then.
-    Lands { left: f64 },
+    Lands {
+        ball: Spring<DVec3>,
+        to: Footing,
+        left: f64,
+    },
     /// It takes a step that is not in its clip.
     Steps(Step),
 }
@@ -22,6 +31,9 @@ enum Hold {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Step {
     from: DVec3,
+    to: Footing,
+    /// How high it goes, metres.
+    lift: f64,
     passed: f64,
     lasts: f64,
 }
@@ -30,16 +42,24 @@ struct Step {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Foot {
     hold: Hold,
+    /// Where its clip had the ball in the last tick.
+    clip: DVec3,
     /// From where the clip has the ball to where it is.
     offset: Spring<DVec3>,
     /// How far the foot is turned against its clip about up, radians.
     yaw: Spring<f64>,
+    /// How flat it is on the ground: from 0, as its clip has it, to 1.
+    flat: Spring<f64>,
     /// Normal of the ground that it leans to.
     normal: DVec3,
     /// How far a planted ball still is from its place.
     settling: Spring<DVec3>,
+    /// Where it comes down, as looked for last.
+    landing: Option<Footing>,
     /// True if it stands where it should not.
     wants_step: bool,
+    /// True if its leg did not reach it in the last tick.
+    is_stretched: bool,
 }
 
 /// What a foot should do in a tick, in world space.
@@ -47,13 +67,19 @@ pub(crate) struct Foot {
 pub(crate) struct FootGoal {
     /// Where the clip has the ball.
     pub(crate) clip: DVec3,
+    /// Where it will have it once it has faded in.
+    pub(crate) settled: DVec3,
     /// Whether the clip stands on it, and seconds until it does next.
     pub(crate) stands: bool,
     pub(crate) lands_in: f64,
     /// Where the clip's ball will be then.
     pub(crate) lands_at: DVec3,
-    /// How far the creature turned in this tick, radians.
-    pub(crate) turned: f64,
+    /// From there to where it lands with a shorter stride; level.
+    pub(crate) shorter: DVec3,
+    /// Height of the clip's ball at [`SHARES`] of the time until then.
+    pub(crate) ahead: [f64; 3],
+    /// Where the clip's foot points to, radians about up.
+    pub(crate) heading: f64,
     /// Height of a ball above the ground, and the leg's length, metres.
     pub(crate) ball_height: f64,
     pub(crate) leg: f64,
@@ -67,11 +93,19 @@ pub(crate) struct FootGoal {
 const STEPS_BEYOND: f64 = 0.12;
 const STEPS_TURNED: f64 = 0.45;
 
-/// The most acceleration of a step, metres a second squared, its least time, as a share of `sqrt(leg / g)`, and how high
-/// it goes, as a share of the leg's length.
-const STEP_ACCELERATION: f64 = 4.5;
-const STEP_TIME: f64 = 0.9;
-const STEP_HEIGHT: f64 = 0.07;
+/// The least time of a step of its own, as a share of `sqrt(leg / g)`, and how high it goes at least, as a share of the leg's
+/// length.
+const STEP_TIME: f64 = 1.5;
+const STEP_HEIGHT: f64 = 0.04;
+
+/// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn, radians a
+/// second squared. Together the first two are 6, which skin below the knee may have in a swing.
+const MOST_UP: f64 = 4.5;
+const MOST_ASIDE: f64 = 3.9;
+const MOST_TURN: f64 = 3.0;
+
+/// Shares of a swing at which the ground on its way is looked at.
+pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// The least time in which an offset goes to where it should, seconds.
 const LEAST: f64 = 0.15;
@@ -84,6 +118,12 @@ const LEANS: f64 = 0.15;
 const HIGH: f64 = 0.03;
 const GONE: f64 = 0.003;
 
+/// A foot has come down when it is as near as this to where it should, as a share of the leg's length.
+const ARRIVED: f64 = 0.01;
+
+/// A place to land on is looked for anew when it has moved by this share of the leg's length.
+const SAME: f64 = 0.03;
+
 /// Half time in which a foot that has come down reaches its exact place, seconds.
 const SETTLES: f64 = 0.08;
 
@@ -94,11 +134,15 @@ impl Foot {
     pub(crate) fn new() -> Self {
         Self {
             hold: Hold::Swings,
+            clip: DVec3::ZERO,
             offset: Spring::default(),
             yaw: Spring::default(),
+            flat: Spring::default(),
             normal: DVec3::Y,
             settling: Spring::default(),
+            landing: None,
             wants_step: false,
+            is_stretched: false,
         }
     }
 
@@ -112,6 +156,11 @@ impl Foot {
         self.wants_step
     }
 
+    /// Says whether its leg reaches it.
+    pub(crate) fn set_stretched(&mut self, is_stretched: bool) {
+        self.is_stretched = is_stretched;
+    }
+
     /// From where the clip has the ball to where it is, metres.
     pub(crate) fn offset(&self) -> DVec3 {
         self.offset.value
@@ -122,30 +171,49 @@ impl Foot {
         self.yaw.value
     }
 
+    /// How flat it is on the ground: from 0, as its clip has it, to 1.
+    pub(crate) fn flat(&self) -> f64 {
+        self.flat.value.clamp(0.0, 1.0)
+    }
+
     /// Normal of the ground that it leans to.
     pub(crate) fn normal(&self) -> DVec3 {
         self.normal
     }
 
+    /// Stands on the ground where its clip has it, at once.
+    pub(crate) fn place(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
+        self.plant(goal, sole);
+        self.settling = Spring::default();
+        self.flat = Spring::at(1.0);
+        if let Hold::Planted { at, .. } = self.hold {
+            self.normal = at.normal;
+            self.offset = Spring::at(at.ball - goal.clip);
+        }
+    }
+
     /// Lets a tick of `dt` seconds pass. Returns true if the foot has just come down.
     pub(crate) fn step(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) -> bool {
         let was_up = !self.is_planted();
-        self.decide(goal, sole);
+        self.decide(goal, sole, dt);
         match self.hold {
-            Hold::Planted { at, .. } => self.stand(goal, &at, dt),
+            Hold::Planted { at, heading, .. } => self.stand(goal, &at, heading, dt),
             Hold::Swings => self.swing(goal, sole, goal.lands_in.max(LEAST), dt),
-            Hold::Lands { left } => self.land(goal, sole, left, dt),
+            Hold::Lands { ball, to, left } => self.land(goal, sole, (ball, to, left), dt),
             Hold::Steps(step) => self.take_step(goal, sole, step, dt),
         }
+        let flat = f64::from(u8::from(self.is_planted()));
+        self.flat.step(flat, SETTLES, dt);
+        self.clip = goal.clip;
         was_up && self.is_planted()
     }
 
     /// Goes from one way of being held to another one.
-    fn decide(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
+    fn decide(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) {
         self.wants_step = false;
         match self.hold {
-            Hold::Planted { at, below } if goal.stands => {
-                let gap = goal.clip - at.ball;
+            Hold::Planted { at, below, .. } if goal.stands => {
+                let gap = goal.settled - at.ball;
                 let level = DVec3::new(gap.x, 0.0, gap.z).length();
                 let is_off = level > STEPS_BEYOND * goal.leg || self.yaw.value.abs() > STEPS_TURNED;
                 self.wants_step = is_off && !goal.is_gait;
@@ -154,26 +222,26 @@ impl Foot {
                     .is_none_or(|now| (now - below).abs() > GONE * goal.leg);
                 if is_gone && sole.has_ground() {
                     self.hold = Hold::Lands {
+                        ball: Spring::at(at.ball),
+                        to: sole.at(goal.settled),
                         left: goal.step_time(),
                     };
-                } else if self.wants_step && goal.may_step {
-                    // The peak of a quintic from rest to rest is 5.77 d / T^2.
-                    let lasts = (5.77 * level / STEP_ACCELERATION)
-                        .sqrt()
-                        .max(goal.step_time());
-                    let from = goal.clip + self.offset.value;
-                    self.hold = Hold::Steps(Step {
-                        from,
-                        passed: 0.0,
-                        lasts,
-                    });
+                } else if self.wants_step && goal.may_step || self.is_stretched {
+                    self.hold =
+                        Hold::Steps(self.step_from(at.ball + self.settling.value, goal, sole));
                 }
             }
             Hold::Planted { .. } | Hold::Lands { .. } if !goal.stands => self.hold = Hold::Swings,
             Hold::Swings if goal.stands => {
                 let ball = goal.clip + self.offset.value;
-                if ball.y - sole.at(ball, goal).ball.y > HIGH * goal.leg {
+                if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
+                    let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
                     self.hold = Hold::Lands {
+                        ball: Spring {
+                            value: ball,
+                            velocity,
+                        },
+                        to: sole.at(goal.settled),
                         left: goal.step_time(),
                     };
                 } else {
@@ -184,44 +252,74 @@ impl Foot {
         }
     }
 
+    /// A step from a place to where its clip has it, over what lies between.
+    fn step_from(&mut self, from: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Step {
+        let to = sole.at(goal.settled);
+        let level = (to.ball - from).with_y(0.0).length();
+        let over = SHARES.into_iter().filter_map(|share| {
+            let place = from.lerp(to.ball, share);
+            // The hump of a step is that high at a share of its way.
+            let hump = 4.0 * share * (1.0 - share);
+            let rise = sole.highest(place, to.normal)? + goal.ball_height - place.y;
+            Some(rise / (hump * hump * hump))
+        });
+        let lift = over
+            .fold(STEP_HEIGHT * goal.leg, f64::max)
+            .min(0.5 * goal.leg);
+        // The peaks of a quintic from rest to rest, and of the hump: 5.77 d / T^2, 24 h / T^2.
+        let lasts = (5.77 * level / MOST_ASIDE)
+            .max(24.0 * lift / MOST_UP)
+            .sqrt();
+        Step {
+            from,
+            to,
+            lift,
+            passed: 0.0,
+            lasts: lasts.max(goal.step_time()),
+        }
+    }
+
     /// Comes down where it is.
     fn plant(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
         let ball = goal.clip + self.offset.value;
-        let at = sole.at(ball, goal);
+        let at = sole.at_exactly(ball);
         self.settling = Spring {
             value: ball - at.ball,
             velocity: DVec3::new(0.0, self.offset.velocity.y.min(0.0), 0.0),
         };
+        self.landing = None;
         let below = sole.below(at.ball).unwrap_or(at.ball.y);
-        self.hold = Hold::Planted { at, below };
+        let heading = goal.heading + self.yaw.value;
+        self.hold = Hold::Planted { at, heading, below };
     }
 
-    fn stand(&mut self, goal: &FootGoal, at: &Footing, dt: f64) {
+    fn stand(&mut self, goal: &FootGoal, at: &Footing, heading: f64, dt: f64) {
         self.settling.step(DVec3::ZERO, SETTLES, dt);
         self.set(at.ball + self.settling.value - goal.clip, dt);
-        self.yaw.value -= goal.turned;
+        let yaw = nearest_turn(heading - goal.heading);
+        self.yaw = Spring {
+            value: yaw,
+            velocity: (yaw - self.yaw.value) / dt,
+        };
         self.lean(at.normal, LEANS, dt);
     }
 
     /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies between.
     fn swing(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
-        let lands = sole.at(goal.lands_at, goal);
+        let lands = self.landing(goal.lands_at + goal.shorter, goal, sole);
         let mut wanted = DVec3::new(0.0, lands.ball.y - goal.lands_at.y, 0.0);
-        let ball = goal.clip + self.offset.value;
-        let way = goal.lands_at - ball;
         // What lies between has to be passed in a share of the time: it wins if it takes more acceleration.
-        let (mut hardest, mut within) = (
-            pull(self.offset.value.y, self.offset.velocity.y, wanted.y, left),
-            left,
-        );
-        for share in [0.25, 0.5, 0.75] {
-            let Some(height) = sole.below(ball + way * share) else {
+        let ball = goal.clip + self.offset.value;
+        let way = goal.lands_at + goal.shorter - ball;
+        let now = [self.offset.value.y, self.offset.velocity.y];
+        let (mut hardest, mut within) = (pull(now, wanted.y, left), left);
+        for (share, clip) in SHARES.into_iter().zip(goal.ahead) {
+            let Some(height) = sole.highest(ball + way * share, lands.normal) else {
                 continue;
             };
-            let clip = goal.clip.y + (goal.lands_at.y - goal.clip.y) * share;
             let (offset, time) = (height + goal.ball_height - clip, (left * share).max(LEAST));
-            let pull = pull(self.offset.value.y, self.offset.velocity.y, offset, time);
-            if offset > self.offset.value.y && pull > hardest {
+            let pull = pull(now, offset, time);
+            if offset > now[0] && pull > hardest {
                 (hardest, within, wanted.y) = (pull, time, offset);
             }
         }
@@ -229,36 +327,51 @@ impl Foot {
             value: self.offset.value.y,
             velocity: self.offset.velocity.y,
         };
-        arrive(&mut up, wanted.y, within, dt);
+        arrive(&mut up, wanted.y, within, MOST_UP, dt);
         let mut level = Spring {
             value: self.offset.value.with_y(0.0),
             velocity: self.offset.velocity.with_y(0.0),
         };
-        arrive(&mut level, DVec3::ZERO, left, dt);
+        arrive(&mut level, goal.shorter, left, MOST_ASIDE, dt);
         self.offset = Spring {
             value: level.value.with_y(up.value),
             velocity: level.velocity.with_y(up.velocity),
         };
-        arrive(&mut self.yaw, 0.0, left, dt);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
         self.lean(lands.normal, LEANS.min(0.3 * left), dt);
-        // Never through the ground on its way.
+        // Out of the ground, as fast as may be felt.
         let ball = goal.clip + self.offset.value;
-        let least = sole.at(ball, goal).ball;
-        if ball.y < least.y {
-            self.set(self.offset.value + DVec3::Y * (least.y - ball.y), dt);
+        let least = sole
+            .below(ball)
+            .map_or(f64::NEG_INFINITY, |height| height + goal.ball_height);
+        if ball.y < least {
+            let out = (2.0 * MOST_UP * (least - ball.y)).sqrt();
+            let faster = (out - self.offset.velocity.y).clamp(0.0, MOST_UP * dt);
+            self.offset.velocity.y += faster;
+            self.offset.value.y += faster * dt;
         }
     }
 
     /// Comes down where its clip stands.
-    fn land(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
-        let goal = FootGoal {
-            lands_at: goal.clip,
-            ..*goal
+    fn land(
+        &mut self,
+        goal: &FootGoal,
+        sole: &Sole<'_>,
+        (mut ball, to, left): (Spring<DVec3>, Footing, f64),
+        dt: f64,
+    ) {
+        arrive(&mut ball, to.ball, left.max(LEAST), MOST_UP, dt);
+        self.set(ball.value - goal.clip, dt);
+        arrive(&mut self.yaw, 0.0, left.max(LEAST), MOST_TURN, dt);
+        self.lean(to.normal, LEANS, dt);
+        self.hold = Hold::Lands {
+            ball,
+            to,
+            left: left - dt,
         };
-        self.swing(&goal, sole, left.max(dt), dt);
-        self.hold = Hold::Lands { left: left - dt };
-        if left <= dt {
-            self.plant(&goal, sole);
+        // It takes longer than planned if it was fast.
+        if left <= dt && (ball.value - to.ball).length() < ARRIVED * goal.leg {
+            self.plant(goal, sole);
         }
     }
 
@@ -269,16 +382,34 @@ impl Foot {
         };
         let s = (step.passed / step.lasts).min(1.0);
         let share = s * s * s * (10.0 + s * (6.0 * s - 15.0));
-        let to = sole.at(goal.clip, goal);
-        let lift = STEP_HEIGHT * goal.leg * 16.0 * s * s * (1.0 - s) * (1.0 - s);
+        let to = step.to;
+        let hump = 4.0 * s * (1.0 - s);
+        let lift = step.lift * hump * hump * hump;
         let ball = step.from.lerp(to.ball, share) + DVec3::Y * lift;
         self.set(ball - goal.clip, dt);
         let left = (step.lasts - step.passed).max(LEAST);
-        arrive(&mut self.yaw, 0.0, left, dt);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
         self.lean(to.normal, LEANS, dt);
         self.hold = Hold::Steps(step);
         if s >= 1.0 {
             self.plant(goal, sole);
+        }
+    }
+
+    /// Where it would stand at a place, looked for anew only when that has moved on.
+    fn landing(&mut self, place: DVec3, goal: &FootGoal, sole: &Sole<'_>) -> Footing {
+        let is_near = |known: &Footing| {
+            let way = place - known.ball;
+            way.with_y(0.0).length() < SAME * goal.leg
+        };
+        let known = self
+            .landing
+            .filter(is_near)
+            .unwrap_or_else(|| sole.at(place));
+        self.landing = Some(known);
+        Footing {
+            ball: place.with_y(known.ball.y),
+            ..known
         }
     }
 
@@ -302,15 +433,33 @@ impl FootGoal {
 }
 
 /// The acceleration with which [`arrive`] begins.
-fn pull(value: f64, velocity: f64, goal: f64, left: f64) -> f64 {
+fn pull([value, velocity]: [f64; 2], goal: f64, left: f64) -> f64 {
     (goal - value) * (6.0 / (left * left)) - velocity * (4.0 / left)
 }
 
-/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time.
-fn arrive<T: clamber_animation::Springy>(spring: &mut Spring<T>, goal: T, left: f64, dt: f64) {
+/// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an acceleration allows.
+fn arrive<T: Bounded>(spring: &mut Spring<T>, goal: T, left: f64, most: f64, dt: f64) {
     let away = goal - spring.value;
     let acceleration = away * (6.0 / (left * left)) - spring.velocity * (4.0 / left);
+    let acceleration = acceleration.within(most);
     let dt = dt.min(left);
     spring.value = spring.value + spring.velocity * dt + acceleration * (0.5 * dt * dt);
     spring.velocity = spring.velocity + acceleration * dt;
+}
+
+/// What has a length that can be bounded.
+trait Bounded: clamber_animation::Springy {
+    fn within(self, most: f64) -> Self;
+}
+
+impl Bounded for f64 {
+    fn within(self, most: f64) -> Self {
+        self.clamp(-most, most)
+    }
+}
+
+impl Bounded for DVec3 {
+    fn within(self, most: f64) -> Self {
+        self.clamp_length_max(most)
+    }
 }

@@ -1,16 +1,29 @@
-use glam::DVec3;
+use clamber_surface::geometry::WorldCapsule;
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{FootGoal, Ground};
+use super::Ground;
+use crate::kind::SoleShape;
 
 /// The most that a foot leans on the ground, as a tangent: 30 degrees.
 const MOST_LEAN: f64 = 0.577;
 
+/// Radius of the capsules that stand for the sole, one along each strip, as a share of the sole's width.
+const RADIUS: f64 = 0.1;
+
+/// How far a capsule's ends stay within its strip, as a share of its radius.
+const INSET: f64 = 0.4;
+
+/// From where a sole is lowered to the ground, above the highest place below its corners, as a share of its length.
+const ABOVE: f64 = 0.8;
+
 /// The sole of a foot above the ground.
 pub(crate) struct Sole<'a> {
     pub(crate) ground: &'a Ground<'a>,
-    /// Heel and toe, right and left, relative to the ball, level, in world space.
-    pub(crate) corners: [DVec3; 4],
+    pub(crate) shape: &'a SoleShape,
+    /// From the model's axes at rest to the foot's heading in the world; and metres per unit.
+    pub(crate) turn: DQuat,
+    pub(crate) scale: f64,
 }
 
 /// Where a foot stands.
@@ -28,57 +41,119 @@ impl Sole<'_> {
         self.ground.below(place).map(|(height, _)| height)
     }
 
+    /// Height of the ground that a foot has to pass over at a place of its ball, if it leans to a normal: the highest of those
+    /// below ball, heel and toe. `None` if there is none.
+    pub(crate) fn highest(&self, place: DVec3, normal: DVec3) -> Option<f64> {
+        let [back_right, back_left, front_right, front_left] = self.shape.corners;
+        let ends = [
+            DVec3::ZERO,
+            0.5 * (back_right + back_left),
+            0.5 * (front_right + front_left),
+        ];
+        let heights = ends.iter().filter_map(|end| {
+            let end = self.in_world(*end);
+            let rise = -(normal.x * end.x + normal.z * end.z) / normal.y.max(0.1);
+            Some(self.below(place + end)? - rise)
+        });
+        heights.max_by(f64::total_cmp)
+    }
+
     /// False in empty space, where feet stand on nothing.
     pub(crate) fn has_ground(&self) -> bool {
         !self.ground.terrain.is_empty()
     }
 
-    /// Where a foot stands with its ball above or below a place; at that place if there is no ground.
-    pub(crate) fn at(&self, place: DVec3, goal: &FootGoal) -> Footing {
-        let (height, normal) = self
-            .plane(place)
-            .unwrap_or((place.y - goal.ball_height, DVec3::Y));
+    /// Where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as the
+    /// ground below its corners does, and is lowered until it touches.
+    pub(crate) fn at(&self, place: DVec3) -> Footing {
+        let Some(middle) = self.below(place) else {
+            return Footing {
+                ball: place,
+                normal: DVec3::Y,
+            };
+        };
+        let corners = self.shape.corners.map(|corner| self.in_world(corner));
+        let heights = corners.map(|corner| self.below(place + corner).unwrap_or(middle));
+        let ball_height = self.shape.ball_height * self.scale;
+        let normal = lean(&corners, heights);
+        let highest = heights.iter().copied().fold(middle, f64::max);
+        let lowest = heights.iter().copied().fold(middle, f64::min);
+        let length = self.shape.size()[1] * self.scale;
+        let above = place.with_y(highest + ABOVE * length + ball_height);
+        let far = above.y - lowest + ball_height;
+        let drop = self
+            .lower(above, normal, far)
+            .unwrap_or(above.y - middle - ball_height / normal.y);
         Footing {
-            ball: DVec3::new(place.x, height + goal.ball_height, place.z),
+            ball: above - DVec3::Y * drop,
             normal,
         }
     }
 
-    /// The plane that carries the foot: its height below the ball, and its normal. It touches the ground at the highest
-    /// place and leans as the corners do.
-    fn plane(&self, ball: DVec3) -> Option<(f64, DVec3)> {
-        let middle = self.below(ball)?;
-        let corners = &self.corners;
-        let heights = corners.map(|corner| self.below(ball + corner).unwrap_or(middle));
-        let [back_right, back_left, front_right, front_left] = heights;
-        // Least squares over a rectangle: differences of the means of its sides.
-        let [a, b, c] = [corners[0], corners[1], corners[2]];
-        let (across, along) = (b - a, c - a);
-        let slope = |rise: f64, side: DVec3| {
-            let length = side.length();
-            if length > 1e-6 {
-                (rise / length).clamp(-MOST_LEAN, MOST_LEAN)
+    /// Where a foot stands, to the last bump: for the moment in which it comes down.
+    pub(crate) fn at_exactly(&self, place: DVec3) -> Footing {
+        let Footing { ball, normal } = self.at(place);
+        let lean = DQuat::from_rotation_arc(DVec3::Y, normal);
+        let rises = self.shape.points.iter().filter_map(|point| {
+            let place = ball + lean * self.in_world(*point);
+            Some(self.below(place)? - place.y)
+        });
+        let rise = rises.fold(f64::NEG_INFINITY, f64::max);
+        Footing {
+            ball: if rise.is_finite() {
+                ball + DVec3::Y * rise
             } else {
-                0.0
-            }
-        };
-        let lean_across = slope(
-            0.5 * (back_left + front_left - back_right - front_right),
-            across,
-        );
-        let lean_along = slope(
-            0.5 * (front_right + front_left - back_right - back_left),
-            along,
-        );
-        let (across, along) = (across.normalize_or(DVec3::X), along.normalize_or(DVec3::Z));
-        let rise =
-            |corner: DVec3| lean_across * corner.dot(across) + lean_along * corner.dot(along);
-        let above = corners
-            .iter()
-            .zip(heights)
-            .map(|(corner, height)| height - rise(*corner));
-        let height = above.fold(middle, f64::max);
-        let normal = (DVec3::Y - across * lean_across - along * lean_along).normalize_or(DVec3::Y);
-        Some((height, normal))
+                ball
+            },
+            normal,
+        }
     }
+
+    fn in_world(&self, place: DVec3) -> DVec3 {
+        self.turn * (place * self.scale)
+    }
+
+    /// How far a leaning foot sinks from a place of its ball until it touches the ground; `None` if it does not.
+    fn lower(&self, ball: DVec3, normal: DVec3, far: f64) -> Option<f64> {
+        let lean = DQuat::from_rotation_arc(DVec3::Y, normal);
+        let [width, length] = self.shape.size().map(|side| side * self.scale);
+        let radius = (RADIUS * width).min(0.45 * length);
+        let drops = self.shape.strips.iter().filter_map(|[from, to]| {
+            let way = *to - *from;
+            let inset =
+                way.normalize_or_zero() * (INSET * radius / self.scale).min(0.45 * way.length());
+            let ends = [*from + inset, *to - inset].map(|end| {
+                let end = end - DVec3::Y * self.shape.ball_height;
+                ball + lean * self.in_world(end) + normal * radius
+            });
+            self.ground.lower(&WorldCapsule { ends, radius }, far)
+        });
+        drops.min_by(f64::total_cmp)
+    }
+}
+
+/// The normal of the plane through heights below the corners, by least squares over a rectangle: differences of the
+/// means of its sides.
+fn lean(corners: &[DVec3; 4], heights: [f64; 4]) -> DVec3 {
+    let [back_right, back_left, front_right, front_left] = heights;
+    let [a, b, c, _] = *corners;
+    let (across, along) = (b - a, c - a);
+    let slope = |rise: f64, side: DVec3| {
+        let length = side.length();
+        if length > 1e-6 {
+            (rise / length).clamp(-MOST_LEAN, MOST_LEAN)
+        } else {
+            0.0
+        }
+    };
+    let lean_across = slope(
+        0.5 * (back_left + front_left - back_right - front_right),
+        across,
+    );
+    let lean_along = slope(
+        0.5 * (front_right + front_left - back_right - back_left),
+        along,
+    );
+    let (across, along) = (across.normalize_or(DVec3::X), along.normalize_or(DVec3::Z));
+    (DVec3::Y - across * lean_across - along * lean_along).normalize_or(DVec3::Y)
 }

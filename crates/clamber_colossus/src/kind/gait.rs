@@ -18,7 +18,8 @@ pub(crate) struct Gait {
     /// Radians a second.
     pub(crate) turn_rate: f64,
     pub(crate) steer_rate: f64,
-    /// Of each leg, when it stands in the walk, and in the turns.
+    /// Of each leg, when it stands in the clips of standing, walking and turning.
+    pub(crate) idle_contacts: Vec<Contacts>,
     pub(crate) walk_contacts: Vec<Contacts>,
     pub(crate) turn_contacts: [Vec<Contacts>; 2],
 }
@@ -79,6 +80,7 @@ impl Gait {
             turn,
             turn_rate,
             steer_rate: file.steer_deg.to_radians(),
+            idle_contacts: contacts(idle, [0.0, 0.0])?,
             walk_contacts: contacts(walk, [speed, 0.0])?,
             turn_contacts,
         })

@@ -2,9 +2,10 @@ use clamber_animation::ik::TwoBone;
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::{Clip, JointId, Playback, Pose};
 use clamber_surface::mesh::ColliderMesh;
-use glam::DVec3;
+use glam::{DAffine3, DQuat, DVec3};
 
 use super::file::{Knee, LegFile};
+use super::sole::SoleShape;
 use super::{Names, whole};
 use crate::error::ColossusError;
 
@@ -29,10 +30,11 @@ pub(crate) struct Leg {
     pub(crate) ball: JointId,
     /// Length of thigh and shin together.
     pub(crate) length: f64,
-    /// Height of the ball above the sole at rest.
-    pub(crate) ball_height: f64,
-    /// The sole's corners at rest, relative to the ball: heel and toe, right and left; level.
-    pub(crate) sole: [DVec3; 4],
+    /// Rotation of the ankle at rest, in model space, when the sole is level; and from the ball to the ankle, in the
+    /// ankle's space.
+    pub(crate) level: DQuat,
+    pub(crate) from_ball: DVec3,
+    pub(crate) sole: SoleShape,
 }
 
 /// When a foot stands in a clip: from and to, seconds, in ascending order. In a loop the last may end after the clip's
@@ -40,8 +42,8 @@ pub(crate) struct Leg {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contacts {
     spans: Vec<[f64; 2]>,
-    /// Of each span, where its ball is when it begins, in model space.
-    places: Vec<DVec3>,
+    /// Where the ball is, in model space, at times that are evenly spread from the clip's beginning to its end.
+    balls: Vec<DVec3>,
     duration: f64,
     loops: bool,
 }
@@ -75,42 +77,18 @@ impl Leg {
             joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)
         };
         let at = place(ball);
-        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
-        let moves = |joint: JointId| skeleton.is_descendant_or_self(joint, ankle);
-        let foot: Vec<DVec3> = (mesh.positions().iter().enumerate())
-            .filter(|(vertex, _)| {
-                let influences = mesh.influences(clamber_surface::mesh::VertexId(*vertex as u32));
-                let share: f32 = influences
-                    .filter(|(joint, _)| moves(*joint))
-                    .map(|(_, weight)| weight)
-                    .sum();
-                share > 0.5
-            })
-            .map(|(_, position)| position.as_dvec3())
-            .collect();
         let length: f64 = lengths.iter().sum();
-        let lowest = foot.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        // The sole: the skin of the foot near its lowest point.
-        for p in foot.iter().filter(|p| p.y < lowest + 0.05 * length) {
-            (low, high) = (low.min(*p), high.max(*p));
-        }
-        if !low.is_finite() {
-            (low, high) = (at, at);
-        }
-        let corner = |x: f64, z: f64| DVec3::new(x - at.x, 0.0, z - at.z);
+        let level = joint_in_model(skeleton, &rest, ankle)
+            .map_or(DQuat::IDENTITY, |frame| rotation_of(&frame));
         Ok(Self {
             ik,
             hip: joints[0],
             ankle,
             ball,
+            level,
+            from_ball: level.conjugate() * (place(ankle) - at),
             length,
-            ball_height: at.y - low.y,
-            sole: [
-                corner(low.x, low.z),
-                corner(high.x, low.z),
-                corner(low.x, high.z),
-                corner(high.x, high.z),
-            ],
+            sole: SoleShape::new(skeleton, mesh, ankle, at, length),
         })
     }
 
@@ -171,18 +149,18 @@ impl Leg {
                 last[1] = duration + first[1];
             }
         }
-        let sample = |time: f64| ((time / step.max(1e-9)).round() as usize).min(count);
-        let places = spans
-            .iter()
-            .map(|[from, _]| places[sample(*from)])
-            .collect();
         Ok(Contacts {
             spans,
-            places,
+            balls: places,
             duration,
             loops,
         })
     }
+}
+
+/// The rotation of a frame, whatever its scale.
+pub(crate) fn rotation_of(frame: &DAffine3) -> DQuat {
+    frame.to_scale_rotation_translation().1
 }
 
 impl Contacts {
@@ -211,8 +189,21 @@ impl Contacts {
         };
         let waits = self.spans.iter().map(|[from, _]| ahead(*from));
         waits
-            .zip(self.places.iter().copied())
+            .zip(&self.spans)
             .filter(|(wait, _)| *wait >= 0.0)
             .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(wait, [from, _])| (wait, self.ball(*from)))
+    }
+
+    /// Where the ball is at a time of the clip, in model space, to the nearest sample.
+    pub(crate) fn ball(&self, time: f64) -> DVec3 {
+        let last = self.balls.len().saturating_sub(1);
+        let index = (time / self.duration.max(1e-9) * last as f64).round() as usize;
+        self.balls.get(index.min(last)).copied().unwrap_or_default()
+    }
+
+    /// Length of the clip, seconds.
+    pub(crate) fn duration(&self) -> f64 {
+        self.duration
     }
 }

@@ -4,6 +4,7 @@ mod file;
 mod gait;
 mod leg;
 mod plate;
+mod sole;
 mod strikes;
 
 use std::sync::Arc;
@@ -16,8 +17,9 @@ use glam::DVec3;
 
 pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
 pub(crate) use gait::Gait;
-pub(crate) use leg::{Contacts, Leg};
+pub(crate) use leg::{Contacts, Leg, rotation_of};
 pub use plate::Plate;
+pub(crate) use sole::SoleShape;
 pub(crate) use strikes::Strike;
 
 use crate::brain::{Act, Attack, Brain, BrainError, BrainProblem, BrainReport, StateId, list};

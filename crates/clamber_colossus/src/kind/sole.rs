@@ -1,0 +1,147 @@
+use clamber_animation::rig::{JointId, Skeleton};
+use clamber_surface::mesh::{ColliderMesh, VertexId};
+use glam::DVec3;
+
+/// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
+const THICK: f64 = 0.02;
+
+/// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with it.
+const RIGID: f32 = 0.99;
+
+/// Strips into which a sole is cut, from heel to toe; and rows and columns of points on it, of which those at the edge lie
+/// within it by a share of its size.
+const STRIPS: usize = 13;
+const POINTS: [usize; 2] = [17, 25];
+const EDGE: f64 = 0.01;
+
+/// The sole of a foot at rest, in the model's axes and units, relative to the foot's ball, level.
+#[derive(Clone, Debug)]
+pub(crate) struct SoleShape {
+    /// Heel and toe, right and left, of a rectangle around it.
+    pub(crate) corners: [DVec3; 4],
+    /// Where the skin of each strip begins and ends, along its middle.
+    pub(crate) strips: Vec<[DVec3; 2]>,
+    /// Points of its skin, evenly spread.
+    pub(crate) points: Vec<DVec3>,
+    /// Height of the ball above the lowest skin.
+    pub(crate) ball_height: f64,
+}
+
+impl SoleShape {
+    /// The sole of the skin that moves with an ankle. `ball` is the ball's place at rest.
+    pub(crate) fn new(
+        skeleton: &Skeleton,
+        mesh: &ColliderMesh,
+        ankle: JointId,
+        ball: DVec3,
+        leg: f64,
+    ) -> Self {
+        let moves = |vertex: VertexId| {
+            let influences = mesh.influences(vertex);
+            let ours =
+                influences.filter(|(joint, _)| skeleton.is_descendant_or_self(*joint, ankle));
+            ours.map(|(_, weight)| weight).sum::<f32>() > RIGID
+        };
+        let places: Vec<Option<DVec3>> = (mesh.positions().iter().enumerate())
+            .map(|(index, place)| moves(VertexId(index as u32)).then(|| place.as_dvec3() - ball))
+            .collect();
+        let lowest = places
+            .iter()
+            .flatten()
+            .map(|p| p.y)
+            .fold(f64::INFINITY, f64::min);
+        let is_low = |p: &DVec3| p.y < lowest + THICK * leg;
+        let (mut low, mut high) = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
+        for p in places.iter().flatten().filter(|p| is_low(p)) {
+            (low, high) = (low.min(*p), high.max(*p));
+        }
+        if !low.is_finite() {
+            (low, high) = (DVec3::ZERO, DVec3::ZERO);
+        }
+        let triangles: Vec<[DVec3; 3]> = (mesh.triangles().iter())
+            .filter_map(|triangle| {
+                let corners = triangle.map(|vertex| places[vertex.0 as usize].filter(is_low));
+                Some([corners[0]?, corners[1]?, corners[2]?])
+            })
+            .collect();
+        let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+        let strips = (0..STRIPS)
+            .filter_map(|strip| {
+                let x = low.x + (high.x - low.x) * (strip as f64 + 0.5) / STRIPS as f64;
+                let [from, to] = cut(&triangles, x)?;
+                Some([corner(x, from), corner(x, to)])
+            })
+            .collect();
+        Self {
+            corners: [
+                corner(low.x, low.z),
+                corner(high.x, low.z),
+                corner(low.x, high.z),
+                corner(high.x, high.z),
+            ],
+            strips,
+            points: spread(&triangles, low, high),
+            ball_height: -low.y,
+        }
+    }
+
+    /// Width and length.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        let way = self.corners[3] - self.corners[0];
+        [way.x, way.z]
+    }
+}
+
+/// Where triangles begin and end along Z at some X; `None` if there are none.
+fn cut(triangles: &[[DVec3; 3]], x: f64) -> Option<[f64; 2]> {
+    let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+    for corners in triangles {
+        for side in 0..3 {
+            let (a, b) = (corners[side], corners[(side + 1) % 3]);
+            if (a.x - x) * (b.x - x) > 0.0 || a.x == b.x {
+                continue;
+            }
+            let z = a.z + (b.z - a.z) * (x - a.x) / (b.x - a.x);
+            (from, to) = (from.min(z), to.max(z));
+        }
+    }
+    (from <= to).then_some([from, to])
+}
+
+/// Points on triangles, in rows and columns over X and Z; of several triangles there, on the lowest one.
+fn spread(triangles: &[[DVec3; 3]], low: DVec3, high: DVec3) -> Vec<DVec3> {
+    let share =
+        |index: usize, count: usize| EDGE + (1.0 - 2.0 * EDGE) * index as f64 / (count - 1) as f64;
+    let mut points = Vec::new();
+    for row in 0..POINTS[0] {
+        for column in 0..POINTS[1] {
+            let x = low.x + (high.x - low.x) * share(row, POINTS[0]);
+            let z = low.z + (high.z - low.z) * share(column, POINTS[1]);
+            let heights = triangles
+                .iter()
+                .filter_map(|corners| height_at(corners, x, z));
+            let lowest = heights.fold(f64::INFINITY, f64::min);
+            if lowest.is_finite() {
+                points.push(DVec3::new(x, lowest, z));
+            }
+        }
+    }
+    // Corners of triangles stand out between the rows.
+    points.extend(triangles.iter().flatten());
+    points.sort_by(|a, b| {
+        (a.x, a.z, a.y)
+            .partial_cmp(&(b.x, b.z, b.y))
+            .unwrap_or(core::cmp::Ordering::Equal)
+    });
+    points.dedup();
+    points
+}
+
+/// Height of a triangle above X and Z; `None` beside it.
+fn height_at([a, b, c]: &[DVec3; 3], x: f64, z: f64) -> Option<f64> {
+    let side = |p: &DVec3, q: &DVec3| (q.x - p.x) * (z - p.z) - (q.z - p.z) * (x - p.x);
+    let (u, v, w) = (side(b, c), side(c, a), side(a, b));
+    let area = u + v + w;
+    let is_inside = area != 0.0 && [u, v, w].iter().all(|part| part * area >= 0.0);
+    is_inside.then(|| (u * a.y + v * b.y + w * c.y) / area)
+}

