@@ -82,12 +82,11 @@ def _values(keys, grid, cycle=None):
     grid = np.clip(grid, times[0], times[-1])
     index = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(times) - 2)
     result = _cubic(grid, times[index], times[index + 1], values[index], values[index + 1], after[index], before[index + 1])
-    if not cycle:
-        for number, rise in enumerate(np.diff(values)):
-            if number == 0 or values[number] == values[number - 1] or hits[number]:
-                there = index == number
-                part = (times[number], times[number + 1], rise, before[number + 1])
-                result[there] = values[number] + _departed(grid[there], *part)
+    flat = np.concatenate([[values[-1] == values[-2] if cycle else True], np.diff(values)[:-1] == 0.0])
+    for number in np.flatnonzero(flat | hits[:-1]):
+        there = index == number
+        part = (times[number], times[number + 1], values[number + 1] - values[number], before[number + 1])
+        result[there] = values[number] + _departed(grid[there], *part)
     return result
 
 

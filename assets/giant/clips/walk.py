@@ -68,7 +68,7 @@ def turn_left():
         channels |= _turning_foot(side, sign, start)
         channels |= {
             f"foot.z.{side}": [(start, 0), (off, 0), (off + 0.3 * swing, 0.8), (off + 0.62 * swing, 1.3), (off + 0.85 * swing, 0.5)],
-            f"foot.pitch.{side}": [(start, 0), (start + 0.8 * t * STANCE, 0), (off, 8), (off + 0.35 * swing, 16), (off + 0.8 * swing, -3)],
+            f"foot.pitch.{side}": [(start, 0), (start + 0.68 * t * STANCE, 0), (off, 9), (off + 0.35 * swing, 16), (off + 0.8 * swing, -3)],
         }
     steps = [("step_left", 0.0), ("step_right", t / 2)]
     return Table(t, channels, loops=True, markers=steps, turn=TURN_RATE)
