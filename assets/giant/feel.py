@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import motion, soles
+from . import motion, rideable, soles
 from .clips import RATE
 from .signs import SIGNS
 from .skeleton import HEADS, JOINTS, TAILS
@@ -39,6 +39,7 @@ def check(clip, points, weights, fur):
         assert low > -DEEPEST and slip < MOST_SLIP, clip.name
     if clip.name != "breathe":
         assert pull < START_PULL, clip.name
+    rideable.check(clip)
     for sign in SIGNS:
         if MEANT[sign.name] == clip.name or clip.name == "rage":
             throw, tiring, held, grip = ride(clip, sign, points, weights, fur)
