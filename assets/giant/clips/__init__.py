@@ -93,7 +93,7 @@ def _hold_up(tracks, points, weights):
     Arms go sideways while the trunk is upright, backwards while it lies on its front.
     """
     legs, arms = soles.share(weights, LEGS), [soles.share(weights, ARMS, side) for side in (".L", ".R")]
-    trunk = (legs < 0.5) & (arms[0] < 0.5) & (arms[1] < 0.5)
+    trunk = (legs < soles.ANKLE_SHARE) & (arms[0] < 0.5) & (arms[1] < 0.5)
 
     def depths(part):
         return -DEEPEST - motion.skinned(points[part], weights[part], motion.posed(tracks))[:, :, 2].min(axis=1)

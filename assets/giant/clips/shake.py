@@ -25,74 +25,74 @@ def shake_loop():
 
 def shrug():
     """Rolls its shoulders: a mild shake of the upper back."""
-    t, start, end = 2.2, 0.65, 1.7
+    t, start, end = 2.26, 0.71, 1.76
     roll = lambda size, late=0.0: burst(start - 0.15, end + 0.15, size, 1.6, late, 0.5, 0.5)
     return Table(t, {
-        "pelvis.z": [(0, 0), (0.6, -0.35), (1.7, -0.3), (t, 0)],
-        "spine.pitch": [(0, 0), (0.65, 5), (1.7, 4), (t, 0)], "spine.yaw": roll(2.2), "spine.roll": roll(1.4, 0.2),
-        "chest.yaw": roll(2.0, 0.1), "neck.yaw": roll(-2.5, 0.2), "neck.pitch": [(0, 0), (0.65, 5), (1.6, 4), (t, 0)],
-        "head.yaw": roll(-3.0, 0.25), "head.pitch": [(0, 0), (0.65, 6), (1.6, 4), (t, 0)], "head.roll": roll(3.0, 0.3),
-        "jaw": [(0, 0), (1.0, 5), (t, 0)],
-        "shoulder.lift.L": ([(0, 0), (0.7, 6), (1.6, 5), (t, 0)], roll(5.0)), "shoulder.lift.R": ([(0, 0), (0.7, 6), (1.6, 5), (t, 0)], roll(-5.0)),
+        "pelvis.z": [(0, 0), (0.66, -0.35), (1.76, -0.3), (t, 0)],
+        "spine.pitch": [(0, 0), (0.71, 5), (1.76, 4), (t, 0)], "spine.yaw": roll(2.2), "spine.roll": roll(1.4, 0.2),
+        "chest.yaw": roll(2.0, 0.1), "neck.yaw": roll(-2.5, 0.2), "neck.pitch": [(0, 0), (0.71, 5), (1.66, 4), (t, 0)],
+        "head.yaw": roll(-3.0, 0.25), "head.pitch": [(0, 0), (0.71, 6), (1.66, 4), (t, 0)], "head.roll": roll(3.0, 0.3),
+        "jaw": [(0, 0), (1.06, 5), (t, 0)],
+        "shoulder.lift.L": ([(0, 0), (0.76, 6), (1.66, 5), (t, 0)], roll(5.0)), "shoulder.lift.R": ([(0, 0), (0.76, 6), (1.66, 5), (t, 0)], roll(-5.0)),
         "shoulder.forward.L": roll(6.0, 0.25), "shoulder.forward.R": roll(-6.0, 0.25),
-        "arm.swing.L": roll(4.0, 0.3), "arm.swing.R": roll(-4.0, 0.3), **both("arm.out", [(0, 0), (0.8, 6), (1.6, 6), (t, 0)]),
-        **both("elbow", [(0, 0), (0.8, 10), (1.6, 10), (t, 0)]), **both("curl", [(0, 0), (0.9, 10), (t, 0)]),
+        "arm.swing.L": roll(4.0, 0.3), "arm.swing.R": roll(-4.0, 0.3), **both("arm.out", [(0, 0), (0.86, 6), (1.66, 6), (t, 0)]),
+        **both("elbow", [(0, 0), (0.86, 10), (1.66, 10), (t, 0)]), **both("curl", [(0, 0), (0.96, 10), (t, 0)]),
     }, markers=strike(start, end))
 
 
 def shake():
     """Crouches and breathes in, then shakes the whole body like a wet dog."""
-    t, start, end = 3.55, 0.75, 2.75
+    t, start, end = 3.59, 0.79, 2.79
     rattle = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.5, late, 0.9, 0.9)
     quick = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 3.0, late, 0.9, 0.9)
     return Table(t, {
-        "pelvis.z": ([(0, 0), (0.75, -1.3), (1.35, -0.9), (2.55, -0.9), (3.05, -0.6), (t, 0)], quick(0.05)),
-        "pelvis.x": rattle(0.12, 0.5), "pelvis.y": [(0, 0), (0.85, 0.3), (2.65, 0.3), (t, 0)],
-        "pelvis.yaw": rattle(2.0), "pelvis.pitch": [(0, 0), (0.75, 5), (2.65, 4), (t, 0)],
-        "spine.pitch": [(0, 0), (0.75, 9), (1.45, 6), (2.65, 6), (t, 0)], "spine.yaw": rattle(8.0, 0.04), "spine.roll": rattle(0.8, 0.2),
-        "breath": [(0, 0), (0.75, 4), (1.55, 0), (2.75, -1.5), (t, 0)],
-        "neck.yaw": rattle(7.0, 0.15), "neck.pitch": [(0, 0), (0.75, 8), (1.55, 4), (2.65, 4), (t, 0)], "neck.roll": rattle(4.0, 0.2),
-        "head.yaw": rattle(11.0, 0.2), "head.roll": rattle(8.0, 0.3), "head.pitch": [(0, 0), (0.75, 9), (1.55, 0), (2.75, 2), (t, 0)],
-        "jaw": ([(0, 0), (0.75, 2), (1.45, 14), (2.55, 12), (t, 0)], quick(5.0, 0.2)),
-        "arm.swing.L": ([(0, 0), (0.95, 6), (2.65, 6), (t, 0)], rattle(9.0, 0.2)), "arm.swing.R": ([(0, 0), (0.95, 6), (2.65, 6), (t, 0)], rattle(-9.0, 0.2)),
-        **both("arm.out", [(0, 0), (0.75, 6), (1.35, 17), (2.55, 15), (3.05, 4), (t, 0)]), **both("elbow", ([(0, 0), (0.85, 26), (2.65, 24), (t, 0)], rattle(6.0, 0.3))),
-        **both("curl", [(0, 0), (0.85, 18), (2.65, 16), (t, 0)]), **both("wrist", rattle(7.0, 0.4)),
+        "pelvis.z": ([(0, 0), (0.79, -1.3), (1.39, -0.9), (2.59, -0.9), (3.09, -0.6), (t, 0)], quick(0.05)),
+        "pelvis.x": rattle(0.12, 0.5), "pelvis.y": [(0, 0), (0.89, 0.3), (2.69, 0.3), (t, 0)],
+        "pelvis.yaw": rattle(2.0), "pelvis.pitch": [(0, 0), (0.79, 5), (2.69, 4), (t, 0)],
+        "spine.pitch": [(0, 0), (0.79, 9), (1.49, 6), (2.69, 6), (t, 0)], "spine.yaw": rattle(8.0, 0.04), "spine.roll": rattle(0.8, 0.2),
+        "breath": [(0, 0), (0.79, 4), (1.59, 0), (2.79, -1.5), (t, 0)],
+        "neck.yaw": rattle(7.0, 0.15), "neck.pitch": [(0, 0), (0.79, 8), (1.59, 4), (2.69, 4), (t, 0)], "neck.roll": rattle(4.0, 0.2),
+        "head.yaw": rattle(11.0, 0.2), "head.roll": rattle(8.0, 0.3), "head.pitch": [(0, 0), (0.79, 9), (1.59, 0), (2.79, 2), (t, 0)],
+        "jaw": ([(0, 0), (0.79, 2), (1.49, 14), (2.59, 12), (t, 0)], quick(5.0, 0.2)),
+        "arm.swing.L": ([(0, 0), (0.99, 6), (2.69, 6), (t, 0)], rattle(9.0, 0.2)), "arm.swing.R": ([(0, 0), (0.99, 6), (2.69, 6), (t, 0)], rattle(-9.0, 0.2)),
+        **both("arm.out", [(0, 0), (0.79, 6), (1.39, 17), (2.59, 15), (3.09, 4), (t, 0)]), **both("elbow", ([(0, 0), (0.89, 26), (2.69, 24), (t, 0)], rattle(6.0, 0.3))),
+        **both("curl", [(0, 0), (0.89, 18), (2.69, 16), (t, 0)]), **both("wrist", rattle(7.0, 0.4)),
         "shoulder.lift.L": rattle(2.0, 0.2), "shoulder.lift.R": rattle(-2.0, 0.2),
-        "loin.front": [(0, 0), (0.85, -6), (2.65, -6), (t, 0)], "loin.side": rattle(9.0, 0.15),
+        "loin.front": [(0, 0), (0.89, -6), (2.69, -6), (t, 0)], "loin.side": rattle(9.0, 0.15),
     }, markers=strike(start, end))
 
 
 def shake_head():
     """Head and neck alone: the head rolls about a line below the crown, and swings to the sides."""
-    t, start, end = 2.72, 0.62, 2.22
+    t, start, end = 2.8, 0.7, 2.3
     rattle = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.7, late, 0.7, 0.7)
     return Table(t, {
-        "pelvis.z": [(0, 0), (0.62, -0.5), (2.12, -0.4), (t, 0)], "spine.pitch": [(0, 0), (0.62, 4), (2.12, 3), (t, 0)],
+        "pelvis.z": [(0, 0), (0.7, -0.5), (2.2, -0.4), (t, 0)], "spine.pitch": [(0, 0), (0.7, 4), (2.2, 3), (t, 0)],
         "spine.yaw": rattle(-1.0, 0.1), "chest.roll": rattle(-0.3, 0.1),
-        "neck.pitch": [(0, 0), (0.62, 10), (1.32, 5), (2.22, 4), (t, 0)], "neck.roll": rattle(-2.0), "neck.yaw": rattle(4.0, 0.1),
-        "head.pitch": [(0, 0), (0.62, 10), (1.32, 2), (2.22, 2), (t, 0)], "head.roll": rattle(10.0), "head.yaw": rattle(14.0, 0.25),
-        "jaw": ([(0, 0), (0.62, 2), (1.32, 12), (2.12, 10), (t, 0)], rattle(5.0, 0.3)),
-        "shoulder.lift.L": ([(0, 0), (0.72, 4), (2.12, 3), (t, 0)], rattle(1.0, 0.2)), "shoulder.lift.R": ([(0, 0), (0.72, 4), (2.12, 3), (t, 0)], rattle(-1.0, 0.2)),
-        **both("arm.out", [(0, 0), (0.92, 7), (2.12, 6), (t, 0)]), **both("elbow", [(0, 0), (0.92, 12), (2.12, 10), (t, 0)]),
+        "neck.pitch": [(0, 0), (0.7, 10), (1.4, 5), (2.3, 4), (t, 0)], "neck.roll": rattle(-2.0), "neck.yaw": rattle(4.0, 0.1),
+        "head.pitch": [(0, 0), (0.7, 10), (1.4, 2), (2.3, 2), (t, 0)], "head.roll": rattle(10.0), "head.yaw": rattle(14.0, 0.25),
+        "jaw": ([(0, 0), (0.7, 2), (1.4, 12), (2.2, 10), (t, 0)], rattle(5.0, 0.3)),
+        "shoulder.lift.L": ([(0, 0), (0.8, 4), (2.2, 3), (t, 0)], rattle(1.0, 0.2)), "shoulder.lift.R": ([(0, 0), (0.8, 4), (2.2, 3), (t, 0)], rattle(-1.0, 0.2)),
+        **both("arm.out", [(0, 0), (1.0, 7), (2.2, 6), (t, 0)]), **both("elbow", [(0, 0), (1.0, 12), (2.2, 10), (t, 0)]),
     }, markers=strike(start, end))
 
 
 def shake_arm_left():
     """Draws the left arm in, looks at it, and flings it out."""
-    t, start, end = 3.03, 0.88, 2.33
+    t, start, end = 3.09, 0.94, 2.39
     fling = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.7, late, 0.6, 0.6)
     return Table(t, {
-        "pelvis.x": ([(0, 0), (0.83, -0.5), (2.23, -0.4), (t, 0)], fling(0.12, 0.1)), "pelvis.z": [(0, 0), (0.83, -0.6), (2.23, -0.5), (t, 0)],
-        "pelvis.yaw": [(0, 0), (0.83, 3), (2.23, 2), (t, 0)],
-        "spine.yaw": ([(0, 0), (0.83, 5), (2.33, 4), (t, 0)], fling(1.5, 0.1)), "spine.roll": ([(0, 0), (0.83, -3), (2.23, -4), (t, 0)], fling(0.8, 0.2)),
-        "spine.pitch": [(0, 0), (0.83, 5), (2.23, 3), (t, 0)],
-        "neck.yaw": [(0, 0), (0.78, 14), (2.23, 12), (t, 0)], "head.yaw": ([(0, 0), (0.73, 16), (2.23, 14), (t, 0)], fling(3.0, 0.3)),
-        "head.pitch": [(0, 0), (0.83, 8), (2.23, 6), (t, 0)], "jaw": [(0, 0), (1.43, 10), (t, 0)],
-        "shoulder.lift.L": ([(0, 0), (0.93, 7), (2.23, 6), (t, 0)], fling(1.5)), "shoulder.forward.L": [(0, 0), (0.93, 6), (2.23, 4), (t, 0)],
-        "arm.swing.L": ([(0, 0), (0.93, 24), (1.63, 32), (2.33, 28), (t, 0)], fling(-3.0, 0.1)), "arm.out.L": ([(0, 0), (0.93, 22), (1.63, 34), (2.33, 30), (t, 0)], fling(3.0, 0.05)),
-        "elbow.L": ([(0, 0), (0.88, 52), (1.53, 36), (2.33, 30), (2.73, 8), (t, 0)], fling(12.0)), "forearm.in.L": fling(5.0, 0.2),
-        "wrist.L": ([(0, 0), (0.93, 14), (2.33, 4), (t, 0)], fling(22.0, 0.2)), "curl.L": ([(0, 0), (0.93, 34), (1.53, 6), (2.33, 8), (t, 0)], fling(16.0, 0.3)),
-        "arm.swing.R": [(0, 0), (0.93, -6), (2.23, -6), (t, 0)], "arm.out.R": [(0, 0), (0.93, 10), (2.23, 10), (t, 0)], "elbow.R": [(0, 0), (0.93, 16), (2.23, 16), (t, 0)],
+        "pelvis.x": ([(0, 0), (0.89, -0.5), (2.29, -0.4), (t, 0)], fling(0.12, 0.1)), "pelvis.z": [(0, 0), (0.89, -0.6), (2.29, -0.5), (t, 0)],
+        "pelvis.yaw": [(0, 0), (0.89, 3), (2.29, 2), (t, 0)],
+        "spine.yaw": ([(0, 0), (0.89, 5), (2.39, 4), (t, 0)], fling(1.5, 0.1)), "spine.roll": ([(0, 0), (0.89, -3), (2.29, -4), (t, 0)], fling(0.8, 0.2)),
+        "spine.pitch": [(0, 0), (0.89, 5), (2.29, 3), (t, 0)],
+        "neck.yaw": [(0, 0), (0.84, 14), (2.29, 12), (t, 0)], "head.yaw": ([(0, 0), (0.79, 16), (2.29, 14), (t, 0)], fling(3.0, 0.3)),
+        "head.pitch": [(0, 0), (0.89, 8), (2.29, 6), (t, 0)], "jaw": [(0, 0), (1.49, 10), (t, 0)],
+        "shoulder.lift.L": ([(0, 0), (0.99, 7), (2.29, 6), (t, 0)], fling(1.5)), "shoulder.forward.L": [(0, 0), (0.99, 6), (2.29, 4), (t, 0)],
+        "arm.swing.L": ([(0, 0), (0.99, 24), (1.69, 32), (2.39, 28), (t, 0)], fling(-3.0, 0.1)), "arm.out.L": ([(0, 0), (0.99, 22), (1.69, 34), (2.39, 30), (t, 0)], fling(3.0, 0.05)),
+        "elbow.L": ([(0, 0), (0.94, 52), (1.59, 36), (2.39, 30), (2.79, 8), (t, 0)], fling(12.0)), "forearm.in.L": fling(5.0, 0.2),
+        "wrist.L": ([(0, 0), (0.99, 14), (2.39, 4), (t, 0)], fling(22.0, 0.2)), "curl.L": ([(0, 0), (0.99, 34), (1.59, 6), (2.39, 8), (t, 0)], fling(16.0, 0.3)),
+        "arm.swing.R": [(0, 0), (0.99, -6), (2.29, -6), (t, 0)], "arm.out.R": [(0, 0), (0.99, 10), (2.29, 10), (t, 0)], "elbow.R": [(0, 0), (0.99, 16), (2.29, 16), (t, 0)],
     }, markers=strike(start, end))
 
 
