@@ -112,15 +112,19 @@ def ride(clip, sign, points, weights, fur):
 
 
 def pulls(clip, points, weights):
-    """Smoothed accelerations (ticks, points) of points on the skin, from rest, as a player moves them."""
+    """Smoothed accelerations (ticks, points) of points on the skin, as a player moves them.
+
+    A one-shot starts from rest and ends at rest; a loop has run for a cycle before.
+    """
     frames = motion.skinned(points, weights, clip.poses)
     path = np.empty((2 * len(frames) - 1, *frames.shape[1:]))
     path[::2], path[1::2] = frames, motion.skinned(points, weights, motion.halfway(clip.poses))
-    path = np.concatenate([path[:1], path[:1], path, path[-1:], path[-1:]])
+    cycle = len(path) - 1
+    path = np.concatenate([path, path[1:], path[1:3]] if clip.loops else [path[:1], path[:1], path, path[-1:], path[-1:]])
     jolts = np.diff(path, 2, axis=0) / TICK**2
     share = 1.0 - np.exp(-TICK / SMOOTHING)
     felt, now = np.empty(jolts.shape[:2]), np.zeros_like(jolts[0])
     for tick, jolt in enumerate(jolts):
         now = (1.0 - share) * now + share * jolt
         felt[tick] = np.linalg.norm(now, axis=1)
-    return felt
+    return felt[cycle:] if clip.loops else felt

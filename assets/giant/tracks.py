@@ -23,7 +23,7 @@ CATCH_UP = 0.6
 # A giant never starts abruptly: what leaves its rest grows at this rate (per second), the longer the
 # farther it goes: until it accelerates as if it had started with FIRST_SPEED (metres a second), for at
 # most these shares of the time to its next key.
-GROWTH, FIRST_SPEED, LEAST_GROWING, MOST_GROWING = 10.0, 0.012, 0.25, 0.75
+GROWTH, FIRST_SPEED, LEAST_GROWING, MOST_GROWING = 10.0, 0.008, 0.25, 0.75
 # A channel counts as resting before a key if it is slower there than this share of its speed after it.
 DRIFT = 0.08
 # How far a degree takes the end of what it turns, in metres; and a whole share of a hand's hold.
