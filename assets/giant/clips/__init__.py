@@ -18,7 +18,7 @@ from .keys import Table, mirrored
 
 RATE = 30
 # No point of the skin may be deeper in the ground than this, in metres.
-DEEPEST = 0.10
+DEEPEST = 0.08
 # Joints of the feet, and of the arms from the elbow on.
 LEGS = ("foot", "toe")
 ARMS = ("forearm", "hand", "index", "middle", "ring", "thumb")
@@ -47,8 +47,6 @@ class Clip:
     name: str
     table: Table
     poses: motion.Poses
-    # For `.L` and `.R`: whether the foot stands from a frame to the next.
-    stands: dict
 
     @property
     def loops(self):
@@ -83,8 +81,7 @@ def sampled(name, points, weights):
         soles.settle(tracks, points, weights, RATE, table.loops, speed, table.turn)
     if table.kneels:
         _hold_up(tracks, points, weights)
-    stands = {side: soles.standing(tracks, side, sign, speed, table.turn, RATE) for side, sign in soles.SIDES}
-    return Clip(name, table, motion.posed(tracks), stands)
+    return Clip(name, table, motion.posed(tracks))
 
 
 def _hold_up(tracks, points, weights):
