@@ -48,7 +48,7 @@ def build(arguments):
     glb.tidy(path, moves)
     check.check_file(path)
     check.check_shapes(coarse, fine)
-    check.check_motion(moves, coarse.mesh.points, coarse_weights)
+    check.check_motion(moves, coarse.mesh.points, coarse_weights, visual.furry(coarse))
     print(f"built in {time.monotonic() - started:.0f} s")
     if "--pictures" in arguments:
         from giant import pictures

@@ -2,11 +2,48 @@
 
 import numpy as np
 
-from . import clips, flesh, glb, nets, stone
+from . import clips, feel, flesh, glb, motion, nets, reach, stone
+from .skeleton import INDEX
 
 VISUAL_VERTICES = (50_000, 100_000)
 COLLISION_VERTICES = (5_000, 10_000)
 MOST_BYTES = 8_500_000
+# No skin may be deeper in the ground, in metres; no planted sole may slide faster over it, in metres a
+# second (95 % of all moments); and what was at rest may not start with more than half of gravity.
+DEEPEST, MOST_SLIDE, START_PULL = 0.10, 0.15, 4.9
+# Seconds from a blow's start to its active window: long enough to run, short enough to matter.
+STOMP_WIND_UP, WIND_UP = (1.3, 1.6), (0.9, 1.6)
+# How high a stomping foot is raised (metres), how far the head turns to it (degrees), and how close the
+# sole is to the ground at an impact (metres).
+STOMP_HEIGHT, STOMP_TURN, IMPACT_HEIGHT = 4.0, 15.0, 0.1
+# How low a swiping hand or foot passes (metres), and the arc around the root over which it does (degrees).
+REACH, ARC = (0.3, 1.2), 60.0
+# Each blow's limb.
+BLOWS = {
+    "stomp": (reach.FOOT, ".R"), "stomp_left": (reach.FOOT, ".L"),
+    "swipe": (reach.HAND, ".R"), "swipe_left": (reach.HAND, ".L"),
+    "sweep_right": (reach.HAND, ".R"), "sweep_left": (reach.HAND, ".L"),
+    "kick_right": (reach.FOOT, ".R"), "kick_left": (reach.FOOT, ".L"),
+}
+# The markers without which a game cannot use a clip.
+_BLOW, _STEPS = {"wind_up", "active", "recovery"}, {"step_left", "step_right"}
+MARKERS = {
+    **{name: _BLOW | ({"impact"} if limb == reach.FOOT else set()) for name, (limb, _) in BLOWS.items()},
+    **{name: _BLOW for name in ("shrug", "shake", "shake_head", "shake_arm_left", "shake_arm_right", "rage", "roar", "rub_left", "rub_right")},
+    **{name: _STEPS for name in ("walk", "turn_left", "turn_right")},
+    "expose": {"exposed", "covered", "impact"}, "stagger": {"impact"}, "die": {"impact"},
+}
+# Which clip shakes riders at which weak point (the right forearm has none, and shakes like the left one).
+RIDES = (
+    ("shrug", "weak_point_nape"), ("shake", "weak_point_nape"), ("shake_loop", "weak_point_nape"), ("rage", "weak_point_nape"),
+    ("shake_head", "weak_point_head"), ("shake_arm_left", "weak_point_forearm.L"), ("shake_arm_right", "weak_point_forearm.R"),
+)
+# A shake throws for so long (seconds). It tires by so much (metres a second), of which 60 use up a fresh
+# climber's stamina: two shakes can be survived, six cannot. It can be held out at such a pull, and a shrug
+# only warns (metres a second squared).
+LEAST_THROW, TIRING, HELD, SHRUG = 0.3, (10.0, 20.0), 10.5, (6.0, 10.0)
+# What lies on the ground has skin this close to it, in metres.
+LYING = 0.7
 # Distance of the meshes, in metres: the median, and what 99.5 % of the vertices keep to. The rest sit
 # in slots between stone and fur that the coarse grid closes.
 MESH_GAP = (0.15, 0.75)
@@ -124,8 +161,69 @@ def distances(points, mesh, cell=2.0):
     return result
 
 
-def check_motion(moves, points, weights):
-    """Loops close; prints what riders will feel."""
+def check_motion(moves, points, weights, fur):
+    """Prints the figures of all clips, then fails if one is out of its limits; `fur` marks what can be gripped."""
+    by_name = {clip.name: clip for clip in moves}
+    faults = []
+
+    def expect(holds, what):
+        if not holds:
+            faults.append(what)
+
+    print("clip             length  lowest  slide  start  (limits: %.2f m, %.2f m/s, %.1f m/s^2)" % (-DEEPEST, MOST_SLIDE, START_PULL))
     for clip in moves:
+        low, slide = feel.standing(clip, points, weights)
+        pull, joint, time = feel.starts(clip)
+        print(f"{clip.name:16} {clip.length:6.2f} {low:7.2f} {slide:6.3f} {pull:6.2f}  {joint} at {time:.2f} s")
         if clip.loops:
-            assert np.abs(clip.poses.local[0] - clip.poses.local[-1]).max() < 1e-9, clip.name
+            gap = max(np.abs(clip.poses.local[0] - clip.poses.local[-1]).max(), np.abs(clip.poses.shift[0] - clip.poses.shift[-1]).max())
+            expect(gap < 1e-9, f"{clip.name} does not close")
+        expect(low > -DEEPEST, f"{clip.name}: skin at {low:.2f} m")
+        expect(slide <= MOST_SLIDE or clip.name == "die", f"{clip.name}: soles slide at {slide:.3f} m/s")
+        expect(pull <= START_PULL, f"{clip.name}: {joint} starts with {pull:.2f} m/s^2 at {time:.2f} s")
+        expect({name for name, _ in clip.table.markers} >= MARKERS.get(clip.name, set()), f"{clip.name}: markers")
+    for name, (limb, side) in BLOWS.items():
+        _check_blow(by_name[name], limb, side, points, weights, expect)
+    print("rides: largest pull, seconds over %.0f m/s^2, excess over %.0f m/s^2, largest pull where one holds out" % (feel.THROWS, feel.TIRES))
+    for name, sign in RIDES:
+        peak, throw, tiring, held = feel.ride(by_name[name], sign, points, weights, fur)
+        print(f"{name:16} {sign:22} {peak:6.1f} m/s^2 {throw:5.2f} s {tiring:6.1f} m/s {held:6.1f} m/s^2")
+        if name == "shrug":
+            expect(SHRUG[0] <= peak <= SHRUG[1], f"{name}: pulls with {peak:.1f} m/s^2")
+        else:
+            expect(throw >= LEAST_THROW, f"{name}: throws for {throw:.2f} s")
+            expect(TIRING[0] <= tiring <= TIRING[1], f"{name}: tires by {tiring:.1f} m/s")
+        expect(held <= HELD, f"{name}: {held:.1f} m/s^2 where one holds out")
+    _check_corpse(by_name["die"], points, weights, expect)
+    assert not faults, "; ".join(faults)
+
+
+def _check_blow(clip, limb, side, points, weights, expect):
+    """The times of a blow, and what it reaches."""
+    time = reach.markers(clip)
+    low, centre = reach.lowest(clip, points, weights, limb, side)
+    stomps = clip.name.startswith("stomp")
+    limits = STOMP_WIND_UP if stomps else WIND_UP
+    expect(limits[0] <= time["active"] <= limits[1], f"{clip.name}: winds up for {time['active']:.2f} s")
+    if "impact" in time:
+        height = low[round(time["impact"] * clips.RATE)]
+        expect(abs(height) <= IMPACT_HEIGHT, f"{clip.name}: sole at {height:.2f} m at the impact")
+    if stomps:
+        high, turn = low[: round(time["active"] * clips.RATE) + 1].max(), reach.head_turn(clip, time["active"])
+        print(f"{clip.name:16} winds up {time['active']:.2f} s, foot {high:.1f} m high, head turned {turn:.0f} degrees, sole at {height:.2f} m at the impact")
+        expect(high >= STOMP_HEIGHT, f"{clip.name}: foot {high:.1f} m high")
+        expect(turn >= STOMP_TURN, f"{clip.name}: head turned {turn:.0f} degrees")
+    else:
+        height, arc = reach.active(clip, limb, side, points, weights)
+        print(f"{clip.name:16} winds up {time['active']:.2f} s, passes {height:.2f} m over the ground, reaches people over {arc:.0f} degrees")
+        expect(REACH[0] <= height <= REACH[1], f"{clip.name}: passes {height:.2f} m over the ground")
+        expect(arc >= ARC, f"{clip.name}: {arc:.0f} degrees")
+
+
+def _check_corpse(clip, points, weights, expect):
+    """The last pose lies on the ground: trunk, arms and legs."""
+    last = motion.skinned(points, weights, clip.poses.part(slice(-1, None)))[0, :, 2]
+    joint = weights.argmax(axis=1)
+    for names in (("chest", "spine", "pelvis", "loin"), ("hand", "forearm", "thumb", "index"), ("shin", "foot", "toe")):
+        part = np.isin(joint, [number for name, number in INDEX.items() if name.startswith(names)])
+        expect(last[part].min() < LYING, f"{clip.name}: {names[0]} ends {last[part].min():.2f} m over the ground")

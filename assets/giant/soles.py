@@ -8,8 +8,10 @@ from .skeleton import HEADS, INDEX, JOINTS
 SIDES = ((".L", 1), (".R", -1))
 # Skin belongs to a foot or a hand if those joints have this share of it.
 LEAST_SHARE = 0.3
+# Skin above the ankle has less than this of the foot.
+ANKLE_SHARE = 0.05
 # A foot stands if its sole is no higher and moves no faster over the ground (metres, metres a second).
-STANDING_HEIGHT, STANDING_SPEED = 0.01, 0.06
+STANDING_HEIGHT, STANDING_SPEED = 0.03, 0.06
 # Skin this close to the lowest point touches the ground, in metres.
 TOUCH = 0.06
 PASSES = 5

@@ -20,9 +20,19 @@ ARRIVAL = 1.9
 SOFTNESS, SHARP, FADE = 0.16, 0.05, 0.2
 # Seconds at the end of a one-shot in which what lags catches up.
 CATCH_UP = 0.6
-# A giant never starts abruptly: what leaves its rest grows at this rate (per second), whatever its
-# size, for that share of the time to its next key, at most so many seconds.
-GROWTH, GROWING, MOST_GROWING = 10.0, 0.85, 0.7
+# A giant never starts abruptly: what leaves its rest grows at this rate (per second), the longer the
+# farther it goes: until it accelerates as if it had started with FIRST_SPEED (metres a second), for at
+# most these shares of the time to its next key.
+GROWTH, FIRST_SPEED, LEAST_GROWING, MOST_GROWING = 10.0, 0.008, 0.25, 0.75
+# A channel counts as resting before a key if it is slower there than this share of its speed after it.
+DRIFT = 0.08
+# How far a degree takes the end of what it turns, in metres; and a whole share of a hand's hold.
+LEVERS = {
+    "pelvis": 0.35, "spine": 0.35, "chest": 0.25, "neck": 0.12, "head": 0.08, "jaw": 0.05, "arm": 0.35, "elbow": 0.25,
+    "forearm": 0.25, "wrist": 0.12, "curl": 0.06, "shoulder": 0.3, "breath": 0.1, "swell": 0.1, "loin": 0.1, "foot": 0.06,
+    "hand": 0.12,
+}
+HOLD_LEVER = 15.0
 
 
 class Tracks:
@@ -36,14 +46,14 @@ class Tracks:
         for name, channel in channels.items():
             self.tables[name] = np.zeros(len(self.grid))
             for keys in channel if isinstance(channel, tuple) else (channel,):
-                self.tables[name] += self._table(keys, blows)
+                self.tables[name] += self._table(name, keys, blows)
 
-    def _table(self, keys, blows):
+    def _table(self, name, keys, blows):
         if callable(keys):
             return keys(self.grid)
         if self.loops:
-            return _values(keys, self.grid, self.length)
-        values = _values(keys, self.grid)
+            return _values(keys, self.grid, _lever(name), self.length)
+        values = _values(keys, self.grid, _lever(name))
         hits = [0.0, self.length, *blows, *(key[0] for key in keys if len(key) > 2)]
         return _smoothed(values, self.grid, hits)
 
@@ -68,7 +78,16 @@ class Tracks:
         return lag * eased((self.length - self.times) / CATCH_UP)
 
 
-def _values(keys, grid, cycle=None):
+def _lever(name):
+    """Metres by which a unit of a channel moves the end of what it moves."""
+    base, *kinds = name.removesuffix(".L").removesuffix(".R").split(".")
+    if "hold" in kinds:
+        return HOLD_LEVER
+    is_place = base in ("pelvis", "foot", "hand") and kinds[0] in ("x", "y", "z", "out")
+    return 1.0 if is_place else LEVERS[base]
+
+
+def _values(keys, grid, lever, cycle=None):
     """A channel on the grid: cubic between keys, without overshoot (F. Fritsch and R. Carlson, 1980)."""
     keys = sorted(keys, key=lambda key: key[0])
     hits = np.array([len(key) > 2 for key in keys])
@@ -82,12 +101,12 @@ def _values(keys, grid, cycle=None):
     grid = np.clip(grid, times[0], times[-1])
     index = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(times) - 2)
     result = _cubic(grid, times[index], times[index + 1], values[index], values[index + 1], after[index], before[index + 1])
-    if not cycle:
-        for number, rise in enumerate(np.diff(values)):
-            if number == 0 or values[number] == values[number - 1] or hits[number]:
-                there = index == number
-                part = (times[number], times[number + 1], rise, before[number + 1])
-                result[there] = values[number] + _departed(grid[there], *part)
+    speed = np.abs(np.diff(values) / np.diff(times))
+    earlier = np.roll(speed, 1) if cycle else np.append(0.0, speed[:-1])
+    for number in np.flatnonzero((earlier <= DRIFT * speed) | hits[:-1]):
+        there = index == number
+        part = (times[number], times[number + 1], values[number + 1] - values[number], before[number + 1])
+        result[there] = values[number] + _departed(grid[there], *part, lever)
     return result
 
 
@@ -103,9 +122,10 @@ def _cubic(time, start, end, first, last, leaves, arrives):
     )
 
 
-def _departed(time, start, end, rise, arrives):
+def _departed(time, start, end, rise, arrives, lever):
     """From rest to `rise`: exponential growth, then a cubic that goes on with the same acceleration."""
-    grows = min(GROWING * (end - start), MOST_GROWING)
+    fast = abs(rise) * lever / (end - start) / FIRST_SPEED
+    grows = np.clip(np.log(max(fast, 1.0)) / GROWTH, LEAST_GROWING * (end - start), MOST_GROWING * (end - start))
     rest = GROWTH * (end - start - grows)
     share = 6.0 / (rest * rest + 4.0 * rest + 6.0)
     size = share * rise / (np.exp(GROWTH * grows) - 1.0 - GROWTH * grows)

@@ -66,6 +66,13 @@ def visual(thinned):
     )
 
 
+def furry(dressed):
+    """For each vertex: whether it is a corner of a triangle that can be gripped."""
+    result = np.zeros(len(dressed.mesh.points), bool)
+    result[dressed.mesh.triangles[dressed.materials == NAMES.index("fur")]] = True
+    return result
+
+
 def _on_ground(mesh):
     """Soles are flat: nothing is below height 0."""
     return nets.Mesh(mesh.points * (1.0, 1.0, 0.0) + (0.0, 0.0, 1.0) * np.maximum(mesh.points[:, 2:], 0.0), mesh.triangles)

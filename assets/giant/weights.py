@@ -19,6 +19,9 @@ MOST_INFLUENCES = 4
 # (metres, left side), and the share of the shin that pulls at the skin.
 HEEL = np.array([6.2, 2.2, 0.8])
 SHIN_SHARE = 0.80
+# Soles are rigid: below the first height (metres) no shin and no thigh pulls at the skin, above the
+# second one they do as they may.
+SOLE_TOP, ANKLE = 0.8, 2.4
 # Bones that carry nothing by themselves.
 _WITHOUT_FLESH = {"root", "loin.front", "loin.back", "jaw"}
 
@@ -50,6 +53,8 @@ def _flesh_weights(points):
                 heel = HEEL * (np.sign(HEADS[number, 0]), 1.0, 1.0)
                 gap = np.minimum(gap, f.round_cone(points, heel, TAILS[number], 0.0, 0.0))
             closeness[:, number] = (RADII[number] / np.maximum(gap, 0.2)) ** FALL_OFF
+            if joint.name.startswith(("shin", "thigh")):
+                closeness[:, number] *= f.smooth_step(SOLE_TOP, ANKLE, points[:, 2])
     _separate_sides(points, closeness)
     closeness /= closeness.max(axis=1, keepdims=True)
     closeness = np.maximum(closeness - LEAST_SHARE, 0.0)

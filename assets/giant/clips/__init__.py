@@ -18,7 +18,7 @@ from .keys import Table, mirrored
 
 RATE = 30
 # No point of the skin may be deeper in the ground than this, in metres.
-DEEPEST = 0.10
+DEEPEST = 0.08
 # Joints of the feet, and of the arms from the elbow on.
 LEGS = ("foot", "toe")
 ARMS = ("forearm", "hand", "index", "middle", "ring", "thumb")
@@ -47,8 +47,6 @@ class Clip:
     name: str
     table: Table
     poses: motion.Poses
-    # For `.L` and `.R`: whether the foot stands from a frame to the next.
-    stands: dict
 
     @property
     def loops(self):
@@ -81,28 +79,35 @@ def sampled(name, points, weights):
     speed = table.speed or 0.0
     if table.settles:
         soles.settle(tracks, points, weights, RATE, table.loops, speed, table.turn)
-    if name == "die":
+    if table.kneels:
         _hold_up(tracks, points, weights)
-    stands = {side: soles.standing(tracks, side, sign, speed, table.turn, RATE) for side, sign in soles.SIDES}
-    return Clip(name, table, motion.posed(tracks), stands)
+    return Clip(name, table, motion.posed(tracks))
 
 
 def _hold_up(tracks, points, weights):
-    """Raises the pelvis where the trunk would sink into the ground, then the arms sideways."""
+    """Raises the pelvis where the trunk would sink into the ground, then the arms.
+
+    Arms go sideways while the trunk is upright, backwards while it lies on its front.
+    """
     legs, arms = soles.share(weights, LEGS), [soles.share(weights, ARMS, side) for side in (".L", ".R")]
-    trunk = (legs < 0.5) & (arms[0] < 0.5) & (arms[1] < 0.5)
+    trunk = (legs < soles.ANKLE_SHARE) & (arms[0] < 0.5) & (arms[1] < 0.5)
 
     def depths(part):
         return -DEEPEST - motion.skinned(points[part], weights[part], motion.posed(tracks))[:, :, 2].min(axis=1)
 
     def add(channel, values):
-        tracks.extra[channel] = tracks.extra.get(channel, 0.0) + _spread(values)
+        tracks.extra[channel] = tracks.extra.get(channel, 0.0) + values
 
     for _ in range(3):
-        add("pelvis.z", np.maximum(depths(trunk), 0.0))
-    for channel, arm in zip(("arm.out.L", "arm.out.R"), arms):
+        add("pelvis.z", _spread(np.maximum(depths(trunk), 0.0)))
+    lean = np.radians(tracks("pelvis.pitch"))
+    for side, arm in zip((".L", ".R"), arms):
+        if f"hand.hold{side}" in tracks:
+            continue
         for _ in range(9):
-            add(channel, np.clip(RAISE * depths(arm > 0.5), 0.0, 25.0))
+            more = _spread(np.clip(RAISE * depths(arm > 0.5), 0.0, 25.0))
+            add(f"arm.out{side}", np.cos(lean) * more)
+            add(f"arm.swing{side}", -np.sin(lean) * more)
 
 
 def _spread(values, reach=6):

@@ -28,6 +28,8 @@ class Table:
     from_idle: bool = True
     # Whether feet and hands are settled on the ground by their skin.
     settles: bool = True
+    # Whether knees and trunk may touch the ground; they are held up where they would sink into it.
+    kneels: bool = False
 
     def __post_init__(self):
         self.markers = sorted(self.markers, key=lambda marker: marker[1])
@@ -70,7 +72,7 @@ def mirrored(table):
     words = {"step_left": "step_right", "step_right": "step_left"}
     markers = [(words.get(name, name), time) for name, time in table.markers]
     return Table(table.length, channels, table.loops, markers, table.speed, -table.turn,
-                 table.from_idle, table.settles)
+                 table.from_idle, table.settles, table.kneels)
 
 
 def _negated(keys):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..skeleton import HEADS, INDEX
-from .keys import Table, both, wave
+from .keys import HIT, Table, both, wave
 
 # The stance foot goes backwards by this much, in metres per second.
 WALK_SPEED = 5.0
@@ -13,6 +13,8 @@ TURN_RATE = 20.0
 TURN_CYCLE = 3.0
 # The share of a cycle for which a foot stands.
 STANCE = 0.62
+# Toes leave the ground this long before the foot swings, in seconds.
+PEEL = 0.26
 
 
 def walk():
@@ -32,7 +34,7 @@ def walk():
         off = start + t * STANCE
         channels |= {
             f"foot.y.{side}": lambda times, start=start: -0.4 + WALK_SPEED * _along(times - start, t),
-            f"foot.z.{side}": [(start, 0), (off, 0), (off + 0.3 * swing, 0.9), (off + 0.62 * swing, 1.5), (off + 0.85 * swing, 0.6)],
+            f"foot.z.{side}": [(start, 0, HIT), (off - PEEL, 0), (off + 0.3 * swing, 0.9), (off + 0.62 * swing, 1.5), (off + 0.85 * swing, 0.6)],
             f"foot.pitch.{side}": [(start, 0), (start + 0.68 * t * STANCE, 0), (off, 17), (off + 0.3 * swing, 34), (off + 0.75 * swing, -9)],
             f"foot.out.{side}": [(start, -0.9), (off, -0.9), (off + 0.5 * swing, -0.2)],
             f"arm.swing.{side}": wave(t, 17.0, 1, start / t + 0.30, 4.0),
@@ -67,8 +69,8 @@ def turn_left():
         sign, off = (1 if side == "L" else -1), start + t * STANCE
         channels |= _turning_foot(side, sign, start)
         channels |= {
-            f"foot.z.{side}": [(start, 0), (off, 0), (off + 0.3 * swing, 0.8), (off + 0.62 * swing, 1.3), (off + 0.85 * swing, 0.5)],
-            f"foot.pitch.{side}": [(start, 0), (start + 0.8 * t * STANCE, 0), (off, 8), (off + 0.35 * swing, 16), (off + 0.8 * swing, -3)],
+            f"foot.z.{side}": [(start, 0, HIT), (off - PEEL, 0), (off + 0.3 * swing, 0.8), (off + 0.62 * swing, 1.3), (off + 0.85 * swing, 0.5)],
+            f"foot.pitch.{side}": [(start, 0), (start + 0.68 * t * STANCE, 0), (off, 9), (off + 0.35 * swing, 16), (off + 0.8 * swing, -3)],
         }
     steps = [("step_left", 0.0), ("step_right", t / 2)]
     return Table(t, channels, loops=True, markers=steps, turn=TURN_RATE)
