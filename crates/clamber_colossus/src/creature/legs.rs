@@ -8,11 +8,14 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::Creature;
 use super::report::CreatureEvent;
 use super::state::Playing;
-use crate::feet::{Foot, FootGoal, Ground, SHARES, Sole};
+use crate::feet::{Foot, FootGoal, Ground, MOST_ASIDE, SHARES, Sole};
 use crate::kind::{Contacts, Leg, rotation_of};
 
 /// From which share of its length on a leg in flight is stretched softly.
 const SOFT: f64 = 0.93;
+
+/// The most acceleration with which a foot goes to whom it strikes, metres a second squared.
+const BLOW: f64 = 40.0;
 
 /// Times of a clip that are compared with the feet when it begins.
 const PHASES: u32 = 48;
@@ -106,16 +109,11 @@ impl Creature {
         leg: &Leg,
         (ball, heading): (DVec3, f64),
         others_stand: bool,
-        aims: Option<(usize, f64)>,
+        aims: Option<usize>,
     ) -> FootGoal {
         let scale = self.config.scale;
         let world = self.state.world_from_model(scale);
-        let mut clip = world.transform_point(ball);
-        if let Some((aimed, share)) = aims
-            && aimed == index
-        {
-            clip += self.state.aim * share;
-        }
+        let clip = world.transform_point(ball);
         let layer = self.state.animator.layers().first();
         let (time, speed) = layer.map_or((0.0, 0.0), |layer| {
             (layer.time, layer.speed * self.state.animator.rate())
@@ -135,11 +133,19 @@ impl Creature {
         let at = landing.map_or(clip, |(_, place)| world.transform_point(place));
         let lands_at = if stands { clip } else { at + ahead };
         let is_walk = self.state.playing == Playing::Walk;
-        let shorter = landing
-            .filter(|_| is_walk)
-            .map_or(DVec3::ZERO, |(_, place)| {
+        let aside = match landing {
+            _ if aims == Some(index) => self.state.aim,
+            Some((_, place)) if is_walk => {
                 self.state.heading() * (place.z * scale * (self.stride() - 1.0))
-            });
+            }
+            _ => DVec3::ZERO,
+        };
+        // A blow is meant, and no correction.
+        let most_aside = if aims == Some(index) {
+            BLOW
+        } else {
+            MOST_ASIDE
+        };
         let ahead = SHARES.map(|share| {
             let Some((contacts, (wait, _))) = contacts.zip(landing) else {
                 return clip.y;
@@ -151,7 +157,8 @@ impl Creature {
             clip,
             settled,
             ahead,
-            shorter,
+            aside,
+            most_aside,
             stands,
             lands_in,
             lands_at: lands_at.with_y(self.state.position.y + leg.sole.ball_height * scale),
@@ -196,24 +203,14 @@ impl Creature {
         }
     }
 
-    /// The leg that aims, and by how much of its aim it already does.
-    fn aimed_leg(&self) -> Option<(usize, f64)> {
+    /// The leg that aims, until it has struck.
+    fn aimed_leg(&self) -> Option<usize> {
         let Playing::Act(state) = self.state.playing else {
             return None;
         };
         let strike = self.kind.act(state).strike.as_ref()?;
-        let leg = strike.leg?;
         let time = self.state.animator.layers().first()?.time;
-        let clip = self.kind.clips().clip(self.kind.act(state).clip?).ok()?;
-        let smooth = |s: f64| {
-            let s = s.clamp(0.0, 1.0);
-            s * s * (3.0 - 2.0 * s)
-        };
-        // There when it begins to fall, and back at the clip's end.
-        let rise = smooth(time / strike.active[0].max(1e-3));
-        let left = (clip.duration() - strike.active[1]).max(1e-3);
-        let fall = smooth((time - strike.active[1]) / left);
-        Some((leg, rise * (1.0 - fall)))
+        strike.leg.filter(|_| time < strike.active[1])
     }
 
     /// Bends a leg so that its ankle is where the foot wants it. Returns how far that is from the hip.

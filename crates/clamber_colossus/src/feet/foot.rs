@@ -74,8 +74,9 @@ pub(crate) struct FootGoal {
     pub(crate) lands_in: f64,
     /// Where the clip's ball will be then.
     pub(crate) lands_at: DVec3,
-    /// From there to where it lands with a shorter stride; level.
-    pub(crate) shorter: DVec3,
+    /// From there to where it is to land, level; and with how much acceleration it may go there, metres a second squared.
+    pub(crate) aside: DVec3,
+    pub(crate) most_aside: f64,
     /// Height of the clip's ball at [`SHARES`] of the time until then.
     pub(crate) ahead: [f64; 3],
     /// Where the clip's foot points to, radians about up.
@@ -101,7 +102,7 @@ const STEP_HEIGHT: f64 = 0.04;
 /// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn, radians a
 /// second squared. Together the first two are 6, which skin below the knee may have in a swing.
 const MOST_UP: f64 = 4.5;
-const MOST_ASIDE: f64 = 3.9;
+pub(crate) const MOST_ASIDE: f64 = 3.9;
 const MOST_TURN: f64 = 3.0;
 
 /// Shares of a swing at which the ground on its way is looked at.
@@ -306,11 +307,11 @@ impl Foot {
 
     /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies between.
     fn swing(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
-        let lands = self.landing(goal.lands_at + goal.shorter, goal, sole);
+        let lands = self.landing(goal.lands_at + goal.aside, goal, sole);
         let mut wanted = DVec3::new(0.0, lands.ball.y - goal.lands_at.y, 0.0);
         // What lies between has to be passed in a share of the time: it wins if it takes more acceleration.
         let ball = goal.clip + self.offset.value;
-        let way = goal.lands_at + goal.shorter - ball;
+        let way = goal.lands_at + goal.aside - ball;
         let now = [self.offset.value.y, self.offset.velocity.y];
         let (mut hardest, mut within) = (pull(now, wanted.y, left), left);
         for (share, clip) in SHARES.into_iter().zip(goal.ahead) {
@@ -332,7 +333,7 @@ impl Foot {
             value: self.offset.value.with_y(0.0),
             velocity: self.offset.velocity.with_y(0.0),
         };
-        arrive(&mut level, goal.shorter, left, MOST_ASIDE, dt);
+        arrive(&mut level, goal.aside, left, goal.most_aside, dt);
         self.offset = Spring {
             value: level.value.with_y(up.value),
             velocity: level.velocity.with_y(up.velocity),

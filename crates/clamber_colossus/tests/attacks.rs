@@ -1,0 +1,230 @@
+//! Attacks of the giant: readable, by touch, in their window only. Scenes B39 and B40.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod support;
+
+use clamber_animation::rig::Playback;
+use clamber_animation::{joint_in_model, rig::JointId};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Surroundings};
+use clamber_world::{HalfSpace, Obstacle, WorldCapsule};
+use glam::DVec3;
+use support::{TICK, brain_file, brain_with, creature, kind};
+
+/// Somebody of 1.75 m who stands at a place.
+fn person(at: DVec3) -> Person {
+    Person {
+        id: 1,
+        body: WorldCapsule {
+            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
+            radius: 0.3,
+        },
+        riding: None,
+    }
+}
+
+/// The states of the giant's own brain that attack, each with its act as text.
+fn attacks() -> Vec<(String, serde_json::Value)> {
+    fn collect(states: &serde_json::Value, found: &mut Vec<(String, serde_json::Value)>) {
+        for (name, state) in states.as_object().into_iter().flatten() {
+            if state["act"]["attack"].is_object() {
+                found.push((name.clone(), state["act"].clone()));
+            }
+            collect(&state["states"], found);
+        }
+    }
+    let file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    let mut found = Vec::new();
+    collect(&file["states"], &mut found);
+    found
+}
+
+/// The giant, standing, a second before an attack.
+fn before(act: &serde_json::Value) -> Creature {
+    let states = serde_json::json!({
+        "waits": { "transitions": [{ "to": "attacks", "after": 1 }] },
+        "attacks": { "act": act, "transitions": [{ "to": "ends" }] },
+        "ends": { "final": true }
+    });
+    let kind = kind(&brain_with("waits", &states.to_string()));
+    creature(&kind, CreatureConfig::default())
+}
+
+/// What came of one attack on one person.
+#[derive(Clone, Copy, Debug)]
+struct Outcome {
+    hits: usize,
+    /// Seconds from the beginning of the attack's clip to the blow.
+    time: f64,
+    /// Angle between the blow and the limb's velocity there, degrees.
+    aside: f64,
+}
+
+/// Lets an attack happen to somebody who stands at a place, and perhaps runs away after 0.3 s.
+fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
+    let mut giant = before.clone();
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut victim = person(at);
+    let away = (at - giant.state().position()).with_y(0.0).normalize();
+    let mut outcome = Outcome {
+        hits: 0,
+        time: f64::NAN,
+        aside: 0.0,
+    };
+    let mut begun: Option<usize> = None;
+    let joints: Vec<JointId> = (0..giant.kind().skeleton().joints().len() as u32)
+        .map(JointId)
+        .collect();
+    for tick in 0..400 {
+        let from = giant.palette().clone();
+        let world_before = *giant.surface().world_from_model();
+        let people = [victim];
+        let around = Surroundings {
+            terrain: &terrain,
+            people: &people,
+            ..Surroundings::default()
+        };
+        let report = giant.step(&around).unwrap().clone();
+        for event in &report.events {
+            if let CreatureEvent::Entered { to, .. } = event {
+                match giant.kind().brain().path(*to) {
+                    "attacks" => begun = Some(tick),
+                    "ends" => return outcome,
+                    _ => {}
+                }
+            }
+        }
+        if let (Some(begun), Some(blow)) = (begun, report.blows.first()) {
+            outcome.hits += report.blows.len();
+            outcome.time = (tick - begun) as f64 * TICK;
+            // The joint whose rigid motion is nearest to the blow's: that of the skin there, but for blending.
+            let world = giant.surface().world_from_model();
+            let motion = |joint: &JointId| {
+                let now = giant.palette().model_from_joint(*joint).unwrap();
+                let was = from.model_from_joint(*joint).unwrap();
+                let local = now
+                    .inverse()
+                    .transform_point3(world.inverse_transform_point(blow.place));
+                let before = world_before.transform_point(was.transform_point3(local));
+                blow.place - before
+            };
+            let asides = joints
+                .iter()
+                .map(|joint| angle(motion(joint), blow.velocity));
+            outcome.aside = asides.fold(f64::INFINITY, f64::min).to_degrees();
+        }
+        let flees_now = flees && begun.is_some_and(|begun| (tick - begun) as f64 * TICK >= 0.3);
+        if flees_now {
+            victim = person(victim.body.ends[0].with_y(0.0) + away * (3.0 * TICK));
+        }
+    }
+    panic!("the attack does not end");
+}
+
+/// The angle between two vectors, radians.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    libm::acos(
+        a.normalize_or_zero()
+            .dot(b.normalize_or_zero())
+            .clamp(-1.0, 1.0),
+    )
+}
+
+/// Where an attack strikes: the end of its limb when it stops to hurt.
+fn spot(giant: &Creature, act: &serde_json::Value) -> DVec3 {
+    let kind = giant.kind();
+    let attack = &act["attack"];
+    let clip = kind.clips().find(attack["clip"].as_str().unwrap()).unwrap();
+    let clip = kind.clips().clip(clip).unwrap();
+    let limb = attack["limb"].as_array().unwrap();
+    let end = limb.last().unwrap().as_str().unwrap();
+    let recovery = clip
+        .markers()
+        .iter()
+        .find(|one| one.name == "recovery")
+        .unwrap();
+    let pose = clip
+        .sample(&kind.skeleton().rest_pose(), recovery.time, Playback::Clamp)
+        .unwrap();
+    let joint = kind.skeleton().find(end).unwrap();
+    joint_in_model(kind.skeleton(), &pose, joint)
+        .unwrap()
+        .translation
+}
+
+#[test]
+fn a_stomp_hits_who_stays_and_spares_who_runs() {
+    for (name, act) in attacks()
+        .iter()
+        .filter(|(name, _)| name.starts_with("stomp"))
+    {
+        let giant = before(act);
+        let spot = spot(&giant, act);
+        let aim = act["attack"]["aim"].as_f64().unwrap();
+        let mut random = fastrand::Rng::with_seed(1);
+        let (mut hit, mut escaped) = (0, 0);
+        const COUNT: usize = 500;
+        for _ in 0..COUNT {
+            let (angle, reach) = (
+                random.f64() * core::f64::consts::TAU,
+                random.f64().sqrt() * aim,
+            );
+            let at = spot + DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * reach;
+            let stays = attack(&giant, at.with_y(0.0), false);
+            let runs = attack(&giant, at.with_y(0.0), true);
+            hit += usize::from(stays.hits > 0);
+            escaped += usize::from(runs.hits == 0);
+            assert!(stays.hits <= 1 && runs.hits <= 1, "{stays:?} {runs:?}");
+        }
+        println!("{name}: {hit} of {COUNT} who stay are hit, {escaped} of {COUNT} who run escape");
+        assert!(
+            hit >= COUNT * 90 / 100 && escaped >= COUNT * 95 / 100,
+            "{name}: {hit} {escaped}"
+        );
+    }
+}
+
+#[test]
+fn blows_come_in_the_window_and_along_the_limb() {
+    for (name, act) in attacks() {
+        let giant = before(&act);
+        let spot = spot(&giant, &act).with_y(0.0);
+        let clip = act["attack"]["clip"].as_str().unwrap();
+        let clip = giant.kind().clips().find(clip).unwrap();
+        let markers = giant.kind().clips().clip(clip).unwrap().markers();
+        let time = |name: &str| markers.iter().find(|one| one.name == name).unwrap().time;
+        let window = [time("active") - TICK, time("recovery") + TICK];
+        let (mut hits, mut worst) = (0, 0f64);
+        let mut places = Vec::new();
+        for x in -14..=14 {
+            for z in -4..=16 {
+                let at = DVec3::new(f64::from(x) * 2.0, 0.0, f64::from(z) * 2.0);
+                let outcome = attack(&giant, at, false);
+                assert!(outcome.hits <= 1, "{name}: {outcome:?}");
+                if outcome.hits == 1 {
+                    (hits, worst) = (hits + 1, worst.max(outcome.aside));
+                    assert!(
+                        (window[0]..=window[1]).contains(&outcome.time),
+                        "{name} at {at}: {outcome:?}, active in {window:?}"
+                    );
+                    places.push([at.x, at.z]);
+                }
+            }
+        }
+        let range = |axis: usize| {
+            let all = places.iter().map(|place| place[axis]);
+            [
+                all.clone().fold(f64::INFINITY, f64::min),
+                all.fold(f64::NEG_INFINITY, f64::max),
+            ]
+        };
+        println!(
+            "{name}: window {window:.2?}, spot {spot:.1}, hits {hits} of 609 places, x {:?} z {:?}, at most {worst:.1} degrees aside",
+            range(0),
+            range(1)
+        );
+        assert!(hits > 0, "{name}");
+        assert!(worst <= 10.0, "{name}: {worst} degrees");
+    }
+}
