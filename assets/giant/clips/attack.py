@@ -5,7 +5,7 @@ from .keys import HIT, Table, both, strike
 
 def swipe():
     """The right hand reaches up and back, comes down before the feet, and goes on to the left shoulder."""
-    t = 4.37
+    t = 4.4
     return Table(t, {
         "pelvis.z": [(0, -0.4), (1.12, -0.9), (1.87, -3.2), (2.27, -3.0), (2.87, -1.6), (t, -0.4)],
         "pelvis.x": [(0, 0), (1.12, -0.8), (2.02, 0.9), (2.82, 0.5), (t, 0)], "pelvis.y": [(0, 0), (1.12, 0.4), (1.92, 0.8), (2.77, 0.4), (t, 0)],

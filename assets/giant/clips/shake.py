@@ -45,7 +45,7 @@ def shrug():
 
 def shake():
     """Crouches and breathes in, then twists the whole body to and fro like a wet dog."""
-    t, start, end = 4.47, 1.27, 3.17
+    t, start, end = 4.5, 1.27, 3.17
     rattle = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.6, late, 0.8, 0.9)
     return Table(t, {
         "pelvis.z": [(0, 0), (1.27, -1.0), (3.07, -0.9), (t, 0)], "pelvis.yaw": rattle(3.7), "pelvis.pitch": [(0, 0), (1.37, 2), (3.07, 2), (t, 0)],

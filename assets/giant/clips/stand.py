@@ -57,7 +57,7 @@ def roar():
 
 def expose():
     """Tired out: steps back, sinks on its right knee and its left hand, pants, and rises."""
-    t, down, up = 9.73, 2.23, 7.33
+    t, down, up = 9.7, 2.23, 7.33
     pant = lambda size, late=0.0, rest=0.0: burst(2.33, 7.33, size, 0.75, late, 0.9, 0.9)
     hold = [(0, 0), (1.03, 0), (2.03, 1), (up + 0.1, 1), (up + 0.6, 0.985), (8.73, 0), (t, 0)]
     return Table(t, {
