@@ -9,6 +9,10 @@ from .turns import between, frame, turned, turned_back
 HEEL, TOES_FREE = 5.0, 5.0
 # How far the flesh under the ball lifts a foot for each degree that its heel is raised, in metres.
 BALL_ROLL = 0.02
+# The last share of an arm's length, which a held wrist reaches only softly.
+ARM_GIVE = 0.16
+# Where a held arm's elbow points, in the chest's rest pose (left side).
+ELBOW = np.array([0.75, 0.6, 0.3])
 # The share of a leg's or an arm's length to which IK straightens it at most.
 MOST_STRETCH = 0.9985
 
@@ -16,7 +20,7 @@ MOST_STRETCH = 0.9985
 def reach(c, pose, side, sign):
     """Takes the wrist, by the share `hand.hold`, to a place and a turn in the model's axes.
 
-    The elbow stays on the side on which the arm's other channels have it.
+    The elbow points aside and backwards, as far as the wrist is held.
     """
     first, second, end = (INDEX[name + side] for name in ("upper_arm", "forearm", "hand"))
     hold = c("hand.hold" + side)
@@ -27,7 +31,10 @@ def reach(c, pose, side, sign):
     normal = np.cross(upper, lower)
     before = frame(upper, normal), frame(lower, normal)
     long = np.linalg.norm(HEADS[second] - HEADS[first]), np.linalg.norm(HEADS[end] - HEADS[second])
-    middle, target = _middle(place[:, first], goal, *long, upper)
+    pole = turn[:, INDEX["chest"]] @ (ELBOW * (sign, 1.0, 1.0))
+    out = (1 - hold[:, None]) * upper / long[0] + hold[:, None] * pole
+    goal = _within(place[:, first], goal, sum(long), ARM_GIVE * hold[:, None])
+    middle, target = _middle(place[:, first], goal, *long, out)
     upper, lower = middle - place[:, first], target - middle
     normal = np.cross(upper, lower)
     first_turn = frame(upper, normal) @ turned_back(before[0]) @ turn[:, first]
@@ -37,6 +44,18 @@ def reach(c, pose, side, sign):
     pose.local[:, first] = turned_back(turn[:, PARENT[first]]) @ first_turn
     pose.local[:, second] = turned_back(first_turn) @ second_turn
     pose.local[:, end] = turned_back(second_turn) @ hand
+
+
+def _within(root, goal, length, give):
+    """The goal, or a place before it: an arm straightens the slower the straighter it is.
+
+    `give` is the share of the length over which it does. Without it an elbow snaps when it stops to reach.
+    """
+    line = goal - root
+    distance = np.linalg.norm(line, axis=1, keepdims=True)
+    room = np.maximum(give, 1e-6) * length
+    over = np.maximum(distance - (length - room), 0.0)
+    return root + line * ((distance - over + room * (1.0 - np.exp(-over / room))) / distance)
 
 
 def leg(c, pose, side, sign):

@@ -91,11 +91,8 @@ def _drift(skin, stands, loops, speed, turn, rate):
     if loops and not stands.all():
         first = int(np.flatnonzero(~stands)[0])
     result, now, swing = np.zeros((steps + 1, 2)), np.zeros(2), []
-    order = [(first + n) % steps for n in range(steps)] if loops else range(steps)
-    if stands.all():
-        order = [n for n in order]
-    for n in order:
-        after = n + 1 if not loops else (n + 1) % steps
+    for n in range(first, first + steps):
+        n, after = (n % steps, (n + 1) % steps) if loops else (n, n + 1)
         if stands[n]:
             if swing:
                 _fade(result, swing)

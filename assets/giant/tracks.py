@@ -26,13 +26,12 @@ CATCH_UP = 0.6
 GROWTH, FIRST_SPEED, LEAST_GROWING, MOST_GROWING = 10.0, 0.008, 0.25, 0.75
 # A channel counts as resting before a key if it is slower there than this share of its speed after it.
 DRIFT = 0.08
-# How far a degree takes the end of what it turns, in metres; and a whole share of a hand's hold.
+# How far a degree takes the end of what it turns, in metres. A hand that is held moves already.
 LEVERS = {
     "pelvis": 0.35, "spine": 0.35, "chest": 0.25, "neck": 0.12, "head": 0.08, "jaw": 0.05, "arm": 0.35, "elbow": 0.25,
     "forearm": 0.25, "wrist": 0.12, "curl": 0.06, "shoulder": 0.3, "breath": 0.1, "swell": 0.1, "loin": 0.1, "foot": 0.06,
-    "hand": 0.12,
+    "hand": 0.0,
 }
-HOLD_LEVER = 15.0
 
 
 class Tracks:
@@ -81,9 +80,7 @@ class Tracks:
 def _lever(name):
     """Metres by which a unit of a channel moves the end of what it moves."""
     base, *kinds = name.removesuffix(".L").removesuffix(".R").split(".")
-    if "hold" in kinds:
-        return HOLD_LEVER
-    is_place = base in ("pelvis", "foot", "hand") and kinds[0] in ("x", "y", "z", "out")
+    is_place = base in ("pelvis", "foot") and kinds[0] in ("x", "y", "z", "out")
     return 1.0 if is_place else LEVERS[base]
 
 

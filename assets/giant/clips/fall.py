@@ -5,7 +5,7 @@ from .keys import Table, both
 
 def stagger():
     """Hit from the front left: reels back and to its right, catches itself with a step."""
-    t = 4.03
+    t = 4.1
     return Table(t, {
         "pelvis.y": [(0, 0), (1.08, 1.9), (1.53, 2.7), (2.18, 2.2), (2.98, 1.0), (t, 0)],
         "pelvis.x": [(0, 0), (1.18, -1.4), (1.68, -1.9), (2.48, -0.9), (t, 0)],
@@ -33,7 +33,7 @@ def stagger():
 
 def die():
     """The knees give way, it sinks upright, then falls forward and lies on its face."""
-    t = 6.81
+    t = 6.8
     return Table(t, {
         "pelvis.z": [(0, -0.4), (0.91, 0.0), (1.66, -4.2), (2.16, -6.6), (2.51, -6.2), (3.01, -6.5), (3.41, -6.7), (4.31, -11.0), (4.56, -10.7), (5.01, -11.0), (t, -11.0)],
         "pelvis.y": [(0, 0), (0.91, 0.7), (2.16, -1.6), (3.21, -1.7), (4.36, -11.2), (5.01, -11.5), (t, -11.5)],

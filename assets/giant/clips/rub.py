@@ -4,8 +4,8 @@ from .keys import Table, both, burst
 
 
 def rub_left():
-    """Leans its left side on a wall 14 m to its left and drags itself up and down it."""
-    t, start, end = 4.95, 1.45, 3.45
+    """Leans its left side on a wall 20 m to its left and drags itself up and down it."""
+    t, start, end = 5.0, 1.45, 3.45
     drag = lambda size, late=0.0: burst(start, end, size, 1.0, late, 0.5, 0.5)
     return Table(t, {
         "pelvis.x": ([(0, 0), (0.75, -0.7), (1.45, 2.2), (3.45, 2.2), (t, 0)], drag(0.15, 0.3)),

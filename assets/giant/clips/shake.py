@@ -45,7 +45,7 @@ def shrug():
 
 def shake():
     """Crouches and breathes in, then twists the whole body to and fro like a wet dog."""
-    t, start, end = 4.47, 1.27, 3.17
+    t, start, end = 4.5, 1.27, 3.17
     rattle = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.6, late, 0.8, 0.9)
     return Table(t, {
         "pelvis.z": [(0, 0), (1.27, -1.0), (3.07, -0.9), (t, 0)], "pelvis.yaw": rattle(3.7), "pelvis.pitch": [(0, 0), (1.37, 2), (3.07, 2), (t, 0)],
@@ -86,8 +86,8 @@ def shake_arm_left():
         "pelvis.z": [(0, 0), (1.6, -0.4), (3.3, -0.4), (t, 0)],
         "neck.yaw": [(0, 0), (1.2, 14), (3.0, 12), (t, 0)], "head.yaw": ([(0, 0), (1.1, 18), (3.0, 16), (t, 0)], fling(3.0, 0.3)),
         "neck.pitch": [(0, 0), (1.3, 6), (3.0, 5), (t, 0)], "head.pitch": [(0, 0), (1.3, 10), (3.0, 7), (t, 0)], "jaw": [(0, 0), (2.2, 10), (t, 0)],
-        "arm.swing.L": [(0, 0), (1.9, 8), (3.3, 8), (t, 0)], "arm.out.L": [(0, 0), (1.9, 8), (3.3, 8), (t, 0)],
-        "elbow.L": ([(0, 0), (1.7, 44), (3.3, 40), (t, 0)], fling(8.6)), "forearm.in.L": fling(4.0, 0.2),
+        "arm.swing.L": [(0, 0), (1.9, 8), (3.3, 8), (t, 0)], "arm.out.L": [(0, 0), (1.9, 11), (3.3, 11), (t, 0)],
+        "elbow.L": ([(0, 0), (1.7, 44), (3.3, 40), (t, 0)], fling(9.0)), "forearm.in.L": fling(4.0, 0.2),
         "wrist.L": ([(0, 0), (1.5, 14), (3.2, 4), (t, 0)], fling(24.0, 0.2)), "curl.L": ([(0, 0), (1.5, 34), (2.2, 6), (3.2, 8), (t, 0)], fling(16.0, 0.3)),
         "arm.swing.R": [(0, 0), (1.6, -6), (3.2, -6), (t, 0)], "arm.out.R": [(0, 0), (1.6, 12), (3.2, 12), (t, 0)], "elbow.R": [(0, 0), (1.6, 18), (3.2, 18), (t, 0)],
         "shoulder.lift.R": [(0, 0), (1.6, 5), (3.2, 4), (t, 0)],

@@ -5,7 +5,7 @@ from .keys import Table, strike
 
 def sweep_right():
     """Crouches with the right hand far out, and mows with it across the ground before its feet."""
-    t, start, end = 4.65, 1.7, 2.5
+    t, start, end = 4.7, 1.58, 2.5
     return Table(t, {
         "pelvis.z": [(0, 0), (1.45, -3.2), (2.15, -4.0), (2.75, -3.6), (3.55, -1.6), (t, 0)],
         "pelvis.y": [(0, 0), (1.45, 1.2), (2.15, 1.6), (2.75, 1.4), (3.65, 0.5), (t, 0)],
@@ -33,4 +33,4 @@ def sweep_right():
         "elbow.L": [(0, 0), (1.55, 58), (2.15, 78), (2.63, 50), (t, 0)], "curl.L": [(0, 0), (1.65, 24), (t, 0)],
         "loin.front": [(0, 0), (1.55, -20), (2.45, -24), (t, 0)], "loin.side": [(0, 0), (1.65, 6), (2.55, -10), (3.15, 4), (t, 0)],
         "loin.back": [(0, 0), (1.55, -6), (2.45, -12), (t, 0)],
-    }, markers=strike(1.58, end))
+    }, markers=strike(start, end))
