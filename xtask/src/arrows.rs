@@ -54,6 +54,7 @@ const ALLOWED: [(&str, &[&str]); 19] = [
             "clamber_world",
             "clamber_climber",
             "clamber_body",
+            "clamber_colossus",
             "clamber_gltf",
             "clamber_record",
             "clamber_render",
@@ -84,6 +85,7 @@ const ALLOWED: [(&str, &[&str]); 19] = [
         &[
             "clamber_surface",
             "clamber_body",
+            "clamber_colossus",
             "clamber_gltf",
             "clamber_oracle",
             "clamber_record",

@@ -58,3 +58,29 @@ fn what_is_felt() {
         println!("{:15} {:.1?}", clip.name, felt);
     }
 }
+
+#[test]
+fn debug_idle() {
+    let kind = kind(&brain_file());
+    let head = kind.skeleton().find("head").unwrap();
+    for name in ["idle", "walk", "stomp"] {
+        let clip = kind
+            .clips()
+            .clips()
+            .iter()
+            .find(|clip| clip.name == name)
+            .unwrap();
+        let places = places(&kind, clip, &[head]);
+        let mut feel = Feel::default();
+        for (tick, place) in places.iter().enumerate() {
+            let felt = feel.step(place[0]);
+            if felt > 8.0 {
+                println!(
+                    "{name} {tick} {:.3} s felt {felt:.1} at {:.4}",
+                    tick as f64 * TICK,
+                    place[0]
+                );
+            }
+        }
+    }
+}

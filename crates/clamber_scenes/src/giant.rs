@@ -19,6 +19,11 @@ pub fn path() -> PathBuf {
     ))
 }
 
+/// Path of the giant's brain.
+pub fn brain_path() -> PathBuf {
+    path().with_extension("brain.json")
+}
+
 /// The giant, with the collider that its file has.
 ///
 /// # Errors

@@ -14,6 +14,7 @@
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
 //! - [`measure`]: tables, plots, quantiles and reference values for benches.
 //! - [`part_bounds`]: spheres and capsules around parts in any pose, in f64.
+//! - [`life`]: the giant lives in fast forward, with riders.
 //! - [`tour`]: a bot climbs from a creature's foot to its head.
 //! - [`closed`]: whether a mesh is closed, and the volume that it encloses.
 //! - [`solid_angle`]: whether a point is inside a mesh, without the library's queries.
@@ -30,6 +31,7 @@ pub mod giant;
 #[cfg(any(feature = "record", feature = "render"))]
 pub mod hero;
 mod json;
+pub mod life;
 pub mod measure;
 pub mod part_bounds;
 #[cfg(feature = "render")]

@@ -1,6 +1,7 @@
 //! What a creature takes: wounds in weak points, blows on plates.
 
 use clamber_surface::mesh::TriangleId;
+use glam::DVec3;
 
 use super::report::CreatureEvent;
 use super::state::Felt;
@@ -62,13 +63,10 @@ impl Creature {
     /// The damage that a weak point takes.
     fn wound(&mut self, wound: &Wound) -> f64 {
         for index in 0..self.kind.weak_points().len() {
-            let point = &self.kind.weak_points()[index];
-            let Some(frame) = self.palette.model_from_joint(point.joint) else {
+            let Some(place) = self.weak_point(index) else {
                 continue;
             };
-            let place = frame.transform_point3(point.position.as_dvec3());
-            let place = self.surface.world_from_model().transform_point(place);
-            let radius = f64::from(point.radius) * self.config.scale;
+            let radius = f64::from(self.kind.weak_points()[index].radius) * self.config.scale;
             if place.distance(wound.place) > radius || !self.is_open(index) {
                 continue;
             }
@@ -85,6 +83,14 @@ impl Creature {
             return damage;
         }
         0.0
+    }
+
+    /// Where a weak point is, in world space; `None` if there is no such weak point.
+    pub fn weak_point(&self, index: usize) -> Option<DVec3> {
+        let point = self.kind.weak_points().get(index)?;
+        let frame = self.palette.model_from_joint(point.joint)?;
+        let place = frame.transform_point3(point.position.as_dvec3());
+        Some(self.surface.world_from_model().transform_point(place))
     }
 
     /// True if a weak point can be hurt now: it is not used up, and the current state exposes it, or all of lower order are

@@ -3,6 +3,7 @@
 use clamber_animation::ik::{TwoBoneGoal, aim};
 use clamber_animation::joint_in_model;
 use clamber_surface::geometry::rotation_from_axis_angle;
+use clamber_world::Obstacle;
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::Creature;
@@ -101,6 +102,27 @@ impl Creature {
             wants_step: foot.wants_step(),
             is_planted: foot.is_planted(),
         }
+    }
+
+    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. `None` if there
+    /// is no such leg, or no ground below it.
+    pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
+        let leg = self.kind.legs().get(leg)?;
+        let (ankle, ball) = (
+            self.palette.model_from_joint(leg.ankle)?,
+            self.palette.model_from_joint(leg.ball)?,
+        );
+        let turn = rotation_of(&ankle) * leg.level.conjugate();
+        let world = self.surface.world_from_model();
+        let ground = Ground {
+            terrain,
+            reach: 0.5 * self.kind.height() * self.config.scale,
+        };
+        let heights = leg.sole.points.iter().filter_map(|point| {
+            let place = world.transform_point(ball.translation + turn * *point);
+            Some(place.y - ground.below(place)?.0)
+        });
+        heights.min_by(f64::total_cmp)
     }
 
     fn foot_goal(

@@ -227,6 +227,11 @@ impl CreatureKind {
         Some(self.plate_of[found].1 as usize)
     }
 
+    /// Length of a foot's sole, in the model's units; 0 if there is no such leg.
+    pub fn foot_length(&self, leg: usize) -> f64 {
+        self.legs.get(leg).map_or(0.0, |leg| leg.sole.size()[1])
+    }
+
     pub(crate) fn act(&self, state: StateId) -> &CompiledAct {
         &self.acts[state.index()]
     }
