@@ -189,6 +189,7 @@ def check_motion(moves, points, weights, fur):
         # Feet are dragged along when the giant dies.
         expect(slide <= MOST_SLIDE or clip.name == "die", f"{clip.name}: soles slide at {slide:.3f} m/s")
         expect(pull <= START_PULL, f"{clip.name}: {joint} starts with {pull:.2f} m/s^2 at {time:.2f} s")
+        expect(all(0.0 <= time <= clip.length for _, time in clip.table.markers), f"{clip.name}: a marker is too late")
         expect({name for name, _ in clip.table.markers} >= MARKERS.get(clip.name, set()), f"{clip.name}: markers")
     for name, (limb, side) in BLOWS.items():
         _check_blow(by_name[name], limb, side, points, weights, expect)
