@@ -2,8 +2,8 @@
 
 A key is (time, value), or (time, value, HIT) for one that is reached at speed and left from rest: a
 foot that slams down. A channel may also be a function of an array of times, or a tuple of such parts,
-which are added. One-shots start from what the channels of another clip, `base`, are at its first
-moment: all values count from there.
+which are added. One-shots start from the first values of another clip's channels, `base`: their keys
+count from there.
 """
 
 import numpy as np
@@ -20,9 +20,10 @@ ARRIVAL = 1.9
 SOFTNESS, SHARP, FADE = 0.16, 0.05, 0.2
 # Seconds at the end of a one-shot in which what lags catches up.
 CATCH_UP = 0.6
-# A giant never starts abruptly: what leaves its rest grows at this rate (per second), the longer the
-# farther it goes: until it accelerates as if it had started with FIRST_SPEED (metres a second), for at
-# most these shares of the time to its next key.
+# A giant never starts abruptly. A channel that leaves its rest first grows exponentially with the rate
+# GROWTH (per second), then follows a cubic. The faster it must become, the longer it grows: FIRST_SPEED
+# (metres a second) is about what it starts with. The growth takes between these shares of the time to the
+# next key. Larger shares end more abruptly; smaller ones break the limit that `check.py` sets for starts.
 GROWTH, FIRST_SPEED, LEAST_GROWING, MOST_GROWING = 10.0, 0.008, 0.25, 0.75
 # A channel counts as resting before a key if it is slower there than this share of its speed after it.
 DRIFT = 0.08
@@ -51,7 +52,8 @@ class Tracks:
         if callable(keys):
             return keys(self.grid)
         if self.loops:
-            return _values(keys, self.grid, _lever(name), self.length)
+            # Only feet rest in a loop; the rest of the body never stops.
+            return _values(keys, self.grid, _lever(name) if name.startswith("foot") else None, self.length)
         values = _values(keys, self.grid, _lever(name))
         hits = [0.0, self.length, *blows, *(key[0] for key in keys if len(key) > 2)]
         return _smoothed(values, self.grid, hits)
@@ -98,6 +100,8 @@ def _values(keys, grid, lever, cycle=None):
     grid = np.clip(grid, times[0], times[-1])
     index = np.clip(np.searchsorted(times, grid, side="right") - 1, 0, len(times) - 2)
     result = _cubic(grid, times[index], times[index + 1], values[index], values[index + 1], after[index], before[index + 1])
+    if lever is None:
+        return result
     speed = np.abs(np.diff(values) / np.diff(times))
     earlier = np.roll(speed, 1) if cycle else np.append(0.0, speed[:-1])
     for number in np.flatnonzero((earlier <= DRIFT * speed) | hits[:-1]):

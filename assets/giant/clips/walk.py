@@ -54,13 +54,13 @@ def turn_left():
     t = TURN_CYCLE
     swing = t * (1.0 - STANCE)
     channels = {
-        "pelvis.z": wave(t, 0.22, 2, 0.42, -1.15), "pelvis.x": wave(t, 1.0, 1, 0.07), "pelvis.y": [(0, -0.2)],
-        "pelvis.roll": wave(t, -2.6, 1, 0.10), "pelvis.yaw": wave(t, 3.0, 2, 0.3, 1.0), "pelvis.pitch": wave(t, 1.2, 2, 0.2, 2.0),
-        "spine.yaw": wave(t, 3.0, 2, 0.25, 7.0), "spine.roll": wave(t, 3.6, 1, 0.12, -1.5), "spine.pitch": wave(t, 2.0, 2, 0.2, 5.0),
-        "neck.yaw": wave(t, 2.5, 2, 0.2, 9.0), "neck.pitch": wave(t, 2.0, 2, 0.3), "head.yaw": wave(t, 2.5, 2, 0.2, 10.0),
-        "head.pitch": wave(t, 2.5, 2, 0.35, 2.0), "head.roll": wave(t, -2.5, 1, 0.1), "jaw": wave(t, 3.0, 2, 0.3, 4.0),
+        "pelvis.z": wave(t, 0.22, 2, 0.42, -1.15), "pelvis.x": wave(t, 0.9, 1, 0.07), "pelvis.y": [(0, -0.2)],
+        "pelvis.roll": wave(t, -2.2, 1, 0.10), "pelvis.yaw": wave(t, 1.5, 2, 0.3, 1.0), "pelvis.pitch": wave(t, 0.7, 2, 0.2, 2.0),
+        "spine.yaw": wave(t, 1.4, 2, 0.25, 7.0), "spine.roll": wave(t, 3.0, 1, 0.12, -1.5), "spine.pitch": wave(t, 1.0, 2, 0.2, 5.0),
+        "neck.yaw": wave(t, 1.2, 2, 0.2, 9.0), "neck.pitch": wave(t, 1.2, 2, 0.3), "head.yaw": wave(t, 1.2, 2, 0.2, 10.0),
+        "head.pitch": wave(t, 1.5, 2, 0.35, 2.0), "head.roll": wave(t, -2.5, 1, 0.1), "jaw": wave(t, 3.0, 2, 0.3, 4.0),
         "breath": wave(t, 1.0, 1), "loin": wave(t, 3.0, 2, 0.1), "loin.front": [(0, -6.0)], "loin.side": wave(t, -4.0, 1, 0.1),
-        "arm.swing.L": wave(t, 6.0, 1, 0.3, -4.0), "arm.swing.R": wave(t, -6.0, 1, 0.3, 8.0),
+        "arm.swing.L": wave(t, 6.0, 1, 0.3, -2.0), "arm.swing.R": wave(t, -6.0, 1, 0.3, 6.0),
         **both("arm.out", wave(t, 2.0, 2, 0.1, 7.0)), **both("elbow", wave(t, 4.0, 2, 0.3, 16.0)),
         **both("wrist", wave(t, 4.0, 2, 0.36)), **both("curl", wave(t, 5.0, 1, 0.4, 18.0)),
         **both("shoulder.lift", wave(t, 2.0, 2, 0.35)),
