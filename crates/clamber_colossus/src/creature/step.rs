@@ -1,7 +1,7 @@
 //! One step of a creature, in the order in which it happens.
 
 use clamber_animation::rig::Playback;
-use clamber_animation::{Animator, ClipId};
+use clamber_animation::{Animator, ClipId, LayerKind};
 use glam::DVec3;
 
 use super::report::CreatureEvent;
@@ -243,8 +243,13 @@ fn change(
     fade: f64,
 ) -> Result<(), ColossusError> {
     animator.change(kind.clips(), fade, |layers| {
+        // It holds its breath while it does something once.
+        let breath = if playback == Playback::Loop { 1.0 } else { 0.0 };
         for layer in layers.iter_mut() {
             layer.speed = 1.0;
+            if layer.kind == LayerKind::Additive {
+                layer.weight = breath;
+            }
         }
         if let Some(layer) = layers.first_mut() {
             (layer.clip, layer.playback) = (clip, playback);
