@@ -1,6 +1,7 @@
 //! Where a creature goes: walking, turning, and the height of the ground that it walks on.
 
 use clamber_animation::AnimationEvent;
+use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use super::hips::approach;
@@ -28,6 +29,11 @@ const CAREFUL: f64 = 1.2;
 
 /// Time constant with which it takes the ground ahead into account, seconds.
 const LOOKS_AHEAD: f64 = 1.0;
+
+/// A way that is no further aside than this is straight ahead, radians; and what is no higher than this share of its height it
+/// steps over.
+const STRAIGHT: f64 = 0.15;
+const STEPS_OVER: f64 = 0.06;
 
 /// It turns on the spot first if its goal is further aside than this, radians; and walks on if it is nearer.
 const TURN_FIRST: f64 = 1.2;
@@ -231,8 +237,14 @@ impl Creature {
                 let braked = (2.0 * 0.7 * SLOWS_DOWN * (distance - way.within).max(0.0)).sqrt();
                 speed = careful.min(braked).max(SLOWEST * careful);
                 turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
-                if !turns_on_spot && self.is_blocked(around) {
-                    (speed, turn, arrived) = (0.0, 0.0, true);
+                if !turns_on_spot {
+                    match self.free_way(around, aside) {
+                        Some(way) if way == aside => {}
+                        Some(way) => {
+                            turn = (way * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate
+                        }
+                        None => (speed, turn, arrived) = (0.0, 0.0, true),
+                    }
                 }
             }
             if turns_on_spot {
@@ -286,28 +298,45 @@ impl Creature {
         Ok(arrived && stands)
     }
 
-    /// True if the ground ahead is too steep, or there is none, or a wall stands there.
-    fn is_blocked(&self, around: &Surroundings<'_>) -> bool {
+    /// The direction to walk in, radians from its heading, for one that it wants: that one if it is free, straight on while only
+    /// that is, or else the free one that is nearest to it; `None` if there is none.
+    fn free_way(&self, around: &Surroundings<'_>, wanted: f64) -> Option<f64> {
+        if self.is_free(around, 0.0) {
+            let is_free = wanted.abs() < STRAIGHT || self.is_free(around, wanted.clamp(-0.7, 0.7));
+            return Some(if is_free { wanted } else { 0.0 });
+        }
+        let side = if wanted < 0.0 { -1.0 } else { 1.0 };
+        [0.6, -0.6, 1.2, -1.2]
+            .map(|angle| angle * side)
+            .into_iter()
+            .find(|angle| self.is_free(around, *angle))
+    }
+
+    /// False if in a direction from its heading the ground is too steep, or there is none, or a wall stands there.
+    fn is_free(&self, around: &Surroundings<'_>, angle: f64) -> bool {
         let height = self.kind.height() * self.config.scale;
         let girth = self.kind.girth() * self.config.scale;
         let ground = Ground {
             terrain: around.terrain,
             reach: 0.5 * height,
         };
-        let heading = self.state.heading();
+        let direction = rotation_from_axis_angle(DVec3::Y, angle) * self.state.heading();
         // As far ahead as it takes to come to a stand.
         let brake = self.state.speed * self.state.speed / (2.0 * SLOWS_DOWN);
-        let ahead = self.state.position + heading * (girth + brake);
-        let Some((_, normal)) = ground.below(ahead) else {
-            return true;
+        let ahead = self.state.position + direction * (girth + brake);
+        let Some((level, normal)) = ground.below(ahead) else {
+            return false;
         };
         let from = self.state.position + DVec3::Y * (0.3 * height);
         let reach = 1.2 * girth + brake;
-        let wall = around
+        let is_wall = around
             .terrain
             .iter()
-            .any(|obstacle| obstacle.cast_ray(from, heading, reach).is_some());
-        wall || normal.y < libm::cos(self.config.most_slope)
+            .any(|obstacle| obstacle.cast_ray(from, direction, reach).is_some());
+        // What it can step over is no slope.
+        let rise = (level - self.state.position.y).abs();
+        let is_steep = normal.y < libm::cos(self.config.most_slope) && rise > STEPS_OVER * height;
+        !is_wall && !is_steep
     }
 
     /// How long its steps are, as a share of those of its clip.

@@ -115,6 +115,8 @@ impl Creature {
             return Ok(());
         }
         self.state.acting = Some(state);
+        // What is left of a walk ends under the act.
+        self.state.halts = !walks && self.state.speed > 0.0;
         self.state.struck.clear();
         self.state.aim = DVec3::ZERO;
         match act {

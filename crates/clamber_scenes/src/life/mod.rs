@@ -31,15 +31,29 @@ pub const TICK: f64 = 1.0 / 60.0;
 const GROUND: ObstacleId = ObstacleId(0);
 const GIANT: ObstacleId = ObstacleId(1);
 
-/// Riders, and boulders in the valley.
+/// Riders, boulders in the valley, and walls of rock around its middle.
 const RIDERS: u64 = 5;
 const BOULDERS: usize = 150;
+const WALLS: u32 = 5;
 
 /// Seconds between two arrows, two wounds, two noises, and two riders that are lifted onto the giant.
 const ARROWS: f64 = 47.0;
 const WOUNDS: f64 = 170.0;
 const NOISES: f64 = 61.0;
 const LIFTS: f64 = 37.0;
+
+/// Of each so many seconds, riders leave the giant alone for so many.
+const DAY: f64 = 400.0;
+const QUIET: f64 = 120.0;
+
+/// Where riders are lifted to: anywhere, or onto joints whose names begin so.
+const LIFTED_TO: [&[&str]; 5] = [
+    &[""],
+    &[""],
+    &["head", "neck"],
+    &["upper_arm.L", "forearm.L"],
+    &["upper_arm.R", "forearm.R"],
+];
 
 /// Damage of a wound.
 const DAMAGE: f64 = 0.6;
@@ -184,11 +198,12 @@ impl Life {
         self.tally.tick(self.giant.state().current());
         look_at_feet(&self.giant, &mut self.stands, &mut self.tally, &all);
         let seconds = self.ticks as f64 * TICK;
+        let is_quiet = self.is_quiet();
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
             [(GROUND, &terrain), (GIANT, self.giant.surface())];
         let mut lost = Vec::new();
         for (index, rider) in self.riders.iter_mut().enumerate() {
-            let input = rider.input(&self.giant, GIANT, seconds);
+            let input = rider.input(&self.giant, GIANT, seconds, is_quiet);
             let rode = rider.rides(GIANT);
             rider.climber.step(&input, &obstacles, TICK)?;
             self.tally.ride(rode, rider.rides(GIANT));
@@ -202,6 +217,11 @@ impl Life {
             self.riders[index].revive(place)?;
         }
         Ok(changed)
+    }
+
+    /// True while riders leave the giant alone.
+    fn is_quiet(&self) -> bool {
+        (self.ticks as f64 * TICK).rem_euclid(DAY) > DAY - QUIET
     }
 
     /// What happens from outside: arrows and blades, riders that are lifted, and the next giant after a death.
@@ -222,9 +242,10 @@ impl Life {
                 }
             }
         }
-        if lift {
+        if lift && !self.is_quiet() {
             let index = self.random.usize(..self.riders.len());
-            self.riders[index].lift(&self.giant)?;
+            let joints = LIFTED_TO[self.random.usize(..LIFTED_TO.len())];
+            self.riders[index].lift(&self.giant, joints)?;
         }
         let is_dead = self.kind.brain().is_final(self.giant.state().current());
         if is_dead && self.giant.state().brain().ticks_in_state(self.kind.brain()) > 600 {
@@ -320,12 +341,13 @@ fn born(kind: &Arc<CreatureKind>, seed: u64) -> Result<Creature, LifeError> {
         position: DVec3::Y * valley::height(0.0, 0.0),
         seed,
         arena: 80.0,
+        sight: 60.0,
         ..CreatureConfig::default()
     };
     Ok(Creature::new(Arc::clone(kind), config)?)
 }
 
-/// The valley with boulders in it and a wall of rock.
+/// The valley with boulders in it and walls of rock.
 fn arena(random: &mut fastrand::Rng) -> PhysicsWorld {
     let mut world = valley::world();
     let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
@@ -336,16 +358,21 @@ fn arena(random: &mut fastrand::Rng) -> PhysicsWorld {
         let ball = ColliderBuilder::ball(radius as Real).position(Pose::from_translation(place));
         world.insert_collider(ball, None);
     }
-    let rock = DVec3::new(-60.0, valley::height(-60.0, 30.0) + 12.0, 30.0).as_vec3();
-    let wall = ColliderBuilder::cuboid(4.0, 16.0, 25.0).position(Pose::from_translation(rock));
-    world.insert_collider(wall, None);
+    for wall in 0..WALLS {
+        let angle = core::f64::consts::TAU * f64::from(wall) / f64::from(WALLS);
+        let (x, z) = (55.0 * libm::sin(angle), 55.0 * libm::cos(angle));
+        let rock = DVec3::new(x, valley::height(x, z) + 12.0, z).as_vec3();
+        let turn = Vector::new(0.0, angle as Real, 0.0);
+        let wall = ColliderBuilder::cuboid(10.0, 16.0, 3.0).position(Pose::new(rock, turn));
+        world.insert_collider(wall, None);
+    }
     world.detect_collisions(&(), &());
     world
 }
 
 /// A place in the valley, just above the ground.
 fn somewhere(random: &mut fastrand::Rng) -> DVec3 {
-    let mut lot = || (random.f64() - 0.5) * 120.0;
+    let mut lot = || (random.f64() - 0.5) * 180.0;
     let (x, z) = (lot(), lot());
     DVec3::new(x, valley::height(x, z) + 4.0, z)
 }

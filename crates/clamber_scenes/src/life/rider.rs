@@ -14,6 +14,9 @@ const BETWEEN: [f64; 2] = [4.0, 14.0];
 /// With less stamina than this it stands still where it can.
 const TIRED: f64 = 0.3;
 
+/// How far it goes away, metres.
+const FAR: f64 = 100.0;
+
 /// What it wants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
@@ -71,9 +74,18 @@ impl Rider {
     }
 
     /// What it does in a tick.
-    pub(super) fn input(&mut self, giant: &Creature, id: ObstacleId, seconds: f64) -> ClimberInput {
+    pub(super) fn input(
+        &mut self,
+        giant: &Creature,
+        id: ObstacleId,
+        seconds: f64,
+        is_quiet: bool,
+    ) -> ClimberInput {
         if seconds >= self.until {
             self.think(giant, id, seconds);
+        }
+        if is_quiet {
+            self.leave(giant);
         }
         let state = self.climber.state();
         let blow = self.blow.take();
@@ -121,19 +133,27 @@ impl Rider {
         let support = self.climber.state().support;
         self.wish = if support.is_some_and(|support| support.attachment.obstacle == id) {
             Wish::Climb(level + DVec3::Y * lot(-0.5, 1.5))
-        } else if lot(0.0, 1.0) < 0.5 {
+        } else if lot(0.0, 1.0) < 0.35 {
             Wish::Come
         } else {
-            Wish::Wander(giant.state().position() + level * lot(10.0, 70.0))
+            Wish::Wander(giant.state().position() + level * lot(10.0, 90.0))
         };
     }
 
-    /// Puts it on fur of the giant, somewhere.
-    pub(super) fn lift(&mut self, giant: &Creature) -> Result<(), LifeError> {
+    /// Lets go, and goes far away.
+    fn leave(&mut self, giant: &Creature) {
+        let from = giant.state().position();
+        let way = (self.climber.state().position - from).with_y(0.0);
+        self.wish = Wish::Wander(from + way.normalize_or(DVec3::X) * FAR);
+    }
+
+    /// Puts it on fur of the giant, on a joint whose name begins with one of these.
+    pub(super) fn lift(&mut self, giant: &Creature, joints: &[&str]) -> Result<(), LifeError> {
         let surface = giant.surface();
         let tags = surface.mesh().tags();
         let fur: Vec<usize> = (0..tags.len())
             .filter(|index| tags[*index].kind == SurfaceKind::Fur)
+            .filter(|index| belongs(giant, TriangleId(*index as u32), joints))
             .collect();
         let Some(index) = self.random.choice(&fur) else {
             return Ok(());
@@ -171,4 +191,15 @@ impl Rider {
             .cast_ray(place + DVec3::Y * 5.0, -DVec3::Y, 200.0)
             .is_none()
     }
+}
+
+/// True for skin of a joint whose name begins with one of these.
+fn belongs(giant: &Creature, triangle: TriangleId, to: &[&str]) -> bool {
+    let joint = giant.surface().mesh().joint_of(triangle);
+    let name = joint.map(|joint| {
+        giant.kind().skeleton().joints()[joint.index()]
+            .name
+            .as_str()
+    });
+    name.is_some_and(|name| to.iter().any(|start| name.starts_with(start)))
 }
