@@ -97,7 +97,7 @@ const ALLOWED: [(&str, &[&str]); 19] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 14] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 15] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
@@ -107,6 +107,7 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 14] = [
     ("clamber_benches", "clamber"),
     ("clamber_cli", "clamber_scenes"),
     ("clamber_benches", "clamber_body"),
+    ("clamber_benches", "clamber_colossus"),
     ("clamber_benches", "clamber_scenes"),
     ("clamber_recipes", "clamber"),
     ("clamber_fuzz", "clamber_scenes"),
