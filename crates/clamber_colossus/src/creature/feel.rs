@@ -12,6 +12,9 @@ use crate::senses::{RegionSense, Sense, Senses};
 /// It sees to this angle from ahead of its head, radians.
 const FIELD_OF_VIEW: f64 = 1.8;
 
+/// It looks for people in one of so many ticks.
+const LOOKS: u64 = 4;
+
 /// Seconds for which a rider may leave the skin without the ride being over: a leap, a stumble.
 const LEAP: f64 = 0.6;
 
@@ -136,6 +139,7 @@ impl Creature {
     /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.
     fn see(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
         let eye = self.eye();
+        let looks = self.state.ticks % LOOKS == 0;
         let mut nearest: Option<(f64, u64, DVec3)> = None;
         let mut underfoot = 0;
         for person in around.people {
@@ -154,7 +158,11 @@ impl Creature {
             // Whoever is right below it is felt rather than seen.
             let is_near = distance < self.kind.girth() * self.config.scale;
             let is_ahead = self.bearing(middle).abs() < FIELD_OF_VIEW;
-            if is_near || is_ahead && !is_hidden(around, eye, person) {
+            // Whoever it had in view a moment ago still is.
+            let is_known = self.state.unseen == 0
+                && !looks
+                && self.state.prey.is_some_and(|(id, _)| id == person.id);
+            if is_near || is_ahead && (is_known || looks && !is_hidden(around, eye, person)) {
                 nearest = Some((distance, person.id, middle));
             }
         }

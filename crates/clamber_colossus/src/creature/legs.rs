@@ -15,6 +15,9 @@ use crate::kind::{Contacts, Leg, rotation_of};
 /// From which share of its length on a leg in flight is stretched softly.
 const SOFT: f64 = 0.93;
 
+/// A foot looks at what it stands on in one of so many ticks.
+const LOOKS: u64 = 4;
+
 /// The most acceleration with which a foot goes to whom it strikes, metres a second squared.
 const BLOW: f64 = 40.0;
 
@@ -188,6 +191,7 @@ impl Creature {
             ball_height: leg.sole.ball_height * scale,
             leg: leg.length * scale,
             may_step: others_stand && self.state.hips.has_shifted(),
+            looks: (self.state.ticks + index as u64) % LOOKS == 0,
             is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
         }
     }

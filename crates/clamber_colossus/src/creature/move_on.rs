@@ -5,7 +5,7 @@ use clamber_surface::geometry::rotation_from_axis_angle;
 use glam::DVec3;
 
 use super::hips::approach;
-use super::state::{NO_WALL, Playing, WALLS};
+use super::state::{Detour, GROUND, NO_GROUND, NO_WALL, Playing, WALLS};
 use super::{Creature, CreatureEvent, Surroundings};
 use crate::angle::nearest_turn;
 use crate::brain::{Act, Place, Walk};
@@ -29,6 +29,9 @@ const CAREFUL: f64 = 1.2;
 
 /// Time constant with which it takes the ground ahead into account, seconds.
 const LOOKS_AHEAD: f64 = 1.0;
+
+/// It looks for what is in its way in one of so many ticks.
+const LOOKS: u64 = 8;
 
 /// A way that is no further aside than this is straight ahead, radians; and what is no higher than this share of its height it
 /// steps over.
@@ -69,6 +72,7 @@ impl Creature {
         let mut lot = || (self.state.brain.draw() >> 11) as f64 / (1u64 << 53) as f64;
         let (angle, share) = (core::f64::consts::TAU * lot(), lot().sqrt());
         let aside = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+        self.state.detour = Detour::None;
         self.state.patrol = self.state.home + aside * (0.9 * reach * share);
     }
 
@@ -238,12 +242,19 @@ impl Creature {
                 speed = careful.min(braked).max(SLOWEST * careful);
                 turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
                 if !turns_on_spot {
-                    match self.free_way(around, aside) {
-                        Some(way) if way == aside => {}
-                        Some(way) => {
+                    if self.state.ticks % LOOKS == 0 {
+                        self.state.detour = match self.free_way(around, aside) {
+                            Some(way) if way == aside => Detour::None,
+                            Some(way) => Detour::By(way),
+                            None => Detour::Blocked,
+                        };
+                    }
+                    match self.state.detour {
+                        Detour::None => {}
+                        Detour::By(way) => {
                             turn = (way * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate
                         }
-                        None => (speed, turn, arrived) = (0.0, 0.0, true),
+                        Detour::Blocked => (speed, turn, arrived) = (0.0, 0.0, true),
                     }
                 }
             }
@@ -352,33 +363,41 @@ impl Creature {
             reach: 0.5 * height,
         };
         let heading = self.state.heading();
-        // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
-        let (mut sum, mut count) = (0.0, 0.0);
-        let (mut before, mut steepest) = (None, 0f64);
         let spacing = 0.07 * height;
-        for step in -3..=3 {
-            let place = self.state.position + heading * (f64::from(step) * spacing);
-            if let Some((level, _)) = ground.below(place) {
-                (sum, count) = (sum + level, count + 1.0);
-                if let Some(before) = before.filter(|_| step >= 0) {
-                    let rise: f64 = level - before;
-                    steepest = steepest.max(rise.abs() / spacing);
-                }
-                before = Some(level);
+        let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
+        // One place in each tick, and all of them in the first one.
+        let is_first = self.state.ticks <= 1;
+        let turn = (self.state.ticks % GROUND as u64) as usize;
+        for index in (0..GROUND).filter(|index| is_first || *index == turn) {
+            let place = match index {
+                7 => aside,
+                8 => -aside,
+                step => heading * ((step as f64 - 3.0) * spacing),
+            };
+            let level = ground.below(self.state.position + place);
+            self.state.ground[index] = level.map_or(NO_GROUND, |(level, _)| level);
+        }
+        // The mean over what it walks on within a step or two: a step in the ground becomes a ramp.
+        let known =
+            |index: usize| Some(self.state.ground[index]).filter(|level| *level < NO_GROUND);
+        let (mut sum, mut count, mut steepest) = (0.0, 0.0, 0f64);
+        for index in 0..7 {
+            let Some(level) = known(index) else { continue };
+            (sum, count) = (sum + level, count + 1.0);
+            if let Some(before) = index.checked_sub(1).filter(|_| index >= 3).and_then(known) {
+                steepest = steepest.max((level - before).abs() / spacing);
             }
         }
         if count == 0.0 {
             return;
         }
-        let aside = DVec3::new(heading.z, 0.0, -heading.x) * spacing;
-        let sides = [aside, -aside].map(|side| ground.below(self.state.position + side));
-        if let [Some((left, _)), Some((right, _))] = sides {
+        if let [Some(left), Some(right)] = [7, 8].map(known) {
             steepest = steepest.max((left - right).abs() / (2.0 * spacing));
         }
         // Gradually, since a stride depends on it.
         let share = 1.0 - libm::exp(-dt / LOOKS_AHEAD);
         self.state.steepness += (steepest - self.state.steepness) * share;
-        if self.state.ticks <= 1 {
+        if is_first {
             // It has just been put there.
             self.state.position.y = sum / count;
             self.state.steepness = steepest;

@@ -28,6 +28,10 @@ pub struct CreatureState {
     /// Where the model's origin is. Its height follows the ground.
     pub(super) position: DVec3,
     pub(super) climb: f64,
+    /// Heights of the ground along its heading, from behind to ahead, and to the left and right; one is looked for in each tick.
+    pub(super) ground: [f64; GROUND],
+    /// How it goes round what is in its way.
+    pub(super) detour: Detour,
     /// How steep the ground ahead is, as a tangent.
     pub(super) steepness: f64,
     pub(super) yaw: f64,
@@ -75,6 +79,12 @@ pub struct CreatureState {
 /// Stands for no wall in reach: JSON has no infinity.
 pub(super) const NO_WALL: f32 = f32::MAX;
 
+/// Stands for no ground below: JSON has no infinity.
+pub(super) const NO_GROUND: f64 = f64::MAX;
+
+/// Places at which the ground is looked for.
+pub(super) const GROUND: usize = 9;
+
 /// Directions in which walls are looked for.
 pub(super) const WALLS: usize = 8;
 
@@ -89,6 +99,17 @@ pub(super) enum Playing {
     Turn(u8),
     /// The clip of a state's act.
     Act(StateId),
+}
+
+/// How a creature goes round what is in its way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Detour {
+    /// Nothing is.
+    None,
+    /// In this direction from its heading, radians.
+    By(f64),
+    /// Not at all.
+    Blocked,
 }
 
 /// Somebody's time on the creature.
@@ -144,6 +165,8 @@ impl CreatureState {
             halts: false,
             position: config.position,
             climb: 0.0,
+            ground: [NO_GROUND; GROUND],
+            detour: Detour::None,
             steepness: 0.0,
             yaw: config.yaw,
             speed: 0.0,

@@ -86,6 +86,8 @@ pub(crate) struct FootGoal {
     pub(crate) leg: f64,
     /// True if the foot may take a step of its own.
     pub(crate) may_step: bool,
+    /// True if it looks whether what it stands on is still there.
+    pub(crate) looks: bool,
     /// True if the clip walks or turns: it brings steps of its own.
     pub(crate) is_gait: bool,
 }
@@ -218,9 +220,10 @@ impl Foot {
                 let level = DVec3::new(gap.x, 0.0, gap.z).length();
                 let is_off = level > STEPS_BEYOND * goal.leg || self.yaw.value.abs() > STEPS_TURNED;
                 self.wants_step = is_off && !goal.is_gait;
-                let is_gone = sole
-                    .below(at.ball)
-                    .is_none_or(|now| (now - below).abs() > GONE * goal.leg);
+                let is_gone = goal.looks
+                    && sole
+                        .below(at.ball)
+                        .is_none_or(|now| (now - below).abs() > GONE * goal.leg);
                 if is_gone && sole.has_ground() {
                     self.hold = Hold::Lands {
                         ball: Spring::at(at.ball),

@@ -10,7 +10,7 @@ mod strikes;
 use std::sync::Arc;
 
 use clamber_animation::ik::{LookAt, LookLimits};
-use clamber_animation::rig::{Clip, JointId, Playback, Skeleton, WeakPoint};
+use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use glam::DVec3;
@@ -89,6 +89,13 @@ impl CreatureKind {
             mesh,
             weak_points,
         } = parts;
+        let mut clips = clips;
+        if let Some(name) = &brain.file().body.breathe {
+            let breath = clips.iter_mut().find(|clip| clip.name == *name);
+            if let Some(clip) = breath {
+                *clip = breath_of(clip);
+            }
+        }
         let clips = AnimationSet::new(&skeleton, clips)?;
         let names = Names {
             skeleton: &skeleton,
@@ -326,6 +333,18 @@ pub(crate) fn whole(problem: BrainProblem) -> BrainError {
         state: None,
         problem,
     }
+}
+
+/// A clip of breathing without what does not move in it: it is added to others in every tick.
+fn breath_of(clip: &Clip) -> Clip {
+    let moves = |channel: &&Channel| match channel.values() {
+        Keyframes::Translation(values) | Keyframes::Scale(values) => {
+            values.iter().any(|value| *value != values[0])
+        }
+        Keyframes::Rotation(values) => values.iter().any(|value| *value != values[0]),
+    };
+    let channels = clip.channels().iter().filter(moves).cloned().collect();
+    Clip::new(clip.name.clone(), channels)
 }
 
 /// The innermost joint that all legs hang from.
