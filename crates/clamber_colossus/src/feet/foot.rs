@@ -38,6 +38,17 @@ struct Step {
     lasts: f64,
 }
 
+/// What the offset of a swinging foot goes to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Path {
+    /// Up, metres.
+    offset: f64,
+    /// Seconds until then.
+    left: f64,
+    /// Height of the ground below the foot.
+    floor: f64,
+}
+
 /// A foot of a creature, in world space.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Foot {
@@ -54,6 +65,8 @@ pub(crate) struct Foot {
     normal: DVec3,
     /// How far a planted ball still is from its place.
     settling: Spring<DVec3>,
+    /// What its offset goes to.
+    path: Path,
     /// Where it comes down, as looked for last.
     landing: Option<Footing>,
     /// True if it stands where it should not.
@@ -124,6 +137,9 @@ const GONE: f64 = 0.003;
 /// A foot has come down when it is as near as this to where it should, as a share of the leg's length.
 const ARRIVED: f64 = 0.01;
 
+/// Stands for no ground below: JSON has no infinity.
+const NO_GROUND: f64 = f64::MIN;
+
 /// A place to land on is looked for anew when it has moved by this share of the leg's length.
 const SAME: f64 = 0.03;
 
@@ -143,6 +159,7 @@ impl Foot {
             flat: Spring::default(),
             normal: DVec3::Y,
             settling: Spring::default(),
+            path: Path::default(),
             landing: None,
             wants_step: false,
             is_stretched: false,
@@ -235,7 +252,10 @@ impl Foot {
                         Hold::Steps(self.step_from(at.ball + self.settling.value, goal, sole));
                 }
             }
-            Hold::Planted { .. } | Hold::Lands { .. } if !goal.stands => self.hold = Hold::Swings,
+            Hold::Planted { .. } | Hold::Lands { .. } if !goal.stands => {
+                self.hold = Hold::Swings;
+                self.path.left = 0.0;
+            }
             Hold::Swings if goal.stands => {
                 let ball = goal.clip + self.offset.value;
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
@@ -311,27 +331,21 @@ impl Foot {
     /// Flies as its clip does, but for an offset that goes to where it comes down in `left` seconds, over what lies between.
     fn swing(&mut self, goal: &FootGoal, sole: &Sole<'_>, left: f64, dt: f64) {
         let lands = self.landing(goal.lands_at + goal.aside, goal, sole);
-        let mut wanted = DVec3::new(0.0, lands.ball.y - goal.lands_at.y, 0.0);
-        // What lies between has to be passed in a share of the time: it wins if it takes more acceleration.
-        let ball = goal.clip + self.offset.value;
-        let way = goal.lands_at + goal.aside - ball;
-        let now = [self.offset.value.y, self.offset.velocity.y];
-        let (mut hardest, mut within) = (pull(now, wanted.y, left), left);
-        for (share, clip) in SHARES.into_iter().zip(goal.ahead) {
-            let Some(height) = sole.highest(ball + way * share, lands.normal) else {
-                continue;
-            };
-            let (offset, time) = (height + goal.ball_height - clip, (left * share).max(LEAST));
-            let pull = pull(now, offset, time);
-            if offset > now[0] && pull > hardest {
-                (hardest, within, wanted.y) = (pull, time, offset);
-            }
+        if goal.looks || self.path.left <= 0.0 {
+            self.path = self.path_over(goal, sole, &lands, left);
         }
+        self.path.left -= dt;
         let mut up = Spring {
             value: self.offset.value.y,
             velocity: self.offset.velocity.y,
         };
-        arrive(&mut up, wanted.y, within, MOST_UP, dt);
+        arrive(
+            &mut up,
+            self.path.offset,
+            (self.path.left + dt).max(LEAST),
+            MOST_UP,
+            dt,
+        );
         let mut level = Spring {
             value: self.offset.value.with_y(0.0),
             velocity: self.offset.velocity.with_y(0.0),
@@ -344,16 +358,38 @@ impl Foot {
         arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
         self.lean(lands.normal, LEANS.min(0.3 * left), dt);
         // Out of the ground, as fast as may be felt.
-        let ball = goal.clip + self.offset.value;
-        let least = sole
-            .below(ball)
-            .map_or(f64::NEG_INFINITY, |height| height + goal.ball_height);
-        if ball.y < least {
-            let out = (2.0 * MOST_UP * (least - ball.y)).sqrt();
+        let ball = goal.clip.y + self.offset.value.y;
+        let least = self.path.floor + goal.ball_height;
+        if ball < least {
+            let out = (2.0 * MOST_UP * (least - ball)).sqrt();
             let faster = (out - self.offset.velocity.y).clamp(0.0, MOST_UP * dt);
             self.offset.velocity.y += faster;
             self.offset.value.y += faster * dt;
         }
+    }
+
+    /// Where an offset has to be, and when: where the foot lands, or over what lies between, if that takes more acceleration.
+    fn path_over(&self, goal: &FootGoal, sole: &Sole<'_>, lands: &Footing, left: f64) -> Path {
+        let ball = goal.clip + self.offset.value;
+        let way = goal.lands_at + goal.aside - ball;
+        let now = [self.offset.value.y, self.offset.velocity.y];
+        let mut path = Path {
+            offset: lands.ball.y - goal.lands_at.y,
+            left,
+            floor: sole.below(ball).unwrap_or(NO_GROUND),
+        };
+        let mut hardest = pull(now, path.offset, left);
+        for (share, clip) in SHARES.into_iter().zip(goal.ahead) {
+            let Some(height) = sole.highest(ball + way * share, lands.normal) else {
+                continue;
+            };
+            let (offset, time) = (height + goal.ball_height - clip, (left * share).max(LEAST));
+            let pull = pull(now, offset, time);
+            if offset > now[0] && pull > hardest {
+                (hardest, path.left, path.offset) = (pull, time, offset);
+            }
+        }
+        path
     }
 
     /// Comes down where its clip stands.

@@ -1,5 +1,3 @@
-use clamber_surface::geometry::WorldCapsule;
-use clamber_surface::surface::TargetMotion;
 use clamber_world::Obstacle;
 use glam::DVec3;
 
@@ -25,15 +23,5 @@ impl Ground<'_> {
             Some((hit.point.y, up))
         });
         hits.max_by(|a, b| a.0.total_cmp(&b.0))
-    }
-
-    /// How far a capsule sinks until it touches the ground; `None` if it does not within `far` metres.
-    pub(crate) fn lower(&self, capsule: &WorldCapsule, far: f64) -> Option<f64> {
-        let way = -DVec3::Y * far;
-        let hits = self.terrain.iter().filter_map(|obstacle| {
-            let hit = obstacle.cast_capsule(capsule, [way; 2], TargetMotion::Still)?;
-            Some(hit.time * far)
-        });
-        hits.min_by(f64::total_cmp)
     }
 }

@@ -1,4 +1,3 @@
-use clamber_surface::geometry::WorldCapsule;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -8,14 +7,8 @@ use crate::kind::SoleShape;
 /// The most that a foot leans on the ground, as a tangent: 30 degrees.
 const MOST_LEAN: f64 = 0.577;
 
-/// Radius of the capsules that stand for the sole, one along each strip, as a share of the sole's width.
-const RADIUS: f64 = 0.1;
-
-/// How far a capsule's ends stay within its strip, as a share of its radius.
-const INSET: f64 = 0.4;
-
-/// From where a sole is lowered to the ground, above the highest place below its corners, as a share of its length.
-const ABOVE: f64 = 0.8;
+/// So many points of a sole are enough to foresee where it will stand.
+const FEW: usize = 24;
 
 /// The sole of a foot above the ground.
 pub(crate) struct Sole<'a> {
@@ -63,9 +56,22 @@ impl Sole<'_> {
         !self.ground.terrain.is_empty()
     }
 
-    /// Where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as the
+    /// About where a foot stands with its ball above or below a place; at that place if there is no ground. It leans as the
     /// ground below its corners does, and is lowered until it touches.
     pub(crate) fn at(&self, place: DVec3) -> Footing {
+        let points = &self.shape.points;
+        self.lowered(
+            place,
+            points.iter().step_by(points.len().div_ceil(FEW).max(1)),
+        )
+    }
+
+    /// The same, to the last bump: for the moment in which it comes down.
+    pub(crate) fn at_exactly(&self, place: DVec3) -> Footing {
+        self.lowered(place, self.shape.points.iter())
+    }
+
+    fn lowered<'p>(&self, place: DVec3, points: impl Iterator<Item = &'p DVec3>) -> Footing {
         let Some(middle) = self.below(place) else {
             return Footing {
                 ball: place,
@@ -74,28 +80,12 @@ impl Sole<'_> {
         };
         let corners = self.shape.corners.map(|corner| self.in_world(corner));
         let heights = corners.map(|corner| self.below(place + corner).unwrap_or(middle));
-        let ball_height = self.shape.ball_height * self.scale;
         let normal = lean(&corners, heights);
-        let highest = heights.iter().copied().fold(middle, f64::max);
-        let lowest = heights.iter().copied().fold(middle, f64::min);
-        let length = self.shape.size()[1] * self.scale;
-        let above = place.with_y(highest + ABOVE * length + ball_height);
-        let far = above.y - lowest + ball_height;
-        let drop = self
-            .lower(above, normal, far)
-            .unwrap_or(above.y - middle - ball_height / normal.y);
-        Footing {
-            ball: above - DVec3::Y * drop,
-            normal,
-        }
-    }
-
-    /// Where a foot stands, to the last bump: for the moment in which it comes down.
-    pub(crate) fn at_exactly(&self, place: DVec3) -> Footing {
-        let Footing { ball, normal } = self.at(place);
-        let lean = DQuat::from_rotation_arc(DVec3::Y, normal);
-        let rises = self.shape.points.iter().filter_map(|point| {
-            let place = ball + lean * self.in_world(*point);
+        let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
+        let ball = place.with_y(middle + self.shape.ball_height * self.scale);
+        // The point that stands deepest in the ground, or least above it, decides.
+        let rises = points.filter_map(|point| {
+            let place = ball + turn * self.in_world(*point);
             Some(self.below(place)? - place.y)
         });
         let rise = rises.fold(f64::NEG_INFINITY, f64::max);
@@ -111,24 +101,6 @@ impl Sole<'_> {
 
     fn in_world(&self, place: DVec3) -> DVec3 {
         self.turn * (place * self.scale)
-    }
-
-    /// How far a leaning foot sinks from a place of its ball until it touches the ground; `None` if it does not.
-    fn lower(&self, ball: DVec3, normal: DVec3, far: f64) -> Option<f64> {
-        let lean = DQuat::from_rotation_arc(DVec3::Y, normal);
-        let [width, length] = self.shape.size().map(|side| side * self.scale);
-        let radius = (RADIUS * width).min(0.45 * length);
-        let drops = self.shape.strips.iter().filter_map(|[from, to]| {
-            let way = *to - *from;
-            let inset =
-                way.normalize_or_zero() * (INSET * radius / self.scale).min(0.45 * way.length());
-            let ends = [*from + inset, *to - inset].map(|end| {
-                let end = end - DVec3::Y * self.shape.ball_height;
-                ball + lean * self.in_world(end) + normal * radius
-            });
-            self.ground.lower(&WorldCapsule { ends, radius }, far)
-        });
-        drops.min_by(f64::total_cmp)
     }
 }
 

@@ -8,9 +8,7 @@ const THICK: f64 = 0.02;
 /// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with it.
 const RIGID: f32 = 0.99;
 
-/// Strips into which a sole is cut, from heel to toe; and rows and columns of points on it, of which those at the edge lie
-/// within it by a share of its size.
-const STRIPS: usize = 13;
+/// Rows and columns of points on a sole, of which those at the edge lie within it by a share of its size.
 const POINTS: [usize; 2] = [17, 25];
 const EDGE: f64 = 0.01;
 
@@ -19,8 +17,6 @@ const EDGE: f64 = 0.01;
 pub(crate) struct SoleShape {
     /// Heel and toe, right and left, of a rectangle around it.
     pub(crate) corners: [DVec3; 4],
-    /// Where the skin of each strip begins and ends, along its middle.
-    pub(crate) strips: Vec<[DVec3; 2]>,
     /// Points of its skin, evenly spread.
     pub(crate) points: Vec<DVec3>,
     /// Height of the ball above the lowest skin.
@@ -65,13 +61,6 @@ impl SoleShape {
             })
             .collect();
         let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
-        let strips = (0..STRIPS)
-            .filter_map(|strip| {
-                let x = low.x + (high.x - low.x) * (strip as f64 + 0.5) / STRIPS as f64;
-                let [from, to] = cut(&triangles, x)?;
-                Some([corner(x, from), corner(x, to)])
-            })
-            .collect();
         Self {
             corners: [
                 corner(low.x, low.z),
@@ -79,7 +68,6 @@ impl SoleShape {
                 corner(low.x, high.z),
                 corner(high.x, high.z),
             ],
-            strips,
             points: spread(&triangles, low, high),
             ball_height: -low.y,
         }
@@ -90,22 +78,6 @@ impl SoleShape {
         let way = self.corners[3] - self.corners[0];
         [way.x, way.z]
     }
-}
-
-/// Where triangles begin and end along Z at some X; `None` if there are none.
-fn cut(triangles: &[[DVec3; 3]], x: f64) -> Option<[f64; 2]> {
-    let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-    for corners in triangles {
-        for side in 0..3 {
-            let (a, b) = (corners[side], corners[(side + 1) % 3]);
-            if (a.x - x) * (b.x - x) > 0.0 || a.x == b.x {
-                continue;
-            }
-            let z = a.z + (b.z - a.z) * (x - a.x) / (b.x - a.x);
-            (from, to) = (from.min(z), to.max(z));
-        }
-    }
-    (from <= to).then_some([from, to])
 }
 
 /// Points on triangles, in rows and columns over X and Z; of several triangles there, on the lowest one.
