@@ -97,12 +97,13 @@ const ALLOWED: [(&str, &[&str]); 19] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 15] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 16] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
     ("clamber_body", "clamber_gltf"),
     ("clamber_body", "clamber_scenes"),
+    ("clamber_colossus", "clamber_climber"),
     ("clamber_colossus", "clamber_gltf"),
     ("clamber_benches", "clamber"),
     ("clamber_cli", "clamber_scenes"),

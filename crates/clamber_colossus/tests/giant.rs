@@ -1,129 +1,208 @@
-//! The giant of `assets/` on level ground: it walks where it means to, its feet stand, and it strikes by touch.
+//! The giant lives by its own brain: its brain is sound, and the same life comes out on any thread and after a load.
+//! Scenes B38 and B48.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod support;
+
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use clamber_colossus::brain::MOST_TRANSITIONS;
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, CreatureState, Surroundings,
+    Brain, BrainState, CreatureConfig, CreatureKind, CreatureState, Noise, Person, RegionSense,
+    Riding, Sense, Surroundings, Wound,
 };
-use clamber_world::{HalfSpace, Obstacle};
+use clamber_surface::mesh::TriangleId;
+use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
+use glam::DVec3;
+use support::{TICK, brain_file, creature, ground, kind};
 
-const TICK: f64 = 1.0 / 60.0;
-
-const BRAIN: &str = r#"{
-  "body": {
-    "legs": [
-      { "joints": ["thigh.L", "shin.L", "foot.L"], "toe": "toe.L" },
-      { "joints": ["thigh.R", "shin.R", "foot.R"], "toe": "toe.R" }
-    ],
-    "gait": { "idle": "idle", "walk": "walk", "speed": 5, "turn_deg": 15, "steer_deg": 8 },
-    "head": { "joints": [["head", 0.4], ["neck.2", 0.4], ["neck.1", 1]] }
-  },
-  "start": "rests",
-  "states": {
-    "rests": { "act": { "play": "idle" }, "gaze": "around", "transitions": [{ "to": "roams", "after": 2 }] },
-    "roams": { "act": { "walk": { "to": "patrol", "within": 10 } }, "transitions": [
-      { "to": "rests", "when": ["done"] }
-    ] }
-  }
-}"#;
-
-fn giant() -> Creature {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
-    let rig = clamber_gltf::load(path).unwrap();
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        weak_points: rig.weak_points,
-    };
-    let kind = CreatureKind::new(parts, Brain::from_json(BRAIN, TICK).unwrap()).unwrap();
-    Creature::new(
-        Arc::new(kind),
-        CreatureConfig {
-            seed: 3,
-            ..CreatureConfig::default()
-        },
-    )
-    .unwrap()
-}
-
+/// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
 #[test]
-fn it_walks_and_its_feet_stand() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
-    let mut giant = giant();
-    let (mut walked, mut plants, mut fastest, mut slides) = (0.0, 0, 0f64, Vec::new());
-    let balls = ["toe.L", "toe.R"].map(|name| giant.kind().skeleton().find(name).unwrap());
-    let mut before: Option<[glam::DVec3; 2]> = None;
-    for _ in 0..60 * 60 {
-        let from = giant.state().position();
-        let report = giant.step(&around).unwrap();
-        plants += report
-            .events
-            .iter()
-            .filter(|event| matches!(event, clamber_colossus::CreatureEvent::Plant { .. }))
-            .count();
-        let way = giant.state().position() - from;
-        walked += way.length();
-        fastest = fastest.max(way.length() / TICK);
-        let world = giant.surface().world_from_model();
-        let now = balls.map(|ball| {
-            world.transform_point(giant.palette().model_from_joint(ball).unwrap().translation)
-        });
-        if let Some(before) = before {
-            for foot in 0..2 {
-                // The lower foot stands.
-                if now[foot].y <= now[1 - foot].y {
-                    slides.push((now[foot] - before[foot]).length() / TICK);
-                }
+fn its_brain_lives_through_anything() {
+    let brain = Brain::from_json(&brain_file(), TICK).unwrap();
+    let report = brain.report();
+    assert!(report.never.is_empty(), "{report}");
+    let die = brain.find("die").unwrap();
+    let mut random = fastrand::Rng::with_seed(5);
+    let (mut seen, mut died_from) = (BTreeSet::new(), BTreeSet::new());
+    let mut state = BrainState::new(&brain, 1);
+    let (mut senses, mut dies) = (brain.no_senses(), 1_000);
+    for tick in 0..1_000_000u64 {
+        for sense in Sense::all() {
+            if random.u32(..60) == 0 {
+                let numbers = [0.0, 0.0, 1.0, 3.0, 11.0, 15.0, 30.0, -30.0, -100.0, 100.0];
+                senses.set(sense, numbers[random.usize(..numbers.len())]);
             }
         }
-        before = Some(now);
-    }
-    slides.sort_by(f64::total_cmp);
-    let median = slides[slides.len() / 2];
-    assert!(
-        walked > 60.0 && fastest < 5.2 && plants > 10,
-        "{walked} m, {fastest} m/s, {plants} plants"
-    );
-    assert!(
-        median < 0.02,
-        "planted balls slide at a median of {median} m/s"
-    );
-    assert!(
-        giant.state().position().y.abs() < 0.05,
-        "{}",
-        giant.state().position()
-    );
-}
-
-/// Scene B48, for a whole creature: saved and loaded, it goes on with the same bits.
-#[test]
-fn a_saved_creature_goes_on_with_the_same_bits() {
-    let ground = HalfSpace::below(0.0);
-    let terrain: [&dyn Obstacle; 1] = [&ground];
-    let around = Surroundings {
-        terrain: &terrain,
-        ..Surroundings::default()
-    };
-    let (mut giant, mut other) = (giant(), giant());
-    for tick in 0..600 {
-        giant.step(&around).unwrap();
-        if tick % 97 == 0 {
-            let text = serde_json::to_string(giant.state()).unwrap();
-            let state: CreatureState = serde_json::from_str(&text).unwrap();
-            assert_eq!(&state, giant.state(), "tick {tick}");
-            other.restore(state).unwrap();
-        } else if tick > 97 {
-            other.step(&around).unwrap();
-            assert_eq!(other.state(), giant.state(), "tick {tick}");
-            assert_eq!(other.palette(), giant.palette(), "tick {tick}");
+        for region in 0..brain.regions().len() {
+            if random.u32(..60) == 0 {
+                senses.set_in_region(RegionSense::Riders, region, f64::from(random.u32(..2)));
+            }
+        }
+        if random.u32(..40) != 0 {
+            senses.set(Sense::Hurt, 0.0);
+            senses.set(Sense::Staggered, 0.0);
+            senses.set(Sense::Struck, 0.0);
+        }
+        // Nobody for a while, and then somebody again.
+        if tick % 4_000 < 1_500 {
+            senses.set(Sense::PreySeen, 0.0);
+            senses.set(Sense::Riders, 0.0);
+            senses.set(Sense::Noise, 0.0);
+        }
+        dies -= 1;
+        senses.set(Sense::Health, f64::from(u8::from(dies > 0)));
+        let (before, mut count) = (state.current(), 0);
+        brain.step(
+            &mut state,
+            &senses,
+            &["active", "recovery", "impact"],
+            |_| count += 1,
+        );
+        assert!(count <= MOST_TRANSITIONS, "{count}");
+        assert!(state.size() <= 1024, "{} bytes", state.size());
+        seen.insert(brain.path(state.current()).to_owned());
+        if dies <= 0 {
+            assert_eq!(
+                state.current(),
+                die,
+                "not dead at once, from {}",
+                brain.path(before)
+            );
+            died_from.insert(brain.path(before).to_owned());
+        }
+        if dies < -50 {
+            let longest = if random.bool() { 5 } else { 800 };
+            dies = i64::from(random.u32(2..longest));
+            state = BrainState::new(&brain, tick);
+            // Death finds it in any state.
+            let all: Vec<_> = brain.states().collect();
+            brain.go_to(&mut state, all[random.usize(..all.len())]);
         }
     }
+    let innermost = |state: &clamber_colossus::brain::StateId| {
+        brain
+            .states()
+            .all(|other| other == *state || !brain.is_within(other, *state))
+    };
+    for state in brain.states().filter(innermost) {
+        let name = brain.path(state);
+        assert!(seen.contains(name), "{name} was never seen");
+        assert!(
+            died_from.contains(name),
+            "{name} was never followed by death"
+        );
+    }
+}
+
+/// A life among people who come, ride and go; with arrows and noises.
+struct Life {
+    world: PhysicsWorld,
+    kind: Arc<CreatureKind>,
+}
+
+impl Life {
+    fn new() -> Self {
+        Self {
+            world: ground(|x, z| 1.5 * libm::sin(0.05 * x) * libm::cos(0.04 * z)),
+            kind: kind(&brain_file()),
+        }
+    }
+
+    /// The states of the life after every so many ticks. Where told so, the state is saved and loaded on the way.
+    fn live(&self, ticks: u64, loads: bool) -> Vec<CreatureState> {
+        let poses = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(&self.world, &poses);
+        let terrain: [&dyn Obstacle; 1] = [&terrain];
+        let mut giant = creature(&self.kind, CreatureConfig::default());
+        let mut states = Vec::new();
+        let mut lots = fastrand::Rng::with_seed(9);
+        let mut load = fastrand::Rng::with_seed(77);
+        for tick in 0..ticks {
+            let mut random = fastrand::Rng::with_seed(tick / 300);
+            let mut people = Vec::new();
+            for id in 0..3 {
+                let (x, z) = (random.f64() * 80.0 - 40.0, random.f64() * 80.0 - 40.0);
+                let at = DVec3::new(x, 0.0, z) + DVec3::X * (0.01 * (tick % 300) as f64);
+                let triangle = TriangleId(random.u32(..1_000));
+                let rides = random.u32(..4) == 0;
+                people.push(Person {
+                    id,
+                    body: WorldCapsule {
+                        ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
+                        radius: 0.3,
+                    },
+                    riding: rides.then(|| Riding {
+                        at: MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]),
+                        hangs: false,
+                    }),
+                });
+            }
+            let noise = Noise {
+                place: DVec3::X * 30.0,
+                loudness: 2.0,
+            };
+            let noises: &[Noise] = if lots.u32(..2_000) == 0 {
+                &[noise]
+            } else {
+                &[]
+            };
+            if lots.u32(..1_500) == 0 {
+                giant.hurt(&Wound {
+                    place: DVec3::Y * 20.0,
+                    at: MaterialPoint::on_triangle(TriangleId(lots.u32(..1_000)), [1.0 / 3.0; 3]),
+                    damage: 0.0,
+                });
+            }
+            giant
+                .step(&Surroundings {
+                    terrain: &terrain,
+                    people: &people,
+                    noises,
+                })
+                .unwrap();
+            if loads && load.u32(..500) == 0 {
+                let text = serde_json::to_string(giant.state()).unwrap();
+                let state: CreatureState = serde_json::from_str(&text).unwrap();
+                assert_eq!(&state, giant.state(), "tick {tick}");
+                giant.restore(state).unwrap();
+            }
+            if tick % 1_000 == 999 {
+                states.push(giant.state().clone());
+            }
+        }
+        states
+    }
+}
+
+#[test]
+fn the_same_life_comes_out_on_any_thread_and_after_any_load() {
+    const TICKS: u64 = 100_000;
+    let life = Life::new();
+    let (one, two) = std::thread::scope(|scope| {
+        let one = scope.spawn(|| life.live(TICKS, false));
+        let two = scope.spawn(|| life.live(TICKS, true));
+        (one.join().unwrap(), two.join().unwrap())
+    });
+    assert_eq!(one.len(), 100);
+    for (index, (one, two)) in one.iter().zip(&two).enumerate() {
+        assert_eq!(one, two, "after {} ticks", (index + 1) * 1_000);
+    }
+    let short = life.live(10_000, false);
+    assert_eq!(short[..], one[..10]);
+    let different = one.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert_eq!(different, 99);
+}
+
+#[test]
+fn a_state_of_another_kind_is_refused_and_changes_nothing() {
+    let mut giant = creature(&kind(&brain_file()), CreatureConfig::default());
+    let other = kind(&support::brain_with("a", r#"{ "a": {}, "b": {} }"#));
+    let foreign = creature(&other, CreatureConfig::default()).state().clone();
+    let before = giant.state().clone();
+    assert!(giant.restore(foreign).is_err());
+    assert_eq!(giant.state(), &before);
 }

@@ -61,7 +61,10 @@ impl Animator {
                     sample_clip(set, layer, 0.0, &mut buffers.first)?;
                     let (sampled, first) = (&buffers.sampled.transforms, &buffers.first.transforms);
                     each_joint(set, layer, pose, |index, joint, share| {
-                        add(joint, &first[index], &sampled[index], share);
+                        // Most joints of an additive clip do not move.
+                        if first[index] != sampled[index] {
+                            add(joint, &first[index], &sampled[index], share);
+                        }
                     })?;
                 }
             }

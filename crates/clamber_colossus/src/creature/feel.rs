@@ -12,7 +12,7 @@ use crate::senses::{RegionSense, Sense, Senses};
 /// It sees to this angle from ahead of its head, radians.
 const FIELD_OF_VIEW: f64 = 1.8;
 
-/// It looks for people in one of so many ticks.
+/// It looks for people, and for a wall in one direction, in one of so many ticks.
 const LOOKS: u64 = 4;
 
 /// Seconds for which a rider may leave the skin without the ride being over: a leap, a stumble.
@@ -183,17 +183,9 @@ impl Creature {
     }
 
     fn feel_walls(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
-        let height = self.kind.height() * self.config.scale;
-        let index = (self.state.ticks % WALLS as u64) as usize;
-        let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
-        let from = self.state.position + DVec3::Y * (0.3 * height);
-        let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
-        let hits = around
-            .terrain
-            .iter()
-            .filter_map(|obstacle| obstacle.cast_ray(from, direction, height));
-        let nearest = hits.map(|hit| hit.distance).fold(f64::INFINITY, f64::min);
-        self.state.walls[index] = (nearest as f32).min(NO_WALL);
+        if self.state.ticks % LOOKS == 0 {
+            self.look_for_wall(around);
+        }
         let nearest = self
             .state
             .walls
@@ -203,6 +195,21 @@ impl Creature {
         if nearest < NO_WALL {
             senses.set(Sense::WallDistance, f64::from(nearest));
         }
+    }
+
+    /// Looks for a wall in the next direction.
+    fn look_for_wall(&mut self, around: &Surroundings<'_>) {
+        let height = self.kind.height() * self.config.scale;
+        let index = (self.state.ticks / LOOKS % WALLS as u64) as usize;
+        let angle = self.state.yaw + index as f64 * core::f64::consts::TAU / WALLS as f64;
+        let from = self.state.position + DVec3::Y * (0.3 * height);
+        let direction = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle));
+        let hits = around
+            .terrain
+            .iter()
+            .filter_map(|obstacle| obstacle.cast_ray(from, direction, height));
+        let nearest = hits.map(|hit| hit.distance).fold(f64::INFINITY, f64::min);
+        self.state.walls[index] = (nearest as f32).min(NO_WALL);
     }
 
     fn hear(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {

@@ -1,0 +1,187 @@
+//! Plates stagger, break, and drop who stands on them; weak points open in their order. Scene B47.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+use std::sync::Arc;
+
+use clamber_animation::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
+use clamber_colossus::{
+    Brain, Creature, CreatureConfig, CreatureEvent, CreatureKind, CreatureParts, CreatureState,
+    Sense, Surroundings, Wound,
+};
+use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag, TriangleId,
+};
+use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+const TICK: f64 = 1.0 / 60.0;
+
+/// Cells of the plate along each side: 2 * 32 * 32 triangles.
+const CELLS: u32 = 32;
+
+const BRAIN: &str = r#"{
+  "body": { "plates": [{ "name": "shell", "user": 7, "stagger": 2, "count": 3 }] },
+  "start": "lies",
+  "states": {
+    "lies": { "transitions": [{ "to": "reels", "when": ["staggered"] }] },
+    "reels": { "transitions": [{ "to": "lies", "after": 0.5 }] }
+  }
+}"#;
+
+/// A level slab of fur, and a plate of stone half a metre above it, on one joint, with three weak points.
+fn slab() -> Creature {
+    let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
+    for (height, kind, user) in [(0.0, SurfaceKind::Fur, 0), (0.5, SurfaceKind::Stone, 7)] {
+        let first = positions.len() as u32;
+        for row in 0..=CELLS {
+            for column in 0..=CELLS {
+                let place = |index: u32| (index as f32 / CELLS as f32 - 0.5) * 8.0;
+                positions.push(Vec3::new(place(column), height, place(row)));
+            }
+        }
+        for row in 0..CELLS {
+            for column in 0..CELLS {
+                let a = first + row * (CELLS + 1) + column;
+                let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
+                triangles.extend([[a, c, d], [a, d, b]]);
+                tags.extend([SurfaceTag::new(kind).with_user(user); 2]);
+            }
+        }
+    }
+    let bone = Influence {
+        joint: JointId(0),
+        weight: 1.0,
+    };
+    let source = MeshSource {
+        positions: &positions,
+        triangles: &triangles,
+        influences: &vec![bone; positions.len()],
+        tags: &tags,
+        joint_count: 1,
+        ..MeshSource::default()
+    };
+    let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+        .unwrap()
+        .0;
+    let root = Joint {
+        name: "root".into(),
+        parent: None,
+        rest: Transform::IDENTITY,
+        inverse_bind: Affine::IDENTITY,
+    };
+    let point = |name: &str, x: f32, order: u32| {
+        let mut point = WeakPoint::new(name, JointId(0), Vec3::new(x, 0.0, 0.0));
+        (point.radius, point.hit_points, point.order) = (0.5, 2.0, order);
+        point
+    };
+    let parts = CreatureParts {
+        skeleton: Skeleton::new(vec![root]).unwrap(),
+        clips: Vec::new(),
+        mesh: Arc::new(mesh),
+        weak_points: vec![point("first", -3.0, 0), point("second", 3.0, 1)],
+    };
+    let kind = CreatureKind::new(parts, Brain::from_json(BRAIN, TICK).unwrap()).unwrap();
+    Creature::new(Arc::new(kind), CreatureConfig::default()).unwrap()
+}
+
+fn blow(triangle: u32, at: DVec3, damage: f64) -> Wound {
+    Wound {
+        place: at,
+        at: MaterialPoint::on_triangle(TriangleId(triangle), [1.0 / 3.0; 3]),
+        damage,
+    }
+}
+
+/// The first triangle of the plate.
+const PLATE: u32 = 2 * CELLS * CELLS;
+
+#[test]
+fn a_plate_breaks_after_three_staggers_and_drops_who_stands_on_it() {
+    let mut slab = slab();
+    let around = Surroundings::default();
+    let mut climber =
+        Climber::new(ClimberConfig::colossus_climber(), DVec3::new(0.1, 1.2, 0.1)).unwrap();
+    let mut step = |slab: &mut Creature, grip: bool| {
+        let events = slab.step(&around).unwrap().events.clone();
+        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), slab.surface())];
+        let input = ClimberInput {
+            grip,
+            ..ClimberInput::default()
+        };
+        climber.step(&input, &obstacles, TICK).unwrap();
+        (events, climber.state().mode, climber.state().position.y)
+    };
+    for _ in 0..60 {
+        step(&mut slab, false);
+    }
+    assert_eq!(step(&mut slab, false).1, ClimberMode::Standing);
+    for stagger in 1..=3 {
+        // One blow of three is too little, and what is too much is not kept.
+        assert_eq!(slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 1.5)), 0.0);
+        let (events, ..) = step(&mut slab, false);
+        assert!(events.is_empty(), "{events:?}");
+        slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 9.0));
+        assert_eq!(slab.state().plate(0), 3 - stagger);
+        let (events, mode, _) = step(&mut slab, false);
+        let breaks = stagger == 3;
+        assert!(
+            events.contains(&CreatureEvent::Staggered { plate: 0, breaks }),
+            "{events:?}"
+        );
+        assert_eq!(slab.state().senses().get(Sense::Staggered), 1.0);
+        if !breaks {
+            assert_eq!(mode, ClimberMode::Standing);
+        }
+    }
+    // It falls within two ticks, and lands on the fur below, which can be gripped.
+    let (_, mode, _) = step(&mut slab, true);
+    assert_ne!(
+        mode,
+        ClimberMode::Standing,
+        "stands on a plate that is gone"
+    );
+    let mut modes = Vec::new();
+    for _ in 0..40 {
+        modes.push(step(&mut slab, true).1);
+    }
+    assert!(modes.contains(&ClimberMode::Holding), "{modes:?}");
+    assert_eq!(slab.state().senses().get(Sense::Plates), 0.0);
+}
+
+#[test]
+fn a_restored_plate_is_whole_again() {
+    let mut slab = slab();
+    let whole: CreatureState = slab.state().clone();
+    for _ in 0..3 {
+        slab.hurt(&blow(PLATE, DVec3::Y * 0.5, 2.0));
+    }
+    let is_there = |slab: &Creature| slab.surface().is_enabled(TriangleId(PLATE));
+    assert!(!is_there(&slab));
+    let broken = slab.state().clone();
+    slab.restore(whole).unwrap();
+    assert!(is_there(&slab));
+    slab.restore(broken).unwrap();
+    assert!(!is_there(&slab));
+}
+
+#[test]
+fn weak_points_open_in_their_order() {
+    let mut slab = slab();
+    let [first, second] = [-3.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0));
+    assert!(slab.is_open(0) && !slab.is_open(1));
+    assert_eq!(slab.hurt(&blow(0, second, 1.0)), 0.0);
+    // What is too much for one is not passed on to the next.
+    assert_eq!(slab.hurt(&blow(0, first, 5.0)), 2.0);
+    assert!(!slab.is_open(0) && slab.is_open(1));
+    assert_eq!(slab.hurt(&blow(0, second, 1.0)), 1.0);
+    assert_eq!(slab.state().hit_points(), [0.0, 1.0]);
+    // Numbers that are none change nothing.
+    for damage in [f64::NAN, f64::INFINITY, -1.0] {
+        assert_eq!(slab.hurt(&blow(0, second, damage)), 0.0);
+    }
+    assert_eq!(slab.hurt(&blow(u32::MAX, second, 1.0)), 0.0);
+    assert_eq!(slab.state().hit_points(), [0.0, 1.0]);
+}
