@@ -1,7 +1,4 @@
-//! The brain: a hierarchical state machine in a file (Harel 1987, "Statecharts: a visual formalism for complex systems").
-//!
-//! Time counts in ticks, lots are drawn from the brain's own stream of random numbers, and nothing else than senses and
-//! markers comes in. So the same file, seed and senses give the same states, on any machine.
+#![doc = include_str!("form.md")]
 
 mod compile;
 mod condition;
