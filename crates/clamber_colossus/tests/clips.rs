@@ -1,11 +1,16 @@
-//! The giant's clips: what riders feel, and how limbs start. Scenes B43 and B46.
+//! The giant's clips: what riders feel, and how limbs start. Scenes B42, B43 and B46.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod support;
 
-use clamber_animation::rig::{Clip, JointId, Playback};
+use clamber_animation::rig::{Clip, JointId, Palette, Playback, WeakPoint};
+use clamber_climber::{Climber, ClimberConfig, ClimberInput};
 use clamber_colossus::CreatureKind;
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::{SurfaceKind, TriangleId};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{MaterialPoint, Obstacle, ObstacleId};
 use glam::DVec3;
 use support::{Feel, TICK, brain_file, kind};
 
@@ -18,69 +23,192 @@ const LOOPS: [&str; 6] = [
     "shake_loop",
 ];
 
-/// Places of joints in a clip, one list for each tick, after a round of it if it is a loop.
-fn places(kind: &CreatureKind, clip: &Clip, joints: &[JointId]) -> Vec<Vec<DVec3>> {
+/// Of each shake, the weak point that it is meant for.
+const SHAKES: [(&str, &str); 4] = [
+    ("shake", "weak_point_nape"),
+    ("rage", "weak_point_nape"),
+    ("shake_head", "weak_point_head"),
+    ("shake_arm_left", "weak_point_forearm.L"),
+];
+
+fn clip<'a>(kind: &'a CreatureKind, name: &str) -> &'a Clip {
+    let id = kind.clips().find(name).unwrap();
+    kind.clips().clip(id).unwrap()
+}
+
+/// Lets a clip play on a skin, from rest to rest; calls `look` after every tick.
+fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&Palette, &SkinnedSurface)) {
     let rest = kind.skeleton().rest_pose();
-    let loops = LOOPS.contains(&clip.name.as_str());
-    let playback = if loops {
-        Playback::Loop
-    } else {
-        Playback::Clamp
+    let mut surface = SkinnedSurface::new(std::sync::Arc::clone(kind.mesh()));
+    for tick in 0..=(clip.duration() / TICK) as u32 + 30 {
+        let time = f64::from(tick) * TICK;
+        let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
+        let palette = kind.skeleton().palette(&pose).unwrap();
+        if tick == 0 {
+            surface.place(&palette, Similarity::IDENTITY).unwrap();
+        } else {
+            surface.advance(&palette, Similarity::IDENTITY).unwrap();
+        }
+        look(&palette, &surface);
+    }
+}
+
+/// A weak point by its name.
+fn find<'a>(kind: &'a CreatureKind, weak_point: &str) -> &'a WeakPoint {
+    let mut all = kind.weak_points().iter();
+    all.find(|one| one.name == weak_point).unwrap()
+}
+
+/// Points of the skin around a weak point that can be held.
+fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<MaterialPoint> {
+    let point = find(kind, weak_point);
+    let rest = kind.skeleton().rest_pose();
+    let palette = kind.skeleton().palette(&rest).unwrap();
+    let frame = palette.model_from_joint(point.joint).unwrap();
+    let place = frame.transform_point3(point.position.as_dvec3());
+    let mesh = kind.mesh();
+    let middle = |triangle: &[clamber_surface::mesh::VertexId; 3]| {
+        let sum: DVec3 = triangle
+            .iter()
+            .map(|vertex| mesh.positions()[vertex.0 as usize].as_dvec3())
+            .sum();
+        sum / 3.0
     };
-    let rounds = if loops { 2.0 } else { 1.0 };
-    let ticks = (clip.duration() * rounds / TICK) as usize;
-    (0..ticks)
-        .map(|tick| {
-            let pose = clip.sample(&rest, tick as f64 * TICK, playback).unwrap();
+    let mut all: Vec<(f64, usize)> = mesh
+        .triangles()
+        .iter()
+        .enumerate()
+        .map(|(index, triangle)| (middle(triangle).distance(place), index))
+        .collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let material =
+        |index: usize| MaterialPoint::on_triangle(TriangleId(index as u32), [1.0 / 3.0; 3]);
+    let near = all.iter().filter(|(distance, index)| {
+        *distance < all[0].0 + 1.5 && mesh.tags()[*index].kind != SurfaceKind::Skin
+    });
+    near.map(|(_, index)| material(*index)).collect()
+}
+
+#[test]
+fn shakes_throw_and_can_be_held_out() {
+    let kind = kind(&brain_file());
+    for (name, weak_point) in SHAKES {
+        let near = spots(&kind, weak_point);
+        let point = find(&kind, weak_point);
+        let mut feels = vec![Feel::default(); near.len() + 1];
+        let (mut thrown, mut excess) = (0.0, 0.0);
+        let mut most = vec![0f64; near.len()];
+        play(&kind, clip(&kind, name), |palette, surface| {
+            let place = |point: &MaterialPoint| surface.motion(point, TICK).unwrap().position;
+            let frame = palette.model_from_joint(point.joint).unwrap();
+            let felt = feels[0].step(frame.transform_point3(point.position.as_dvec3()));
+            thrown += f64::from(u8::from(felt > 15.0)) * TICK;
+            excess += (felt - 4.0).max(0.0) * TICK;
+            for (index, point) in near.iter().enumerate() {
+                most[index] = most[index].max(feels[index + 1].step(place(point)));
+            }
+        });
+        let calm = most.iter().copied().fold(f64::INFINITY, f64::min);
+        println!(
+            "{name}: above 15 m/s^2 for {thrown:.2} s, {excess:.1} m/s above 4, {calm:.1} m/s^2 at the calmest spot of {}",
+            near.len()
+        );
+        assert!(thrown >= 0.3, "{name}: {thrown} s");
+        assert!(excess <= 20.0, "{name}: {excess} m/s");
+        assert!(calm <= 10.5, "{name}: {calm} m/s^2");
+    }
+}
+
+/// A climber on the nape holds on through shakes with rests of three seconds.
+#[test]
+fn a_fresh_climber_survives_two_shakes_and_not_six() {
+    let kind = kind(&brain_file());
+    let shake = clip(&kind, "shake");
+    let rest = kind.skeleton().rest_pose();
+    let mut surface = SkinnedSurface::new(std::sync::Arc::clone(kind.mesh()));
+    let pose = |time: f64| {
+        let pose = shake.sample(&rest, time, Playback::Clamp).unwrap();
+        kind.skeleton().palette(&pose).unwrap()
+    };
+    surface.place(&pose(0.0), Similarity::IDENTITY).unwrap();
+    let near = spots(&kind, "weak_point_nape");
+    let mesh = kind.mesh();
+    let is_fur = |point: &&MaterialPoint| mesh.tags()[point.key as usize].kind == SurfaceKind::Fur;
+    let point = near.iter().find(is_fur).unwrap();
+    let corners = mesh.triangles()[point.key as usize]
+        .map(|vertex| surface.in_model().position(vertex).unwrap().as_dvec3());
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize();
+    let place = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let config = ClimberConfig::colossus_climber();
+    let mut climber = Climber::new(config, place + normal * (config.body.radius + 0.05)).unwrap();
+    let input = ClimberInput {
+        grip: true,
+        ..ClimberInput::default()
+    };
+    let mut step = |surface: &SkinnedSurface| {
+        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), surface)];
+        climber.step(&input, &obstacles, TICK).unwrap();
+        (climber.state().support.is_some(), climber.state().stamina)
+    };
+    for _ in 0..60 {
+        surface.advance(&pose(0.0), Similarity::IDENTITY).unwrap();
+        step(&surface);
+    }
+    let (holds, stamina) = step(&surface);
+    assert!(holds, "it never got hold");
+    println!("at first: stamina {stamina:.2}");
+    let mut survived = 0;
+    'shakes: for shakes in 1..=6 {
+        let ticks = ((shake.duration() + 3.0) / TICK) as u32;
+        for tick in 0..ticks {
+            surface
+                .advance(&pose(f64::from(tick) * TICK), Similarity::IDENTITY)
+                .unwrap();
+            let (holds, stamina) = step(&surface);
+            if tick + 1 == ticks {
+                println!("after {shakes} shakes: stamina {stamina:.2}");
+            }
+            if !holds {
+                break 'shakes;
+            }
+        }
+        survived = shakes;
+    }
+    assert!((2..6).contains(&survived), "survived {survived} shakes");
+}
+
+/// Nothing that was at rest starts with more than half of gravity within a tenth of a second.
+#[test]
+fn giants_never_start_abruptly() {
+    let kind = kind(&brain_file());
+    let joints: Vec<JointId> = (0..kind.skeleton().joints().len() as u32)
+        .map(JointId)
+        .collect();
+    let rest = kind.skeleton().rest_pose();
+    for clip in kind.clips().clips() {
+        let at = |time: f64| -> Vec<DVec3> {
+            let pose = clip.sample(&rest, time, Playback::Clamp).unwrap();
             let palette = kind.skeleton().palette(&pose).unwrap();
             joints
                 .iter()
                 .map(|joint| palette.model_from_joint(*joint).unwrap().translation)
                 .collect()
-        })
-        .collect()
-}
-
-#[test]
-fn what_is_felt() {
-    let kind = kind(&brain_file());
-    let names = ["pelvis", "chest", "head", "hand.L", "hand.R", "forearm.L"];
-    let joints = names.map(|name| kind.skeleton().find(name).unwrap());
-    for clip in kind.clips().clips() {
-        let places = places(&kind, clip, &joints);
-        let felt: Vec<f64> = (0..joints.len())
-            .map(|joint| {
-                let mut feel = Feel::default();
-                let all = places.iter().map(|places| feel.step(places[joint]));
-                all.fold(0.0, f64::max)
-            })
-            .collect();
-        println!("{:15} {:.1?}", clip.name, felt);
-    }
-}
-
-#[test]
-fn debug_idle() {
-    let kind = kind(&brain_file());
-    let head = kind.skeleton().find("head").unwrap();
-    for name in ["idle", "walk", "stomp"] {
-        let clip = kind
-            .clips()
-            .clips()
-            .iter()
-            .find(|clip| clip.name == name)
-            .unwrap();
-        let places = places(&kind, clip, &[head]);
-        let mut feel = Feel::default();
-        for (tick, place) in places.iter().enumerate() {
-            let felt = feel.step(place[0]);
-            if felt > 8.0 {
-                println!(
-                    "{name} {tick} {:.3} s felt {felt:.1} at {:.4}",
-                    tick as f64 * TICK,
-                    place[0]
-                );
-            }
+        };
+        if LOOPS.contains(&clip.name.as_str()) {
+            continue;
+        }
+        // From rest: the speed after a tenth of a second tells the mean acceleration.
+        let (a, b) = (at(0.1 - 0.5 * TICK), at(0.1 + 0.5 * TICK));
+        for (joint, (a, b)) in a.iter().zip(&b).enumerate() {
+            let pull = (*b - *a).length() / TICK / 0.1;
+            let name = &kind.skeleton().joints()[joint].name;
+            assert!(
+                pull <= 4.905,
+                "{}: {name} starts with {pull} m/s^2",
+                clip.name
+            );
         }
     }
 }
