@@ -13,6 +13,9 @@ pub use clamber_animation as animation;
 pub use clamber_body as body;
 #[doc(inline)]
 pub use clamber_climber as climber;
+#[cfg(feature = "colossus")]
+#[doc(inline)]
+pub use clamber_colossus as colossus;
 #[cfg(feature = "gltf")]
 #[doc(inline)]
 pub use clamber_gltf as gltf;

@@ -96,7 +96,7 @@ fn transitions_without_conditions_may_not_lead_in_a_circle() {
     let text = r#"{"start": "a", "states": {
         "a": {"transitions": [{"to": "b"}]}, "b": {"transitions": [{"to": "a"}]}}}"#;
     let error = Brain::from_json(text, TICK).unwrap_err();
-    assert!(matches!(error.problem, BrainProblem::Circle(_)), "{error}");
+    assert!(matches!(*error.problem, BrainProblem::Circle(_)), "{error}");
 }
 
 #[test]

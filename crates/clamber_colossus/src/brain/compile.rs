@@ -20,7 +20,7 @@ impl Brain {
             BrainError {
                 line: (line > 0).then_some(line),
                 state: state_on(text, line),
-                problem: BrainProblem::Text(error.to_string()),
+                problem: Box::new(BrainProblem::Text(error.to_string())),
             }
         })?;
         Compiler::new(&file, tick, Some(text)).compile()
@@ -107,7 +107,7 @@ impl<'a> Compiler<'a> {
             let here = |problem| BrainError {
                 line: (line > 0).then_some(line),
                 state: Some(path.clone()),
-                problem,
+                problem: Box::new(problem),
             };
             if name.is_empty() || name.contains('/') {
                 let problem = "a state's name is empty or has a slash in it";
@@ -212,7 +212,7 @@ impl<'a> Compiler<'a> {
                 let transition = transition.map_err(|problem| BrainError {
                     line: (line > 0).then_some(line),
                     state: Some(path),
-                    problem,
+                    problem: Box::new(problem),
                 })?;
                 let number = all.len() as u64;
                 all.push(Transition {
@@ -289,7 +289,7 @@ impl<'a> Compiler<'a> {
                 let here = |problem| BrainError {
                     line: brain.line(first),
                     state: Some(brain.path(first).to_owned()),
-                    problem,
+                    problem: Box::new(problem),
                 };
                 if way.contains(&next) {
                     way.push(next);
@@ -309,7 +309,7 @@ impl<'a> Compiler<'a> {
         BrainError {
             line: None,
             state: None,
-            problem,
+            problem: Box::new(problem),
         }
     }
 
@@ -318,7 +318,7 @@ impl<'a> Compiler<'a> {
         BrainError {
             line: (state.line > 0).then_some(state.line),
             state: Some(state.path.clone()),
-            problem,
+            problem: Box::new(problem),
         }
     }
 
@@ -327,7 +327,7 @@ impl<'a> Compiler<'a> {
         BrainError {
             line: (line > 0).then_some(line),
             state: state.map(str::to_owned),
-            problem,
+            problem: Box::new(problem),
         }
     }
 }
@@ -409,7 +409,7 @@ impl Brain {
         BrainError {
             line: self.line(state),
             state: Some(self.path(state).to_owned()),
-            problem,
+            problem: Box::new(problem),
         }
     }
 }

@@ -10,7 +10,7 @@ pub struct BrainError {
     /// The state, with those around it, such as `calm/idle`; `None` if no state is at fault.
     pub state: Option<String>,
     /// What is wrong.
-    pub problem: BrainProblem,
+    pub problem: Box<BrainProblem>,
 }
 
 impl fmt::Display for BrainError {

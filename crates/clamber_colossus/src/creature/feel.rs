@@ -139,7 +139,7 @@ impl Creature {
     /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.
     fn see(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
         let eye = self.eye();
-        let looks = self.state.ticks % LOOKS == 0;
+        let looks = self.state.ticks.is_multiple_of(LOOKS);
         let mut nearest: Option<(f64, u64, DVec3)> = None;
         let mut underfoot = 0;
         for person in around.people {
@@ -183,7 +183,7 @@ impl Creature {
     }
 
     fn feel_walls(&mut self, around: &Surroundings<'_>, senses: &mut Senses) {
-        if self.state.ticks % LOOKS == 0 {
+        if self.state.ticks.is_multiple_of(LOOKS) {
             self.look_for_wall(around);
         }
         let nearest = self

@@ -2,7 +2,7 @@
 
 use clamber_animation::ik::{TwoBoneGoal, aim};
 use clamber_animation::joint_in_model;
-use clamber_surface::geometry::rotation_from_axis_angle;
+use clamber_surface::geometry::{rotation_from_axis_angle, slerp};
 use clamber_world::Obstacle;
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -93,7 +93,7 @@ impl Creature {
             rotation_from_axis_angle(DVec3::Y, yaw_of(clip_rotation * leg.level.conjugate()));
         let turn = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw());
         // The foot keeps its own rotation, whatever the shin does: that of its clip, or flat on the ground.
-        let rotation = turn * clip_rotation.slerp(heading * leg.level, foot.flat());
+        let rotation = turn * slerp(clip_rotation, heading * leg.level, foot.flat());
         let ball_at = world.inverse_transform_point(clip + foot.offset());
         PutLeg {
             hip: hip.translation,
@@ -115,7 +115,7 @@ impl Creature {
             self.palette.model_from_joint(leg.ankle)?,
             self.palette.model_from_joint(leg.ball)?,
         );
-        let turn = rotation_of(&ankle) * leg.level.conjugate();
+        let turn = rotation_of(ankle) * leg.level.conjugate();
         let world = self.surface.world_from_model();
         let ground = Ground {
             terrain,
@@ -191,7 +191,7 @@ impl Creature {
             ball_height: leg.sole.ball_height * scale,
             leg: leg.length * scale,
             may_step: others_stand && self.state.hips.has_shifted(),
-            looks: (self.state.ticks + index as u64) % LOOKS == 0,
+            looks: (self.state.ticks + index as u64).is_multiple_of(LOOKS),
             is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
         }
     }
@@ -255,7 +255,7 @@ impl Creature {
             if leg.ball != leg.ankle {
                 let rest = self.kind.clips().rest().transforms[leg.ball.index()].rotation;
                 let toe = &mut pose.transforms[leg.ball.index()].rotation;
-                *toe = toe.slerp(rest, put.flat as f32);
+                *toe = slerp(toe.as_dquat(), rest.as_dquat(), put.flat).as_quat();
             }
         }
         hip.map_or(0.0, |hip| hip.translation.distance(put.ankle))

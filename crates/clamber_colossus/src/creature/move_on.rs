@@ -242,7 +242,7 @@ impl Creature {
                 speed = careful.min(braked).max(SLOWEST * careful);
                 turn = (aside * 0.8).clamp(-gait.steer_rate, gait.steer_rate) * rate;
                 if !turns_on_spot {
-                    if self.state.ticks % LOOKS == 0 {
+                    if self.state.ticks.is_multiple_of(LOOKS) {
                         self.state.detour = match self.free_way(around, aside) {
                             Some(way) if way == aside => Detour::None,
                             Some(way) => Detour::By(way),

@@ -331,7 +331,7 @@ pub(crate) fn whole(problem: BrainProblem) -> BrainError {
     BrainError {
         line: None,
         state: None,
-        problem,
+        problem: Box::new(problem),
     }
 }
 

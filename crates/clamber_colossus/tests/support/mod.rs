@@ -45,8 +45,8 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
         mesh: rig.collider,
         weak_points: rig.weak_points,
     };
-    let brain = Brain::from_json(brain, TICK).unwrap_or_else(|error| panic!("{error}"));
-    Arc::new(CreatureKind::new(parts, brain).unwrap_or_else(|error| panic!("{error}")))
+    let brain = Brain::from_json(brain, TICK).unwrap();
+    Arc::new(CreatureKind::new(parts, brain).unwrap())
 }
 
 pub(crate) fn creature(kind: &Arc<CreatureKind>, config: CreatureConfig) -> Creature {

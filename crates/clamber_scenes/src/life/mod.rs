@@ -226,7 +226,7 @@ impl Life {
 
     /// What happens from outside: arrows and blades, riders that are lifted, and the next giant after a death.
     fn fate(&mut self) -> Result<(), LifeError> {
-        let every = |seconds: f64| self.ticks % ((seconds / TICK) as u64) == 0;
+        let every = |seconds: f64| self.ticks.is_multiple_of((seconds / TICK) as u64);
         let (arrow, wound, lift) = (every(ARROWS), every(WOUNDS), every(LIFTS));
         if arrow {
             let triangle = self.random.u32(..self.kind.mesh().triangles().len() as u32);
@@ -264,7 +264,7 @@ impl Life {
     }
 
     fn noises(&mut self) -> Vec<Noise> {
-        if self.ticks % ((NOISES / TICK) as u64) != 0 {
+        if !self.ticks.is_multiple_of((NOISES / TICK) as u64) {
             return Vec::new();
         }
         vec![Noise {
@@ -311,7 +311,7 @@ fn look_at_feet(
         }
         *stands = stands.saturating_add(1);
         if *stands > SETTLED
-            && giant.state().ticks() % LOOKS == 0
+            && giant.state().ticks().is_multiple_of(LOOKS)
             && let Some(clearance) = giant.foot_clearance(leg, terrain)
         {
             tally.foot(clearance / giant.kind().foot_length(leg));
