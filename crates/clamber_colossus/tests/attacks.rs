@@ -119,7 +119,7 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
             victim = person(victim.body.ends[0].with_y(0.0) + away * (3.0 * TICK));
         }
     }
-    panic!("the attack does not end");
+    unreachable!("the attack does not end");
 }
 
 /// The angle between two vectors, radians.
@@ -226,65 +226,5 @@ fn blows_come_in_the_window_and_along_the_limb() {
         );
         assert!(hits > 0, "{name}");
         assert!(worst <= 10.0, "{name}: {worst} degrees");
-    }
-}
-
-#[test]
-fn debug_hand() {
-    for (name, act) in attacks() {
-        if !name.contains("sw") {
-            continue;
-        }
-        let mut giant = before(&act);
-        let ground = HalfSpace::below(0.0);
-        let terrain: [&dyn Obstacle; 1] = [&ground];
-        let around = Surroundings {
-            terrain: &terrain,
-            ..Surroundings::default()
-        };
-        let mut skin = Vec::new();
-        let limb: Vec<String> = act["attack"]["limb"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|s| s.as_str().unwrap().to_string())
-            .collect();
-        println!("{name} {limb:?}");
-        for tick in 0..260 {
-            giant.step(&around).unwrap();
-            let Some(layer) = giant.state().animator().layers().first() else {
-                continue;
-            };
-            if tick < 60 || tick % 4 != 0 {
-                continue;
-            }
-            let time = layer.time;
-            giant.surface().clone().skin_all(&mut skin);
-            let mesh = giant.surface().mesh();
-            let mut low = glam::Vec3::splat(1e9);
-            for (i, t) in mesh.triangles().iter().enumerate() {
-                let j = mesh
-                    .joint_of(clamber_surface::mesh::TriangleId(i as u32))
-                    .unwrap();
-                let n = &giant.kind().skeleton().joints()[j.index()].name;
-                if n.starts_with("hand")
-                    || n.starts_with("index")
-                    || n.starts_with("middle")
-                    || n.starts_with("ring")
-                    || n.starts_with("thumb")
-                    || n.starts_with("forearm")
-                {
-                    if n.ends_with(if name.ends_with("left") { ".L" } else { ".R" }) {
-                        for v in t {
-                            let p = skin[v.0 as usize];
-                            if p.y < low.y {
-                                low = p;
-                            }
-                        }
-                    }
-                }
-            }
-            println!("  {time:.2} lowest {low:.2}");
-        }
     }
 }
