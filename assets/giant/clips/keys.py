@@ -34,6 +34,11 @@ class Table:
     def __post_init__(self):
         self.markers = sorted(self.markers, key=lambda marker: marker[1])
 
+    @property
+    def blows(self):
+        """Seconds of the impacts."""
+        return [time for name, time in self.markers if name == "impact"]
+
 
 def both(name, keys):
     """The same keys for both sides."""
