@@ -1,6 +1,6 @@
 """Trunks and heads that can be ridden: keys say how a body moves, this softens it where it is too fast.
 
-Where the chest or the head would accelerate more than `rideable.LIMITS` allows, the channels that move them
+Where the chest or the head would accelerate more than `rideable.ACTS` allows, the channels that move them
 are averaged over a wider time, again and again. Hands and feet that are held or stand stay where they are.
 """
 
@@ -10,14 +10,11 @@ import numpy as np
 
 from . import motion, rideable
 from .skeleton import INDEX
-from .tracks import eased
 
 # Channels that move the chest, and those that move the head on it.
 TRUNK, HEAD = ("pelvis", "spine", "chest", "swell"), ("neck", "head")
 # Each pass averages over at most this time, in seconds, and over no more than REACH of the time to the clip's ends.
-WIDTH, REACH, PASSES = 0.5, 0.8, 150
-# Nothing changes at the ends themselves, for so long (seconds).
-END = 0.4
+WIDTH, REACH, PASSES = 0.5, 0.13, 150
 # Passes stop at this share of the limits. Around a moment that is too fast channels are softened for NEAR
 # seconds; what is felt lags by LAG seconds.
 ROOM, NEAR, LAG = 0.97, 0.35, 0.1
@@ -25,7 +22,7 @@ ROOM, NEAR, LAG = 0.97, 0.35, 0.1
 STEP = 0.5
 
 
-def soften(tracks, limits, blows):
+def soften(tracks, blows):
     """Softens the channels of a one-shot."""
     dense = copy.copy(tracks)
     # Two ticks a frame: a player interpolates every second one.
@@ -37,7 +34,7 @@ def soften(tracks, limits, blows):
         path = motion.trunk(dense).placed(chain)[1][:, joints]
         path[1::2] = (path[:-1:2] + path[2::2]) / 2
         felt = rideable.felt(path, loops=False) * outside[:, None]
-        over = felt / (ROOM * limits[("chest",)], ROOM * limits[("head",)]) - 1.0
+        over = felt / (ROOM * np.array(rideable.ACTS)) - 1.0
         if over.max() <= 0.0:
             break
         for parts, excess in ((TRUNK, over.max(axis=1)), (HEAD, over[:, 1])):
@@ -54,16 +51,16 @@ def _around(excess, dense):
     widest = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).max(axis=1)
     window = np.hanning(2 * reach + 3)[1:-1]
     soft = np.convolve(widest, window / window.sum(), mode="valid")
-    inside = eased(np.minimum(dense.grid, dense.length - dense.grid) / END)
-    return inside * np.interp(dense.grid + LAG, np.arange(len(soft)) * rideable.TICK, soft)
+    return np.interp(dense.grid + LAG, np.arange(len(soft)) * rideable.TICK, soft)
 
 
 def _averaged(values, tracks):
-    """Averages over a time that shrinks towards the ends, where a one-shot rests."""
-    half = np.clip(REACH * np.minimum(tracks.grid, tracks.length - tracks.grid), 0.0, WIDTH / 2)
+    """Averages around each moment; near the ends over the time of rest beyond them, lest a start becomes abrupt."""
+    before = np.clip(REACH * (tracks.length - tracks.grid), 0.0, WIDTH / 2)
+    after = np.clip(REACH * tracks.grid, 0.0, WIDTH / 2)
     total = np.zeros_like(values)
     nodes = np.linspace(-1.0, 1.0, 17)[1:-1]
     weights = 1.0 - nodes * nodes
     for node, weight in zip(nodes, weights / weights.sum()):
-        total += weight * np.interp(tracks.grid + node * half, tracks.grid, values)
+        total += weight * np.interp(tracks.grid + node * np.where(node < 0.0, before, after), tracks.grid, values)
     return total

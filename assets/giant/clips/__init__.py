@@ -80,8 +80,8 @@ def sampled(name, points, weights):
         idle = stand.idle()
         base = Tracks(idle.length, True, idle.channels, [0.0])
     tracks = Tracks(table.length, table.loops, table.channels, times, base, table.blows)
-    if name in rideable.LIMITS and not table.loops:
-        steady.soften(tracks, rideable.LIMITS[name], table.blows)
+    if name in rideable.SOFT:
+        steady.soften(tracks, table.blows)
     speed = table.speed or 0.0
     if table.settles:
         soles.settle(tracks, points, weights, RATE, table.loops, speed, table.turn)

@@ -61,6 +61,15 @@ def burst(start, end, size, rate, late=0.0, grow=0.6, fall=0.8):
     return values
 
 
+def arc(side, path):
+    """Keys for the place of a held wrist from (time, bearing, distance): degrees outwards from the front, metres from the root."""
+    angle = [(time, np.radians(bearing), distance) for time, bearing, distance in path]
+    return {
+        f"hand.x.{side}": [(time, distance * np.sin(bearing)) for time, bearing, distance in angle],
+        f"hand.y.{side}": [(time, -distance * np.cos(bearing)) for time, bearing, distance in angle],
+    }
+
+
 def strike(active, recovery, *impacts):
     """Markers of an attack."""
     return [("wind_up", 0.0), ("active", active), ("recovery", recovery), *(("impact", time) for time in impacts)]
