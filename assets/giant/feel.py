@@ -5,7 +5,7 @@ import numpy as np
 from . import motion, rideable, soles
 from .clips import RATE
 from .signs import SIGNS
-from .skeleton import HEADS, JOINTS, TAILS
+from .skeleton import HEADS, INDEX, JOINTS, TAILS
 from .turns import turned, turned_back
 
 # A foot is planted while its lowest skin is below the first height, in metres. Its skin within the second
@@ -32,6 +32,18 @@ def standing(clip, points, weights):
         ground = soles.carried(skin[:-1, :, :2], clip.table.speed or 0.0, clip.table.turn, RATE)
         slips.append(np.linalg.norm(skin[1:, :, :2] - ground, axis=2)[touch[1:] & touch[:-1]] * RATE)
     return low, np.percentile(np.concatenate(slips), 95)
+
+
+def stretch(clip, points, weights):
+    """How far planted legs are stretched: the largest distance of hip and ankle, as a share of the leg's length."""
+    _, place = clip.poses.placed()
+    worst = 0.0
+    for side, _ in soles.SIDES:
+        hip, knee, ankle = (INDEX[name + side] for name in ("thigh", "shin", "foot"))
+        length = np.linalg.norm(HEADS[knee] - HEADS[hip]) + np.linalg.norm(HEADS[ankle] - HEADS[knee])
+        planted = motion.skinned(*soles.foot_skin(points, weights, side), clip.poses)[:, :, 2].min(axis=1) < PLANTED
+        worst = max(worst, *(np.linalg.norm(place[:, ankle] - place[:, hip], axis=1)[planted] / length))
+    return worst
 
 
 def starts(clip):
@@ -70,16 +82,13 @@ def ride(clip, sign_name, points, weights, fur):
     """What a rider feels at a weak point.
 
     Returns the largest pull, the seconds for which it throws him, how far it tires him (metres a second),
-    and the largest pull at the calmest of the places nearby that `fur` marks. The weak point on the head
-    has only stone around it: there all places nearby count.
+    and the largest pull at the calmest of the places nearby that `fur` marks.
     """
     sign = next(sign for sign in SIGNS if sign.name == sign_name.replace(".R", ".L"))
     place = np.asarray(sign.place) * ((-1, 1, 1) if sign_name.endswith(".R") else (1, 1, 1))
     spot = np.linalg.norm(points - place, axis=1).argmin()
     away = np.linalg.norm(points - points[spot], axis=1)
     near = np.flatnonzero(fur & (away <= NEAR))
-    if not len(near):
-        near = np.flatnonzero((away <= NEAR) & (away > 0.0))
     felt = pulls(clip, points[[spot, *near]], weights[[spot, *near]])
     throw = (felt[:, 0] > THROWS).sum() * rideable.TICK
     tiring = np.maximum(felt[:, 0] - TIRES, 0.0).sum() * rideable.TICK

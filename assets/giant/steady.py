@@ -18,8 +18,8 @@ WIDTH, REACH, PASSES = 0.5, 0.13, 150
 # Passes stop at this share of the limits. Around a moment that is too fast channels are softened for NEAR
 # seconds; what is felt lags by LAG seconds.
 ROOM, NEAR, LAG = 0.97, 0.35, 0.1
-# The share of the way to the average that one pass takes at most.
-STEP = 0.5
+# The share of the way to the average that one pass takes: so much for each unit of excess, and at most.
+GAIN, STEP = 3.0, 0.5
 
 
 def soften(tracks, blows):
@@ -38,7 +38,7 @@ def soften(tracks, blows):
         if over.max() <= 0.0:
             break
         for parts, excess in ((TRUNK, over.max(axis=1)), (HEAD, over[:, 1])):
-            share = _around(np.clip(excess, 0.0, STEP), dense)
+            share = _around(np.clip(GAIN * excess, 0.0, STEP), dense)
             for name, values in tracks.tables.items():
                 if name.split(".")[0] in parts:
                     tracks.tables[name] = values + share * (_averaged(values, tracks) - values)

@@ -94,7 +94,7 @@ def shake_head():
 
 def shake_arm_left():
     """Raises the left forearm, looks at it, and flings the hand to and fro."""
-    t, start, end = 5.2, 1.7, 3.3
+    t, start, end = 5.2, 1.6, 3.2
     fling = lambda size, late=0.0: burst(start - 0.1, end + 0.1, size, 1.7, late, 0.6, 0.7)
     return Table(t, {
         "pelvis.z": [(0, 0), (1.6, -0.4), (3.3, -0.4), (t, 0)],
@@ -111,7 +111,7 @@ def shake_arm_left():
 def rage():
     """Twists to and fro with all it has, roars with raised fists, and calms down."""
     t, start, end = 9.0, 1.3, 5.8
-    rattle = lambda size, late, seconds: burst(1.2 + seconds, 3.2 + seconds, size, TWIST_RATE, late, 0.7, 0.7)
+    rattle = lambda size, late, seconds: burst(1.2 + seconds, 3.2 + seconds, 0.98 * size, TWIST_RATE, late, 0.7, 0.7)
     tremble = lambda size, late=0.0: burst(4.5, 6.1, size, 4.0, late, 0.5, 0.6)
     return Table(t, twist(rattle, {
         "pelvis.z": [(0, 0), (1.8, -0.9), (3.1, -1.0), (5.0, -0.2), (5.8, -0.3), (t, 0)],
