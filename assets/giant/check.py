@@ -181,7 +181,8 @@ def check_motion(moves, points, weights, fur):
         if not holds:
             faults.append(what)
 
-    print(f"clip             length  lowest  slide   bend  start (limits: {-DEEPEST} m, {MOST_SLIDE} m/s, {MOST_STRETCH}, {START_PULL} m/s^2)")
+    print(f"clip             length  lowest  slide   bend  start (limits: "
+          f"{-DEEPEST} m, {MOST_SLIDE} m/s, {MOST_STRETCH}, {START_PULL} m/s^2)")
     for clip in moves:
         low, slide = feel.standing(clip, points, weights)
         pull, joint, time = feel.starts(clip)

@@ -52,7 +52,8 @@ def crest():
     roots = away + sign.place
     roots = roots[in_crest(roots) & (np.hypot(away[:, 0], away[:, 1]) > sign.size + CREST_GAP)]
     count, up = len(roots), np.array([0.0, 0.0, 1.0])
-    along = np.array([0.0, 1.0, 0.0]) + 0.3 * (roots - sign.place) * (1.0, 0.0, 0.0) + random.normal(0.0, 0.15, (count, 3)) * (1.0, 1.0, 0.0)
+    along = np.array([0.0, 1.0, 0.0]) + 0.3 * (roots - sign.place) * (1.0, 0.0, 0.0)
+    along += random.normal(0.0, 0.15, (count, 3)) * (1.0, 1.0, 0.0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     length = random.uniform(*CREST_LENGTH, count)[:, None]
     width = random.uniform(*CREST_WIDTH, count)[:, None]

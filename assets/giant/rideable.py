@@ -14,8 +14,6 @@ from .skeleton import INDEX
 SMOOTHING, TICK = 0.1, 1.0 / 60.0
 # The blow of an impact may be felt from and until so long after its marker, in seconds.
 BLOW = (-0.05, 0.5)
-
-
 # The most that is felt at the chest and at the head, in metres a second squared.
 GENTLE, WALKS, ACTS, SHAKES, SHRUG = (1.5, 3.0), (4.0, 8.0), (15.0, 30.0), (30.0, 60.0), (15.0, 15.0)
 # Clips that are softened to keep to `ACTS`; see `steady.py`.
