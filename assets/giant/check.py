@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import clips, feel, flesh, glb, motion, nets, reach, stone
+from . import clips, feel, flesh, glb, motion, nets, reach, rideable, stone
 from .skeleton import INDEX
 
 VISUAL_VERTICES = (50_000, 100_000)
@@ -13,13 +13,19 @@ MOST_BYTES = 8_500_000
 DEEPEST, MOST_SLIDE, START_PULL = 0.10, 0.15, 4.9
 # A loop may not be farther from closing, and a one-shot not farther from the idle's first pose.
 CLOSED, SAME = 1e-9, 1e-3
-# Seconds from a blow's start to its active window: long enough to run, short enough to matter.
+# Seconds from the start of a blow to its active window: long enough to run, short enough to matter. Others
+# (roars, shakes) take at most as long.
 STOMP_WIND_UP, WIND_UP = (1.3, 1.6), (0.9, 1.6)
 # How high a stomping foot is raised (metres), how far the head turns to it (degrees), and how close the
 # sole is to the ground at an impact (metres).
 STOMP_HEIGHT, STOMP_TURN, IMPACT_HEIGHT = 4.0, 15.0, 0.1
-# How low a swiping hand or foot passes (metres), and the arc around the root over which it does (degrees).
-REACH, ARC = (0.3, 1.2), 60.0
+# A hand that strikes is at these heights (metres) for at least that share of the active window, in which it is
+# never higher than LIFTED. It hits everybody on an arc (degrees) at such a distance (metres); so does a foot.
+REACH, LEAST_LOW, LIFTED = (0.3, 0.9), 0.75, 1.5
+ARC = {reach.HAND: (100.0, 10.0, 20.0), reach.FOOT: (60.0, 5.0, 12.0)}
+# A planted leg keeps some bend (a share of its length): a game plants feet by IK, and drags them where a leg is
+# too short.
+MOST_STRETCH = 0.97
 # Each blow's limb.
 BLOWS = {
     "stomp": (reach.FOOT, ".R"), "stomp_left": (reach.FOOT, ".L"),
@@ -45,6 +51,8 @@ RIDES = (
 # climber's stamina: two shakes can be survived, six cannot. It can be held out at such a pull, and a shrug
 # only warns (metres a second squared).
 LEAST_THROW, TIRING, HELD, SHRUG = 0.3, (10.0, 20.0), 10.5, (6.0, 10.0)
+# Shakes of the nape may tire riders at these places by no more (metres a second).
+SPARED, MOST_SPARED = ("weak_point_head", "weak_point_forearm.L", "weak_point_forearm.R"), 25.0
 # What lies on the ground has skin this close to it, in metres.
 LYING = 0.7
 # Distance of the meshes, in metres: the median, and what 99.5 % of the vertices keep to. The rest sit
@@ -173,11 +181,13 @@ def check_motion(moves, points, weights, fur):
         if not holds:
             faults.append(what)
 
-    print(f"clip             length  lowest  slide  start (limits: {-DEEPEST} m, {MOST_SLIDE} m/s, {START_PULL} m/s^2)")
+    print(f"clip             length  lowest  slide   bend  start (limits: "
+          f"{-DEEPEST} m, {MOST_SLIDE} m/s, {MOST_STRETCH}, {START_PULL} m/s^2)")
     for clip in moves:
         low, slide = feel.standing(clip, points, weights)
         pull, joint, time = feel.starts(clip)
-        print(f"{clip.name:16} {clip.length:6.2f} {low:7.2f} {slide:6.3f} {pull:6.2f}  {joint} at {time:.2f} s")
+        stretch = feel.stretch(clip, points, weights)
+        print(f"{clip.name:16} {clip.length:6.2f} {low:7.2f} {slide:6.3f} {stretch:6.3f} {pull:6.2f}  {joint} at {time:.2f} s")
         if clip.loops:
             expect(_gap(clip, 0, clip, -1) < CLOSED, f"{clip.name} does not close")
         elif clip.name == "die":
@@ -188,9 +198,15 @@ def check_motion(moves, points, weights, fur):
         expect(low > -DEEPEST, f"{clip.name}: skin at {low:.2f} m")
         # Feet are dragged along when the giant dies.
         expect(slide <= MOST_SLIDE or clip.name == "die", f"{clip.name}: soles slide at {slide:.3f} m/s")
+        expect(stretch <= MOST_STRETCH, f"{clip.name}: a planted leg is stretched to {stretch:.3f}")
         expect(pull <= START_PULL, f"{clip.name}: {joint} starts with {pull:.2f} m/s^2 at {time:.2f} s")
         expect(all(0.0 <= time <= clip.length for _, time in clip.table.markers), f"{clip.name}: a marker is too late")
         expect({name for name, _ in clip.table.markers} >= MARKERS.get(clip.name, set()), f"{clip.name}: markers")
+        wind_up = reach.markers(clip).get("active", 0.0)
+        expect(wind_up <= WIND_UP[1], f"{clip.name}: winds up for {wind_up:.2f} s")
+    print("felt at most, in m/s^2: chest, head, hands, forearms")
+    for clip in moves:
+        rideable.check(clip, expect)
     for name, (limb, side) in BLOWS.items():
         _check_blow(by_name[name], limb, side, points, weights, expect)
     print(f"rides: largest pull, seconds over {feel.THROWS}, excess over {feel.TIRES}, largest pull where one holds out")
@@ -203,6 +219,11 @@ def check_motion(moves, points, weights, fur):
             expect(throw >= LEAST_THROW, f"{name}: throws for {throw:.2f} s")
             expect(TIRING[0] <= tiring <= TIRING[1], f"{name}: tires by {tiring:.1f} m/s")
         expect(held <= HELD, f"{name}: {held:.1f} m/s^2 where one holds out")
+    for name in ("shake", "shake_loop", "rage"):
+        for sign in SPARED:
+            peak, throw, tiring, _ = feel.ride(by_name[name], sign, points, weights, fur)
+            print(f"{name:16} {sign:22} {peak:6.1f} m/s^2 {throw:5.2f} s {tiring:6.1f} m/s")
+            expect(tiring <= MOST_SPARED, f"{name}: tires by {tiring:.1f} m/s at {sign}")
     _check_corpse(by_name["die"], points, weights, expect)
     assert not faults, "; ".join(faults)
 
@@ -216,7 +237,7 @@ def _gap(clip, frame, other, other_frame):
 def _check_blow(clip, limb, side, points, weights, expect):
     """The times of a blow, and what it reaches."""
     time = reach.markers(clip)
-    low, centre = reach.lowest(clip, points, weights, limb, side)
+    low = reach.lowest(clip, points, weights, limb, side)
     stomps = clip.name.startswith("stomp")
     limits = STOMP_WIND_UP if stomps else WIND_UP
     expect(limits[0] <= time["active"] <= limits[1], f"{clip.name}: winds up for {time['active']:.2f} s")
@@ -230,10 +251,14 @@ def _check_blow(clip, limb, side, points, weights, expect):
         expect(high >= STOMP_HEIGHT, f"{clip.name}: foot {high:.1f} m high")
         expect(turn >= STOMP_TURN, f"{clip.name}: head turned {turn:.0f} degrees")
     else:
-        height, arc = reach.active(clip, limb, side, points, weights)
-        print(f"{clip.name:16} winds up {time['active']:.2f} s, passes {height:.2f} m high, hits over {arc:.0f} degrees")
-        expect(REACH[0] <= height <= REACH[1], f"{clip.name}: passes {height:.2f} m over the ground")
-        expect(arc >= ARC, f"{clip.name}: {arc:.0f} degrees")
+        low = low[reach.window(clip)]
+        share = ((low >= REACH[0]) & (low <= REACH[1])).mean()
+        arc, distance = reach.arc(clip, limb, side, points, weights)
+        print(f"{clip.name:16} winds up {time['active']:.2f} s, passes {low.min():.2f} to {low.max():.2f} m high, {share:.0%} low, "
+              f"hits over {arc:.0f} degrees at {distance} m")
+        expect(share >= LEAST_LOW and low.max() <= LIFTED, f"{clip.name}: {share:.0%} low, up to {low.max():.2f} m")
+        widest, near, far = ARC[limb]
+        expect(arc >= widest and near <= distance <= far, f"{clip.name}: {arc:.0f} degrees at {distance} m")
 
 
 def _check_corpse(clip, points, weights, expect):

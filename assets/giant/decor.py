@@ -4,7 +4,7 @@ import numpy as np
 
 from . import field as f
 from . import flesh, nets, stone
-from .signs import SIGNS
+from .signs import SIGNS, in_crest
 
 # Tufts: at most this many, this far apart at least, with these lengths and half widths.
 TUFT_CANDIDATES = 26_000
@@ -13,6 +13,9 @@ TUFT_LENGTH = (1.7, 3.0)
 TUFT_WIDTH = (0.34, 0.52)
 # How high a tuft's ridge and tip stand above the skin; the collision mesh does not know of tufts.
 RIDGE_HEIGHT, TIP_HEIGHT = 0.30, 0.34
+# The crest's tufts: their distance, from the sigil's ring too, their lengths and half widths.
+CREST_SPACING, CREST_GAP = 0.5, 0.25
+CREST_LENGTH, CREST_WIDTH = (0.9, 1.5), (0.22, 0.34)
 # No tuft reaches deeper under stone than this, in metres.
 TUFT_COVER = 0.3
 SEED = 20
@@ -36,6 +39,31 @@ def tufts(body_mesh):
     middle, middle_up = _on_body(roots + 0.42 * length * along, 0.0)
     tip, _ = _on_body(roots + length * along, TIP_HEIGHT)
     free = np.minimum(stone.smooth(middle), stone.smooth(tip)) > -TUFT_COVER
+    return _spikes(*(part[free] for part in (roots, normals, middle, middle_up, tip, across, width)), random)
+
+
+def crest():
+    """The same for the crest of hair on the head, which grows out of level stone and points backwards."""
+    random = np.random.default_rng(SEED)
+    sign = SIGNS[0]
+    across, along = np.meshgrid(np.arange(-2.2, 2.3, CREST_SPACING), np.arange(0.3, 2.3, CREST_SPACING))
+    away = np.stack([across.ravel(), along.ravel(), np.zeros(across.size)], axis=1)
+    away[:, :2] += random.uniform(-0.12, 0.12, (len(away), 2))
+    roots = away + sign.place
+    roots = roots[in_crest(roots) & (np.hypot(away[:, 0], away[:, 1]) > sign.size + CREST_GAP)]
+    count, up = len(roots), np.array([0.0, 0.0, 1.0])
+    along = np.array([0.0, 1.0, 0.0]) + 0.3 * (roots - sign.place) * (1.0, 0.0, 0.0)
+    along += random.normal(0.0, 0.15, (count, 3)) * (1.0, 1.0, 0.0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    length = random.uniform(*CREST_LENGTH, count)[:, None]
+    width = random.uniform(*CREST_WIDTH, count)[:, None]
+    ups = np.tile(up, (count, 1))
+    tip = roots + length * along + TIP_HEIGHT * up
+    return _spikes(roots, ups, roots + 0.42 * length * along, ups, tip, np.cross(along, up), width, random)
+
+
+def _spikes(roots, normals, middle, middle_up, tip, across, width, random):
+    """Tufts of three corners at their roots, three at their middles and a tip."""
     corners = [
         roots - 0.22 * normals + 0.6 * width * across,
         roots - 0.22 * normals - 0.6 * width * across,
@@ -50,8 +78,8 @@ def tufts(body_mesh):
         (0, 2, 5), (0, 5, 3), (2, 1, 4), (2, 4, 5), (1, 0, 3), (1, 3, 4),
         (3, 5, 6), (5, 4, 6), (4, 3, 6),
     ])
-    points = np.stack(corners, axis=1)[free].reshape(-1, 3)
-    count = int(free.sum())
+    points = np.stack(corners, axis=1).reshape(-1, 3)
+    count = len(roots)
     triangles = (pattern[None] + 7 * np.arange(count)[:, None, None]).reshape(-1, 3)
     shade = random.uniform(0.75, 1.2, count)[:, None] * np.array([0.5, 0.5, 0.7, 0.75, 0.75, 1.0, 1.25])
     uv = np.array([(0, 0), (0.2, 0), (0.1, 0), (0, 0.4), (0.2, 0.4), (0.1, 0.4), (0.1, 1.0)])

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from . import motion, soles
+from . import motion, rideable, soles
 from .clips import RATE
 from .signs import SIGNS
-from .skeleton import HEADS, JOINTS, TAILS
+from .skeleton import HEADS, INDEX, JOINTS, TAILS
 from .turns import turned, turned_back
 
 # A foot is planted while its lowest skin is below the first height, in metres. Its skin within the second
@@ -14,8 +14,6 @@ PLANTED, SOLE = 0.03, 0.05
 # A limb is at rest when it has been below this speed for that long. Its start lasts that long, and a blow
 # excuses starts for some time around it (metres, seconds).
 REST_SPEED, REST_TIME, START_TIME, BLOW_TIME = 0.1, 0.2, 0.1, 0.15
-# A rider feels a point's changes of velocity, averaged over this time, at ticks of this length; seconds.
-SMOOTHING, TICK = 0.1, 1.0 / 60.0
 # Pulls (metres a second squared) that throw riders off, and that tire them.
 THROWS, TIRES = 15.0, 4.0
 # A place to hold out is this close to a weak point, in metres.
@@ -36,6 +34,18 @@ def standing(clip, points, weights):
     return low, np.percentile(np.concatenate(slips), 95)
 
 
+def stretch(clip, points, weights):
+    """How far planted legs are stretched: the largest distance of hip and ankle, as a share of the leg's length."""
+    _, place = clip.poses.placed()
+    worst = 0.0
+    for side, _ in soles.SIDES:
+        hip, knee, ankle = (INDEX[name + side] for name in ("thigh", "shin", "foot"))
+        length = np.linalg.norm(HEADS[knee] - HEADS[hip]) + np.linalg.norm(HEADS[ankle] - HEADS[knee])
+        planted = motion.skinned(*soles.foot_skin(points, weights, side), clip.poses)[:, :, 2].min(axis=1) < PLANTED
+        worst = max(worst, *(np.linalg.norm(place[:, ankle] - place[:, hip], axis=1)[planted] / length))
+    return worst
+
+
 def starts(clip):
     """The largest acceleration of a limb's centre just after it was at rest: how much, which, when."""
     turn, place = clip.poses.placed()
@@ -45,14 +55,13 @@ def starts(clip):
     centres = _over_ground(np.concatenate([*before, centres]), clip)
     speed = np.linalg.norm(np.diff(centres, axis=0), axis=2) * RATE
     pull = np.linalg.norm(np.diff(centres, 2, axis=0), axis=2) * RATE**2
-    blows = [time for name, time in clip.table.markers if name == "impact"]
     worst = (0.0, JOINTS[0].name, 0.0)
     for step in range(still - 1, len(pull)):
         rested = (speed[step - still + 1 : step + 1] < REST_SPEED).all(axis=0)
         for later in range(step, min(step + round(START_TIME * RATE) + 1, len(pull))):
             # `pull[n]` is at frame n + 1 of the padded ones.
             time = (later + 1 - (still + 1)) / RATE
-            if any(abs(time - blow) <= BLOW_TIME + 0.5 / RATE for blow in blows):
+            if any(abs(time - blow) <= BLOW_TIME + 0.5 / RATE for blow in clip.blows):
                 continue
             felt = np.where(rested, pull[later], 0.0)
             if felt.max() > worst[0]:
@@ -73,36 +82,22 @@ def ride(clip, sign_name, points, weights, fur):
     """What a rider feels at a weak point.
 
     Returns the largest pull, the seconds for which it throws him, how far it tires him (metres a second),
-    and the largest pull at the calmest of the places nearby that `fur` marks. The weak point on the head
-    has only stone around it: there all places nearby count.
+    and the largest pull at the calmest of the places nearby that `fur` marks.
     """
     sign = next(sign for sign in SIGNS if sign.name == sign_name.replace(".R", ".L"))
     place = np.asarray(sign.place) * ((-1, 1, 1) if sign_name.endswith(".R") else (1, 1, 1))
     spot = np.linalg.norm(points - place, axis=1).argmin()
     away = np.linalg.norm(points - points[spot], axis=1)
     near = np.flatnonzero(fur & (away <= NEAR))
-    if not len(near):
-        near = np.flatnonzero((away <= NEAR) & (away > 0.0))
     felt = pulls(clip, points[[spot, *near]], weights[[spot, *near]])
-    throw = (felt[:, 0] > THROWS).sum() * TICK
-    tiring = np.maximum(felt[:, 0] - TIRES, 0.0).sum() * TICK
+    throw = (felt[:, 0] > THROWS).sum() * rideable.TICK
+    tiring = np.maximum(felt[:, 0] - TIRES, 0.0).sum() * rideable.TICK
     return felt[:, 0].max(), throw, tiring, felt[:, 1:].max(axis=0).min()
 
 
 def pulls(clip, points, weights):
-    """Smoothed accelerations (ticks, points) of points on the skin, as a player moves them.
-
-    A one-shot starts from rest and ends at rest; a loop has run for a cycle before.
-    """
+    """Felt accelerations (ticks, points) of points on the skin, as a player moves them."""
     frames = motion.skinned(points, weights, clip.poses)
     path = np.empty((2 * len(frames) - 1, *frames.shape[1:]))
     path[::2], path[1::2] = frames, motion.skinned(points, weights, motion.halfway(clip.poses))
-    cycle = len(path) - 1
-    path = np.concatenate([path, path[1:], path[1:3]] if clip.loops else [path[:1], path[:1], path, path[-1:], path[-1:]])
-    jolts = np.diff(path, 2, axis=0) / TICK**2
-    share = 1.0 - np.exp(-TICK / SMOOTHING)
-    felt, now = np.empty(jolts.shape[:2]), np.zeros_like(jolts[0])
-    for tick, jolt in enumerate(jolts):
-        now = (1.0 - share) * now + share * jolt
-        felt[tick] = np.linalg.norm(now, axis=1)
-    return felt[cycle:] if clip.loops else felt
+    return rideable.felt(path, clip.loops)

@@ -13,6 +13,8 @@ from .skeleton import HEADS, INDEX, JOINTS, PARENT
 from .turns import matrices, quaternions, turned, turned_back
 
 SPINE = ("spine.1", "spine.2", "spine.3", "chest")
+# The joints from the ground to the head.
+TRUNK = ("root", "pelvis", *SPINE, "neck.1", "neck.2", "head")
 FINGERS = ("index", "middle", "ring", "thumb")
 # Delays, in seconds, with which the parts of the body follow the pelvis: what makes it heavy.
 SPINE_LAG, NECK_LAG, HEAD_LAG, JAW_LAG = 0.05, 0.10, 0.16, 0.22
@@ -36,10 +38,11 @@ class Poses:
         result.local, result.shift = self.local[frames], self.shift[frames]
         return result
 
-    def placed(self):
-        """Model rotations and heads of all joints in all frames."""
+    def placed(self, joints=None):
+        """Model rotations and heads of all joints in all frames; or of some joints that follow their parents."""
         turn, place = np.empty_like(self.local), np.zeros((len(self), len(JOINTS), 3))
-        for joint, parent in enumerate(PARENT):
+        for joint in range(len(JOINTS)) if joints is None else joints:
+            parent = PARENT[joint]
             if parent < 0:
                 turn[:, joint], place[:, joint] = self.local[:, joint], HEADS[joint]
                 continue
@@ -52,10 +55,24 @@ class Poses:
 
 def posed(c):
     """The poses that the channels `c` (see `tracks.py`) give at their times."""
-    pose = Poses(len(c.times))
+    pose = trunk(c)
+    turn = _turner(pose)
+    lean, loin, aside = c("pelvis.pitch"), c("loin", LOIN_LAG), c("loin.side", LOIN_LAG)
+    turn("jaw", c("jaw", JAW_LAG))
+    turn("loin.front", np.minimum(-lean, 0.0) + loin + c("loin.front", LOIN_LAG), 0, aside)
+    turn("loin.back", np.maximum(-lean, 0.0) + loin + c("loin.back", LOIN_LAG), 0, aside)
+    for side, sign in ((".L", 1), (".R", -1)):
+        _arm(c, turn, side, sign)
+        if f"hand.hold{side}" in c:
+            reach(c, pose, side, sign)
+        leg(c, pose, side, sign)
+    return pose
 
-    def turn(joint, pitch=0.0, yaw=0.0, roll=0.0):
-        pose.local[:, INDEX[joint]] = turned(pitch, yaw, roll)
+
+def trunk(c):
+    """The same, but of the joints in `TRUNK` alone."""
+    pose = Poses(len(c.times))
+    turn = _turner(pose)
 
     def angles(name, lag=0.0):
         return np.array([c(f"{name}.{kind}", lag) for kind in ("pitch", "yaw", "roll")])
@@ -74,16 +91,14 @@ def posed(c):
     turn("neck.1", *(0.5 * neck))
     turn("neck.2", *(0.5 * neck))
     turn("head", *angles("head", HEAD_LAG))
-    turn("jaw", c("jaw", JAW_LAG))
-    lean, loin, aside = c("pelvis.pitch"), c("loin", LOIN_LAG), c("loin.side", LOIN_LAG)
-    turn("loin.front", np.minimum(-lean, 0.0) + loin + c("loin.front", LOIN_LAG), 0, aside)
-    turn("loin.back", np.maximum(-lean, 0.0) + loin + c("loin.back", LOIN_LAG), 0, aside)
-    for side, sign in ((".L", 1), (".R", -1)):
-        _arm(c, turn, side, sign)
-        if f"hand.hold{side}" in c:
-            reach(c, pose, side, sign)
-        leg(c, pose, side, sign)
     return pose
+
+
+def _turner(pose):
+    def turn(joint, pitch=0.0, yaw=0.0, roll=0.0):
+        pose.local[:, INDEX[joint]] = turned(pitch, yaw, roll)
+
+    return turn
 
 
 def _arm(c, turn, side, sign):

@@ -38,3 +38,12 @@ SIGNS = (
 )
 # Fur leaves a bare patch of this many sizes around a sigil.
 BARE = 1.9
+# Hair grows on the stone behind the sigil on the head: within this distance of it, and behind this (metres).
+# A climber who goes for that sigil can hold on there.
+CREST_RADIUS, CREST_FRONT = 2.3, 0.2
+
+
+def in_crest(points):
+    """Whether points on the top of the head are in its crest of hair."""
+    away = points - np.asarray(SIGNS[0].place)
+    return (np.linalg.norm(away, axis=1) < CREST_RADIUS) & (away[:, 1] > CREST_FRONT)

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import decor, flesh, nets, stone
 from . import field as f
+from .signs import in_crest
 
 # Where the creature is in its rest pose, with room around it.
 LOW, HIGH = (-21.0, -15.0, -1.5), (21.0, 13.0, 43.0)
@@ -58,7 +59,7 @@ def visual(thinned):
     body = nets.kept(body, stone.smooth(_centres(body)) > -HIDDEN_DEPTH)
     rock = nets.kept(rock, flesh.body(_centres(rock)) > -HIDDEN_DEPTH)
     rock = nets.kept(rock, stone.smooth(_centres(rock)) > -VOID_DEPTH)
-    parts = [_dressed_body(body), _dressed_stone(rock), _dressed_fur(fur, fur_shade, fur_uvs)]
+    parts = [_dressed_body(body), _dressed_stone(rock), _dressed_fur(fur, fur_shade, fur_uvs), _dressed_fur(*decor.crest())]
     parts += [_dressed_glow(decor.sigils()), _dressed_glow(decor.eyes())]
     return Dressed(
         decor.joined([part.mesh for part in parts]),
@@ -88,7 +89,8 @@ def _surface_materials(mesh):
     plates = stone.distances(centres)
     is_stone = plates.min(axis=0) < flesh.body(centres) + 0.05
     furry = flesh.fur_amount(centres) > 0.5
-    return np.where(is_stone, _stone_materials(mesh, plates), np.where(furry, NAMES.index("fur"), NAMES.index("hide")))
+    result = np.where(is_stone, _stone_materials(mesh, plates), np.where(furry, NAMES.index("fur"), NAMES.index("hide")))
+    return np.where(in_crest(centres), NAMES.index("fur"), result)
 
 
 def _stone_materials(mesh, plates):

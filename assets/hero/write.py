@@ -13,6 +13,8 @@ _VERTICES, _TRIANGLES = 34962, 34963
 # A joint's rotation, place or scale that stays within this of one value is written as one.
 STILL = 1e-6
 MOST_INFLUENCES = 4
+# Values below this are rounding noise, and written as 0: it would decide the file's bytes.
+NOISE = 1e-12
 
 
 class _File:
@@ -30,7 +32,8 @@ class _File:
     def add(self, values, kind, shape, target=None, limits=False, normalized=False):
         """Adds an accessor and returns its number."""
         types = {_FLOAT: np.float32, _SHORT: np.uint16, _BYTE: np.uint8}
-        values = np.ascontiguousarray(values, types[kind])
+        values = np.asarray(values)
+        values = np.ascontiguousarray(np.where(np.abs(values) < NOISE, 0, values), types[kind])
         self.binary += b"\0" * (-len(self.binary) % 4)
         view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": values.nbytes}
         if target:
@@ -105,7 +108,8 @@ def _joint_nodes():
 
 
 def _numbers(values):
-    return [float(value) for value in np.asarray(values, np.float32)]
+    values = np.asarray(values)
+    return [float(value) for value in np.where(np.abs(values) < NOISE, 0.0, values).astype(np.float32)]
 
 
 def local_transforms(pose):

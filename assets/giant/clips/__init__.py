@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import motion, soles
+from .. import motion, rideable, soles, steady
 from ..tracks import Tracks
 from . import attack, fall, rub, shake, stand, sweep, walk
 from .keys import Table, mirrored
@@ -57,6 +57,11 @@ class Clip:
         return (len(self.poses) - 1) / RATE
 
     @property
+    def blows(self):
+        """Seconds of its impacts."""
+        return self.table.blows
+
+    @property
     def extras(self):
         """What the file's animation says of it."""
         tag = {"markers": [{"name": name, "time": time} for name, time in self.table.markers]}
@@ -74,8 +79,9 @@ def sampled(name, points, weights):
     if table.from_idle and not table.loops:
         idle = stand.idle()
         base = Tracks(idle.length, True, idle.channels, [0.0])
-    blows = [time for marker, time in table.markers if marker == "impact"]
-    tracks = Tracks(table.length, table.loops, table.channels, times, base, blows)
+    tracks = Tracks(table.length, table.loops, table.channels, times, base, table.blows)
+    if name in rideable.SOFT:
+        steady.soften(tracks, table.blows)
     speed = table.speed or 0.0
     if table.settles:
         soles.settle(tracks, points, weights, RATE, table.loops, speed, table.turn)

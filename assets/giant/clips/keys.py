@@ -34,6 +34,11 @@ class Table:
     def __post_init__(self):
         self.markers = sorted(self.markers, key=lambda marker: marker[1])
 
+    @property
+    def blows(self):
+        """Seconds of the impacts."""
+        return [time for name, time in self.markers if name == "impact"]
+
 
 def both(name, keys):
     """The same keys for both sides."""
@@ -54,6 +59,15 @@ def burst(start, end, size, rate, late=0.0, grow=0.6, fall=0.8):
         return size * envelope * np.sin(2 * np.pi * (rate * (times - start) - late))
 
     return values
+
+
+def arc(side, path):
+    """Keys for the place of a held wrist from (time, bearing, distance): degrees outwards from the front, metres from the root."""
+    angle = [(time, np.radians(bearing), distance) for time, bearing, distance in path]
+    return {
+        f"hand.x.{side}": [(time, distance * np.sin(bearing)) for time, bearing, distance in angle],
+        f"hand.y.{side}": [(time, -distance * np.cos(bearing)) for time, bearing, distance in angle],
+    }
 
 
 def strike(active, recovery, *impacts):

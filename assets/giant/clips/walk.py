@@ -21,10 +21,10 @@ def walk():
     t = WALK_CYCLE
     swing = t * (1.0 - STANCE)
     channels = {
-        "pelvis.z": wave(t, 0.38, 2, 0.42, -1.65), "pelvis.x": wave(t, 0.85, 1, 0.06), "pelvis.y": wave(t, 0.2, 2, 0.1, -0.5),
-        "pelvis.yaw": wave(t, 8.0, 1, -0.25), "pelvis.roll": wave(t, -3.0, 1, 0.10), "pelvis.pitch": wave(t, 1.5, 2, 0.2, 4.0),
-        "spine.yaw": wave(t, -19.0, 1, -0.22), "spine.roll": wave(t, 4.5, 1, 0.12), "spine.pitch": wave(t, 2.6, 2, 0.2, 6.0),
-        "neck.yaw": wave(t, 7.0, 1, -0.2), "neck.pitch": wave(t, 3.0, 2, 0.3, -4.0), "head.yaw": wave(t, 5.0, 1, -0.2),
+        "pelvis.z": wave(t, 0.27, 2, 0.43, -1.65), "pelvis.x": wave(t, 0.74, 1, 0.06), "pelvis.y": wave(t, 0.19, 2, 0.12, -0.5),
+        "pelvis.yaw": wave(t, 7.97, 1, -0.25), "pelvis.roll": wave(t, -3.25, 1, 0.08), "pelvis.pitch": wave(t, 1.00, 2, 0.18, 4),
+        "spine.yaw": wave(t, -17.04, 1, -0.22), "spine.roll": wave(t, 4.44, 1, 0.11), "spine.pitch": wave(t, 1.24, 2, -0.41, 6),
+        "neck.yaw": wave(t, 7.03, 1, -0.20), "neck.pitch": wave(t, 2.59, 2, 0.30, -4), "head.yaw": wave(t, 5.0, 1, -0.2),
         "head.pitch": wave(t, 3.5, 2, 0.35, -5.0), "head.roll": wave(t, -3.0, 1, 0.1), "jaw": wave(t, 4.0, 2, 0.3, 5.0),
         "breath": wave(t, 1.0, 1),
         "loin": wave(t, 7.0, 2, 0.1), "loin.front": [(0, -11.0)], "loin.back": [(0, 9.0)], "loin.side": wave(t, -4.0, 1, 0.1),
@@ -54,10 +54,10 @@ def turn_left():
     t = TURN_CYCLE
     swing = t * (1.0 - STANCE)
     channels = {
-        "pelvis.z": wave(t, 0.22, 2, 0.42, -1.15), "pelvis.x": wave(t, 0.9, 1, 0.07), "pelvis.y": [(0, -0.2)],
-        "pelvis.roll": wave(t, -2.2, 1, 0.10), "pelvis.yaw": wave(t, 1.5, 2, 0.3, 1.0), "pelvis.pitch": wave(t, 0.7, 2, 0.2, 2.0),
-        "spine.yaw": wave(t, 1.4, 2, 0.25, 7.0), "spine.roll": wave(t, 3.0, 1, 0.12, -1.5), "spine.pitch": wave(t, 1.0, 2, 0.2, 5.0),
-        "neck.yaw": wave(t, 1.2, 2, 0.2, 9.0), "neck.pitch": wave(t, 1.2, 2, 0.3), "head.yaw": wave(t, 1.2, 2, 0.2, 10.0),
+        "pelvis.z": wave(t, 0.17, 2, 0.43, -1.15), "pelvis.x": wave(t, 0.85, 1, 0.07), "pelvis.y": wave(t, 0.04, 2, 0.19, -0.2),
+        "pelvis.roll": wave(t, -3.12, 1, 0.08), "pelvis.yaw": wave(t, 0.32, 2, 0.29, 1), "pelvis.pitch": wave(t, 0.45, 2, 0.21, 2),
+        "spine.yaw": wave(t, 1.10, 2, 0.22, 7), "spine.roll": wave(t, 2.56, 1, 0.10, -1.5), "spine.pitch": wave(t, 0.65, 2, 0.17, 5),
+        "neck.yaw": wave(t, 1.19, 2, 0.19, 9), "neck.pitch": wave(t, 1.40, 2, 0.29), "head.yaw": wave(t, 1.2, 2, 0.2, 10.0),
         "head.pitch": wave(t, 1.5, 2, 0.35, 2.0), "head.roll": wave(t, -2.5, 1, 0.1), "jaw": wave(t, 3.0, 2, 0.3, 4.0),
         "breath": wave(t, 1.0, 1), "loin": wave(t, 3.0, 2, 0.1), "loin.front": [(0, -6.0)], "loin.side": wave(t, -4.0, 1, 0.1),
         "arm.swing.L": wave(t, 6.0, 1, 0.3, -2.0), "arm.swing.R": wave(t, -6.0, 1, 0.3, 6.0),
