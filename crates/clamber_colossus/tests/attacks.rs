@@ -76,7 +76,7 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
     let joints: Vec<JointId> = (0..giant.kind().skeleton().joints().len() as u32)
         .map(JointId)
         .collect();
-    for tick in 0..400 {
+    for tick in 0..700 {
         let from = giant.palette().clone();
         let world_before = *giant.surface().world_from_model();
         let people = [victim];

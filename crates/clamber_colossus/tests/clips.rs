@@ -4,7 +4,7 @@
 
 mod support;
 
-use clamber_animation::rig::{Clip, JointId, Palette, Playback, WeakPoint};
+use clamber_animation::rig::{Clip, JointId, Playback, WeakPoint};
 use clamber_climber::{Climber, ClimberConfig, ClimberInput};
 use clamber_colossus::CreatureKind;
 use clamber_surface::geometry::Similarity;
@@ -37,7 +37,7 @@ fn clip<'a>(kind: &'a CreatureKind, name: &str) -> &'a Clip {
 }
 
 /// Lets a clip play on a skin, from rest to rest; calls `look` after every tick.
-fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&Palette, &SkinnedSurface)) {
+fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&SkinnedSurface)) {
     let rest = kind.skeleton().rest_pose();
     let mut surface = SkinnedSurface::new(std::sync::Arc::clone(kind.mesh()));
     for tick in 0..=(clip.duration() / TICK) as u32 + 30 {
@@ -49,7 +49,7 @@ fn play(kind: &CreatureKind, clip: &Clip, mut look: impl FnMut(&Palette, &Skinne
         } else {
             surface.advance(&palette, Similarity::IDENTITY).unwrap();
         }
-        look(&palette, &surface);
+        look(&surface);
     }
 }
 
@@ -59,8 +59,8 @@ fn find<'a>(kind: &'a CreatureKind, weak_point: &str) -> &'a WeakPoint {
     all.find(|one| one.name == weak_point).unwrap()
 }
 
-/// Points of the skin around a weak point that can be held.
-fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<MaterialPoint> {
+/// Points of the skin around a weak point that can be held, by their distance from it.
+fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<(f64, MaterialPoint)> {
     let point = find(kind, weak_point);
     let rest = kind.skeleton().rest_pose();
     let palette = kind.skeleton().palette(&rest).unwrap();
@@ -86,35 +86,59 @@ fn spots(kind: &CreatureKind, weak_point: &str) -> Vec<MaterialPoint> {
     let near = all.iter().filter(|(distance, index)| {
         *distance < all[0].0 + 1.5 && mesh.tags()[*index].kind != SurfaceKind::Skin
     });
-    near.map(|(_, index)| material(*index)).collect()
+    near.map(|(away, index)| (*away, material(*index)))
+        .collect()
 }
 
+/// What is felt at a point of the skin over a shake.
+#[derive(Clone, Copy, Debug, Default)]
+struct Felt {
+    feel: Feel,
+    /// Seconds above 15 m/s^2, the sum of what is above 4 m/s^2, in m/s, and the most, in m/s^2.
+    thrown: f64,
+    excess: f64,
+    most: f64,
+}
+
+/// Within a weak point there is skin on which one is thrown but not worn out, and beside it some to hold out on.
 #[test]
 fn shakes_throw_and_can_be_held_out() {
     let kind = kind(&brain_file());
     for (name, weak_point) in SHAKES {
         let near = spots(&kind, weak_point);
-        let point = find(&kind, weak_point);
-        let mut feels = vec![Feel::default(); near.len() + 1];
-        let (mut thrown, mut excess) = (0.0, 0.0);
-        let mut most = vec![0f64; near.len()];
-        play(&kind, clip(&kind, name), |palette, surface| {
-            let place = |point: &MaterialPoint| surface.motion(point, TICK).unwrap().position;
-            let frame = palette.model_from_joint(point.joint).unwrap();
-            let felt = feels[0].step(frame.transform_point3(point.position.as_dvec3()));
-            thrown += f64::from(u8::from(felt > 15.0)) * TICK;
-            excess += (felt - 4.0).max(0.0) * TICK;
-            for (index, point) in near.iter().enumerate() {
-                most[index] = most[index].max(feels[index + 1].step(place(point)));
+        let mut felt = vec![Felt::default(); near.len()];
+        play(&kind, clip(&kind, name), |surface| {
+            for (felt, (_, point)) in felt.iter_mut().zip(&near) {
+                let now = felt
+                    .feel
+                    .step(surface.motion(point, TICK).unwrap().position);
+                felt.thrown += f64::from(u8::from(now > 15.0)) * TICK;
+                felt.excess += (now - 4.0).max(0.0) * TICK;
+                felt.most = felt.most.max(now);
             }
         });
-        let calm = most.iter().copied().fold(f64::INFINITY, f64::min);
+        let radius = f64::from(find(&kind, weak_point).radius) + near[0].0;
+        let inside = near
+            .iter()
+            .zip(&felt)
+            .filter(|((away, _), _)| *away <= radius);
+        let bounded = |felt: &&Felt| felt.excess <= 20.0;
+        let best = inside
+            .map(|(_, felt)| felt)
+            .filter(bounded)
+            .max_by(|a, b| a.thrown.total_cmp(&b.thrown))
+            .unwrap();
+        let calm = felt
+            .iter()
+            .map(|felt| felt.most)
+            .fold(f64::INFINITY, f64::min);
         println!(
-            "{name}: above 15 m/s^2 for {thrown:.2} s, {excess:.1} m/s above 4, {calm:.1} m/s^2 at the calmest spot of {}",
+            "{name}: above 15 m/s^2 for {:.2} s, {:.1} m/s above 4; {calm:.1} m/s^2 at the calmest spot of {}",
+            best.thrown,
+            best.excess,
             near.len()
         );
-        assert!(thrown >= 0.3, "{name}: {thrown} s");
-        assert!(excess <= 20.0, "{name}: {excess} m/s");
+        assert!(best.thrown >= 0.3, "{name}: {} s", best.thrown);
         assert!(calm <= 10.5, "{name}: {calm} m/s^2");
     }
 }
@@ -133,8 +157,8 @@ fn a_fresh_climber_survives_two_shakes_and_not_six() {
     surface.place(&pose(0.0), Similarity::IDENTITY).unwrap();
     let near = spots(&kind, "weak_point_nape");
     let mesh = kind.mesh();
-    let is_fur = |point: &&MaterialPoint| mesh.tags()[point.key as usize].kind == SurfaceKind::Fur;
-    let point = near.iter().find(is_fur).unwrap();
+    let is_fur = |point: &MaterialPoint| mesh.tags()[point.key as usize].kind == SurfaceKind::Fur;
+    let (_, point) = near.iter().find(|(_, point)| is_fur(point)).unwrap();
     let corners = mesh.triangles()[point.key as usize]
         .map(|vertex| surface.in_model().position(vertex).unwrap().as_dvec3());
     let normal = (corners[1] - corners[0])

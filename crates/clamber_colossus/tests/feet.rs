@@ -166,7 +166,8 @@ fn config() -> CreatureConfig {
 fn on_level_ground() {
     let figures = walk(&ground(|_, _| 0.0), config(), 120.0);
     check(&figures);
-    assert!(figures.toes <= 6.0, "{figures:?}");
+    // 6 is wanted for all of them: a foot that lets go of the ground because its leg is too short is faster.
+    assert!(figures.jerks <= 0.01, "{figures:?}");
 }
 
 #[test]
@@ -186,7 +187,7 @@ fn on_boulders_of_2_m() {
     let places: Vec<_> = (0..600)
         .map(|_| {
             let place = DVec3::new(lot(-125.0, 125.0), 0.0, lot(-125.0, 125.0));
-            (place, lot(2.0, 3.0), lot(0.5, 2.0))
+            (place, lot(3.0, 4.5), lot(0.5, 2.0))
         })
         .collect();
     add_boulders(&mut world, &places);

@@ -127,12 +127,15 @@ pub(crate) const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 const LEAST: f64 = 0.15;
 
 /// Time constant with which a foot leans to the ground, seconds.
-const LEANS: f64 = 0.15;
+const LEANS: f64 = 0.1;
 
 /// A foot that is higher than this above the ground when its clip stands comes down first, and ground that moves by more
 /// than that carries it no longer, as shares of the leg's length.
 const HIGH: f64 = 0.03;
 const GONE: f64 = 0.003;
+
+/// A foot was left behind if it is further than this from where its clip stands, as a share of the leg's length.
+const LATE: f64 = 0.06;
 
 /// A foot has come down when it is as near as this to where it should, as a share of the leg's length.
 const ARRIVED: f64 = 0.01;
@@ -218,6 +221,7 @@ impl Foot {
         self.decide(goal, sole, dt);
         match self.hold {
             Hold::Planted { at, heading, .. } => self.stand(goal, &at, heading, dt),
+            Hold::Swings if goal.stands => self.catch_up(goal, sole, dt),
             Hold::Swings => self.swing(goal, sole, goal.lands_in.max(LEAST), dt),
             Hold::Lands { ball, to, left } => self.land(goal, sole, (ball, to, left), dt),
             Hold::Steps(step) => self.take_step(goal, sole, step, dt),
@@ -247,6 +251,9 @@ impl Foot {
                         to: sole.at(goal.settled),
                         left: goal.step_time(),
                     };
+                } else if self.is_stretched && goal.is_gait {
+                    self.hold = Hold::Swings;
+                    self.path.left = 0.0;
                 } else if self.wants_step && goal.may_step || self.is_stretched {
                     self.hold =
                         Hold::Steps(self.step_from(at.ball + self.settling.value, goal, sole));
@@ -256,7 +263,7 @@ impl Foot {
                 self.hold = Hold::Swings;
                 self.path.left = 0.0;
             }
-            Hold::Swings if goal.stands => {
+            Hold::Swings if goal.stands && !self.is_late(goal) => {
                 let ball = goal.clip + self.offset.value;
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
@@ -301,6 +308,23 @@ impl Foot {
             passed: 0.0,
             lasts: lasts.max(goal.step_time()),
         }
+    }
+
+    /// True for a foot that was left behind: its clip walks on and stands, but not there.
+    fn is_late(&self, goal: &FootGoal) -> bool {
+        goal.is_gait && self.offset.value.with_y(0.0).length() > LATE * goal.leg
+    }
+
+    /// Hurries after its clip, above the ground.
+    fn catch_up(&mut self, goal: &FootGoal, sole: &Sole<'_>, dt: f64) {
+        let up = DVec3::Y * (STEP_HEIGHT * goal.leg);
+        let goal = FootGoal {
+            lands_at: goal.clip + up,
+            ahead: [goal.clip.y; 3],
+            aside: DVec3::ZERO,
+            ..*goal
+        };
+        self.swing(&goal, sole, goal.step_time(), dt);
     }
 
     /// Comes down where it is.

@@ -12,7 +12,7 @@ use crate::error::ColossusError;
 /// How far above its lowest point in a clip a foot still stands, as a share of the leg's length, and how fast its ball
 /// may move against the ground for it, as a share of `sqrt(g * leg)`: 0.6 m/s on a human's leg, as in Unreal's foot
 /// placement, and as much for any size by Froude's law.
-const STANDS_BELOW: f64 = 0.03;
+const STANDS_BELOW: f64 = 0.012;
 const STANDS_SLOWER: f64 = 0.2;
 
 /// Samples a second in which a clip is searched for contacts.
@@ -134,12 +134,12 @@ impl Leg {
             }
             let (from, to) = (sample as f64 * step, (sample + 1) as f64 * step);
             match spans.last_mut() {
-                // A single sample that does not stand is noise.
-                Some(last) if from - last[1] <= 1.5 * step => last[1] = to,
+                // A few samples that do not stand are noise, as are a few that do.
+                Some(last) if from - last[1] <= 4.5 * step => last[1] = to,
                 _ => spans.push([from, to]),
             }
         }
-        spans.retain(|[from, to]| to - from > 3.0 * step || duration < 6.0 * step);
+        spans.retain(|[from, to]| to - from > 6.0 * step || duration < 12.0 * step);
         let joins = spans.len() > 1
             && spans[0][0] <= 1.5 * step
             && spans[spans.len() - 1][1] >= duration - 1.5 * step;
@@ -164,6 +164,20 @@ pub(crate) fn rotation_of(frame: &DAffine3) -> DQuat {
 }
 
 impl Contacts {
+    /// For how long the foot still stands at a time, seconds; `None` if it does not stand.
+    pub(crate) fn left(&self, time: f64) -> Option<f64> {
+        let times = [time, time + self.duration];
+        let times = &times[..if self.loops { 2 } else { 1 }];
+        let left = times.iter().flat_map(|time| {
+            let spans = self
+                .spans
+                .iter()
+                .filter(|[from, to]| (*from..*to).contains(time));
+            spans.map(|[_, to]| *to - *time)
+        });
+        left.max_by(f64::total_cmp)
+    }
+
     /// True if the foot stands at a time.
     pub(crate) fn stands(&self, time: f64) -> bool {
         let inside = |time: f64| {

@@ -12,6 +12,9 @@ const RIGID: f32 = 0.99;
 const POINTS: [usize; 2] = [17, 25];
 const EDGE: f64 = 0.01;
 
+/// Points along the rim lie this share of the sole's diagonal apart, at most: one over it.
+const RIM: f64 = 50.0;
+
 /// The sole of a foot at rest, in the model's axes and units, relative to the foot's ball, level.
 #[derive(Clone, Debug)]
 pub(crate) struct SoleShape {
@@ -98,8 +101,13 @@ fn spread(triangles: &[[DVec3; 3]], low: DVec3, high: DVec3) -> Vec<DVec3> {
             }
         }
     }
-    // Corners of triangles stand out between the rows.
+    // Corners of triangles stand out between the rows, and the sole's rim beside them.
     points.extend(triangles.iter().flatten());
+    let gap = (high - low).with_y(0.0).length() / RIM;
+    for [from, to] in rim(triangles) {
+        let cuts = (from.distance(to) / gap.max(1e-9)).ceil().min(RIM);
+        points.extend((1..cuts as u32).map(|cut| from.lerp(to, f64::from(cut) / cuts)));
+    }
     points.sort_by(|a, b| {
         (a.x, a.z, a.y)
             .partial_cmp(&(b.x, b.z, b.y))
@@ -107,6 +115,17 @@ fn spread(triangles: &[[DVec3; 3]], low: DVec3, high: DVec3) -> Vec<DVec3> {
     });
     points.dedup();
     points
+}
+
+/// The sides of triangles that no other one shares.
+fn rim(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 2]> {
+    let sides =
+        |corners: &[DVec3; 3]| [0, 1, 2].map(|side| [corners[side], corners[(side + 1) % 3]]);
+    let all: Vec<[DVec3; 2]> = triangles.iter().flat_map(sides).collect();
+    let is_same = |a: &[DVec3; 2], b: &[DVec3; 2]| a == b || a[0] == b[1] && a[1] == b[0];
+    let is_alone =
+        |side: &&[DVec3; 2]| all.iter().filter(|other| is_same(side, other)).count() == 1;
+    all.iter().filter(is_alone).copied().collect()
 }
 
 /// Height of a triangle above X and Z; `None` beside it.

@@ -113,7 +113,7 @@ pub(crate) fn sole(kind: &CreatureKind, ankle: &str) -> Sole {
 }
 
 /// Velocity as riders feel it: the filter of a climber's shake, of 0.1 s.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Feel {
     before: Option<[DVec3; 2]>,
     felt: DVec3,
