@@ -21,7 +21,7 @@ const WALKS: &str = r#"{
 }"#;
 
 /// Ticks after which a foot that came down has settled.
-const SETTLED: usize = 30;
+const SETTLED: usize = 45;
 
 #[derive(Debug, Default)]
 struct Figures {

@@ -3,7 +3,7 @@ use clamber_surface::mesh::{ColliderMesh, VertexId};
 use glam::DVec3;
 
 /// How far above the lowest skin of a foot its sole reaches, as a share of the leg's length.
-const THICK: f64 = 0.02;
+const THICK: f64 = 0.03;
 
 /// Skin of the sole moves with the foot by at least this share: what follows the shin as well leaves the ground with it.
 const RIGID: f32 = 0.99;

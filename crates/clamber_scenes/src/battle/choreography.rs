@@ -20,7 +20,7 @@ const PATH: f64 = 50.0;
 /// Walking speed for creatures whose walk clip has no known speed, metres a second for each metre of height: slow.
 const SPEED_PER_HEIGHT: f64 = 0.2;
 
-/// When the foot comes down in a stomp clip, as a share of the clip's length.
+/// When the foot comes down in a stomp clip without a marker `impact`, as a share of the clip's length.
 const FOOT_DOWN: f64 = 0.51;
 
 /// Seconds for which a creature that lacks an idle or a walk clip holds still at first: longer than a rider falls.
@@ -185,7 +185,9 @@ impl<'a> Choreography<'a> {
         let Some(clip) = act.clip.filter(|_| act.kind == Kind::Stomp) else {
             return false;
         };
-        let down = self.creature.clips[clip].duration() * FOOT_DOWN;
+        let clip = &self.creature.clips[clip];
+        let impact = clip.markers().iter().find(|marker| marker.name == "impact");
+        let down = impact.map_or(clip.duration() * FOOT_DOWN, |impact| impact.time);
         let within = self.within(now);
         (within - dt..within).contains(&down)
     }
@@ -299,20 +301,22 @@ fn acts(creature: &Creature, story: Story) -> Vec<Act> {
     };
     let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
     let (shake, stomp) = (index(&["shake", "attack"]), index(&["stomp"]));
-    match (story, idle, walk, shake, stomp) {
-        (Story::Climb, Some(idle), Some(walk), Some(shake), Some(stomp)) => {
+    // A climber can hold on through the mildest shake.
+    let shrug = index(&["shrug", "shake", "attack"]);
+    match (story, idle, walk, shrug, stomp) {
+        (Story::Climb, Some(idle), Some(walk), Some(shrug), Some(stomp)) => {
             let once = creature.clips[stomp].duration();
             return vec![
                 act(idle, 3.0, Kind::Calm),
                 act(stomp, once, Kind::Stomp),
                 act(idle, 24.0, Kind::Calm),
-                act(shake, 2.6, Kind::Wild),
+                act(shrug, 2.6, Kind::Wild),
                 act(idle, 6.0, Kind::Calm),
                 act(walk, 20.0, Kind::Walk),
                 act(idle, 20.0, Kind::Calm),
             ];
         }
-        (_, Some(idle), Some(walk), shake, _) => {
+        (_, Some(idle), Some(walk), ..) => {
             let mut acts = vec![act(idle, 6.0, Kind::Calm), act(walk, 16.0, Kind::Walk)];
             if let Some(shake) = shake {
                 acts.extend([act(shake, 4.0, Kind::Wild), act(walk, 12.0, Kind::Walk)]);
