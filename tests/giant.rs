@@ -48,7 +48,7 @@ fn the_file_has_the_expected_joints_meshes_clips_weak_points_and_tags() {
     for name in ["idle", "walk", "shake", "swipe", "stomp", "stagger", "die"] {
         assert!(clips.contains(&name), "{name} of {clips:?}");
     }
-    assert_eq!(clips.len(), 7, "{clips:?}");
+    assert_eq!(clips.len(), 26, "{clips:?}");
     assert_eq!(rig.weak_points.len(), 3);
     let major: Vec<_> = rig.weak_points.iter().filter(|point| point.major).collect();
     assert_eq!(major.len(), 1);
