@@ -78,6 +78,38 @@ fn the_import_is_told_before_the_measurements() {
     assert!(report["answers"].as_u64().unwrap() > 100, "{text}");
 }
 
+/// The giant's brain fits the giant, and all of it can happen; a broken one is told with its line.
+#[test]
+fn brains_are_inspected() {
+    let brain = giant::brain_path();
+    let (brain, creature) = (brain.to_str().unwrap(), giant::path());
+    let ended = clamber(&[
+        "inspect",
+        "--brain",
+        brain,
+        "--creature",
+        creature.to_str().unwrap(),
+    ]);
+    let text = String::from_utf8(ended.stdout).unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{text}");
+    assert!(
+        text.contains("stomp_left") && text.contains("all of it can happen"),
+        "{text}"
+    );
+
+    let broken = std::env::temp_dir().join(format!("clamber-brain-{}.json", std::process::id()));
+    let file = std::fs::read_to_string(brain).unwrap();
+    std::fs::write(&broken, file.replacen("\"prey_seen\"", "\"prey_sen\"", 1)).unwrap();
+    let ended = clamber(&["inspect", "--brain", broken.to_str().unwrap()]);
+    let text = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(2), "{text}");
+    assert!(
+        text.contains("line ") && text.contains("prey_sen"),
+        "{text}"
+    );
+    std::fs::remove_file(&broken).unwrap();
+}
+
 #[test]
 fn errors_name_what_is_wrong() {
     let file = giant::path();
@@ -86,7 +118,7 @@ fn errors_name_what_is_wrong() {
         (&["inspect", "nowhere.glb"][..], "nowhere.glb"),
         (
             &["inspect", file, "--clip", "jump"],
-            "the clips are: die, idle",
+            "the clips are: breathe, die, expose, idle",
         ),
         (&["inspect", file, "--poses", "0"], "--poses"),
         (
