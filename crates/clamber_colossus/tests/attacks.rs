@@ -6,6 +6,7 @@ mod support;
 
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
+use clamber_colossus::brain::Act;
 use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Surroundings};
 use clamber_world::{HalfSpace, Obstacle, WorldCapsule};
 use glam::DVec3;
@@ -73,8 +74,23 @@ fn attack(before: &Creature, at: DVec3, flees: bool) -> Outcome {
         aside: 0.0,
     };
     let mut begun: Option<usize> = None;
-    let joints: Vec<JointId> = (0..giant.kind().skeleton().joints().len() as u32)
-        .map(JointId)
+    let brain = giant.kind().brain();
+    let Some(Act::Attack(act)) = brain.act(brain.find("attacks").unwrap()) else {
+        unreachable!("the state attacks");
+    };
+    // The limb alone: some joint or other moves in any direction.
+    let is_limb = |name: &str| {
+        act.limb
+            .iter()
+            .any(|pattern| match pattern.split_once('*') {
+                Some((start, end)) => name.starts_with(start) && name.ends_with(end),
+                None => name == pattern,
+            })
+    };
+    let joints = giant.kind().skeleton().joints().iter().enumerate();
+    let joints: Vec<JointId> = joints
+        .filter(|(_, joint)| is_limb(&joint.name))
+        .map(|(index, _)| JointId(index as u32))
         .collect();
     for tick in 0..700 {
         let from = giant.palette().clone();

@@ -90,12 +90,13 @@ impl CreatureKind {
             weak_points,
         } = parts;
         let mut clips = clips;
-        if let Some(name) = &brain.file().body.breathe {
-            let breath = clips.iter_mut().find(|clip| clip.name == *name);
-            if let Some(clip) = breath {
-                *clip = breath_of(clip);
-            }
-        }
+        // A copy: the clip itself may be played as well.
+        let breath = brain.file().body.breathe.as_ref();
+        let breath = breath.and_then(|name| clips.iter().find(|clip| clip.name == *name));
+        let breath = breath.map(breath_of).map(|breath| {
+            clips.push(breath);
+            ClipId(clips.len() as u32 - 1)
+        });
         let clips = AnimationSet::new(&skeleton, clips)?;
         let names = Names {
             skeleton: &skeleton,
@@ -147,7 +148,8 @@ impl CreatureKind {
             .breathe
             .as_ref()
             .map(|name| names.clip(name).map_err(whole))
-            .transpose()?;
+            .transpose()?
+            .and(breath);
         let (look, head) = body
             .head
             .as_ref()

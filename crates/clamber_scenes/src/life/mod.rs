@@ -250,7 +250,10 @@ impl Life {
         let is_dead = self.kind.brain().is_final(self.giant.state().current());
         if is_dead && self.giant.state().brain().ticks_in_state(self.kind.brain()) > 600 {
             self.tally.lives += 1;
-            self.giant = born(&self.kind, self.seed + u64::from(self.tally.lives))?;
+            self.giant = born(
+                &self.kind,
+                self.seed.wrapping_add(u64::from(self.tally.lives)),
+            )?;
             self.tally.born();
         }
         Ok(())
