@@ -6,7 +6,6 @@ use glam::DVec3;
 use super::report::CreatureEvent;
 use super::state::Felt;
 use super::{Creature, Wound};
-use crate::error::ColossusError;
 
 impl Creature {
     /// Tells the creature that something struck it. Returns the damage that was done to a weak point: none if there is no
@@ -55,8 +54,7 @@ impl Creature {
             .told
             .push(CreatureEvent::Staggered { plate, breaks });
         if breaks {
-            // The triangles are those of its own mesh, unless a game has edited them away: then they are hidden already.
-            let _ = self.show_plate(plate, false);
+            self.show_plate(plate, false);
         }
     }
 
@@ -110,21 +108,20 @@ impl Creature {
     }
 
     /// Hides the plates that are broken, and shows the others.
-    pub(super) fn hide_broken_plates(&mut self) -> Result<(), ColossusError> {
+    pub(super) fn hide_broken_plates(&mut self) {
         for plate in 0..self.kind.plates().len() {
-            self.show_plate(plate, self.state.plates[plate].left > 0)?;
+            self.show_plate(plate, self.state.plates[plate].left > 0);
         }
-        Ok(())
     }
 
-    fn show_plate(&mut self, plate: usize, shows: bool) -> Result<(), ColossusError> {
+    fn show_plate(&mut self, plate: usize, shows: bool) {
         for triangle in &self.kind.plates()[plate].triangles {
-            if shows {
-                self.surface.enable_triangle(*triangle)?;
+            // Refused only for triangles that a game has edited away.
+            let _ = if shows {
+                self.surface.enable_triangle(*triangle)
             } else {
-                self.surface.disable_triangle(*triangle)?;
-            }
+                self.surface.disable_triangle(*triangle)
+            };
         }
-        Ok(())
     }
 }

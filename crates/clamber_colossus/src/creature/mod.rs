@@ -124,7 +124,7 @@ impl Creature {
             self.place()?;
             return Err(error);
         }
-        self.hide_broken_plates()?;
+        self.hide_broken_plates();
         self.is_still = false;
         Ok(())
     }
