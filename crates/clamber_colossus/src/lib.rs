@@ -10,8 +10,8 @@ pub mod senses;
 
 pub use brain::{Brain, BrainError, BrainFile, BrainProblem, BrainReport, BrainState};
 pub use creature::{
-    Blow, Creature, CreatureConfig, CreatureEvent, CreatureReport, CreatureState, Noise, Person,
-    Riding, Surroundings, Wound,
+    AttackPhase, Blow, Creature, CreatureConfig, CreatureEvent, CreatureReport, CreatureState,
+    Noise, Person, Riding, Surroundings, Wound,
 };
 pub use error::ColossusError;
 pub use kind::{

@@ -116,22 +116,43 @@ impl Creature {
     /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. `None` if there
     /// is no such leg, or no ground below it.
     pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
-        let leg = self.kind.legs().get(leg)?;
-        let (ankle, ball) = (
-            self.palette.model_from_joint(leg.ankle)?,
-            self.palette.model_from_joint(leg.ball)?,
-        );
-        let turn = rotation_of(ankle) * leg.level.conjugate();
-        let world = self.surface.world_from_model();
         let ground = Ground {
             terrain,
             reach: 0.5 * self.kind.height() * self.config.scale,
         };
-        let heights = leg.sole.points.iter().filter_map(|point| {
-            let place = world.transform_point(ball.translation + turn * *point);
-            Some(place.y - ground.below(place)?.0)
-        });
+        let points = &self.kind.legs().get(leg)?.sole.points;
+        let places = self.on_sole(leg, points);
+        let heights = places.filter_map(|place| Some(place.y - ground.below(place)?.0));
         heights.min_by(f64::total_cmp)
+    }
+
+    /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there is
+    /// no such leg.
+    pub fn sole(&self, leg: usize) -> Option<[DVec3; 4]> {
+        let [right_heel, left_heel, right_toe, left_toe] = self.kind.legs().get(leg)?.sole.corners;
+        let below = DVec3::Y * self.kind.legs().get(leg)?.sole.ball_height;
+        let corners = [right_heel, left_heel, left_toe, right_toe].map(|corner| corner - below);
+        let mut places = self.on_sole(leg, &corners);
+        Some([
+            places.next()?,
+            places.next()?,
+            places.next()?,
+            places.next()?,
+        ])
+    }
+
+    /// Places in world space of points on a foot's sole, which are given relative to its ball.
+    fn on_sole<'a>(&'a self, leg: usize, points: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
+        let world = self.surface.world_from_model();
+        let frame = self.kind.legs().get(leg).and_then(|leg| {
+            let ankle = self.palette.model_from_joint(leg.ankle)?;
+            let ball = self.palette.model_from_joint(leg.ball)?;
+            Some((rotation_of(ankle) * leg.level.conjugate(), ball.translation))
+        });
+        points.iter().filter_map(move |point| {
+            let (turn, ball) = frame?;
+            Some(world.transform_point(ball + turn * *point))
+        })
     }
 
     fn foot_goal(

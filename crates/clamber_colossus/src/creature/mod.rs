@@ -20,7 +20,7 @@ use clamber_animation::rig::{Palette, Pose};
 use clamber_surface::surface::SkinnedSurface;
 
 pub use config::CreatureConfig;
-pub use report::{Blow, CreatureEvent, CreatureReport};
+pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};
 

@@ -67,3 +67,14 @@ pub struct Blow {
     /// The state whose attack it was.
     pub state: StateId,
 }
+
+/// Where an attack is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum AttackPhase {
+    /// The limb is raised: the time to get away.
+    WindUp,
+    /// The limb hurts whom it touches.
+    Active,
+    /// The limb goes back, and hurts nobody.
+    Recovery,
+}

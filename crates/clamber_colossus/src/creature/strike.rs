@@ -6,32 +6,42 @@ use clamber_surface::surface::TargetMotion;
 use clamber_world::{Obstacle, SweepContact};
 use glam::DVec3;
 
-use super::report::Blow;
+use super::report::{AttackPhase, Blow};
 use super::state::Playing;
 use super::{Creature, Surroundings};
+use crate::brain::StateId;
 use crate::kind::Strike;
 
 /// A limb strikes whoever is this close to its skin, metres: a climber that it pushes stays at about that distance.
 const REACH: f64 = 0.05;
 
 impl Creature {
-    pub(super) fn strike(&mut self, around: &Surroundings<'_>, dt: f64) {
+    /// The attack that it is at, and where in it; `None` while it does not attack.
+    pub fn attack(&self) -> Option<(StateId, AttackPhase)> {
         let Playing::Act(state) = self.state.playing else {
+            return None;
+        };
+        let strike = self.kind.act(state).strike.as_ref()?;
+        let layer = self.state.animator.layers().first();
+        let time = layer.map_or(0.0, |layer| layer.time);
+        let phase = if time < strike.active[0] {
+            AttackPhase::WindUp
+        } else if time < strike.active[1] {
+            AttackPhase::Active
+        } else {
+            AttackPhase::Recovery
+        };
+        Some((state, phase))
+    }
+
+    pub(super) fn strike(&mut self, around: &Surroundings<'_>, dt: f64) {
+        let Some((state, AttackPhase::Active)) = self.attack() else {
             return;
         };
         let kind = std::sync::Arc::clone(&self.kind);
         let Some(strike) = &kind.act(state).strike else {
             return;
         };
-        let time = self
-            .state
-            .animator
-            .layers()
-            .first()
-            .map_or(0.0, |layer| layer.time);
-        if !(strike.active[0]..strike.active[1]).contains(&time) {
-            return;
-        }
         for person in around.people {
             if self.state.struck.contains(&person.id) || !person.body.is_valid() {
                 continue;
