@@ -31,7 +31,12 @@ const ALLOWED: [(&str, &[&str]); 19] = [
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),
     (
         "clamber_record",
-        &["clamber_surface", "clamber_world", "clamber_climber"],
+        &[
+            "clamber_surface",
+            "clamber_world",
+            "clamber_climber",
+            "clamber_colossus",
+        ],
     ),
     (
         "clamber",

@@ -218,6 +218,37 @@ pub(crate) struct Snapshot {
     pub(crate) scene: String,
 }
 
+/// A number with a name.
+#[derive(Clone, PartialEq, Encode, prost::Message)]
+pub(crate) struct Named {
+    #[prost(string, tag = "1")]
+    pub(crate) name: String,
+    #[prost(double, tag = "2")]
+    pub(crate) value: f64,
+}
+
+/// The brain of a creature.
+#[derive(Clone, PartialEq, Encode, prost::Message)]
+pub(crate) struct Brain {
+    /// The state that it is in, with the names of those around it.
+    #[prost(string, tag = "1")]
+    pub(crate) state: String,
+    /// Seconds for which it has been in that state.
+    #[prost(double, tag = "2")]
+    pub(crate) seconds: f64,
+    #[prost(message, repeated, tag = "3")]
+    pub(crate) moods: Vec<Named>,
+    /// Senses that are finite and not 0.
+    #[prost(message, repeated, tag = "4")]
+    pub(crate) senses: Vec<Named>,
+    /// Hit points left of each weak point.
+    #[prost(double, repeated, tag = "5")]
+    pub(crate) hit_points: Vec<f64>,
+    /// For each leg whether its foot stands.
+    #[prost(bool, repeated, tag = "6")]
+    pub(crate) planted: Vec<bool>,
+}
+
 /// Counts of what the queries of a tick touched.
 #[derive(Clone, Copy, PartialEq, Encode, prost::Message)]
 pub(crate) struct Touched {

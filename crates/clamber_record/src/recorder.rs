@@ -6,12 +6,13 @@ use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
 use clamber_climber::{ClimberInput, ClimberState, StepReport};
+use clamber_colossus::Creature;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
 
 use crate::taken::Taken;
-use crate::views::{FigureJoints, TakenFigure};
+use crate::views::{FigureJoints, TakenBrain, TakenFigure};
 use crate::writing::Writing;
 use crate::{RecordError, RecordingInfo};
 
@@ -20,7 +21,7 @@ use crate::{RecordError, RecordingInfo};
 /// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks between two messages of transforms, of the creature and of figures; 0 for none. Default 4: 15 messages a second at 60 Hz. A
+    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4: 15 messages a second at 60 Hz. A
     /// message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
     pub transforms_every: u32,
     /// Ticks between two views of the skin, with its points and the touched triangles; 0 for none. Default 30: 2
@@ -249,6 +250,18 @@ impl<W: Write> Recorder<W> {
         });
         let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
         self.last_tick()?.figures.push(figure);
+        Ok(())
+    }
+
+    /// Records the brain of the creature at the tick recorded last, for people to look at: its state, moods and senses,
+    /// at every change of state and whenever [`RecordOptions::transforms_every`] lets transforms be due; its events and
+    /// blows go to the log. A replay does not compare them.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn brain(&mut self, creature: &Creature) -> Result<(), RecordError> {
+        let taken = self.last_tick()?;
+        taken.brain = Some(TakenBrain::new(creature, taken.transforms_due));
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use clamber_surface::surface::Diagnostics;
 use glam::DAffine3;
 
 use crate::messages::Report;
-use crate::views::TakenFigure;
+use crate::views::{TakenBrain, TakenFigure};
 use crate::{RecordOptions, TickView};
 
 /// A copy of a tick. The memory of its vectors is reused from tick to tick.
@@ -31,6 +31,8 @@ pub(crate) struct Taken {
     pub(crate) skin: Option<TakenSkin>,
     /// Figures drawn at the end of this tick.
     pub(crate) figures: Vec<TakenFigure>,
+    /// The creature's brain, if it was recorded.
+    pub(crate) brain: Option<TakenBrain>,
     /// Snapshots of the scene after this tick, as the caller's text.
     pub(crate) snapshots: Vec<String>,
 }
@@ -58,6 +60,7 @@ impl Taken {
             transforms_due: false,
             skin: None,
             figures: Vec::new(),
+            brain: None,
             snapshots: Vec::new(),
         };
         taken.take(view, options);
@@ -88,6 +91,7 @@ impl Taken {
             triangles: view.surface.touched_triangles().collect(),
         });
         self.figures.clear();
+        self.brain = None;
         self.snapshots.clear();
     }
 }

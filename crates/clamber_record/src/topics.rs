@@ -8,6 +8,8 @@ pub const SNAPSHOT: &str = "/snapshot";
 pub const TRANSFORMS: &str = "/transforms";
 /// Joints of drawn figures (`foxglove.FrameTransforms`).
 pub const FIGURE: &str = "/figure";
+/// Brain of the creature: state, moods, senses (`brain.Brain`).
+pub const BRAIN: &str = "/brain";
 /// Triangles that queries reached, the triangle that supports the climber, and the climber's body
 /// (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";
@@ -15,5 +17,5 @@ pub const SCENE: &str = "/scene";
 pub const SKIN: &str = "/skin";
 /// Counts of clusters, vertices and triangles that queries touched (`touched.Touched`).
 pub const TOUCHED: &str = "/touched";
-/// Events of the climber (`foxglove.Log`).
+/// Events of climber and creature (`foxglove.Log`).
 pub const LOG: &str = "/log";

@@ -10,7 +10,7 @@ use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 
 use crate::fingerprint::matrices_fingerprint;
-use crate::messages::{Snapshot, Tick, Touched};
+use crate::messages::{Brain, Snapshot, Tick, Touched};
 use crate::taken::{Taken, TakenSkin};
 use crate::views::{Frames, Scene, Skin, line};
 use crate::{RecordError, RecordingInfo, topics};
@@ -21,6 +21,7 @@ struct Channels {
     snapshot: u16,
     transforms: u16,
     figure: u16,
+    brain: u16,
     scene: u16,
     skin: u16,
     touched: u16,
@@ -72,6 +73,7 @@ impl<W: Write> Writing<W> {
             snapshot: channel::<Snapshot, W>(&mut writer, topics::SNAPSHOT)?,
             transforms: channel::<FrameTransforms, W>(&mut writer, topics::TRANSFORMS)?,
             figure: channel::<FrameTransforms, W>(&mut writer, topics::FIGURE)?,
+            brain: channel::<Brain, W>(&mut writer, topics::BRAIN)?,
             scene: channel::<SceneUpdate, W>(&mut writer, topics::SCENE)?,
             skin: channel::<PointCloud, W>(&mut writer, topics::SKIN)?,
             touched: channel::<Touched, W>(&mut writer, topics::TOUCHED)?,
@@ -139,6 +141,14 @@ impl<W: Write> Writing<W> {
         for figure in taken.figures.drain(..) {
             let message = figure.message(now);
             self.send(self.channels.figure, topics::FIGURE, now, &message)?;
+        }
+        if let Some(brain) = taken.brain.take() {
+            for line in brain.log(now) {
+                self.send(self.channels.log, topics::LOG, now, &line)?;
+            }
+            if let Some(brain) = &brain.brain {
+                self.send(self.channels.brain, topics::BRAIN, now, brain)?;
+            }
         }
         // The mesh is released as soon as possible: until then an edit has to copy it.
         if let Some(skin) = taken.skin.take() {

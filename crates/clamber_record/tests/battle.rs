@@ -17,6 +17,10 @@ use clamber_scenes::giant::giant;
 use clamber_surface::rig::Palette;
 use glam::DVec3;
 
+/// Length of a climb with a blow, seconds, and its seed.
+const CLIMB: f64 = 26.0;
+const STRUCK: u64 = 10;
+
 /// Long enough for a landing and a jump.
 const TICKS: u64 = 300;
 
@@ -58,23 +62,132 @@ fn a_battle_replays_bit_for_bit() {
     assert!(inputs.filter(|input| input.jump).count() == 1);
 }
 
-/// A climb with blows and grips, from the outcrop to the leg.
+/// A climb from the outcrop onto a giant that strikes, with a blow at last.
+fn climb() -> BattleOptions {
+    BattleOptions {
+        story: Some(Story::Climb),
+        seconds: Some(CLIMB),
+        ..BattleOptions::ride(0, STRUCK)
+    }
+}
+
 #[test]
 fn a_climb_replays_bit_for_bit() {
-    let options = BattleOptions {
-        story: Some(Story::Climb),
-        seconds: Some(15.0),
-        ..BattleOptions::ride(0, 1)
-    };
+    let options = climb();
     let recording = Recording::from_bytes(record_ticks(&options, options.ticks())).unwrap();
     let replay = battle::replay(&recording, None).unwrap();
     assert_eq!(replay.difference, None);
     assert_eq!(replay.agreed, options.ticks() + 1);
-    let replay = battle::replay(&recording, Some(600)).unwrap();
-    assert_eq!((replay.difference, replay.from), (None, 600));
+    for from in [120, 600, 900, 1_500] {
+        let replay = battle::replay(&recording, Some(from)).unwrap();
+        assert_eq!((replay.difference, replay.from), (None, from));
+    }
     let inputs: Vec<_> = recording.ticks().map(|tick| tick.unwrap().input).collect();
     assert!(inputs.iter().any(|input| input.blow.is_some()));
     assert!(inputs.iter().any(|input| input.climb != DVec3::ZERO));
+}
+
+/// What a test reads of a brain's message.
+#[derive(Clone, PartialEq, prost::Message)]
+struct Brain {
+    #[prost(string, tag = "1")]
+    state: String,
+    #[prost(double, tag = "2")]
+    seconds: f64,
+    #[prost(message, repeated, tag = "4")]
+    senses: Vec<Named>,
+    #[prost(bool, repeated, tag = "6")]
+    planted: Vec<bool>,
+}
+
+#[derive(Clone, PartialEq, prost::Message)]
+struct Named {
+    #[prost(string, tag = "1")]
+    name: String,
+    #[prost(double, tag = "2")]
+    value: f64,
+}
+
+#[test]
+fn a_climb_of_a_giant_with_another_brain_is_not_replayed() {
+    let brain = std::env::temp_dir().join(format!("clamber-{}.brain.json", std::process::id()));
+    std::fs::copy(clamber_scenes::giant::brain_path(), &brain).unwrap();
+    let options = BattleOptions {
+        brain: Some(brain.clone()),
+        seconds: Some(2.0),
+        ..climb()
+    };
+    let recording = Recording::from_bytes(record_ticks(&options, options.ticks())).unwrap();
+    assert_eq!(battle::replay(&recording, None).unwrap().difference, None);
+    let text = std::fs::read_to_string(&brain).unwrap();
+    assert!(text.contains("\"fades\": 12"));
+    std::fs::write(&brain, text.replace("\"fades\": 12", "\"fades\": 13")).unwrap();
+    let error = battle::replay(&recording, None).unwrap_err();
+    std::fs::remove_file(&brain).unwrap();
+    assert!(error.to_string().contains("brain"), "{error}");
+    let missing = battle::replay(&recording, None).unwrap_err();
+    assert!(
+        missing.to_string().contains("cannot read the brain"),
+        "{missing}"
+    );
+}
+
+#[test]
+fn a_climb_has_the_brain_of_its_giant() {
+    let options = climb();
+    let creature = giant().unwrap();
+    let mut battle = Battle::new(&creature, &options).unwrap();
+    let how = RecordOptions {
+        transforms_every: 4,
+        ..RecordOptions::default()
+    };
+    let mut recorder = BattleRecorder::new(Vec::new(), &battle, &options, how).unwrap();
+    recorder.tick(&battle).unwrap();
+    let (mut lived, mut changes) = (Vec::new(), 0);
+    for tick in 0..options.ticks() {
+        let before = battle.life().unwrap().state().current();
+        battle.step(options.input_at(tick)).unwrap();
+        recorder.tick(&battle).unwrap();
+        let life = battle.life().unwrap();
+        let state = life.kind().brain().path(life.state().current());
+        let changed = before != life.state().current();
+        changes += usize::from(changed);
+        if changed || battle.tick().is_multiple_of(4) {
+            let sense = life.state().senses().get(clamber_colossus::Sense::Riders);
+            lived.push((state.to_owned(), sense, life.state().is_planted(0)));
+        }
+    }
+    let file = recorder.finish().unwrap();
+    let messages = |topic: &str| -> Vec<Vec<u8>> {
+        let all = mcap::MessageStream::new(&file).unwrap();
+        let all = all.map(Result::unwrap);
+        all.filter(|message| message.channel.topic == topic)
+            .map(|message| message.data.into_owned())
+            .collect()
+    };
+    let read = messages(topics::BRAIN).into_iter();
+    let read: Vec<_> = read
+        .map(|bytes| {
+            let brain = <Brain as prost::Message>::decode(&bytes[..]).unwrap();
+            assert!((0.0..=CLIMB).contains(&brain.seconds));
+            let riders = brain.senses.iter().find(|sense| sense.name == "riders");
+            (
+                brain.state,
+                riders.map_or(0.0, |riders| riders.value),
+                brain.planted[0],
+            )
+        })
+        .collect();
+    // The first message is of the tick before the first one.
+    assert_eq!(read[1..], lived);
+    let log = messages(topics::LOG).concat();
+    let log = String::from_utf8_lossy(&log);
+    let entered = log.matches(" to alive/").count();
+    assert!(
+        entered >= changes && changes > 4,
+        "{entered} lines, {changes} changes"
+    );
+    assert!(log.contains("struck person 0 with alive/alert/"), "no blow");
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Views for people, as foxglove's own messages.
 
+mod brain;
 mod figure;
 mod frames;
 mod log;
 mod scene;
 mod skin;
 
+pub(crate) use brain::TakenBrain;
 pub(crate) use figure::{FigureJoints, TakenFigure};
 pub(crate) use frames::Frames;
 pub(crate) use log::line;

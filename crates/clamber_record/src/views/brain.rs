@@ -1,0 +1,106 @@
+//! The brain of a creature, as numbers and text.
+
+use clamber_colossus::{Creature, CreatureEvent};
+use foxglove::messages::Log;
+use foxglove::messages::log::Level;
+
+use super::timestamp;
+use crate::messages::{Brain, Named};
+
+/// A creature's brain in a tick.
+#[derive(Debug)]
+pub(crate) struct TakenBrain {
+    /// `None` if it is not due.
+    pub(crate) brain: Option<Brain>,
+    lines: Vec<String>,
+}
+
+impl TakenBrain {
+    /// Copies a brain if that is due or its state has changed, and what happened.
+    pub(crate) fn new(creature: &Creature, is_due: bool) -> Self {
+        let events = &creature.report().events;
+        let entered = |event: &CreatureEvent| matches!(event, CreatureEvent::Entered { .. });
+        let is_due = is_due || events.iter().any(entered);
+        let blows = creature.report().blows.iter().map(|blow| {
+            let by = name(creature, blow.state);
+            format!("struck person {} with {by}", blow.person)
+        });
+        Self {
+            brain: is_due.then(|| brain(creature)),
+            lines: events
+                .iter()
+                .filter_map(|event| line(creature, event))
+                .chain(blows)
+                .collect(),
+        }
+    }
+
+    /// The log lines of what happened.
+    pub(crate) fn log(&self, nanoseconds: u64) -> impl Iterator<Item = Log> {
+        self.lines.iter().map(move |message| Log {
+            timestamp: Some(timestamp(nanoseconds)),
+            level: Level::Info as i32,
+            message: message.clone(),
+            name: "creature".to_owned(),
+            file: String::new(),
+            line: 0,
+        })
+    }
+}
+
+fn brain(creature: &Creature) -> Brain {
+    let (brain, state) = (creature.kind().brain(), creature.state());
+    let named = |(name, value): (&str, f64)| Named {
+        name: name.to_owned(),
+        value,
+    };
+    let moods = brain.moods().enumerate();
+    let moods = moods.map(|(index, name)| (name, state.brain().mood(brain, index)));
+    // Those that say nothing are left out.
+    let senses =
+        clamber_colossus::Sense::all().map(|sense| (sense.name(), state.senses().get(sense)));
+    let own = brain.own_senses().iter().enumerate();
+    let own = own.map(|(index, name)| (name.as_str(), state.senses().own(index)));
+    let ticks = state.brain().ticks_in_state(brain);
+    let legs = 0..brain.file().body.legs.len();
+    Brain {
+        state: brain.path(state.current()).to_owned(),
+        seconds: f64::from(ticks) * brain.tick(),
+        moods: moods.map(named).collect(),
+        senses: senses
+            .chain(own)
+            .filter(|(_, value)| *value != 0.0 && value.is_finite())
+            .map(named)
+            .collect(),
+        hit_points: state.hit_points().to_vec(),
+        planted: legs.map(|leg| state.is_planted(leg)).collect(),
+    }
+}
+
+fn name(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
+    creature.kind().brain().path(state)
+}
+
+/// What an event says; `None` for steps and markers, of which there are many.
+fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
+    Some(match event {
+        CreatureEvent::Entered { from, to } => {
+            format!("{} to {}", name(creature, *from), name(creature, *to))
+        }
+        CreatureEvent::Hurt {
+            weak_point,
+            damage,
+            used_up,
+        } => {
+            let end = if *used_up { ", which is used up" } else { "" };
+            format!("hurt at weak point {weak_point} by {damage:.3}{end}")
+        }
+        CreatureEvent::Staggered { plate, breaks } => {
+            let end = if *breaks { ", which breaks off" } else { "" };
+            format!("staggered by a blow on plate {plate}{end}")
+        }
+        CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
+        // An event that is newer than this list.
+        other => format!("{other:?}"),
+    })
+}
