@@ -1,4 +1,4 @@
-//! A climber climbs a walking, stomping, shaking creature from the ground to its head, while rocks fall on it.
+//! A climber fights a giant that hunts it and shakes it off, from the ground to its head, while rocks fall.
 //!
 //! `cargo run --release --example battle -- --help` lists the options. The scene, its script and its checks are in
 //! `clamber_scenes::battle`. With `--features render` it can be filmed.
@@ -14,8 +14,8 @@ use std::process::ExitCode;
 use clamber_scenes::battle::{self, BattleError, BattleOptions, Summary};
 use clap::{ArgGroup, CommandFactory, Parser, error::ErrorKind};
 
-/// A climber climbs a giant of stone and fur from the ground to its head, or rides on a creature, while the creature
-/// stomps, shakes and is struck by rocks. Prints and checks the results, and writes a summary and a timeline.
+/// A climber against a giant of stone and fur, which notices, hunts and strikes it, and shakes itself once it is climbed.
+/// Or the climber rides on a creature that walks and shakes. Rocks fall on both. Prints and checks the results, and writes a summary and a timeline.
 #[derive(Debug, Parser)]
 #[command(name = "battle", version)]
 struct Options {
@@ -147,6 +147,10 @@ enum OverlayKind {
     Sweeps,
     /// The pieces of skin that the physics engine holds as colliders for the rocks.
     Rocks,
+    /// The soles of the creature's feet: blue where they stand, orange in the air.
+    Feet,
+    /// Text: the creature's state, moods and senses.
+    Brain,
     /// Text: time, the climber's action, stamina and health, shake, speeds, share of vertices skinned, rocks.
     State,
 }

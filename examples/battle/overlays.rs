@@ -12,6 +12,7 @@ use clamber::prelude::*;
 use clamber::render::{Camera, Color, Image, Overlay, TextSize};
 use clamber::rig::JointId;
 use clamber::world::rapier3d::prelude::*;
+use clamber_colossus::Sense;
 use clamber_scenes::battle::{Battle, CREATURE, TICK};
 use clamber_scenes::part_bounds::{JointMaps, PartBounds};
 use glam::{DVec3, Vec3};
@@ -121,8 +122,9 @@ impl Overlays {
                 OverlayKind::Anchors => self.anchors(&mut over, battle, eye),
                 OverlayKind::Sweeps => self.sweeps(&mut over, battle, eye),
                 OverlayKind::Rocks => rocks(&mut over, battle),
+                OverlayKind::Feet => feet(&mut over, battle),
                 // Text is written after the picture is drawn.
-                OverlayKind::State => {}
+                OverlayKind::State | OverlayKind::Brain => {}
             }
         }
         over
@@ -130,14 +132,19 @@ impl Overlays {
 
     /// Writes the text onto the picture.
     pub(crate) fn write(&self, battle: &Battle<'_>, image: &mut Image) {
+        let size = if image.height < ROWS_FOR_LARGE_TEXT {
+            TextSize::Small
+        } else {
+            TextSize::Large
+        };
+        let mut texts = Vec::new();
         if self.kinds.contains(&OverlayKind::State) {
-            let size = if image.height < ROWS_FOR_LARGE_TEXT {
-                TextSize::Small
-            } else {
-                TextSize::Large
-            };
-            image.text(TEXT_AT, size, &state(battle));
+            texts.push(state(battle));
         }
+        if self.kinds.contains(&OverlayKind::Brain) {
+            texts.push(brain(battle));
+        }
+        image.text(TEXT_AT, size, &texts.join("\n\n"));
     }
 
     fn anchors(&self, over: &mut Overlay, battle: &Battle<'_>, eye: DVec3) {
@@ -491,14 +498,60 @@ fn state(battle: &Battle<'_>) -> String {
     )
 }
 
+/// The soles of the feet: those that stand and those in the air.
+fn feet(over: &mut Overlay, battle: &Battle<'_>) {
+    let Some(life) = battle.life() else {
+        return;
+    };
+    for (leg, corners) in (0..).map_while(|leg| Some((leg, life.sole(leg)?))) {
+        let [a, b, c, d] = corners;
+        let color = if life.state().is_planted(leg) {
+            SKY_BLUE
+        } else {
+            ORANGE
+        };
+        over.triangle([a, b, c], seen_through(color, 0.4));
+        over.triangle([a, c, d], seen_through(color, 0.4));
+        over.path(&[a, b, c, d, a], 4.0, opaque(color));
+    }
+}
+
+/// The brain of the creature as text: its state, moods, and those senses that say something.
+fn brain(battle: &Battle<'_>) -> String {
+    let Some(life) = battle.life() else {
+        return "no brain: a timetable".to_owned();
+    };
+    let (brain, state) = (life.kind().brain(), life.state());
+    let seconds = f64::from(state.brain().ticks_in_state(brain)) * brain.tick();
+    let mut text = format!(
+        "state    {} for {seconds:.1} s\n",
+        brain.path(state.current())
+    );
+    if let Some((_, phase)) = life.attack() {
+        text += &format!("attack   {phase:?}\n");
+    }
+    for (index, name) in brain.moods().enumerate() {
+        let mood = state.brain().mood(brain, index);
+        text += &format!("{name:<9}{}\n", bar(mood));
+    }
+    let senses = Sense::all().map(|sense| (sense, state.senses().get(sense)));
+    let felt = senses.filter(|(_, value)| *value != 0.0 && value.is_finite());
+    for (sense, value) in felt {
+        text += &format!("{:<20}{value:8.2}\n", sense.name());
+    }
+    text
+}
+
+/// A share as a bar.
+fn bar(share: f64) -> String {
+    const CELLS: f64 = 20.0;
+    let full = (share * CELLS).ceil() as usize;
+    format!("[{:<width$}]", "#".repeat(full), width = CELLS as usize)
+}
+
 /// The remaining stamina and hit points, and the shake of the hold, if the climber is configured for them.
 fn strength(battle: &Battle<'_>) -> String {
-    const CELLS: f64 = 20.0;
     let (config, state) = (battle.climber().config(), battle.climber().state());
-    let bar = |share: f64| {
-        let full = (share * CELLS).ceil() as usize;
-        format!("[{:<width$}]", "#".repeat(full), width = CELLS as usize)
-    };
     let mut lines = String::new();
     if config.stamina.is_some() {
         lines += &format!("stamina  {}\n", bar(state.stamina));

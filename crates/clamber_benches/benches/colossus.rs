@@ -20,7 +20,7 @@ use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
 use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person, Riding, Surroundings,
+    Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{giant, valley};
@@ -127,14 +127,7 @@ impl Life {
         let mut file: serde_json::Value = serde_json::from_str(&text)?;
         file["start"] = "start".into();
         file["states"] = serde_json::from_str(states)?;
-        let rig = giant::rig()?;
-        let parts = CreatureParts {
-            skeleton: rig.skeleton,
-            clips: rig.clips,
-            mesh: rig.collider,
-            weak_points: rig.weak_points,
-        };
-        let kind = CreatureKind::new(parts, Brain::from_json(&file.to_string(), DT)?)?;
+        let kind = giant::giant()?.with_brain(Brain::from_json(&file.to_string(), DT)?)?;
         let config = CreatureConfig {
             position: DVec3::Y * valley::height(0.0, 0.0),
             arena: 60.0,

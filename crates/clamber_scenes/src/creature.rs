@@ -1,9 +1,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use clamber_colossus::{Brain, ColossusError, CreatureKind, CreatureParts};
 use clamber_gltf::{GltfError, LoadOptions};
 use clamber_surface::mesh::{ColliderMesh, MeshError, PaletteError};
-use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton};
+use clamber_surface::rig::{Clip, Palette, Pose, RigError, Skeleton, WeakPoint};
 use clamber_surface::skin::skin;
 use clamber_surface::surface::SurfaceError;
 use glam::Vec3;
@@ -20,6 +21,8 @@ pub struct Creature {
     pub clips: Vec<Clip>,
     /// The collision mesh.
     pub collider: Arc<ColliderMesh>,
+    /// Where it can be wounded.
+    pub weak_points: Vec<WeakPoint>,
     /// Speed of the walk clip, model units a second; `None` if unknown.
     pub walk_speed: Option<f64>,
 }
@@ -46,7 +49,7 @@ pub enum CreatureError {
 }
 
 impl Creature {
-    /// A creature from its parts, with an unknown walk speed.
+    /// A creature from its parts, without weak points and with an unknown walk speed.
     pub fn new(
         name: impl Into<String>,
         skeleton: Skeleton,
@@ -58,6 +61,7 @@ impl Creature {
             skeleton,
             clips,
             collider,
+            weak_points: Vec::new(),
             walk_speed: None,
         }
     }
@@ -69,7 +73,24 @@ impl Creature {
     pub fn load(path: &Path) -> Result<Self, CreatureError> {
         let rig = clamber_gltf::load_with(path, &LoadOptions::default())?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok(Self::new(name, rig.skeleton, rig.clips, rig.collider))
+        Ok(Self {
+            weak_points: rig.weak_points,
+            ..Self::new(name, rig.skeleton, rig.clips, rig.collider)
+        })
+    }
+
+    /// The creature with a brain, to live by it.
+    ///
+    /// # Errors
+    /// As [`CreatureKind::new`].
+    pub fn with_brain(&self, brain: Brain) -> Result<CreatureKind, ColossusError> {
+        let parts = CreatureParts {
+            skeleton: self.skeleton.clone(),
+            clips: self.clips.clone(),
+            mesh: Arc::clone(&self.collider),
+            weak_points: self.weak_points.clone(),
+        };
+        CreatureKind::new(parts, brain)
     }
 
     /// The first clip whose name contains one of `words`. Words must be in lower case, names match in any case,

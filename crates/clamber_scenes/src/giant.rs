@@ -57,6 +57,7 @@ fn creature(rig: &Rig) -> Creature {
     let (skeleton, clips) = (rig.skeleton.clone(), rig.clips.clone());
     Creature {
         walk_speed: Some(WALK_SPEED),
+        weak_points: rig.weak_points.clone(),
         ..Creature::new("giant", skeleton, clips, rig.collider.clone())
     }
 }

@@ -9,7 +9,8 @@
 //! - [`controllers`]: thirty scenes on moving ground, for any character controller.
 //! - [`rocks`]: rocks that fall on a shaking giant.
 //! - [`valley`]: the terrain of the scenes.
-//! - [`battle`]: the main scene: a climber climbs or rides a walking, shaking creature.
+//! - [`battle`]: the main scene: a climber against a giant that lives by its brain, or on a creature that walks and shakes.
+//! - [`person`]: a climber as a creature senses it.
 //! - `hero`, with the feature `record` or `render`: the body of a battle's climber.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
 //! - [`measure`]: tables, plots, quantiles and reference values for benches.
@@ -34,6 +35,7 @@ mod json;
 pub mod life;
 pub mod measure;
 pub mod part_bounds;
+mod person;
 #[cfg(feature = "render")]
 pub mod picture;
 pub mod resample;
@@ -45,3 +47,4 @@ pub mod tour;
 pub mod valley;
 
 pub use creature::{Creature, CreatureError};
+pub use person::person;

@@ -93,7 +93,7 @@ impl Watch {
         watched: &Watched<'_>,
     ) -> Option<f64> {
         let Watched { climber, idle, .. } = *watched;
-        let surface = moment.surface;
+        let surface = moment.surface();
         let state = climber.state();
         let center = state.position;
         self.look_inside(moment, center);
@@ -167,7 +167,7 @@ impl Watch {
         let look = moment.tick.is_multiple_of(INSIDE_EVERY);
         let below =
             valley::contains(center.x, center.z) && center.y < valley::height(center.x, center.z);
-        if below || look && is_inside(moment.surface, center) {
+        if below || look && is_inside(moment.surface(), center) {
             self.fell_through += 1;
             let what = if below { "below the ground" } else { "inside" };
             self.faults.note(INSIDE, || moment.describe(what, center));

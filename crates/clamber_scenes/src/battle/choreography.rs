@@ -1,4 +1,4 @@
-//! The creature's part of a battle: which clip plays when, and where the creature is. It depends only on the
+//! The part of a creature without a brain: which clip plays when, and where the creature is. It depends only on the
 //! ticks that have passed.
 
 use std::collections::BTreeSet;
@@ -7,8 +7,8 @@ use clamber_surface::geometry::{Similarity, rotation_from_axis_angle};
 use clamber_surface::rig::{Clip, Palette, Playback, Pose};
 use glam::DVec3;
 
+use super::BattleError;
 use super::repeat::{Repeat, SeamProbe};
-use super::{BattleError, Story};
 use crate::{Creature, valley};
 
 /// Seconds over which one clip fades into the next.
@@ -19,9 +19,6 @@ const PATH: f64 = 50.0;
 
 /// Walking speed for creatures whose walk clip has no known speed, metres a second for each metre of height: slow.
 const SPEED_PER_HEIGHT: f64 = 0.2;
-
-/// When the foot comes down in a stomp clip without a marker `impact`, as a share of the clip's length.
-const FOOT_DOWN: f64 = 0.51;
 
 /// Seconds for which a creature that lacks an idle or a walk clip holds still at first: longer than a rider falls.
 const LANDING: f64 = 2.0;
@@ -43,8 +40,6 @@ enum Kind {
     Walk,
     /// The creature stays where it is, but shakes.
     Wild,
-    /// The creature plays the clip once from the clip's beginning, and a foot comes down in it.
-    Stomp,
 }
 
 /// The creature's part of a battle.
@@ -59,8 +54,6 @@ pub struct Choreography<'a> {
     speed: f64,
     time: f64,
     walked: f64,
-    /// Velocity of the creature as a whole over the last tick, without its clips.
-    velocity: DVec3,
     /// The pose of the current tick, and memory for the fade.
     pose: Pose,
     fading: Pose,
@@ -73,8 +66,8 @@ impl<'a> Choreography<'a> {
     /// # Errors
     /// [`BattleError::NoHeight`] if the creature is flat in its first pose, [`BattleError::Creature`] if a clip does
     /// not fit its skeleton.
-    pub fn new(creature: &'a Creature, height: f64, story: Story) -> Result<Self, BattleError> {
-        let mut acts = acts(creature, story);
+    pub fn new(creature: &'a Creature, height: f64) -> Result<Self, BattleError> {
+        let mut acts = acts(creature);
         let rest = creature.skeleton.rest_pose();
         let mut first = rest.clone();
         if let Some(clip) = acts[0].clip {
@@ -90,7 +83,7 @@ impl<'a> Choreography<'a> {
             });
         }
         let probe = SeamProbe::new(creature, tall);
-        let repeats = |act: &&mut Act| act.kind != Kind::Stomp && act.repeat != Repeat::Hold;
+        let repeats = |act: &&mut Act| act.repeat != Repeat::Hold;
         for act in acts.iter_mut().filter(repeats) {
             if let Some(clip) = act.clip {
                 act.repeat = probe.measure(&creature.clips[clip])?.repeat();
@@ -110,7 +103,6 @@ impl<'a> Choreography<'a> {
             speed,
             time: 0.0,
             walked: 0.0,
-            velocity: DVec3::ZERO,
             palette: Palette::default(),
         })
     }
@@ -124,9 +116,7 @@ impl<'a> Choreography<'a> {
         let (now, before, share) = self.moment();
         let walking = |act: usize| f64::from(u8::from(self.acts[act].kind == Kind::Walk));
         let pace = walking(before) * (1.0 - share) + walking(now) * share;
-        let before = self.world_from_model().translation;
         self.walked += pace * self.speed * dt;
-        self.velocity = (self.world_from_model().translation - before) / dt;
         Ok(())
     }
 
@@ -167,34 +157,10 @@ impl<'a> Choreography<'a> {
         &self.palette
     }
 
-    /// The creature.
-    pub fn creature(&self) -> &Creature {
-        self.creature
-    }
-
-    /// True if the creature stays where it is and neither shakes nor stomps: its feet may be approached.
+    /// True if the creature stays where it is and does not shake: its feet may be approached.
     pub fn is_calm(&self) -> bool {
         let (now, ..) = self.moment();
         self.acts[now].kind == Kind::Calm
-    }
-
-    /// True if a foot came down in a stomp within the last `dt` seconds.
-    pub fn has_stomped(&self, dt: f64) -> bool {
-        let (now, ..) = self.moment();
-        let act = &self.acts[now];
-        let Some(clip) = act.clip.filter(|_| act.kind == Kind::Stomp) else {
-            return false;
-        };
-        let clip = &self.creature.clips[clip];
-        let impact = clip.markers().iter().find(|marker| marker.name == "impact");
-        let down = impact.map_or(clip.duration() * FOOT_DOWN, |impact| impact.time);
-        let within = self.within(now);
-        (within - dt..within).contains(&down)
-    }
-
-    /// Velocity of the creature as a whole over the last tick, without its clips, metres a second.
-    pub fn velocity(&self) -> DVec3 {
-        self.velocity
     }
 
     /// The current clip and the time in it, as text for messages.
@@ -224,19 +190,7 @@ impl<'a> Choreography<'a> {
     /// The clip that an act plays, and the time in it, seconds.
     fn clip(&self, act: usize) -> Option<(&'a Clip, f64)> {
         let clip = &self.creature.clips[self.acts[act].clip?];
-        let time = if self.acts[act].kind == Kind::Stomp {
-            self.within(act)
-        } else {
-            self.acts[act].repeat.time(self.time, clip.duration())
-        };
-        Some((clip, time))
-    }
-
-    /// Seconds since an act last began.
-    fn within(&self, act: usize) -> f64 {
-        let total: f64 = self.acts.iter().map(|act| act.seconds).sum();
-        let begins: f64 = self.acts[..act].iter().map(|act| act.seconds).sum();
-        (self.time - begins).rem_euclid(total)
+        Some((clip, self.acts[act].repeat.time(self.time, clip.duration())))
     }
 
     /// The current act, the act that it fades in from, and how far it has faded in, 0 to 1.
@@ -280,12 +234,11 @@ impl<'a> Choreography<'a> {
     }
 }
 
-/// The acts of a story, by the names of the creature's clips.
+/// The acts, by the names of the creature's clips.
 ///
-/// To ride: idle, walk, and if there is a shake, shake and walk. To climb: idle, stomp, idle, shake, idle, walk, idle;
-/// if the shake or the stomp is missing, as to ride. Without idle and walk: the first pose of the first clip, and then
+/// Idle, walk, and if there is a shake, shake and walk. Without idle and walk: the first pose of the first clip, and then
 /// every clip in turn, except deaths.
-fn acts(creature: &Creature, story: Story) -> Vec<Act> {
+fn acts(creature: &Creature) -> Vec<Act> {
     let index = |words: &[&str]| {
         let clip = creature.clip_like(words)?;
         creature
@@ -300,30 +253,12 @@ fn acts(creature: &Creature, story: Story) -> Vec<Act> {
         repeat: Repeat::Loop,
     };
     let (idle, walk) = (index(&["idle"]), index(&["walk", "run"]));
-    let (shake, stomp) = (index(&["shake", "attack"]), index(&["stomp"]));
-    // A climber can hold on through the mildest shake.
-    let shrug = index(&["shrug", "shake", "attack"]);
-    match (story, idle, walk, shrug, stomp) {
-        (Story::Climb, Some(idle), Some(walk), Some(shrug), Some(stomp)) => {
-            let once = creature.clips[stomp].duration();
-            return vec![
-                act(idle, 3.0, Kind::Calm),
-                act(stomp, once, Kind::Stomp),
-                act(idle, 24.0, Kind::Calm),
-                act(shrug, 2.6, Kind::Wild),
-                act(idle, 6.0, Kind::Calm),
-                act(walk, 20.0, Kind::Walk),
-                act(idle, 20.0, Kind::Calm),
-            ];
+    if let (Some(idle), Some(walk)) = (idle, walk) {
+        let mut acts = vec![act(idle, 6.0, Kind::Calm), act(walk, 16.0, Kind::Walk)];
+        if let Some(shake) = index(&["shake", "attack"]) {
+            acts.extend([act(shake, 4.0, Kind::Wild), act(walk, 12.0, Kind::Walk)]);
         }
-        (_, Some(idle), Some(walk), ..) => {
-            let mut acts = vec![act(idle, 6.0, Kind::Calm), act(walk, 16.0, Kind::Walk)];
-            if let Some(shake) = shake {
-                acts.extend([act(shake, 4.0, Kind::Wild), act(walk, 12.0, Kind::Walk)]);
-            }
-            return acts;
-        }
-        _ => {}
+        return acts;
     }
     let lively = creature.clips.iter().enumerate().filter(|(_, clip)| {
         let name = clip.name.to_lowercase();

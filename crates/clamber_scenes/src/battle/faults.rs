@@ -7,7 +7,7 @@ use clamber_surface::surface::SkinnedSurface;
 use clamber_world::Obstacle;
 use glam::DVec3;
 
-use super::{Choreography, TICK};
+use super::{Performer, TICK};
 
 /// Descriptions name the nearest skin within this distance of a place, as a share of the creature's height.
 const NEAR: f64 = 0.25;
@@ -15,23 +15,26 @@ const NEAR: f64 = 0.25;
 /// The creature at one tick, for descriptions of faults.
 #[derive(Clone, Copy)]
 pub(super) struct Moment<'a> {
-    /// The creature's skin.
-    pub(super) surface: &'a SkinnedSurface,
     /// The creature's part of the battle.
-    pub(super) choreography: &'a Choreography<'a>,
+    pub(super) performer: &'a Performer<'a>,
     /// The creature's height, metres.
     pub(super) height: f64,
     /// Number of the tick.
     pub(super) tick: u64,
 }
 
-impl Moment<'_> {
+impl<'a> Moment<'a> {
+    /// The creature's skin.
+    pub(super) fn surface(&self) -> &'a SkinnedSurface {
+        self.performer.surface()
+    }
+
     /// Describes a fault `what` at a place: tick, clip, position, and the nearest skin with its speed.
     pub(super) fn describe(&self, what: &str, place: DVec3) -> String {
         let seconds = self.tick as f64 * TICK;
-        let near = self.surface.closest_point(place, NEAR * self.height);
+        let near = self.surface().closest_point(place, NEAR * self.height);
         let skin = near.map_or("no skin near".into(), |near| {
-            let motion = self.surface.motion(&near.material, TICK);
+            let motion = self.surface().motion(&near.material, TICK);
             let speed = motion.map_or(0.0, |motion| motion.velocity.length());
             let (distance, joint) = (near.distance, self.joint(near.material.key));
             format!("{distance:.3} m from skin of {joint} that moves at {speed:.1} m/s")
@@ -39,7 +42,7 @@ impl Moment<'_> {
         format!(
             "tick {} ({seconds:.2} s, {}): {what} at ({:.2}, {:.2}, {:.2}), {skin}",
             self.tick,
-            self.choreography.playing(),
+            self.performer.playing(),
             place.x,
             place.y,
             place.z,
@@ -48,10 +51,10 @@ impl Moment<'_> {
 
     /// The name of the joint that moves a triangle most.
     fn joint(&self, triangle: u64) -> String {
-        let mesh = self.surface.mesh();
+        let mesh = self.surface().mesh();
         let part = mesh.part_of(TriangleId(triangle as u32));
         let joint = part.and_then(|part| mesh.parts().get(part.index()));
-        let joints = self.choreography.creature().skeleton.joints();
+        let joints = self.performer.creature().skeleton.joints();
         joint
             .and_then(|part| joints.get(part.joint.0 as usize))
             .map_or("no joint".into(), |joint| joint.name.clone())

@@ -1,10 +1,12 @@
-//! The main scene: a climber climbs or rides a giant creature in a valley, while rocks fall.
+//! The main scene: a climber against a giant creature in a valley, while rocks fall.
 //!
-//! The creature walks, stomps and shakes. The climber comes over the ground, climbs to its top and rides there, or is
-//! dropped on its back at the start. The rocks fall on the creature and roll off.
+//! In a climb the creature lives by its brain: it notices the climber, hunts and attacks it, and shakes itself once it is
+//! ridden. The climber comes over the ground, gets out of the way of blows, climbs to the creature's top and stays there.
+//! In a ride the creature plays its clips by a timetable, and the climber is dropped on its back. The rocks fall on the
+//! creature and roll off.
 //!
-//! Order of a tick: the creature is posed, the climber steps, the physics steps with the rocks, and the scene checks
-//! the result.
+//! Order of a tick: the creature steps, then the climber, then the physics with the rocks, and the scene checks the
+//! result.
 
 pub mod bot;
 mod checks;
@@ -12,6 +14,7 @@ mod choreography;
 mod faults;
 mod options;
 mod outcrop;
+mod performer;
 mod pilot;
 #[cfg(feature = "record")]
 mod record;
@@ -30,6 +33,7 @@ use std::path::PathBuf;
 pub use choreography::Choreography;
 pub use options::BattleOptions;
 pub use outcrop::mesh as outcrop;
+pub use performer::{Performer, PerformerState};
 #[cfg(feature = "record")]
 pub use record::{BattleRecorder, Replay, replay};
 pub use recording::{Recording, Sample};
@@ -38,12 +42,13 @@ pub use rockfall::{Rockfall, RockfallReport};
 pub use scene::{Battle, CREATURE, TERRAIN, TICK};
 pub use snapshot::BattleSnapshot;
 pub use story::Story;
-pub use summary::{Check, ModeTicks, Summary};
+pub use summary::{Check, ModeTicks, StateTicks, Summary};
 
 use options::Progress;
 
 use crate::CreatureError;
 use clamber_climber::ClimberError;
+use clamber_colossus::{BrainError, ColossusError};
 use clamber_surface::rig::RigError;
 use clamber_surface::surface::SurfaceError;
 use clamber_world::DebrisError;
@@ -62,6 +67,25 @@ pub enum BattleError {
         /// The creature's name.
         creature: String,
     },
+    /// The brain's file cannot be read.
+    #[error("cannot read the brain {path}: {reason}")]
+    ReadBrain {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        reason: String,
+    },
+    /// The brain is not valid.
+    #[error("{path}: {error}")]
+    Brain {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        error: BrainError,
+    },
+    /// The creature cannot live by its brain.
+    #[error("the creature cannot live by its brain: {0}")]
+    Colossus(#[from] ColossusError),
     /// The creature has no way from the ground to its top.
     #[error(
         "found no way up {creature}: no grippable skin leads from near the ground to the top; try --story ride"
@@ -179,6 +203,6 @@ fn fight(
     progress.finish();
     let summary = Summary::new(&battle, options);
     summary.write(&options.out)?;
-    timeline::draw(battle.recording(), &summary, &options.out)?;
+    timeline::draw(&battle, &summary, &options.out)?;
     Ok(summary)
 }

@@ -2,12 +2,13 @@ use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
+use clamber_colossus::Brain;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::bot::Intent;
 use super::{BattleError, Recording, Story, TICK};
-use crate::{Creature, giant::giant};
+use crate::{Creature, giant};
 
 /// Height that a creature from a file is scaled to, metres.
 const FILE_HEIGHT: f64 = 20.0;
@@ -16,13 +17,13 @@ const FILE_HEIGHT: f64 = 20.0;
 const GIANT_HEIGHT: f64 = 40.0;
 
 /// Length of a battle in each story, seconds.
-const CLIMB_SECONDS: f64 = 78.0;
+const CLIMB_SECONDS: f64 = 90.0;
 const RIDE_SECONDS: f64 = 60.0;
 
-/// A climber climbs and rides a walking, stomping, shaking creature on which rocks fall.
+/// A climber fights a giant that hunts it, or rides a creature that walks and shakes, while rocks fall.
 ///
-/// The climber comes over an outcrop, is knocked down by a stomp, grips a leg, climbs to the creature's top and stays
-/// there. Or it is dropped on the creature's back, where it stands, walks and jumps, and holds on where the skin is too
+/// The climber comes over an outcrop, gets out of the way of the giant's blows or is knocked down by them, grips a leg,
+/// climbs to the giant's top and stays there as long as it can hold on. Or it is dropped on the creature's back, where it stands, walks and jumps, and holds on where the skin is too
 /// steep to stand on. Checks in every tick that the climber is carried exactly and stays above the ground, and several
 /// times a second that neither the climber nor a rock is inside the creature. Prints a table with the first fault of
 /// each failed check, and exits with 1 if a check failed.
@@ -33,16 +34,21 @@ pub struct BattleOptions {
     #[arg(long, value_name = "FILE")]
     pub creature: Option<PathBuf>,
 
+    /// The brain that the creature lives by in a climb [default: the giant's, assets/colossus.brain.json; none for a
+    /// creature from a file, which then walks and shakes by a timetable].
+    #[arg(long, value_name = "FILE")]
+    pub brain: Option<PathBuf>,
+
     /// Height of the creature [default: 40 for the giant, 20 for a creature from a file].
     #[arg(long, value_name = "METRES")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub height: Option<f64>,
 
-    /// What the climber does [default: climb for the giant, ride for a creature from a file].
+    /// What the climber does [default: climb for the giant and with a brain, else ride].
     #[arg(long, value_enum)]
     pub story: Option<Story>,
 
-    /// Length of the battle [default: 78 for climb, 60 for ride].
+    /// Length of the battle [default: 90 for climb, 60 for ride].
     #[arg(long, value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
@@ -53,7 +59,7 @@ pub struct BattleOptions {
     pub rocks: u32,
 
     /// Seed for the climber's start and the rocks' places; the same number gives the same battle.
-    #[arg(long, default_value_t = 2)]
+    #[arg(long, default_value_t = 28)]
     pub seed: u64,
 
     /// Folder for summary.json and timeline.svg.
@@ -107,11 +113,14 @@ impl BattleOptions {
             ("rocks".to_owned(), self.rocks.to_string()),
             ("seed".to_owned(), self.seed.to_string()),
         ]);
-        if let Some(path) = &self.creature {
+        for (name, path) in [("creature", &self.creature), ("brain", &self.brain)] {
+            let Some(path) = path else {
+                continue;
+            };
             let unreadable =
                 || BattleError::Settings(format!("the path {} is not UTF-8", path.display()));
             let path = path.to_str().ok_or_else(unreadable)?;
-            settings.insert("creature".to_owned(), path.to_owned());
+            settings.insert(name.to_owned(), path.to_owned());
         }
         Ok(settings)
     }
@@ -128,10 +137,41 @@ impl BattleOptions {
             .map_err(|error| BattleError::Settings(error.to_string()))
     }
 
+    /// The brain's file: the option or its default; `None` for a creature that plays a timetable.
+    pub fn brain_path(&self) -> Option<PathBuf> {
+        if self.story() == Story::Ride {
+            return None;
+        }
+        let default = || self.creature.is_none().then(giant::brain_path);
+        self.brain.clone().or_else(default)
+    }
+
+    /// The creature's brain; `None` for a creature that plays a timetable.
+    ///
+    /// # Errors
+    /// [`BattleError::ReadBrain`], [`BattleError::Brain`]; [`BattleError::Settings`] for a brain in a ride.
+    pub(super) fn load_brain(&self) -> Result<Option<Brain>, BattleError> {
+        if self.story() == Story::Ride && self.brain.is_some() {
+            let reason = "a creature lives by its brain in a climb: add --story climb".to_owned();
+            return Err(BattleError::Settings(reason));
+        }
+        let Some(path) = self.brain_path() else {
+            return Ok(None);
+        };
+        let text = std::fs::read_to_string(&path).map_err(|error| BattleError::ReadBrain {
+            path: path.clone(),
+            reason: error.to_string(),
+        })?;
+        let brain = Brain::from_json(&text, TICK);
+        brain
+            .map(Some)
+            .map_err(|error| BattleError::Brain { path, error })
+    }
+
     pub(super) fn load_creature(&self) -> Result<Creature, BattleError> {
         Ok(match &self.creature {
             Some(path) => Creature::load(path)?,
-            None => giant()?,
+            None => giant::giant()?,
         })
     }
 
@@ -146,9 +186,9 @@ impl BattleOptions {
 
     /// What the climber does: the option or its default.
     pub fn story(&self) -> Story {
-        self.story.unwrap_or(match &self.creature {
-            Some(_) => Story::Ride,
-            None => Story::Climb,
+        self.story.unwrap_or(match (&self.creature, &self.brain) {
+            (Some(_), None) => Story::Ride,
+            _ => Story::Climb,
         })
     }
 

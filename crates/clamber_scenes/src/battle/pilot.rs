@@ -8,6 +8,7 @@ use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
+use super::performer::Sight;
 use super::scene::CREATURE;
 use super::{BattleError, outcrop};
 use crate::Creature;
@@ -41,12 +42,18 @@ const ELSEWHERE: f64 = 1.5;
 /// In the choice of a foothold, a metre of height costs as much as so many metres of distance.
 const HEIGHT_COUNTS: f64 = 5.0;
 
+/// It lets go after so many seconds of hanging from a creature that keeps still.
+const STUCK: f64 = 2.5;
+
+/// Seconds from the beginning of an attack until it runs away.
+const REACTION: f64 = 0.3;
+
 /// Where it can stand it rests until it has this much stamina, and until the creature is calm.
 const RESTED: f64 = 0.95;
 
 /// With less stamina than `TIRED` it lets go and rests, if the slope is below `LEVEL`, radians.
-const TIRED: f64 = 0.5;
-const LEVEL: f64 = 0.8;
+const TIRED: f64 = 0.75;
+const LEVEL: f64 = 0.6;
 
 /// Largest shake in which it lets go to stand, metres a second squared.
 const CALM: f64 = 3.0;
@@ -62,6 +69,12 @@ pub(super) struct Pilot {
     /// The shortest way left to the top since it got on, in the units of the creature's file, and when, seconds.
     left: f32,
     since: f64,
+    /// The triangle that it was on last, and the vertex where its way starts from there.
+    entered: Option<(TriangleId, VertexId)>,
+    /// Since when it hangs, seconds.
+    hangs: Option<f64>,
+    /// Since when it sees an attack, seconds.
+    attacked: Option<f64>,
     /// When it last jumped, and when it was last not blocked, seconds.
     jumped: f64,
     free: f64,
@@ -93,6 +106,9 @@ impl Pilot {
             given_up: Vec::new(),
             left: f32::INFINITY,
             since: 0.0,
+            entered: None,
+            hangs: None,
+            attacked: None,
             jumped: f64::NEG_INFINITY,
             free: 0.0,
             crossed: false,
@@ -107,15 +123,31 @@ impl Pilot {
         self.arrived
     }
 
-    /// The input of the tick that begins at `seconds`. `is_calm` as [`super::Choreography::is_calm`].
+    /// It is put back to the start.
+    pub(super) fn begin_again(&mut self) {
+        *self = Self {
+            foothold: None,
+            tries: 0,
+            given_up: Vec::new(),
+            left: f32::INFINITY,
+            crossed: false,
+            mounted: false,
+            at_top: false,
+            ..self.clone()
+        };
+    }
+
+    /// The input of the tick that begins at `seconds`.
     pub(super) fn input(
         &mut self,
         climber: &Climber,
         surface: &SkinnedSurface,
-        is_calm: bool,
+        sight: Sight,
         seconds: f64,
     ) -> ClimberInput {
         let state = climber.state();
+        self.attacked = self.attacked.or(Some(seconds)).filter(|_| sight.attacks);
+        self.hangs = self.hangs.filter(|_| state.mode == ClimberMode::Hanging);
         let on_creature = state
             .support
             .filter(|support| support.attachment.obstacle == CREATURE)
@@ -130,19 +162,24 @@ impl Pilot {
                 grip: true,
                 ..ClimberInput::default()
             },
-            (ClimberMode::Hanging, _) => ClimberInput {
-                grip: true,
-                ..ClimberInput::default()
-            },
+            (ClimberMode::Hanging, _) => {
+                // It lets go where a bulge keeps it from pulling itself up, and grips again below.
+                let hangs = *self.hangs.get_or_insert(seconds);
+                let is_stuck = sight.is_calm && seconds - hangs > STUCK;
+                ClimberInput {
+                    grip: !is_stuck,
+                    ..ClimberInput::default()
+                }
+            }
             (_, Some(triangle)) => {
                 if !self.mounted {
                     self.given_up.clear();
                     self.at_top = false;
                     (self.mounted, self.left, self.since) = (true, f32::INFINITY, seconds);
                 }
-                self.go_up(climber, surface, triangle, is_calm, seconds)
+                self.go_up(climber, surface, triangle, sight, seconds)
             }
-            _ => self.come(climber, surface, is_calm, seconds),
+            _ => self.come(climber, surface, sight, seconds),
         }
     }
 
@@ -152,25 +189,28 @@ impl Pilot {
         climber: &Climber,
         surface: &SkinnedSurface,
         triangle: TriangleId,
-        is_calm: bool,
+        sight: Sight,
         seconds: f64,
     ) -> ClimberInput {
         let state = climber.state();
         let stands = state.mode == ClimberMode::Standing;
-        if self.at_top {
-            return ClimberInput {
-                grip: !is_calm || state.shake.length() > CALM,
-                ..ClimberInput::default()
-            };
+        let is_level = state
+            .support
+            .is_some_and(|support| slope(support.normal_in_world(), climber.config().up()) < LEVEL);
+        let holds = |grip| ClimberInput {
+            grip,
+            ..ClimberInput::default()
+        };
+        if state.shake.length() > CALM || !sight.is_calm && (stands || self.at_top) {
+            return holds(true);
         }
-        let could_stand = state.mode == ClimberMode::Holding
-            && state.support.is_some_and(|support| {
-                let up = climber.config().up();
-                slope(support.normal_in_world(), up) < LEVEL
-            });
-        let is_tired = state.stamina < TIRED && state.shake.length() < CALM;
-        if stands && (state.stamina < RESTED || !is_calm) || could_stand && is_tired {
-            return ClimberInput::default();
+        if self.at_top {
+            return holds(!stands && !is_level);
+        }
+        let least = if stands { RESTED } else { TIRED };
+        if (stands || is_level) && sight.is_calm && state.stamina < least {
+            self.since = seconds;
+            return holds(false);
         }
         let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
             return ClimberInput::default();
@@ -193,8 +233,13 @@ impl Pilot {
         position: DVec3,
         seconds: f64,
     ) -> Option<VertexId> {
-        let corners = surface.mesh().triangles().get(triangle.index())?;
-        let here = self.enter(surface, corners, position)?;
+        // The nearest vertex with a way is looked for once on each triangle.
+        let known = self.entered.filter(|(on, _)| *on == triangle);
+        let here = match known {
+            Some((_, here)) => here,
+            None => self.enter(surface, triangle, position)?,
+        };
+        self.entered = Some((triangle, here));
         let left = self.ascent.left(here);
         if left < self.left {
             (self.left, self.since) = (left, seconds);
@@ -220,9 +265,10 @@ impl Pilot {
     fn enter(
         &self,
         surface: &SkinnedSurface,
-        corners: &[VertexId; 3],
+        triangle: TriangleId,
         position: DVec3,
     ) -> Option<VertexId> {
+        let corners = surface.mesh().triangles().get(triangle.index())?;
         let by_way = |a: &VertexId, b: &VertexId| {
             let [a, b] = [a, b].map(|vertex| self.ascent.left(*vertex));
             a.total_cmp(&b)
@@ -237,7 +283,7 @@ impl Pilot {
         &mut self,
         climber: &Climber,
         surface: &SkinnedSurface,
-        is_calm: bool,
+        sight: Sight,
         seconds: f64,
     ) -> ClimberInput {
         let state = climber.state();
@@ -246,6 +292,18 @@ impl Pilot {
         }
         let position = state.position;
         self.crossed |= position.x > outcrop::END;
+        if self
+            .attacked
+            .is_some_and(|since| seconds - since >= REACTION)
+        {
+            self.free = seconds;
+            let away = position - surface.world_from_model().translation;
+            return ClimberInput {
+                walk: away.with_y(0.0).normalize_or(DVec3::X),
+                grip: true,
+                ..ClimberInput::default()
+            };
+        }
         let (walk, near) = if self.crossed {
             self.foothold = self
                 .foothold
@@ -256,7 +314,7 @@ impl Pilot {
                 return ClimberInput::default();
             };
             let toward = (place(surface, foot) - position) * DVec3::new(1.0, 0.0, 1.0);
-            let away = toward.length() - if is_calm { 0.0 } else { SAFE };
+            let away = toward.length() - if sight.is_calm { 0.0 } else { SAFE };
             let ahead = if away.abs() > SWAY {
                 away.signum()
             } else {

@@ -10,7 +10,6 @@ use clamber_record::{
 
 use super::options::Progress;
 use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
-use crate::Creature;
 use crate::hero::{Hero, HeroError};
 
 /// Ticks from one snapshot to the next: one second.
@@ -49,7 +48,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
         let creature = battle.creature();
         let info = RecordingInfo {
             creature: creature.name.clone(),
-            creature_fingerprint: fingerprint(creature),
+            creature_fingerprint: fingerprint(battle),
             tick_seconds: TICK,
             climber: *battle.climber().config(),
             settings: options.to_settings()?,
@@ -84,6 +83,9 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             palette: battle.palette(),
             scene_fingerprint: battle.rocks_fingerprint(),
         })?;
+        if let Some(life) = battle.life() {
+            self.recorder.brain(life)?;
+        }
         if let Some(hero) = &mut self.hero {
             hero.watch(battle, TICK)?;
             self.recorder.figure(&FigureView {
@@ -146,8 +148,15 @@ pub(super) fn run(
     Ok(summary)
 }
 
-fn fingerprint(creature: &Creature) -> u64 {
-    creature_fingerprint(&creature.skeleton, &creature.clips, &creature.collider)
+/// Of the creature, and of its brain.
+fn fingerprint(battle: &Battle<'_>) -> u64 {
+    let creature = battle.creature();
+    let body = creature_fingerprint(&creature.skeleton, &creature.clips, &creature.collider);
+    let brain = battle.life().map(|life| life.kind().brain().file());
+    // The brain as it is read, whatever the layout of its file.
+    let text = brain.and_then(|file| serde_json::to_string(file).ok());
+    let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    text.map_or(body, |text| text.bytes().fold(body, hash))
 }
 
 /// The result of a replay.
@@ -177,14 +186,14 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
     let info = recording.info();
     let options = BattleOptions::from_settings(&info.settings)?;
     let creature = options.load_creature()?;
-    if fingerprint(&creature) != info.creature_fingerprint {
+    let rocks = if from.is_some() { 0 } else { options.rocks };
+    let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
+    if fingerprint(&battle) != info.creature_fingerprint {
         return Err(BattleError::Settings(format!(
-            "{} is not the creature that was recorded; bring back the file it was loaded from",
+            "{} is not the creature that was recorded; bring back the files that it and its brain were loaded from",
             creature.name
         )));
     }
-    let rocks = if from.is_some() { 0 } else { options.rocks };
-    let mut battle = Battle::new(&creature, &BattleOptions { rocks, ..options })?;
     let start = match from {
         Some(from) => {
             let snapshot = recording.snapshot(from)?;

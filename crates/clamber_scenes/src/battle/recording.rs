@@ -1,4 +1,5 @@
 use clamber_climber::ClimberMode;
+use clamber_colossus::brain::StateId;
 
 /// One tick of a battle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Sample {
     /// input ended, or the depth of its body in that point if larger. In a climb, and while it holds on: the distance
     /// of its contact from its own material point.
     pub drift: Option<f64>,
+    /// The state of the creature's brain; `None` without a brain.
+    pub state: Option<StateId>,
     /// Distance by which contacts kept the climber from where it was carried and wanted to go, metres.
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
@@ -101,6 +104,16 @@ impl Recording {
     /// Number of ticks that end in a mode.
     pub fn ticks_in(&self, mode: ClimberMode) -> usize {
         self.samples.iter().filter(|s| s.mode == mode).count()
+    }
+
+    /// How often a state of the creature's brain was entered, and the number of ticks that end in it.
+    pub fn stays_in(&self, state: StateId) -> (usize, usize) {
+        let is_in = |sample: &Sample| sample.state == Some(state);
+        let ticks = self.samples.iter().filter(|sample| is_in(sample)).count();
+        let later = self.samples.windows(2);
+        let later = later.filter(|pair| !is_in(&pair[0]) && is_in(&pair[1]));
+        let first = self.samples.first().is_some_and(is_in);
+        (later.count() + usize::from(first), ticks)
     }
 
     /// The share of ticks spent on the creature.

@@ -107,6 +107,7 @@ impl RidesOptions {
     fn battle(&self, file: &Path, model: &str) -> BattleOptions {
         BattleOptions {
             creature: Some(file.to_owned()),
+            brain: None,
             height: Some(self.height),
             story: Some(Story::Ride),
             seconds: Some(self.seconds),

@@ -96,7 +96,7 @@ impl Rockfall {
         above: DVec3,
         faults: &mut Faults,
     ) -> Result<(), BattleError> {
-        let (surface, tick) = (moment.surface, moment.tick);
+        let (surface, tick) = (moment.surface(), moment.tick);
         let start = Instant::now();
         let surfaces = [(CREATURE, surface)];
         let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
@@ -128,7 +128,7 @@ impl Rockfall {
     }
 
     fn look_inside(&mut self, moment: &Moment<'_>, world: &PhysicsWorld, faults: &mut Faults) {
-        let surface = moment.surface;
+        let surface = moment.surface();
         let mut positions = Vec::new();
         surface.skin_all(&mut positions);
         for (index, rock) in self.rocks.iter().enumerate() {

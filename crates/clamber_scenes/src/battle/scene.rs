@@ -1,4 +1,3 @@
-use std::sync::Arc;
 use std::time::Instant;
 
 use clamber_climber::{
@@ -19,7 +18,7 @@ use super::faults::Moment;
 use super::pilot::{Grips, Pilot};
 use super::rockfall::Rockfall;
 use super::{
-    BattleError, BattleOptions, BattleSnapshot, Choreography, Recording, Sample, Story, outcrop,
+    BattleError, BattleOptions, BattleSnapshot, Performer, Recording, Sample, Story, outcrop,
 };
 use crate::{Creature, valley};
 
@@ -49,18 +48,9 @@ const GROUNDED_TICKS: u32 = 60;
 const RUN_UP: f64 = 4.0;
 const ASIDE: f64 = 1.5;
 
-/// A stomp knocks down a climber that is not on the creature, within this distance as a share of the creature's height,
-/// and less than `STOMP_HEIGHT` metres above its feet. It throws the climber up and away at `STOMP_SPEED`, metres a
-/// second, and costs `STOMP_DAMAGE` hit points.
-const STOMP_REACH: f64 = 0.6;
-const STOMP_HEIGHT: f64 = 2.0;
-const STOMP_SPEED: [f64; 2] = [4.0, 2.0];
-const STOMP_DAMAGE: f64 = 0.1;
-
 /// The running scene.
 pub struct Battle<'a> {
-    choreography: Choreography<'a>,
-    surface: SkinnedSurface,
+    performer: Performer<'a>,
     world: PhysicsWorld,
     before: BodyPoses,
     rocks: Rockfall,
@@ -80,6 +70,9 @@ pub struct Battle<'a> {
     slides: bool,
     drops: u32,
     landings: u32,
+    deaths: u32,
+    blows: u32,
+    seed: u64,
     input: ClimberInput,
     report: StepReport,
     recording: Recording,
@@ -96,13 +89,11 @@ impl<'a> Battle<'a> {
     /// [`BattleError::Outcrop`], and the errors of the creature, the climber and the debris.
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
         let (height, seed, story) = (options.height(), options.seed, options.story());
-        let mut choreography = Choreography::new(creature, height, story)?;
-        let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
-        let (palette, world_from_model) = choreography.pose()?;
-        surface.place(palette, world_from_model)?;
-        let perch = find_perch(&surface, height, seed).ok_or_else(|| BattleError::NoPerch {
-            creature: creature.name.clone(),
-        })?;
+        let performer = Performer::new(creature, options)?;
+        let perch =
+            find_perch(performer.surface(), height, seed).ok_or_else(|| BattleError::NoPerch {
+                creature: creature.name.clone(),
+            })?;
         let mut world = valley::world();
         let (climber, pilot) = match story {
             Story::Climb => {
@@ -118,8 +109,7 @@ impl<'a> Battle<'a> {
         let rocks = Rockfall::new(&mut world, options.rocks as usize, seed, above, height)?;
         Ok(Self {
             rocks_fingerprint: rocks.fingerprint(&world.bodies),
-            choreography,
-            surface,
+            performer,
             world,
             before: BodyPoses::default(),
             rocks,
@@ -134,6 +124,9 @@ impl<'a> Battle<'a> {
             grounded: 0,
             slides: false,
             landings: 0,
+            deaths: 0,
+            blows: 0,
+            seed,
             input: ClimberInput::default(),
             report: StepReport::default(),
             recording: Recording::default(),
@@ -147,46 +140,26 @@ impl<'a> Battle<'a> {
     /// [`BattleError`] if a clip does not fit the creature.
     pub fn step(&mut self, intent: Intent) -> Result<(), BattleError> {
         let start = Instant::now();
-        self.pose_creature()?;
+        let blow = self.step_creature()?;
         let seconds = self.tick as f64 * TICK;
-        let (surface, perch) = (&self.surface, &self.perch);
+        let (surface, perch) = (self.performer.surface(), &self.perch);
         let mut input = match &mut self.pilot {
             Some(pilot) if intent == Intent::Climb => {
-                pilot.input(&self.climber, surface, self.choreography.is_calm(), seconds)
+                pilot.input(&self.climber, surface, self.performer.sight(), seconds)
             }
             _ => {
                 let scene = RiderScene {
                     surface,
                     perch,
-                    velocity: self.choreography.velocity(),
+                    velocity: self.performer.velocity(),
                     seconds,
                     height: self.height,
                 };
                 self.rider.input(intent, &self.climber, &scene)
             }
         };
-        input.blow = self.stomp();
+        input.blow = blow;
         self.step_posed(input, start)
-    }
-
-    /// The blow of a foot that comes down in this tick to a climber near it, on the ground or in the air.
-    fn stomp(&self) -> Option<Blow> {
-        let state = self.climber.state();
-        let up = self.climber.config().up();
-        let away = state.position - self.surface.world_from_model().translation;
-        let height = away.dot(up);
-        let level = away - up * height;
-        let is_struck = state
-            .support
-            .is_none_or(|support| support.attachment.obstacle == TERRAIN)
-            && height < STOMP_HEIGHT
-            && level.length() < STOMP_REACH * self.height
-            && self.choreography.has_stomped(TICK);
-        is_struck.then(|| Blow {
-            velocity: up * STOMP_SPEED[0] + level.normalize_or_zero() * STOMP_SPEED[1],
-            damage: STOMP_DAMAGE,
-            by: Some(CREATURE),
-        })
     }
 
     /// Runs one tick with a given input, such as one from a recording.
@@ -195,24 +168,25 @@ impl<'a> Battle<'a> {
     /// [`BattleError`] if a clip does not fit the creature, or the input is not finite.
     pub fn step_with(&mut self, input: ClimberInput) -> Result<(), BattleError> {
         let start = Instant::now();
-        self.pose_creature()?;
+        self.step_creature()?;
         self.step_posed(input, start)
     }
 
-    fn pose_creature(&mut self) -> Result<(), BattleError> {
-        self.choreography.advance(TICK)?;
-        let (palette, world_from_model) = self.choreography.pose()?;
-        self.surface.advance(palette, world_from_model)?;
-        Ok(())
+    /// The creature's step; gives the blow that it deals the climber.
+    fn step_creature(&mut self) -> Result<Option<Blow>, BattleError> {
+        let bodies = &self.world.bodies;
+        let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
+        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
+        self.performer.step(&self.climber, &terrain)
     }
 
-    /// The rest of a tick that began at `start`, after the creature is posed.
+    /// The rest of a tick that began at `start`, after the creature's step.
     fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
         let bodies = &self.world.bodies;
         let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
         let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-            [(TERRAIN, &terrain), (CREATURE, &self.surface)];
+            [(TERRAIN, &terrain), (CREATURE, self.performer.surface())];
         let grips = self.grips;
         let can_grip =
             |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
@@ -223,13 +197,13 @@ impl<'a> Battle<'a> {
         let report =
             climber.step_with(&input, &obstacles, &StepRules::gripping(&can_grip), TICK)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
-        let touched = self.surface.diagnostics();
+        let touched = self.performer.surface().diagnostics();
 
         self.tick += 1;
-        let perch = self.surface.motion(&self.perch, TICK);
+        let perch = self.performer.surface().motion(&self.perch, TICK);
         let perch = perch.map_or(DVec3::ZERO, |perch| perch.position);
         let above = perch + DVec3::Y * (ROCKS_ABOVE * self.height);
-        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        let moment = moment(&self.performer, self.height, self.tick);
         let faults = &mut self.watch.faults;
         self.rocks.step(&moment, &mut self.world, above, faults)?;
         (self.input, self.report) = (input, report);
@@ -242,18 +216,19 @@ impl<'a> Battle<'a> {
         let bodies = &self.world.bodies;
         let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
-        touch(&[(TERRAIN, &terrain), (CREATURE, &self.surface)])
+        touch(&[(TERRAIN, &terrain), (CREATURE, self.performer.surface())])
     }
 
     fn record(&mut self, touched: Diagnostics, microseconds: f64) {
         let (input, report) = (self.input, &self.report);
         let state = *self.climber.state();
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
+        self.blows += u32::from(input.blow.is_some());
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
         let idle = input == ClimberInput::default() && !self.slides;
-        let palette = self.choreography.palette();
+        let palette = self.performer.palette();
         let climbs = self.pilot.is_some();
-        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        let moment = moment(&self.performer, self.height, self.tick);
         let watched = Watched {
             climber: &self.climber,
             report,
@@ -269,6 +244,7 @@ impl<'a> Battle<'a> {
                 .support
                 .is_some_and(|support| support.attachment.obstacle == CREATURE),
             drift,
+            state: self.life().map(|life| life.state().current()),
             push_out: report.pushed_out.length(),
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
             microseconds,
@@ -278,10 +254,28 @@ impl<'a> Battle<'a> {
         self.recording.push(sample, state.fingerprint() ^ rocks);
     }
 
+    /// A climber that died or is out of the valley begins again.
+    fn begin_again_if_dead(&mut self) -> Result<(), BattleError> {
+        let state = self.climber.state();
+        let is_lost = !valley::contains(state.position.x, state.position.z);
+        if !is_lost && state.hit_points > 0.0 {
+            return Ok(());
+        }
+        let moment = moment(&self.performer, self.height, self.tick);
+        self.watch.fell(&moment, state.position);
+        self.climber
+            .restore(*climber_before_the_outcrop(self.seed)?.state())?;
+        if let Some(pilot) = &mut self.pilot {
+            pilot.begin_again();
+        }
+        self.deaths += 1;
+        Ok(())
+    }
+
     /// Drops a rider on the creature's back again if it has been on the ground for a while or is out of the valley.
     fn lift_if_grounded(&mut self) -> Result<(), BattleError> {
         if self.pilot.is_some() {
-            return Ok(());
+            return self.begin_again_if_dead();
         }
         let state = self.climber.state();
         let on_ground = state
@@ -292,18 +286,21 @@ impl<'a> Battle<'a> {
         if self.grounded < GROUNDED_TICKS && !is_lost {
             return Ok(());
         }
-        let Some(perch) = self.surface.motion(&self.perch, TICK) else {
+        let Some(perch) = self.performer.surface().motion(&self.perch, TICK) else {
             return Ok(());
         };
-        let moment = moment(&self.surface, &self.choreography, self.height, self.tick);
+        let moment = moment(&self.performer, self.height, self.tick);
         self.watch.fell(&moment, state.position);
         // Onto the skin that is uppermost there now, and at rest relative to the creature as a whole: the perch itself
         // may be moving fast, and its velocity would throw the climber away.
         let sky = perch.position + DVec3::Y * (4.0 * self.height);
-        let top = self.surface.cast_ray(sky, -DVec3::Y, 4.0 * self.height);
+        let top = self
+            .performer
+            .surface()
+            .cast_ray(sky, -DVec3::Y, 4.0 * self.height);
         let place = top.map_or(perch.position, |top| top.point);
         let dropped = ClimberState {
-            velocity: self.choreography.velocity(),
+            velocity: self.performer.velocity(),
             ..*rider_above(place, DROP_AGAIN)?.state()
         };
         self.climber.restore(dropped)?;
@@ -316,14 +313,14 @@ impl<'a> Battle<'a> {
 
     /// The state of the battle besides the climber's state, without the rocks and the script's memory.
     pub fn snapshot(&self) -> BattleSnapshot {
-        let (time, walked) = self.choreography.progress();
         BattleSnapshot {
             tick: self.tick,
-            time,
-            walked,
+            creature: self.performer.state(),
             grounded: self.grounded,
             drops: self.drops,
             landings: self.landings,
+            deaths: self.deaths,
+            blows: self.blows,
         }
     }
 
@@ -340,13 +337,13 @@ impl<'a> Battle<'a> {
         state: ClimberState,
     ) -> Result<(), BattleError> {
         self.climber.restore(state)?;
-        self.choreography.go_to((snapshot.time, snapshot.walked));
-        let (palette, world_from_model) = self.choreography.pose()?;
-        self.surface.place(palette, world_from_model)?;
+        self.performer.restore(&snapshot.creature)?;
         self.tick = snapshot.tick;
         self.grounded = snapshot.grounded;
         self.drops = snapshot.drops;
         self.landings = snapshot.landings;
+        self.deaths = snapshot.deaths;
+        self.blows = snapshot.blows;
         Ok(())
     }
 
@@ -362,17 +359,17 @@ impl<'a> Battle<'a> {
 
     /// The creature.
     pub fn creature(&self) -> &Creature {
-        self.choreography.creature()
+        self.performer.creature()
     }
 
     /// The creature's skin.
     pub fn surface(&self) -> &SkinnedSurface {
-        &self.surface
+        self.performer.surface()
     }
 
     /// The creature's palette in the last tick.
     pub fn palette(&self) -> &Palette {
-        self.choreography.palette()
+        self.performer.palette()
     }
 
     /// The climber's input in the last tick.
@@ -420,6 +417,21 @@ impl<'a> Battle<'a> {
         self.drops
     }
 
+    /// The creature that lives by its brain; `None` if it plays a timetable.
+    pub fn life(&self) -> Option<&clamber_colossus::Creature> {
+        self.performer.life()
+    }
+
+    /// How often a climber died or was thrown out of the valley, and began again; 0 in a ride.
+    pub fn deaths(&self) -> u32 {
+        self.deaths
+    }
+
+    /// How often the creature struck the climber.
+    pub fn blows(&self) -> u32 {
+        self.blows
+    }
+
     /// How often the climber landed, on anything.
     pub fn landings(&self) -> u32 {
         self.landings
@@ -427,7 +439,12 @@ impl<'a> Battle<'a> {
 
     /// Names of the creature's clips that are not loops and are therefore played back and forth.
     pub fn turned_back(&self) -> Vec<String> {
-        self.choreography.turned_back()
+        self.performer.turned_back()
+    }
+
+    /// The creature's part of the battle.
+    pub fn performer(&self) -> &Performer<'a> {
+        &self.performer
     }
 
     pub(super) fn watch(&self) -> &Watch {
@@ -441,15 +458,9 @@ fn is_fixed(bodies: &RigidBodySet, collider: &Collider) -> bool {
     body.is_none_or(|body| body.is_fixed())
 }
 
-fn moment<'a>(
-    surface: &'a SkinnedSurface,
-    choreography: &'a Choreography<'a>,
-    height: f64,
-    tick: u64,
-) -> Moment<'a> {
+fn moment<'a>(performer: &'a Performer<'a>, height: f64, tick: u64) -> Moment<'a> {
     Moment {
-        surface,
-        choreography,
+        performer,
         height,
         tick,
     }
@@ -463,6 +474,7 @@ fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
         // Strong enough for the walk of a creature this tall, which swings by metres high up.
         stamina.hold_drain = 1.0 / 90.0;
         stamina.shake_threshold = 10.0;
+        stamina.shake_drain = 1.0 / 120.0;
     }
     let mut rng = fastrand::Rng::with_seed(seed);
     let aside = (2.0 * rng.f64() - 1.0) * ASIDE;

@@ -1,22 +1,24 @@
 use serde::{Deserialize, Serialize};
 
-use super::BattleError;
+use super::{BattleError, PerformerState};
 
 /// The state of a battle at a tick, besides the climber's state. It does not include the rocks.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BattleSnapshot {
     /// Number of ticks so far.
     pub tick: u64,
-    /// Time of the creature's clips, seconds: the sum of the ticks' lengths.
-    pub time: f64,
-    /// Distance that the creature has walked, metres.
-    pub walked: f64,
+    /// The creature's state.
+    pub creature: PerformerState,
     /// Consecutive ticks for which a rider has been on the ground.
     pub grounded: u32,
-    /// How often the climber was dropped on the creature.
+    /// How often a rider was dropped on the creature.
     pub drops: u32,
     /// How often the climber landed.
     pub landings: u32,
+    /// How often a climber died or was lost, and began again.
+    pub deaths: u32,
+    /// How often the creature struck the climber.
+    pub blows: u32,
 }
 
 impl BattleSnapshot {

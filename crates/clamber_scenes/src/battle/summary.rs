@@ -19,6 +19,9 @@ const MAX_OFF: f64 = 0.1;
 /// more than `MAX_OFF`.
 const SCRIPT_OFF: f64 = 2.0;
 
+/// States that are printed in a line.
+const STATES_A_LINE: usize = 7;
+
 /// A requirement of a battle: a number with an upper bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
@@ -41,6 +44,17 @@ pub struct ModeTicks {
     /// Name of the mode.
     pub mode: String,
     /// Number of ticks that end in the mode.
+    pub ticks: usize,
+}
+
+/// Number of ticks that a creature spent in a state of its brain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StateTicks {
+    /// The state, with the names of those around it.
+    pub state: String,
+    /// How often it was entered.
+    pub entered: usize,
+    /// Number of ticks that end in it.
     pub ticks: usize,
 }
 
@@ -74,6 +88,12 @@ pub struct Summary {
     pub ticks_inside: u32,
     /// How often the climber landed on anything.
     pub landings: u32,
+    /// How often the creature struck the climber.
+    pub blows: u32,
+    /// How often the climber died or was thrown out of the valley, and began again; 0 in a ride.
+    pub deaths: u32,
+    /// The states that the creature's brain was in; empty without a brain.
+    pub states: Vec<StateTicks>,
     /// Number of ticks in each built-in mode of the climber.
     pub modes: Vec<ModeTicks>,
     /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
@@ -179,6 +199,9 @@ impl Summary {
             falls: watch.falls,
             ticks_inside: watch.fell_through,
             landings: battle.landings(),
+            blows: battle.blows(),
+            deaths: battle.deaths(),
+            states: states(battle),
             modes: modes.to_vec(),
             arrived_s: battle.arrived(),
             riding_share: recording.riding_share(),
@@ -251,6 +274,22 @@ impl fmt::Display for Summary {
         if !self.turned_back.is_empty() {
             row(f, "clips back and forth", self.turned_back.join(", "))?;
         }
+        if !self.states.is_empty() {
+            let states = self.states.iter().map(|state| {
+                let name = state.state.rsplit('/').next().unwrap_or_default();
+                format!("{name} {}", state.entered)
+            });
+            let states: Vec<String> = states.collect();
+            for (index, states) in states.chunks(STATES_A_LINE).enumerate() {
+                let name = if index == 0 { "states, entered" } else { "" };
+                row(f, name, states.join(", "))?;
+            }
+            row(
+                f,
+                "blows, deaths",
+                format!("{}, {}", self.blows, self.deaths),
+            )?;
+        }
         if let Some(seconds) = self.arrived_s {
             row(f, "at the top", format!("after {seconds:.1} s"))?;
         }
@@ -294,4 +333,22 @@ impl fmt::Display for Summary {
         }
         Ok(())
     }
+}
+
+/// The states that a battle's creature was in.
+fn states(battle: &Battle<'_>) -> Vec<StateTicks> {
+    let Some(life) = battle.life() else {
+        return Vec::new();
+    };
+    let brain = life.kind().brain();
+    let line = |state| {
+        let (entered, ticks) = battle.recording().stays_in(state);
+        StateTicks {
+            state: brain.path(state).to_owned(),
+            entered,
+            ticks,
+        }
+    };
+    let all = brain.states().map(line);
+    all.filter(|state| state.ticks > 0).collect()
 }

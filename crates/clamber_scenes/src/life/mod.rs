@@ -10,8 +10,8 @@ use std::sync::Arc;
 use clamber_climber::{Blow, ClimberError};
 use clamber_colossus::brain::Act;
 use clamber_colossus::{
-    Brain, BrainError, ColossusError, Creature, CreatureConfig, CreatureEvent, CreatureKind,
-    CreatureParts, Noise, Person, Surroundings, Wound,
+    Brain, BrainError, ColossusError, Creature, CreatureConfig, CreatureEvent, CreatureKind, Noise,
+    Person, Surroundings, Wound,
 };
 use clamber_surface::mesh::TriangleId;
 use clamber_world::rapier3d::prelude::*;
@@ -20,7 +20,7 @@ use glam::DVec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use thiserror::Error;
 
-use crate::{CreatureError, giant, valley};
+use crate::{CreatureError, giant, person, valley};
 pub use options::LifeOptions;
 use rider::Rider;
 pub use tally::{StateLine, Tally};
@@ -142,11 +142,6 @@ impl Life {
         &self.tally
     }
 
-    /// The giant.
-    pub fn giant(&self) -> &Creature {
-        &self.giant
-    }
-
     /// The brain's name of the current state.
     pub fn state(&self) -> &str {
         self.kind.brain().path(self.giant.state().current())
@@ -166,7 +161,7 @@ impl Life {
         let people: Vec<Person> = self
             .riders
             .iter()
-            .map(|rider| rider.person(GIANT))
+            .map(|rider| person(&rider.climber, rider.id, GIANT))
             .collect();
         let around = Surroundings {
             terrain: &all,
@@ -329,14 +324,7 @@ fn kind(options: &LifeOptions) -> Result<CreatureKind, LifeError> {
         error,
     })?;
     let brain = Brain::from_json(&text, TICK).map_err(|error| LifeError::Brain { file, error })?;
-    let rig = giant::rig()?;
-    let parts = CreatureParts {
-        skeleton: rig.skeleton,
-        clips: rig.clips,
-        mesh: rig.collider,
-        weak_points: rig.weak_points,
-    };
-    Ok(CreatureKind::new(parts, brain)?)
+    Ok(giant::giant()?.with_brain(brain)?)
 }
 
 fn born(kind: &Arc<CreatureKind>, seed: u64) -> Result<Creature, LifeError> {

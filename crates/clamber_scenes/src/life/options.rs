@@ -30,17 +30,6 @@ impl LifeOptions {
     }
 }
 
-impl Default for LifeOptions {
-    fn default() -> Self {
-        Self {
-            minutes: 10.0,
-            seed: 1,
-            brain: None,
-            story: false,
-        }
-    }
-}
-
 fn minutes(text: &str) -> Result<f64, String> {
     let found: f64 = text
         .parse()

@@ -1,7 +1,7 @@
 //! A rider of the giant's life: it wanders, runs to the giant, climbs on it and about on it, and gets up again.
 
 use clamber_climber::{Climber, ClimberConfig, ClimberInput, ClimberMode};
-use clamber_colossus::{Creature, Person, Riding};
+use clamber_colossus::Creature;
 use clamber_surface::mesh::{SurfaceKind, TriangleId};
 use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
@@ -55,22 +55,6 @@ impl Rider {
     pub(super) fn rides(&self, giant: ObstacleId) -> bool {
         let support = self.climber.state().support;
         support.is_some_and(|support| support.attachment.obstacle == giant)
-    }
-
-    /// The rider as the giant senses it.
-    pub(super) fn person(&self, giant: ObstacleId) -> Person {
-        let state = self.climber.state();
-        let support = state
-            .support
-            .filter(|support| support.attachment.obstacle == giant);
-        Person {
-            id: self.id,
-            body: self.climber.body(),
-            riding: support.map(|support| Riding {
-                at: support.attachment.material,
-                hangs: state.mode == ClimberMode::Hanging,
-            }),
-        }
     }
 
     /// What it does in a tick.

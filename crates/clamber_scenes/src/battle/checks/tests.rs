@@ -6,9 +6,8 @@ use clamber_world::Obstacle;
 use glam::DVec3;
 
 use super::super::bot::Intent;
-use super::super::{Battle, BattleOptions, Choreography, Story};
+use super::super::{Battle, BattleOptions};
 use super::*;
-use crate::Creature;
 use crate::beast::beast;
 
 const HEIGHT: f64 = 20.0;
@@ -16,15 +15,13 @@ const HEIGHT: f64 = 20.0;
 /// A rider that has stood on a beast for a while, and a watch that has recorded its point there.
 struct Scene<'a> {
     battle: &'a Battle<'a>,
-    choreography: Choreography<'a>,
     watch: Watch,
 }
 
 impl<'a> Scene<'a> {
-    fn new(creature: &'a Creature, battle: &'a Battle<'a>) -> Self {
+    fn new(battle: &'a Battle<'a>) -> Self {
         let mut scene = Self {
             battle,
-            choreography: Choreography::new(creature, HEIGHT, Story::Ride).unwrap(),
             watch: Watch::default(),
         };
         // The first look records the point that the rider stands on.
@@ -37,8 +34,7 @@ impl<'a> Scene<'a> {
         let mut climber: Climber = self.battle.climber().clone();
         climber.restore(state).unwrap();
         let moment = Moment {
-            surface: self.battle.surface(),
-            choreography: &self.choreography,
+            performer: self.battle.performer(),
             height: HEIGHT,
             tick: self.battle.tick(),
         };
@@ -68,7 +64,7 @@ fn stood<R>(test: impl FnOnce(&mut Scene<'_>, ClimberState) -> R) -> R {
         state.support.is_some(),
         "the rider has not landed: {state:?}"
     );
-    test(&mut Scene::new(&creature, &battle), state)
+    test(&mut Scene::new(&battle), state)
 }
 
 /// The state with only its body moved.

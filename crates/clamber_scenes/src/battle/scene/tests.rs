@@ -1,4 +1,4 @@
-//! Rocks and riders that get lost are brought back, at rest.
+//! Rocks, riders and climbers that get lost are brought back, at rest; brains are read from files.
 
 use clamber_world::rapier3d::prelude::Vector;
 
@@ -81,9 +81,93 @@ fn a_rider_out_of_the_valley_is_dropped_again_with_the_velocity_of_the_creature_
         battle.step(Intent::Stand).unwrap();
         assert_eq!((battle.drops, battle.watch.falls), (2, 1));
         let state = battle.climber.state();
-        assert_eq!(state.velocity, battle.choreography.velocity());
+        assert_eq!(state.velocity, battle.performer.velocity());
         let speed = state.velocity.length();
         assert!((1.0..10.0).contains(&speed), "{speed} m/s");
         assert!(battle.watch.faults.first(FALLS).is_some());
     });
+}
+
+/// A climb against the giant with this brain file.
+fn climb(brain: Option<&str>) -> BattleOptions {
+    BattleOptions {
+        brain: brain.map(Into::into),
+        rocks: 0,
+        ..BattleOptions::default()
+    }
+}
+
+/// Writes a brain file for the giant that has only these states, and begins with `start`.
+fn brain_file(name: &str, states: &str) -> String {
+    let text = std::fs::read_to_string(crate::giant::brain_path()).unwrap();
+    let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
+    file["start"] = "start".into();
+    file["states"] = serde_json::from_str(states).unwrap();
+    let path = std::env::temp_dir().join(format!("clamber-{}-{name}.json", std::process::id()));
+    std::fs::write(&path, file.to_string()).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_climber_that_dies_or_is_lost_begins_again() {
+    let giant = crate::giant::giant().unwrap();
+    let mut battle = Battle::new(&giant, &climb(None)).unwrap();
+    let start = *battle.climber.state();
+    let dead = ClimberState {
+        hit_points: 0.0,
+        ..start
+    };
+    let lost = ClimberState {
+        position: DVec3::new(valley::SIZE, 0.0, 0.0),
+        ..start
+    };
+    for (deaths, state) in [(1, dead), (2, lost)] {
+        for _ in 0..240 {
+            battle.step(Intent::Climb).unwrap();
+        }
+        assert!(battle.climber.state().position.distance(start.position) > 5.0);
+        battle.climber.restore(state).unwrap();
+        battle.step(Intent::Climb).unwrap();
+        assert_eq!(battle.deaths(), deaths);
+        assert_eq!(*battle.climber.state(), start);
+    }
+}
+
+#[test]
+fn the_brain_of_a_file_decides_what_the_giant_does() {
+    let giant = crate::giant::giant().unwrap();
+    let asleep = brain_file("asleep", r#"{ "start": { "act": "sleep" } }"#);
+    let options = climb(Some(&asleep));
+    let mut battle = Battle::new(&giant, &options).unwrap();
+    std::fs::remove_file(asleep).unwrap();
+    while battle.tick() < options.ticks() && battle.arrived().is_none() {
+        battle.step(Intent::Climb).unwrap();
+    }
+    // Nothing shakes it off.
+    let arrived = battle.arrived().unwrap();
+    assert!(arrived < 50.0, "after {arrived} s");
+    assert_eq!((battle.blows(), battle.deaths()), (0, 0));
+}
+
+#[test]
+fn brains_that_cannot_be_used_say_why() {
+    let giant = crate::giant::giant().unwrap();
+    let said = |options: &BattleOptions| Battle::new(&giant, options).err().unwrap().to_string();
+    let missing = said(&climb(Some("/nowhere/brain.json")));
+    assert!(missing.contains("/nowhere/brain.json"), "{missing}");
+    let path = brain_file(
+        "broken",
+        r#"{ "start": { "act": { "once": "no such clip" } } }"#,
+    );
+    let broken = said(&climb(Some(&path)));
+    assert!(broken.contains("no such clip"), "{broken}");
+    let rides = BattleOptions {
+        story: Some(Story::Ride),
+        ..climb(Some(&path))
+    };
+    assert!(said(&rides).contains("--story climb"));
+    std::fs::write(&path, "{ \"states\": ").unwrap();
+    let cut = said(&climb(Some(&path)));
+    std::fs::remove_file(&path).unwrap();
+    assert!(cut.contains("line 1") && cut.contains(&path), "{cut}");
 }

@@ -102,11 +102,7 @@ fn draw_panels<'a>(
     Ok(())
 }
 
-fn draw_panel<'a>(
-    area: &Area<'a>,
-    samples: &[Sample],
-    panel: &Panel,
-) -> Result<(), DrawError<'a>> {
+fn draw_panel<'a>(area: &Area<'a>, samples: &[Sample], panel: &Panel) -> Result<(), DrawError<'a>> {
     let end = samples.last().map_or(1.0, |s| s.seconds);
     let values = samples.iter().filter_map(panel.value);
     let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), v| {
