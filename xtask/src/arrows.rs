@@ -72,6 +72,7 @@ const ALLOWED: [(&str, &[&str]); 19] = [
             "clamber_surface",
             "clamber_animation",
             "clamber_body",
+            "clamber_colossus",
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",

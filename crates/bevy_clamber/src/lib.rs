@@ -4,6 +4,8 @@ mod anchor;
 mod camera;
 mod climber;
 mod collider;
+#[cfg(feature = "colossus")]
+mod colossus;
 #[cfg(feature = "input")]
 mod controls;
 #[cfg(feature = "clamber_gltf")]
@@ -34,6 +36,12 @@ pub use climber::{
 };
 pub use collider::{
     ColliderError, ColliderFailure, ColliderNeeds, ColliderStatus, ColliderTag, SkinnedCollider,
+};
+#[cfg(feature = "colossus")]
+pub use colossus::{
+    BrainLoadError, Colossus, ColossusBody, ColossusBrain, ColossusEntered, ColossusHurt,
+    ColossusMarker, ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered,
+    ColossusStruck,
 };
 #[cfg(feature = "input")]
 pub use controls::{ClimberControls, ClimberControlsPlugin};
@@ -69,6 +77,8 @@ pub use clamber_animation;
 pub use clamber_body;
 /// The character.
 pub use clamber_climber;
+#[cfg(feature = "colossus")]
+pub use clamber_colossus;
 #[cfg(feature = "clamber_gltf")]
 pub use clamber_gltf;
 /// Surfaces, their queries and meshes.

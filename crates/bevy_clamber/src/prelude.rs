@@ -16,6 +16,11 @@ pub use crate::{
     ClimberFigure, ClimberFigurePlugin, ClimberPlant, RigAssets, RigJoints, RigMarkerPassed,
     RigMaterial, RigPlayer, RigPlayerPlugin, SpawnedRig,
 };
+#[cfg(feature = "colossus")]
+pub use crate::{
+    Colossus, ColossusBody, ColossusBrain, ColossusEntered, ColossusHurt, ColossusMarker,
+    ColossusNoise, ColossusPlanted, ColossusPlugin, ColossusStaggered, ColossusStruck,
+};
 #[cfg(feature = "gizmos")]
 pub use crate::{SurfaceGizmos, SurfaceGizmosPlugin};
 #[cfg(feature = "picking")]

@@ -48,6 +48,7 @@ fn no_systems_are_ambiguous_in_any_schedule() {
         bevy_input::InputPlugin,
         ClimberControlsPlugin,
         RigPlayerPlugin::default(),
+        ColossusPlugin::default(),
         bevy_gizmos::GizmoPlugin,
         SurfaceGizmosPlugin::default(),
         bevy_picking::PickingPlugin,

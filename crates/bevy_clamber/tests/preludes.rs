@@ -30,6 +30,10 @@ use_each! { ALWAYS, cfg(all()),
     ClimberCameraPlugin ClimberFilter ClimberInput ClimberModes ClimberPlugin ClimberState ColliderStatus ColliderTag CustomObstacle DrawnSurfaceQuery EntityHit GripRule PoseTiming
     PosedSurface SkinnedCollider SurfaceAnchor SurfaceFilter SurfaceKind SurfaceQuery SurfaceTag TargetMotion WorldOrigin
 }
+use_each! { COLOSSUS, cfg(feature = "colossus"),
+    Colossus ColossusBody ColossusBrain ColossusEntered ColossusHurt ColossusMarker ColossusNoise
+    ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck
+}
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
 use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
@@ -49,7 +53,7 @@ fn every_name_of_the_prelude_is_used() {
         .filter(|w| w.starts_with(char::is_uppercase))
         .collect();
     names.sort_unstable();
-    let mut used = [ALWAYS, DIAGNOSTICS, GIZMOS, INPUT, PICKING, RIGS].concat();
+    let mut used = [ALWAYS, COLOSSUS, DIAGNOSTICS, GIZMOS, INPUT, PICKING, RIGS].concat();
     used.sort_unstable();
     assert_eq!(names, used);
 }

@@ -14,5 +14,7 @@ pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
 pub use input::{ClimberBlow, ClimberInput};
 pub use obstacles::CustomObstacle;
 pub(crate) use obstacles::DrawnTouchable;
+#[cfg(feature = "colossus")]
+pub(crate) use obstacles::Touchable;
 pub use plugin::ClimberPlugin;
 pub use rules::{ClimberModes, Grip, GripRule};

@@ -88,7 +88,7 @@ pub(super) fn map_entities(on: &mut Attachment, mapper: &mut impl EntityMapper) 
 
 /// All that climbers can touch, beside each other.
 #[derive(SystemParam)]
-pub(super) struct Touchable<'w, 's> {
+pub(crate) struct Touchable<'w, 's> {
     surfaces: Query<'w, 's, (Entity, &'static PosedSurface)>,
     custom: Query<'w, 's, (Entity, &'static CustomObstacle)>,
     #[cfg(any(feature = "avian", feature = "rapier"))]
@@ -194,6 +194,32 @@ impl Touchable<'_, '_> {
             }
         }
         step(&all)
+    }
+
+    /// Calls `look` with what is no skin and no climber: worlds of physics engines, and obstacles of the app.
+    #[cfg(feature = "colossus")]
+    pub(crate) fn terrain<T>(&self, look: impl FnOnce(&[&dyn Obstacle]) -> T) -> T {
+        let mut all: Vec<&dyn Obstacle> = Vec::new();
+        #[cfg(feature = "avian")]
+        let avian = self.avian.as_ref().ok();
+        #[cfg(feature = "avian")]
+        let avian = avian.map(|avian| avian.terrain().with_origin(self.origin.0));
+        #[cfg(feature = "avian")]
+        all.extend(avian.as_ref().map(|avian| avian as &dyn Obstacle));
+        #[cfg(feature = "rapier")]
+        let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
+        #[cfg(feature = "rapier")]
+        let wanted = |handle, _: &RapierCollider| !is_skin(self.debris.as_deref(), handle);
+        #[cfg(feature = "rapier")]
+        let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
+        #[cfg(feature = "rapier")]
+        all.extend(rapier.as_ref().map(|rapier| rapier as &dyn Obstacle));
+        all.extend(
+            self.custom
+                .iter()
+                .map(|(_, custom)| &*custom.0 as &dyn Obstacle),
+        );
+        look(&all)
     }
 
     /// The entity of a material point: a collider's, for an engine's world.

@@ -6,4 +6,6 @@ mod player;
 
 pub(crate) use assets::transform;
 pub use assets::{RigAssets, RigJoints, RigMaterial, SpawnedRig, TooManyJoints};
+#[cfg(feature = "colossus")]
+pub(crate) use player::play;
 pub use player::{RigMarkerPassed, RigPlayer, RigPlayerPlugin};

@@ -127,7 +127,7 @@ enum PlayError {
     Animation(#[from] AnimationError),
 }
 
-fn play(
+pub(crate) fn play(
     time: Res<Time>,
     mut players: Query<(Entity, &mut RigPlayer, &mut RigJoints)>,
     mut transforms: Query<&mut Transform>,
