@@ -19,9 +19,7 @@ use clamber::mesh::TriangleId;
 use clamber::rig::{Palette, Playback};
 use clamber::surface::SkinnedSurface;
 use clamber::world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCapsule};
-use clamber_colossus::{
-    Brain, Creature, CreatureConfig, CreatureKind, Person, Riding, Surroundings,
-};
+use clamber_colossus::{Brain, Creature, CreatureConfig, Person, Riding, Surroundings};
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
