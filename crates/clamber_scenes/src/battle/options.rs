@@ -200,13 +200,15 @@ impl BattleOptions {
         })
     }
 
-    /// True if the battle lasts at least as long as its story by default.
-    pub(super) fn is_whole(&self) -> bool {
-        let whole = Self {
-            seconds: None,
-            ..self.clone()
-        };
-        self.seconds() >= whole.seconds()
+    /// True for the climb of the default seed against the giant and its brain, at its size, to the end.
+    pub(super) fn is_default_fight(&self) -> bool {
+        let default = Self::default();
+        self.story() == Story::Climb
+            && self.creature.is_none()
+            && self.brain.is_none()
+            && self.seed == default.seed
+            && self.height() == default.height()
+            && self.seconds() >= default.seconds()
     }
 
     /// Length of the battle in ticks, at least 1.

@@ -177,13 +177,11 @@ impl Summary {
             checks.push(check(NOT_RIDING, off, at_most));
             checks.push(check(FALLS, f64::from(watch.falls), 0.0));
         }
-        if !rides && options.is_whole() {
+        // With other seeds, brains and creatures the climber may lose the fight, or never be knocked over.
+        if !rides && options.is_default_fight() {
             let missed = if battle.arrived().is_some() { 0.0 } else { 1.0 };
             checks.push(check("never at the top", missed, 0.0));
-            // A creature from a file may lack a clip that shakes or stomps.
-            if options.creature.is_none() {
-                checks.push(check("modes never seen", never as f64, 0.0));
-            }
+            checks.push(check("modes never seen", never as f64, 0.0));
         }
         Self {
             creature: battle.creature().name.clone(),
@@ -290,8 +288,11 @@ impl fmt::Display for Summary {
                 format!("{}, {}", self.blows, self.deaths),
             )?;
         }
-        if let Some(seconds) = self.arrived_s {
-            row(f, "at the top", format!("after {seconds:.1} s"))?;
+        if !self.states.is_empty() || self.arrived_s.is_some() {
+            let arrived = self
+                .arrived_s
+                .map(|seconds| format!("after {seconds:.1} s"));
+            row(f, "at the top", arrived.unwrap_or("never".into()))?;
         }
         row(
             f,
