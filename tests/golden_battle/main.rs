@@ -16,7 +16,7 @@ use clamber_scenes::giant::giant;
 const RIDE: u64 = 0x70d4_c852_d4e0_450c;
 
 /// Hash of the climb.
-const CLIMB: u64 = 0xefa0_dd85_487b_fc63;
+const CLIMB: u64 = 0x6ba2_09fb_2ba0_b2cb;
 
 /// A tick of a battle: the climber's fields, the creature's pose and the rocks.
 fn add(run: &mut GoldenRun, battle: &Battle<'_>) {

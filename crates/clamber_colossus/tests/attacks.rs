@@ -244,3 +244,56 @@ fn blows_come_in_the_window_and_along_the_limb() {
         assert!(worst <= 10.0, "{name}: {worst} degrees");
     }
 }
+
+/// The foot that stomped stands where it came down until its clip lifts it, wherever its prey was.
+#[test]
+fn a_stomp_stands_where_it_came_down() {
+    let (_, act) = attacks()
+        .into_iter()
+        .find(|(name, _)| name == "stomp_right")
+        .unwrap();
+    let before = before(&act);
+    let ground = HalfSpace::below(0.0);
+    let terrain: [&dyn Obstacle; 1] = [&ground];
+    let mut furthest = 0f64;
+    for (distance, degrees) in [2.0, 6.0, 9.0, 12.0, 20.0]
+        .into_iter()
+        .flat_map(|distance| [-80.0f64, -40.0, 0.0, 40.0].map(|degrees| (distance, degrees)))
+    {
+        let angle = degrees.to_radians();
+        let at = DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)) * distance;
+        let mut giant = before.clone();
+        let people = [person(at)];
+        let (mut down, mut stood) = (None, 0);
+        for tick in 0..400 {
+            let around = Surroundings {
+                terrain: &terrain,
+                people: &people,
+                ..Surroundings::default()
+            };
+            let report = giant.step(&around).unwrap();
+            let landed = report.events.iter().find_map(|event| match event {
+                CreatureEvent::Plant { leg: 1, place } => Some(*place),
+                _ => None,
+            });
+            if let (None, Some(place)) = (down, landed) {
+                down = Some((tick, place));
+                furthest = furthest.max(place.with_y(0.0).length());
+            }
+            // It is lifted a second after it came down.
+            let Some((since, _)) = down.filter(|(since, _)| (6..54).contains(&(tick - since)))
+            else {
+                continue;
+            };
+            let what = format!("{distance} m, {degrees} degrees, {} ticks", tick - since);
+            assert!(giant.state().is_planted(1), "{what}");
+            let clearance = giant.foot_clearance(1, &terrain).unwrap();
+            let share = clearance / giant.kind().foot_length(1);
+            assert!(share.abs() < 0.01, "{what}: {clearance} m");
+            stood += 1;
+        }
+        assert_eq!(stood, 48, "{distance} m, {degrees} degrees");
+    }
+    // It does aim.
+    assert!(furthest > 9.5, "{furthest}");
+}

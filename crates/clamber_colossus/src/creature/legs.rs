@@ -220,6 +220,7 @@ impl Creature {
             may_step: others_stand && self.state.hips.has_shifted(),
             looks: (self.state.ticks + index as u64).is_multiple_of(LOOKS),
             is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
+            is_lifted: !is_idle && contacts.is_some_and(|contacts| contacts.lifts_after(time)),
         }
     }
 

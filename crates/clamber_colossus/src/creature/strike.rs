@@ -96,10 +96,12 @@ impl Creature {
         let level = DVec3::new(way.x, 0.0, way.z);
         let length = level.length();
         // Further away than it can aim, it goes as far as it can: it shows what it means.
-        self.state.aim = if length > strike.aim {
+        let aim = if length > strike.aim {
             level * (strike.aim / length)
         } else {
             level
         };
+        let in_model = world.rotation.conjugate() * aim / self.config.scale;
+        self.state.aim = aim * strike.reach(in_model);
     }
 }

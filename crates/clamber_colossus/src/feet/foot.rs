@@ -103,6 +103,8 @@ pub(crate) struct FootGoal {
     pub(crate) looks: bool,
     /// True if the clip walks or turns: it brings steps of its own.
     pub(crate) is_gait: bool,
+    /// True if the clip lifts the foot by itself before it ends.
+    pub(crate) is_lifted: bool,
 }
 
 /// A foot that stands further from where its clip does takes a step: a share of the leg's length, and radians.
@@ -240,7 +242,7 @@ impl Foot {
                 let gap = goal.settled - at.ball;
                 let level = DVec3::new(gap.x, 0.0, gap.z).length();
                 let is_off = level > STEPS_BEYOND * goal.leg || self.yaw.value.abs() > STEPS_TURNED;
-                self.wants_step = is_off && !goal.is_gait;
+                self.wants_step = is_off && !goal.is_gait && !goal.is_lifted;
                 let is_gone = goal.looks
                     && sole
                         .below(at.ball)

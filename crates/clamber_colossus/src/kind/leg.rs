@@ -178,6 +178,12 @@ impl Contacts {
         left.max_by(f64::total_cmp)
     }
 
+    /// True if the foot stands at a time, and is lifted before the clip ends, once at least.
+    pub(crate) fn lifts_after(&self, time: f64) -> bool {
+        let end = self.duration - 2.0 / SAMPLES;
+        self.left(time).is_some_and(|left| time + left < end)
+    }
+
     /// True if the foot stands at a time.
     pub(crate) fn stands(&self, time: f64) -> bool {
         let inside = |time: f64| {

@@ -21,7 +21,19 @@ pub(crate) struct Strike {
     pub(crate) spot: DVec3,
     /// The leg that strikes, if one does: its index.
     pub(crate) leg: Option<usize>,
+    /// From its hip to where its ankle comes down, in model space, as the hip moves on while the foot stands there.
+    reaches: Vec<DVec3>,
+    /// Length of that leg that is used.
+    length: f64,
 }
+
+/// A leg that strikes is stretched to this share of its length at most.
+const STRETCH: f64 = 0.97;
+
+/// The hip is looked at so often in a second; the foot has left its place when its ankle is further from it than this
+/// share of the leg's length.
+const LOOKS: f64 = 20.0;
+const LEFT: f64 = 0.03;
 
 impl Strike {
     pub(crate) fn new(
@@ -54,7 +66,30 @@ impl Strike {
         let spot = joint_in_model(names.skeleton, &pose, end)
             .map_or(DVec3::ZERO, |frame| frame.translation);
         let leg = legs.iter().position(|leg| limb.contains(&leg.ankle));
+        let mut reaches = Vec::new();
+        let length = leg.map_or(0.0, |leg| legs[leg].length);
+        if let Some(leg) = leg.map(|leg| &legs[leg]) {
+            let at = |time: f64| {
+                let pose = clip
+                    .sample(names.clips.rest(), time, Playback::Clamp)
+                    .ok()?;
+                let place = |joint| Some(joint_in_model(names.skeleton, &pose, joint)?.translation);
+                Some([place(leg.hip)?, place(leg.ankle)?])
+            };
+            let steps = ((clip.duration() - to) * LOOKS).max(0.0) as u32;
+            let times = (0..=steps).map(|step| to + f64::from(step) / LOOKS);
+            let mut down = None;
+            for [hip, ankle] in times.map_while(at) {
+                let down = *down.get_or_insert(ankle);
+                if ankle.distance(down) > LEFT * length {
+                    break;
+                }
+                reaches.push(down - hip);
+            }
+        }
         Ok(Self {
+            reaches,
+            length,
             limb,
             active: [from, to],
             damage: attack.damage,
@@ -63,6 +98,21 @@ impl Strike {
             spot,
             leg,
         })
+    }
+
+    /// How much of a way the spot can be moved along it, as a share: a leg does not reach everywhere. The way is in model
+    /// space.
+    pub(crate) fn reach(&self, way: DVec3) -> f64 {
+        let length = STRETCH * self.length;
+        let share = |from: &DVec3| {
+            // Where |from + share * way| is the leg's length.
+            let (a, b) = (way.length_squared(), from.dot(way));
+            let c = from.length_squared() - length * length;
+            let root = (b * b - a * c).max(0.0).sqrt();
+            if a > 0.0 { (root - b) / a } else { 1.0 }
+        };
+        let shares = self.reaches.iter().map(share);
+        shares.fold(1.0, f64::min).max(0.0)
     }
 
     /// True for skin of a joint that hurts.
