@@ -35,6 +35,16 @@ const FILE: &str = r#"{
   }
 }"#;
 
+/// The first file that the documentation shows is whole.
+#[test]
+fn the_file_of_the_documentation_loads() {
+    let form = include_str!("../src/brain/form.md");
+    let file = form.split("```json").nth(1).unwrap();
+    let file = file.split("```").next().unwrap();
+    let brain = Brain::from_json(file, TICK).unwrap();
+    assert!(brain.find("roar").is_some());
+}
+
 fn brain() -> Brain {
     Brain::from_json(FILE, TICK).unwrap()
 }

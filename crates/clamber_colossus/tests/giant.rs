@@ -20,6 +20,15 @@ use glam::DVec3;
 use support::{TICK, brain_file, creature, ground, kind};
 
 /// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
+/// The file that the documentation shows lives on the giant.
+#[test]
+fn the_brain_of_the_documentation_fits_the_giant() {
+    let form = include_str!("../src/brain/form.md");
+    let file = form.split("```json").nth(1).unwrap();
+    let kind = support::kind(file.split("```").next().unwrap());
+    assert_eq!(kind.brain().file().body.legs.len(), 2);
+}
+
 #[test]
 fn its_brain_lives_through_anything() {
     let brain = Brain::from_json(&brain_file(), TICK).unwrap();
