@@ -24,7 +24,8 @@ fn kind() -> Option<Arc<CreatureKind>> {
         return None;
     };
     let rig = clamber_gltf::load(PathBuf::from(root).join("models/Trex.glb")).unwrap();
-    let text = include_str!("trex.brain.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/trex.brain.json");
+    let text = std::fs::read_to_string(path).unwrap();
     assert!(text.lines().count() <= 60);
     let parts = CreatureParts {
         skeleton: rig.skeleton,
@@ -32,7 +33,7 @@ fn kind() -> Option<Arc<CreatureKind>> {
         mesh: rig.collider,
         weak_points: rig.weak_points,
     };
-    let brain = Brain::from_json(text, TICK).unwrap();
+    let brain = Brain::from_json(&text, TICK).unwrap();
     Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
 }
 
