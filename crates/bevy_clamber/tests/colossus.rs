@@ -46,7 +46,7 @@ fn brain(states: Option<&str>) -> String {
 }
 
 /// An app with level ground whose frames are ticks, and which loads assets from a folder.
-fn app(folder: &Path) -> App {
+fn app(folder: &Path, tick: f64) -> App {
     let mut app = App::new();
     app.add_plugins((
         TaskPoolPlugin::default(),
@@ -63,9 +63,9 @@ fn app(folder: &Path) -> App {
     ))
     .init_asset::<Mesh>()
     .init_asset::<SkinnedMeshInverseBindposes>()
-    .insert_resource(Time::<Fixed>::from_seconds(TICK))
+    .insert_resource(Time::<Fixed>::from_seconds(tick))
     .insert_resource(TimeUpdateStrategy::ManualDuration(
-        Time::<Fixed>::from_seconds(TICK).timestep(),
+        Time::<Fixed>::from_seconds(tick).timestep(),
     ));
     app.finish();
     app.cleanup();
@@ -136,14 +136,15 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-#[test]
-fn it_lives_as_it_does_without_an_app() {
-    let folder = folder("alone");
-    let mut app = app(&folder);
+/// At this size and length of a tick, with Bevy's origin at this place of the world.
+fn lives_as_without_an_app(size: f32, tick: f64, origin: DVec3) {
+    let mut app = app(&std::env::temp_dir(), tick);
+    app.insert_resource(WorldOrigin(origin));
     let text = brain(None);
     let handle = add(&mut app, &text);
-    let place =
-        Transform::from_xyz(30.0, 0.0, -12.0).with_rotation(Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
+    let place = Transform::from_xyz(30.0, 0.0, -12.0)
+        .with_rotation(Quat::from_xyzw(0.0, 0.6, 0.0, 0.8))
+        .with_scale(Vec3::splat(size));
     let spawned = giant(&mut app, handle, place);
 
     let rig = clamber_gltf::load(COLOSSUS).unwrap();
@@ -158,7 +159,8 @@ fn it_lives_as_it_does_without_an_app() {
     let kind = Arc::new(CreatureKind::new(parts, made).unwrap());
     let ahead = (place.rotation * Vec3::Z).as_dvec3();
     let config = CreatureConfig {
-        position: place.translation.as_dvec3(),
+        position: origin + place.translation.as_dvec3(),
+        scale: f64::from(size),
         yaw: libm::atan2(ahead.x, ahead.z),
         seed: 7,
         ..CreatureConfig::default()
@@ -177,8 +179,8 @@ fn it_lives_as_it_does_without_an_app() {
         let found = body(&app, spawned.root).creature();
         assert!(found.state() == alone.state(), "tick {tick}");
         let root = app.world().get::<Transform>(spawned.root).unwrap();
-        let at = alone.surface().world_from_model().translation.as_vec3();
-        assert_eq!(root.translation, at);
+        let at = alone.surface().world_from_model().translation - origin;
+        assert_eq!(root.translation, at.as_vec3());
         moved = moved.max(root.translation.distance(place.translation));
         // The skin that climbers touch is in the creature's pose.
         let thigh = alone.kind().skeleton().find("thigh.L").unwrap();
@@ -193,9 +195,14 @@ fn it_lives_as_it_does_without_an_app() {
 }
 
 #[test]
+fn it_lives_as_it_does_without_an_app() {
+    lives_as_without_an_app(1.0, TICK, DVec3::ZERO);
+    lives_as_without_an_app(0.5, 0.02, DVec3::new(1e5, 0.0, -3e5));
+}
+
+#[test]
 fn it_notices_a_climber_and_strikes_it() {
-    let folder = folder("strikes");
-    let mut app = app(&folder);
+    let mut app = app(&std::env::temp_dir(), TICK);
     watch::<ColossusEntered>(&mut app);
     watch::<ColossusStruck>(&mut app);
     watch::<ColossusPlanted>(&mut app);
@@ -231,8 +238,7 @@ fn it_notices_a_climber_and_strikes_it() {
 
 #[test]
 fn it_feels_who_rides_it_and_arrows_in_its_weak_points() {
-    let folder = folder("ridden");
-    let mut app = app(&folder);
+    let mut app = app(&std::env::temp_dir(), TICK);
     watch::<ColossusHurt>(&mut app);
     let text = brain(Some(r#"{ "start": { "act": { "play": "idle" } } }"#));
     let handle = add(&mut app, &text);
@@ -262,8 +268,8 @@ fn it_feels_who_rides_it_and_arrows_in_its_weak_points() {
         .world_mut()
         .get_mut::<ColossusBody>(spawned.root)
         .unwrap();
-    assert_eq!(body.strike(Vec3::new(0.0, 500.0, 0.0), 0.2, 5.0), 0.0);
-    assert_eq!(body.strike(open.as_vec3(), 0.2, 5.0), 0.2);
+    assert_eq!(body.strike(DVec3::Y * 500.0, 0.2, 5.0), 0.0);
+    assert_eq!(body.strike(open, 0.2, 5.0), 0.2);
     app.update();
     let hurt = &app.world().resource::<Seen<ColossusHurt>>().0;
     assert_eq!(hurt.len(), 1);
@@ -273,7 +279,7 @@ fn it_feels_who_rides_it_and_arrows_in_its_weak_points() {
 #[test]
 fn a_changed_file_changes_it_while_it_lives() {
     let folder = folder("reload");
-    let mut app = app(&folder);
+    let mut app = app(&folder, TICK);
     let states = |walks: &str, fade: &str| {
         brain(Some(&format!(
             r#"{{ "start": {{ "act": {{ "play": "idle" }}, "fade": {fade}, "transitions": [
@@ -342,5 +348,11 @@ fn a_changed_file_changes_it_while_it_lives() {
     assert_eq!(body(&app, spawned.root).state(), "start");
     let now = body(&app, spawned.root).creature().state().position();
     assert!(now.distance(at) < 5.0, "from {at} to {now}");
+    // Ticks of another length: it goes on.
+    let ticks = body(&app, spawned.root).creature().state().ticks();
+    let mut time = app.world_mut().resource_mut::<Time<Fixed>>();
+    time.set_timestep(Duration::from_millis(20));
+    wait(&mut app, &|app| brain(app).tick() == 0.02);
+    assert!(body(&app, spawned.root).creature().state().ticks() > ticks);
     std::fs::remove_dir_all(folder).unwrap();
 }

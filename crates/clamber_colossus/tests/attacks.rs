@@ -7,22 +7,10 @@ mod support;
 use clamber_animation::rig::Playback;
 use clamber_animation::{joint_in_model, rig::JointId};
 use clamber_colossus::brain::Act;
-use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Person, Surroundings};
-use clamber_world::{HalfSpace, Obstacle, WorldCapsule};
+use clamber_colossus::{Creature, CreatureConfig, CreatureEvent, Surroundings};
+use clamber_world::{HalfSpace, Obstacle};
 use glam::DVec3;
-use support::{TICK, brain_file, brain_with, creature, kind};
-
-/// Somebody of 1.75 m who stands at a place.
-fn person(at: DVec3) -> Person {
-    Person {
-        id: 1,
-        body: WorldCapsule {
-            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
-            radius: 0.3,
-        },
-        riding: None,
-    }
-}
+use support::{TICK, brain_file, brain_with, creature, kind, person};
 
 /// The states of the giant's own brain that attack, each with its act as text.
 fn attacks() -> Vec<(String, serde_json::Value)> {

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod support;
+
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,10 +12,9 @@ use clamber_colossus::{
     Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person, Riding, Surroundings,
 };
 use clamber_surface::mesh::TriangleId;
-use clamber_world::{HalfSpace, MaterialPoint, Obstacle, WorldCapsule};
+use clamber_world::{HalfSpace, MaterialPoint, Obstacle};
 use glam::DVec3;
-
-const TICK: f64 = 1.0 / 60.0;
+use support::{TICK, person};
 
 /// Height that it is scaled to, metres.
 const HEIGHT: f64 = 20.0;
@@ -35,17 +36,6 @@ fn kind() -> Option<Arc<CreatureKind>> {
     };
     let brain = Brain::from_json(&text, TICK).unwrap();
     Some(Arc::new(CreatureKind::new(parts, brain).unwrap()))
-}
-
-fn person(at: DVec3) -> Person {
-    Person {
-        id: 1,
-        body: WorldCapsule {
-            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
-            radius: 0.3,
-        },
-        riding: None,
-    }
 }
 
 #[test]

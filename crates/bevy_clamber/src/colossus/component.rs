@@ -1,7 +1,5 @@
 use bevy_asset::Handle;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
-use bevy_transform::components::Transform;
 use clamber_colossus::{Creature, CreatureState, Wound};
 use clamber_world::Obstacle;
 use glam::DVec3;
@@ -38,7 +36,7 @@ use super::ColossusBrain;
 /// ```
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct Colossus {
-    /// What it lives by.
+    /// Its brain.
     pub brain: Handle<ColossusBrain>,
     /// Seed of its lots.
     pub seed: u64,
@@ -69,9 +67,6 @@ impl Colossus {
 #[derive(Component, Clone, Debug)]
 pub struct ColossusBody {
     pub(super) creature: Creature,
-    /// What was written to the root last, and the origin that it is relative to.
-    pub(super) shown: Transform,
-    pub(super) origin: DVec3,
 }
 
 impl ColossusBody {
@@ -86,12 +81,11 @@ impl ColossusBody {
         brain.path(self.creature.state().current())
     }
 
-    /// Strikes it at a place in Bevy's world space: with an arrow or a blade. Returns the damage done, which is 0 unless an open
+    /// Strikes it, with an arrow or a blade, at a place in world space: that of Bevy plus [`WorldOrigin`](crate::WorldOrigin). Returns the damage done, which is 0 unless an open
     /// weak point is there. It feels the blow in any case.
     ///
     /// `reach` is how far from its skin the place may be, metres; beyond it nothing happens.
-    pub fn strike(&mut self, place: Vec3, damage: f64, reach: f64) -> f64 {
-        let place = place.as_dvec3() + self.origin;
+    pub fn strike(&mut self, place: DVec3, damage: f64, reach: f64) -> f64 {
         let near = self.creature.surface().closest_point(place, reach);
         near.map_or(0.0, |near| {
             self.creature.hurt(&Wound {

@@ -25,23 +25,22 @@ use crate::{
     WorldOrigin,
 };
 
-/// Ticks that differ by less than this share are of the same length.
-const SAME_TICK: f64 = 1e-9;
-
 /// Gives new creatures their bodies, and takes over what the app or a file has changed.
 pub(super) fn renew(
-    time: Res<Time>,
-    origin: Res<WorldOrigin>,
+    (time, origin): (Res<Time>, Res<WorldOrigin>),
     brains: Res<Assets<ColossusBrain>>,
     mut loaded: MessageReader<AssetEvent<ColossusBrain>>,
     mut creatures: Query<(Entity, Ref<Colossus>, &RigJoints, Option<&mut ColossusBody>)>,
     transforms: Query<&Transform>,
+    mut last_tick: Local<f64>,
     mut commands: Commands,
 ) {
     let tick = time.delta_secs_f64();
     if tick <= 0.0 {
         return;
     }
+    // A brain counts in ticks.
+    let has_other_ticks = std::mem::replace(&mut *last_tick, tick) != tick;
     let loaded: Vec<_> = loaded
         .read()
         .filter_map(|event| match event {
@@ -53,14 +52,10 @@ pub(super) fn renew(
         let Some(brain) = brains.get(&colossus.brain) else {
             continue;
         };
-        let has_other_ticks = body.as_ref().is_some_and(|body| {
-            let made_for = body.creature.kind().brain().tick();
-            (made_for - tick).abs() > SAME_TICK * tick
-        });
         if !(colossus.is_changed() || loaded.contains(&colossus.brain.id()) || has_other_ticks) {
             continue;
         }
-        let Ok(shown) = transforms.get(entity).copied() else {
+        let Ok(root) = transforms.get(entity) else {
             tracing::error!("no creature for {entity}: it has no Transform");
             continue;
         };
@@ -68,15 +63,13 @@ pub(super) fn renew(
         let made = brain
             .for_ticks(tick)
             .map_err(ColossusError::from)
-            .and_then(|brain| make(joints.rig(), brain, &colossus, &shown, origin.0, before));
+            .and_then(|brain| make(joints.rig(), brain, &colossus, root, origin.0, before));
         match (made, body) {
             (Ok(creature), Some(mut body)) => body.creature = creature,
             (Ok(creature), None) => {
-                commands.entity(entity).try_insert(ColossusBody {
-                    creature,
-                    shown,
-                    origin: origin.0,
-                });
+                commands
+                    .entity(entity)
+                    .try_insert(ColossusBody { creature });
             }
             (Err(error), Some(_)) => {
                 tracing::error!("creature {entity} keeps its brain: {error}");
@@ -201,10 +194,8 @@ pub(super) fn step(
             }
             tell_struck((entity, climber), creature, blow, origin.0, &mut commands);
         }
-        let shown = placed(creature.surface().world_from_model(), origin.0);
-        (body.shown, body.origin) = (shown, origin.0);
         if let Ok(mut root) = transforms.get_mut(entity) {
-            root.set_if_neq(shown);
+            root.set_if_neq(placed(creature.surface().world_from_model(), origin.0));
         }
         let locals = &body.creature.pose().transforms;
         for (joint, local) in joints.joints().iter().zip(locals) {

@@ -8,7 +8,8 @@
 
 use std::sync::Arc;
 
-use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, CreatureParts};
+use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person};
+use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::VertexId;
 use clamber_world::rapier3d::parry::utils::Array2;
 use clamber_world::rapier3d::prelude::{
@@ -134,5 +135,17 @@ impl Feel {
         let keep = libm::exp(-TICK / 0.1);
         self.felt = self.felt * keep + (now - velocity) / TICK * (1.0 - keep);
         self.felt.length()
+    }
+}
+
+/// Somebody of 1.75 m who stands at a place.
+pub(crate) fn person(at: DVec3) -> Person {
+    Person {
+        id: 1,
+        body: WorldCapsule {
+            ends: [at + DVec3::Y * 0.3, at + DVec3::Y * 1.45],
+            radius: 0.3,
+        },
+        riding: None,
     }
 }

@@ -56,7 +56,7 @@ fn brain(creature: &Creature) -> Brain {
     };
     let moods = brain.moods().enumerate();
     let moods = moods.map(|(index, name)| (name, state.brain().mood(brain, index)));
-    // Those that say nothing are left out.
+    // Those that are 0 or infinite are left out below.
     let senses =
         clamber_colossus::Sense::all().map(|sense| (sense.name(), state.senses().get(sense)));
     let own = brain.own_senses().iter().enumerate();
