@@ -19,5 +19,5 @@ pub use glam;
 pub use mask::JointMask;
 pub use root_motion::RootDelta;
 pub use set::{AnimationSet, ClipId, MaskId};
-pub use space::joint_in_model;
+pub use space::{joint_in_model, joints_in_model};
 pub use spring::{RotationSpring, Spring, Springy, damp};

@@ -1,6 +1,6 @@
 use core::fmt;
 
-use clamber_surface::rig::{Clip, JointId, Pose, RigError, Skeleton};
+use clamber_surface::rig::{Clip, JointId, Playback, Pose, RigError, Skeleton, Transform};
 
 use crate::root_motion::RootMotion;
 use crate::{AnimationError, JointMask};
@@ -27,6 +27,8 @@ pub struct MaskId(pub u32);
 pub struct AnimationSet {
     rest: Pose,
     clips: Vec<Clip>,
+    /// Of each clip, the joints that it moves, in ascending order, as they are at its start.
+    starts: Vec<Vec<(JointId, Transform)>>,
     masks: Vec<JointMask>,
     root: Option<RootMotion>,
 }
@@ -43,8 +45,11 @@ impl AnimationSet {
             let joint = bad.joint();
             return Err(RigError::JointOutOfRange { joint, joints }.into());
         }
+        let rest = skeleton.rest_pose();
+        let starts = clips.iter().map(|clip| start_of(clip, &rest));
         Ok(Self {
-            rest: skeleton.rest_pose(),
+            starts: starts.collect::<Result<_, _>>()?,
+            rest,
             clips,
             masks: Vec::new(),
             root: None,
@@ -114,6 +119,11 @@ impl AnimationSet {
         })
     }
 
+    /// The joints that a clip moves, in ascending order, as they are at its start: the motion of the root begins there.
+    pub(crate) fn start(&self, id: ClipId) -> &[(JointId, Transform)] {
+        self.starts.get(id.0 as usize).map_or(&[], Vec::as_slice)
+    }
+
     pub(crate) fn mask(&self, id: MaskId) -> Result<&JointMask, AnimationError> {
         self.masks.get(id.0 as usize).ok_or(AnimationError::NoMask {
             found: id.0,
@@ -124,4 +134,13 @@ impl AnimationSet {
     pub(crate) fn root(&self) -> Option<&RootMotion> {
         self.root.as_ref()
     }
+}
+
+fn start_of(clip: &Clip, rest: &Pose) -> Result<Vec<(JointId, Transform)>, RigError> {
+    let mut joints: Vec<JointId> = clip.channels().iter().map(|c| c.joint()).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let pose = clip.sample(rest, 0.0, Playback::Clamp)?;
+    let start = |joint: JointId| (joint, pose.transforms[joint.index()]);
+    Ok(joints.into_iter().map(start).collect())
 }

@@ -11,11 +11,25 @@ use crate::pose::{rotation_of, store_rotation};
 /// # Panics
 /// If the pose or the skeleton lacks the joint.
 pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> DAffine3 {
+    from_above(skeleton, pose, joint, None)
+}
+
+/// The same, from the joint to one above it whose transform in model space is known, or to its root if none is.
+fn from_above(
+    skeleton: &Skeleton,
+    pose: &Pose,
+    joint: JointId,
+    above: Option<(JointId, &DAffine3)>,
+) -> DAffine3 {
+    let known = |joint: JointId| above.filter(|(above, _)| *above == joint);
     let parent = |joint: JointId| skeleton.joints()[joint.index()].parent;
     // Rotations and translations compose with less work than matrices; most joints have no scale.
     let (mut turn, mut place) = (DQuat::IDENTITY, DVec3::ZERO);
     let mut next = Some(joint);
     while let Some(joint) = next {
+        if known(joint).is_some() {
+            break;
+        }
         let local = &pose.transforms[joint.index()];
         if local.scale != Vec3::ONE {
             break;
@@ -27,6 +41,9 @@ pub(crate) fn model_from_joint(skeleton: &Skeleton, pose: &Pose, joint: JointId)
     }
     let mut model = DAffine3::from_rotation_translation(turn, place);
     while let Some(joint) = next {
+        if let Some((_, frame)) = known(joint) {
+            return *frame * model;
+        }
         model = pose.transforms[joint.index()].to_affine() * model;
         next = parent(joint);
     }
@@ -39,6 +56,27 @@ pub fn joint_in_model(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> Optio
     let joints = skeleton.joints().len();
     let is_there = joint.index() < joints && pose.transforms.len() == joints;
     is_there.then(|| model_from_joint(skeleton, pose, joint))
+}
+
+/// [`joint_in_model`] of several joints, such as those of a limb. A joint that stands right after one above it goes on from
+/// there: give a limb's joints from its root to its tip.
+pub fn joints_in_model<const N: usize>(
+    skeleton: &Skeleton,
+    pose: &Pose,
+    joints: [JointId; N],
+) -> Option<[DAffine3; N]> {
+    let count = skeleton.joints().len();
+    let are_there = joints.iter().all(|joint| joint.index() < count);
+    if !are_there || pose.transforms.len() != count {
+        return None;
+    }
+    let mut frames = [DAffine3::IDENTITY; N];
+    for (index, joint) in joints.into_iter().enumerate() {
+        let above = index.checked_sub(1);
+        let above = above.map(|above| (joints[above], &frames[above]));
+        frames[index] = from_above(skeleton, pose, joint, above);
+    }
+    Some(frames)
 }
 
 /// [`model_from_joint`] of a joint's parent; the identity for a root.
@@ -104,6 +142,18 @@ pub(crate) fn invertible(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkErro
     }
 }
 
+/// The inverse of a matrix that only rotates, mirrors and scales uniformly.
+///
+/// # Errors
+/// As [`uniform_scale`].
+pub(crate) fn uniform_inverse(matrix: &DMat3, joint: JointId) -> Result<DMat3, IkError> {
+    if is_orthonormal(matrix) {
+        return Ok(matrix.transpose());
+    }
+    uniform_scale(matrix, joint)?;
+    invertible(matrix, joint)
+}
+
 /// Turns a joint, and all below it, by a rotation in model space about the joint's own origin.
 ///
 /// # Errors
@@ -121,8 +171,7 @@ pub(crate) fn turn_in_model(
     let axis = if is_orthonormal(&parent) {
         parent.transpose() * vector * parent.determinant().signum()
     } else {
-        uniform_scale(&parent, joint)?;
-        let axis = invertible(&parent, joint)? * vector;
+        let axis = uniform_inverse(&parent, joint)? * vector;
         axis.normalize_or_zero() * vector.length() * parent.determinant().signum()
     };
     let local = DQuat::from_xyzw(axis.x, axis.y, axis.z, turn.w);

@@ -1,5 +1,4 @@
 use clamber_animation::AnimationError;
-use clamber_animation::ik::IkError;
 use clamber_animation::rig::RigError;
 use clamber_surface::surface::SurfaceError;
 use thiserror::Error;
@@ -16,9 +15,6 @@ pub enum ColossusError {
     /// The clips do not fit the skeleton.
     #[error(transparent)]
     Animation(#[from] AnimationError),
-    /// A leg or the head cannot be moved by inverse kinematics.
-    #[error(transparent)]
-    Ik(#[from] IkError),
     /// A pose does not fit the skeleton.
     #[error(transparent)]
     Rig(#[from] RigError),

@@ -8,7 +8,7 @@ use clamber_animation::rig::JointId;
 use clamber_animation::{PoseBuffers, joint_in_model};
 use clamber_colossus::{Creature, CreatureConfig, Surroundings};
 use clamber_surface::mesh::VertexId;
-use clamber_world::rapier3d::prelude::PhysicsWorld;
+use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::DVec3;
 use support::{Feel, Sole, TICK, add_boulders, ground, sole};
@@ -79,11 +79,17 @@ fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
             let world = giant.surface().world_from_model();
             place(&giant, joint) - world.transform_point(frame.translation) + height
         });
-        let mut felt: Vec<f64> = (0..4).map(|at| feels[at].step(added[at])).collect();
-        // Where a foot does not follow its clip, all of its motion counts, and not that of the clip.
-        for foot in 0..2 {
-            let all = feels[4 + foot].step(place(&giant, watched[2 + foot]));
-            felt[2 + foot] = felt[2 + foot].min(all);
+        let mut felt: Vec<f64> = (0..2).map(|at| feels[at].step(added[at])).collect();
+        // While a foot does not follow its clip, all of its motion counts, and not that of the clip.
+        for foot in 2..4 {
+            let over_clip = feels[foot].raw(added[foot]);
+            let all = feels[2 + foot].raw(place(&giant, watched[foot]));
+            let less = if all.length() < over_clip.length() {
+                all
+            } else {
+                over_clip
+            };
+            felt.push(feels[foot].filter(less));
         }
         if tick > 120 {
             figures.hips = figures.hips.max(felt[0]);
@@ -166,8 +172,7 @@ fn config() -> CreatureConfig {
 fn on_level_ground() {
     let figures = walk(&ground(|_, _| 0.0), config(), 120.0);
     check(&figures);
-    // 6 is wanted for all of them: a foot that lets go of the ground because its leg is too short is faster.
-    assert!(figures.jerks <= 0.01, "{figures:?}");
+    assert!(figures.toes <= 6.0, "{figures:?}");
 }
 
 #[test]
@@ -175,8 +180,8 @@ fn on_a_slope_of_25_degrees() {
     let slope = libm::tan(25f64.to_radians());
     let figures = walk(&ground(|_, z| slope * z), config(), 120.0);
     check(&figures);
-    // 6 is wanted for all of them: steps uphill are too long for it where the creature turns.
-    assert!(figures.jerks <= 0.03, "{figures:?}");
+    // 6 is wanted for all of them: uphill a leg may be too short for its step, and then pulls the foot off the ground.
+    assert!(figures.jerks <= 0.01, "{figures:?}");
 }
 
 #[test]
@@ -193,5 +198,67 @@ fn on_boulders_of_2_m() {
     add_boulders(&mut world, &places);
     let figures = walk(&world, config(), 120.0);
     check(&figures);
-    assert!(figures.jerks <= 0.005, "{figures:?}");
+    // As uphill, where it comes down from a boulder.
+    assert!(figures.jerks <= 0.01, "{figures:?}");
+}
+
+#[test]
+fn at_other_sizes() {
+    for scale in [0.1, 2.0] {
+        let config = CreatureConfig { scale, ..config() };
+        let figures = walk(&ground(|_, _| 0.0), config, 60.0);
+        let most = 0.01 * figures.foot * scale;
+        assert!(figures.plants > 10, "{scale}: {figures:?}");
+        assert!(
+            figures.gap.max(figures.depth) <= most,
+            "{scale}: {figures:?}"
+        );
+        assert!(
+            figures.drift <= 0.01 * scale.max(1.0),
+            "{scale}: {figures:?}"
+        );
+        let felt = figures.hips.max(figures.head);
+        assert!(felt <= 1.0 && figures.toes <= 6.0, "{scale}: {figures:?}");
+    }
+}
+
+/// What a foot stands on is taken away from below it.
+#[test]
+fn a_foot_comes_down_where_its_ground_is_gone() {
+    let mut world = ground(|_, _| 0.0);
+    let kind = support::kind(&support::brain_with(
+        "rests",
+        r#"{ "rests": { "act": { "play": "idle" } } }"#,
+    ));
+    let mut giant = support::creature(&kind, config());
+    let ball = place(&giant, kind.skeleton().find("toe.L").unwrap());
+    let block = ColliderBuilder::cuboid(4.0, 1.0, 8.0).translation(ball.with_y(0.5).as_vec3());
+    let block = world.insert_collider(block, None);
+    world.detect_collisions(&(), &());
+    let soles = [sole(&kind, "foot.L"), sole(&kind, "foot.R")];
+    let mut skin = Vec::new();
+    let mut heights = Vec::new();
+    for tick in 0..600 {
+        if tick == 240 {
+            world.colliders[block].set_enabled(false);
+        }
+        let poses = BodyPoses::default();
+        let terrain = RapierTerrain::of_world(&world, &poses);
+        let all: [&dyn Obstacle; 1] = [&terrain];
+        let around = Surroundings {
+            terrain: &all,
+            ..Surroundings::default()
+        };
+        giant.step(&around).unwrap();
+        giant.surface().clone().skin_all(&mut skin);
+        heights.push([0, 1].map(|foot| lowest(&giant, &skin, &soles[foot], &terrain)));
+    }
+    let most = 0.01 * soles[0].length;
+    let stands = |tick: usize| heights[tick].iter().all(|height| height.abs() <= most);
+    assert!(stands(239), "{:?}", heights[239]);
+    assert!(heights[241][0] > 1.0, "{:?}", heights[241]);
+    let down = (241..600).find(|tick| stands(*tick)).unwrap();
+    println!("down after {:.2} s", (down - 240) as f64 * TICK);
+    assert!((down..600).all(stands));
+    assert!(down < 240 + 240 && giant.state().is_planted(0));
 }

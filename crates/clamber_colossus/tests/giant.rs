@@ -19,7 +19,6 @@ use clamber_world::{BodyPoses, MaterialPoint, Obstacle, RapierTerrain, WorldCaps
 use glam::DVec3;
 use support::{TICK, brain_file, creature, ground, kind};
 
-/// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
 /// The file that the documentation shows lives on the giant.
 #[test]
 fn the_brain_of_the_documentation_fits_the_giant() {
@@ -29,6 +28,36 @@ fn the_brain_of_the_documentation_fits_the_giant() {
     assert_eq!(kind.brain().file().body.legs.len(), 2);
 }
 
+#[test]
+fn limbs_that_are_none_are_refused_by_name() {
+    let wrong = [
+        (
+            r#"["thigh.L", "shin.L", "foot.L"]"#,
+            r#"["shin.L", "thigh.L", "foot.L"]"#,
+            "the leg of `shin.L`, `thigh.L`, `foot.L` cannot be moved: in the skeleton, `thigh.L` is not below `shin.L`",
+        ),
+        (
+            r#"["neck.1", 1]"#,
+            r#"["hand.L", 1]"#,
+            "the head of `head`, `hand.L` cannot be moved: in the skeleton, `head` is not below `hand.L`",
+        ),
+        (
+            r#"["neck.1", 1]"#,
+            r#"["neck.1", 2]"#,
+            "the head of `head`, `neck.1` cannot be moved: a joint's share is not from 0 to 1",
+        ),
+    ];
+    let form = include_str!("../src/brain/form.md");
+    let file = form.split("```json").nth(1).unwrap();
+    let file = file.split("```").next().unwrap();
+    for (right, wrong, message) in wrong {
+        assert!(file.contains(right), "{right}");
+        let error = support::try_kind(&file.replace(right, wrong)).unwrap_err();
+        assert_eq!(error.to_string(), message);
+    }
+}
+
+/// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
 #[test]
 fn its_brain_lives_through_anything() {
     let brain = Brain::from_json(&brain_file(), TICK).unwrap();

@@ -9,6 +9,7 @@ use gltf::animation::{self, Property};
 use crate::accessor::Reader;
 use crate::contents::Contents;
 use crate::extras;
+use crate::transforms::whole;
 use crate::{GltfErrorKind, ImportWarning};
 
 /// Loads all animations that move the skeleton, each with only the channels that move it.
@@ -92,7 +93,10 @@ fn keyframes(
     };
     Ok(match channel.target().property() {
         Property::Translation => Some(Keyframes::Translation(vectors()?)),
-        Property::Scale => Some(Keyframes::Scale(vectors()?)),
+        Property::Scale => {
+            let values = vectors()?.into_iter().map(whole).collect();
+            Some(Keyframes::Scale(values))
+        }
         Property::Rotation => {
             let values = reader.floats::<4>(&output)?;
             Some(Keyframes::Rotation(

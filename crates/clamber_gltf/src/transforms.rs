@@ -10,6 +10,9 @@ use crate::ImportWarning;
 /// millimetre in a metre.
 const SHEAR_WORTH_TELLING: f64 = 1e-3;
 
+/// How far a scale that was meant to be 1 may be from it.
+const ROUNDED: f32 = 1e-6;
+
 /// Reads the transforms of nodes as translation, rotation and scale.
 pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) -> Vec<Transform> {
     let mut sheared = 0;
@@ -22,7 +25,7 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
         } => Transform {
             translation: Vec3::from_array(translation),
             rotation: Quat::from_array(rotation),
-            scale: Vec3::from_array(scale),
+            scale: whole(Vec3::from_array(scale)),
         },
         gltf::scene::Transform::Matrix { matrix } => {
             let (transform, error) = decompose(&matrix);
@@ -39,6 +42,19 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
         });
     }
     transforms
+}
+
+/// A scale, without the rounding errors that exporters write where none is meant: Blender's are mostly below 1e-6. Joints
+/// without a scale are posed with less work, and what hangs from them is at most that share of its length elsewhere.
+pub(crate) fn whole(scale: Vec3) -> Vec3 {
+    let axis = |axis: f32| {
+        if (axis - 1.0).abs() <= ROUNDED {
+            1.0
+        } else {
+            axis
+        }
+    };
+    Vec3::from(scale.to_array().map(axis))
 }
 
 /// Decomposes a matrix into translation, rotation and scale. Also gives the largest error of a column,
@@ -75,7 +91,7 @@ fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let transform = Transform {
         translation: column(3).as_vec3(),
         rotation: rotation.as_quat(),
-        scale: scale.as_vec3(),
+        scale: whole(scale.as_vec3()),
     };
     (transform, error)
 }
@@ -103,6 +119,16 @@ mod tests {
         assert_eq!(t.translation, Vec3::new(5.0, 6.0, 7.0));
         assert!((t.scale - Vec3::new(2.0, 3.0, 4.0)).length() < 1e-6);
         assert!((t.rotation.z - 0.5f32.sqrt()).abs() < 1e-6, "{t:?}");
+    }
+
+    #[test]
+    fn scales_are_1_where_rounding_alone_is_not() {
+        let rounded = Vec3::new(0.999_999_94, 1.000_000_2, 1.0);
+        assert_eq!(whole(rounded), Vec3::ONE);
+        for meant in [1.00001, 0.9999, -1.0, 0.0, 2.0] {
+            assert_eq!(whole(Vec3::splat(meant)), Vec3::splat(meant));
+        }
+        assert!(whole(Vec3::splat(f32::NAN)).is_nan());
     }
 
     #[test]

@@ -4,13 +4,12 @@ use glam::DQuat;
 
 use super::{Animator, Layer, LayerKind};
 use crate::pose::{rotation_of, store_rotation};
-use crate::{AnimationError, AnimationSet};
+use crate::{AnimationError, AnimationSet, JointMask};
 
 /// Memory for [`Animator::pose_into`], kept from frame to frame so that it does not allocate. Holds nothing else.
 #[derive(Clone, Debug, Default)]
 pub struct PoseBuffers {
     sampled: Pose,
-    first: Pose,
 }
 
 impl Animator {
@@ -57,15 +56,16 @@ impl Animator {
                     })?;
                 }
                 LayerKind::Additive => {
-                    sample_clip(set, layer, time, &mut buffers.sampled)?;
-                    sample_clip(set, layer, 0.0, &mut buffers.first)?;
-                    let (sampled, first) = (&buffers.sampled.transforms, &buffers.first.transforms);
-                    each_joint(set, layer, pose, |index, joint, share| {
-                        // Most joints of an additive clip do not move.
-                        if first[index] != sampled[index] {
-                            add(joint, &first[index], &sampled[index], share);
+                    let mask = layer.mask.map(|mask| set.mask(mask)).transpose()?;
+                    sample_moved(set, layer, time, &mut buffers.sampled)?;
+                    for (joint, first) in set.start(layer.clip) {
+                        let index = joint.index();
+                        let sampled = &buffers.sampled.transforms[index];
+                        let share = share_of(mask, layer, index);
+                        if first != sampled && share > 0.0 {
+                            add(&mut pose.transforms[index], first, sampled, share);
                         }
-                    })?;
+                    }
                 }
             }
         }
@@ -81,8 +81,33 @@ fn sample_clip(
     time: f64,
     pose: &mut Pose,
 ) -> Result<(), AnimationError> {
-    let clip = set.clip(layer.clip)?;
     pose.transforms.clone_from(&set.rest().transforms);
+    sample_over(set, layer, time, pose)
+}
+
+/// The same, of the joints that the clip moves; others are left as they are.
+fn sample_moved(
+    set: &AnimationSet,
+    layer: &Layer,
+    time: f64,
+    pose: &mut Pose,
+) -> Result<(), AnimationError> {
+    let rest = &set.rest().transforms;
+    pose.transforms.resize(rest.len(), Transform::IDENTITY);
+    for (joint, _) in set.start(layer.clip) {
+        pose.transforms[joint.index()] = rest[joint.index()];
+    }
+    sample_over(set, layer, time, pose)
+}
+
+/// Writes what a layer's clip moves into a pose at rest.
+fn sample_over(
+    set: &AnimationSet,
+    layer: &Layer,
+    time: f64,
+    pose: &mut Pose,
+) -> Result<(), AnimationError> {
+    let clip = set.clip(layer.clip)?;
     // Before its start, a clip that is played once is at its start.
     clip.sample_into(time, layer.playback, pose)?;
     if let Some(root) = set.root() {
@@ -100,13 +125,17 @@ fn each_joint(
 ) -> Result<(), AnimationError> {
     let mask = layer.mask.map(|mask| set.mask(mask)).transpose()?;
     for (index, joint) in pose.transforms.iter_mut().enumerate() {
-        let share = mask.map_or(1.0, |mask| f64::from(mask.shares()[index]));
-        let share = share * layer.weight;
+        let share = share_of(mask, layer, index);
         if share > 0.0 {
             change(index, joint, share);
         }
     }
     Ok(())
+}
+
+/// A joint's share of a layer.
+fn share_of(mask: Option<&JointMask>, layer: &Layer, joint: usize) -> f64 {
+    mask.map_or(1.0, |mask| f64::from(mask.shares()[joint])) * layer.weight
 }
 
 /// A transform between two: vectors linearly, rotations along the shorter arc.

@@ -1,10 +1,10 @@
 use clamber_surface::rig::{JointId, Pose, Skeleton};
-use glam::DVec3;
+use glam::{DQuat, DVec3, Vec3};
 
 use super::two_bone::check_pose;
 use super::{IkError, frame_turn};
-use crate::pose::store_rotation;
-use crate::space::{invertible, model_from_parent, uniform_scale};
+use crate::pose::{rotation_of, store_rotation};
+use crate::space::{model_from_parent, uniform_inverse};
 
 /// Turns a joint so that two axes of its own space point where they should in model space: the first exactly, the second
 /// as nearly as the first allows. A palm, for example, lies on skin with its normal first and its fingers second.
@@ -31,8 +31,7 @@ pub fn aim(
     if !parent.is_finite() {
         return Err(IkError::NotFinite("the pose"));
     }
-    uniform_scale(&parent, joint)?;
-    let inverse = invertible(&parent, joint)?;
+    let inverse = uniform_inverse(&parent, joint)?;
     let transform = &mut pose.transforms[joint.index()];
     // A mirrored joint's axes point the other way before it is turned.
     let signs = transform.scale.as_dvec3().signum();
@@ -42,6 +41,47 @@ pub fn aim(
         return Err(IkError::BadSetUp("two directions are parallel or zero"));
     };
     store_rotation(transform, frame_turn(from, to));
+    Ok(())
+}
+
+/// Turns a joint so that the axes of its own space point in model space as a rotation has them. Parents that mirror or scale
+/// uniformly change lengths and sides, but not that.
+///
+/// # Errors
+/// [`IkError::NotFinite`] for the rotation or the pose, [`IkError::NoJoint`], [`IkError::NotInvertible`], and
+/// [`IkError::Sheared`] if the joint's parents scale unevenly. The pose is unchanged then.
+pub fn orient(
+    skeleton: &Skeleton,
+    pose: &mut Pose,
+    joint: JointId,
+    rotation: DQuat,
+) -> Result<(), IkError> {
+    check_pose(skeleton, pose, [joint])?;
+    // Parents that only rotate need no matrices.
+    let mut parents = DQuat::IDENTITY;
+    let mut next = skeleton.joints()[joint.index()].parent;
+    let mut only_rotate = pose.transforms[joint.index()].scale == Vec3::ONE;
+    while let Some(parent) = next.filter(|_| only_rotate) {
+        let transform = &pose.transforms[parent.index()];
+        only_rotate = transform.scale == Vec3::ONE;
+        parents = rotation_of(transform) * parents;
+        next = skeleton.joints()[parent.index()].parent;
+    }
+    if !only_rotate {
+        let axes = [DVec3::Y, DVec3::Z];
+        return aim(
+            skeleton,
+            pose,
+            joint,
+            axes,
+            axes.map(|axis| rotation * axis),
+        );
+    }
+    let local = (parents.conjugate() * rotation).normalize();
+    if !local.is_finite() {
+        return Err(IkError::NotFinite("a rotation or the pose"));
+    }
+    store_rotation(&mut pose.transforms[joint.index()], local);
     Ok(())
 }
 

@@ -34,6 +34,8 @@ impl Default for LookLimits {
 pub struct LookAt {
     /// From the head down, with shares.
     joints: Vec<(JointId, f64)>,
+    /// From the last of them up to the head, with the joints between.
+    path: Vec<JointId>,
     /// In the head's own space: where the eye is, and where it looks.
     eye: DVec3,
     forward: DVec3,
@@ -106,8 +108,14 @@ impl LookAt {
         if level.is_none() {
             return Err(IkError::BadSetUp("forward and up are parallel"));
         }
+        let mut path = vec![head];
+        while let Some(&joint) = path.last().filter(|joint| **joint != last) {
+            path.push(skeleton.joints()[joint.index()].parent.unwrap_or(last));
+        }
+        path.reverse();
         Ok(Self {
             joints: chain.to_vec(),
+            path,
             eye,
             forward: forward.normalize(),
             limits: LookLimits::default(),
@@ -149,65 +157,31 @@ impl LookAt {
         if !target.is_finite() || !weight.is_finite() {
             return Err(IkError::NotFinite("a target or a weight"));
         }
-        let (head, last) = (self.joints[0].0, self.joints[self.joints.len() - 1].0);
+        let last = self.joints[self.joints.len() - 1].0;
         let base = model_from_parent(skeleton, pose, last);
-        // A joint's parents are below it in the chain, and are turned after it: all of them can be taken from this pose.
-        let parent = |pose: &Pose, joint: JointId| {
-            let mut model = DAffine3::IDENTITY;
-            let mut next = joint;
-            while next != last {
-                next = skeleton.joints()[next.index()].parent.unwrap_or(last);
-                model = pose.transforms[next.index()].to_affine() * model;
-            }
-            base * model
-        };
-        // Everything that can fail, before anything is changed.
         if !base.is_finite() {
             return Err(IkError::NotFinite("the pose"));
         }
         crate::space::uniform_scale(&base.matrix3, last)?;
-        let mut above = head;
-        while above != last {
-            above = skeleton.joints()[above.index()].parent.unwrap_or(last);
-            let scale = pose.transforms[above.index()].scale.as_dvec3();
+        // Everything that can fail, before anything is changed.
+        for &joint in &self.path[1..] {
+            let parent = skeleton.joints()[joint.index()].parent.unwrap_or(last);
+            let scale = pose.transforms[parent.index()].scale.as_dvec3();
             if scale.abs() != DVec3::ONE {
-                crate::space::uniform_scale(&DMat3::from_diagonal(scale), above)?;
+                crate::space::uniform_scale(&DMat3::from_diagonal(scale), parent)?;
             }
         }
-        let from_head = parent(pose, head) * pose.transforms[head.index()].to_affine();
-        let eye = from_head.transform_point3(self.eye);
-        if !eye.is_finite() {
-            return Err(IkError::NotFinite("the pose"));
-        }
-        let gaze = from_head.transform_vector3(self.forward).try_normalize();
-        let gaze = gaze.ok_or(IkError::NotInvertible(head))?;
-        let Some(to_target) = (target - eye).try_normalize() else {
+        let mut gaze = Gaze {
+            look: self,
+            base: &base,
+            target,
+            weight: weight.clamp(0.0, 1.0),
+            memory,
+            dt,
+        };
+        let Some((sight, _)) = gaze.turn(pose, 0, &base)? else {
             return Ok(0.0);
         };
-        let allowed = self.limited(&base.matrix3, to_target, memory, dt);
-        let turn = arc(gaze, allowed);
-        let wanted = slerp(DQuat::IDENTITY, turn, weight.clamp(0.0, 1.0)) * gaze;
-        // As a point as far away as the target: the eye moves when the head turns.
-        let point = eye + wanted * (target - eye).length();
-        let count = self.joints.len();
-        let mut sight = Sight { eye, gaze };
-        for (index, &(joint, share)) in self.joints.iter().enumerate() {
-            let model_from_parent = parent(pose, joint);
-            let origin = pose.transforms[joint.index()].translation.as_dvec3();
-            let origin = model_from_parent.transform_point3(origin);
-            let Some(turn) = sight.turn_to(point, origin) else {
-                continue;
-            };
-            // The last one takes all that is left.
-            let turn = if index + 1 == count {
-                turn
-            } else {
-                slerp(DQuat::IDENTITY, turn, share)
-            };
-            turn_in_model(pose, joint, &model_from_parent, turn)?;
-            sight.eye = origin + turn * (sight.eye - origin);
-            sight.gaze = turn * sight.gaze;
-        }
         let left = (target - sight.eye).normalize_or(sight.gaze);
         Ok(libm::atan2(
             sight.gaze.cross(left).length(),
@@ -251,6 +225,76 @@ impl LookAt {
         let about = |axis: DVec3, angle: f64| -> DQuat { rotation_from_vector(axis * angle) };
         // Left is a positive turn about up, and up a negative one about left.
         about(up, yaw) * (about(left, -pitch) * level)
+    }
+}
+
+/// One call of [`LookAt::solve`].
+struct Gaze<'a> {
+    look: &'a LookAt,
+    /// The last joint's parent in model space.
+    base: &'a DAffine3,
+    target: DVec3,
+    weight: f64,
+    memory: &'a mut LookMemory,
+    dt: f64,
+}
+
+impl Gaze<'_> {
+    /// Turns the joints from one of the path on to the head, the head first. A joint's parents are turned after it, so their
+    /// frames, which are composed on the way up to the head, are those of the pose that was given. Returns the sight after
+    /// that, and the point to look at; `None` if the eye is at the target.
+    fn turn(
+        &mut self,
+        pose: &mut Pose,
+        index: usize,
+        model_from_parent: &DAffine3,
+    ) -> Result<Option<(Sight, DVec3)>, IkError> {
+        let Some(&joint) = self.look.path.get(index) else {
+            return self.begin(model_from_parent);
+        };
+        let model = *model_from_parent * pose.transforms[joint.index()].to_affine();
+        let Some((mut sight, point)) = self.turn(pose, index + 1, &model)? else {
+            return Ok(None);
+        };
+        let share = self.look.joints.iter().find(|(known, _)| *known == joint);
+        let Some(&(_, share)) = share else {
+            return Ok(Some((sight, point)));
+        };
+        let origin = model.translation;
+        if let Some(turn) = sight.turn_to(point, origin) {
+            // The last one takes all that is left.
+            let turn = if index == 0 {
+                turn
+            } else {
+                slerp(DQuat::IDENTITY, turn, share)
+            };
+            turn_in_model(pose, joint, model_from_parent, turn)?;
+            sight.eye = origin + turn * (sight.eye - origin);
+            sight.gaze = turn * sight.gaze;
+        }
+        Ok(Some((sight, point)))
+    }
+
+    /// The sight of the pose that was given, and the point to look at.
+    fn begin(&mut self, model_from_head: &DAffine3) -> Result<Option<(Sight, DVec3)>, IkError> {
+        let look = self.look;
+        let eye = model_from_head.transform_point3(look.eye);
+        if !eye.is_finite() {
+            return Err(IkError::NotFinite("the pose"));
+        }
+        let gaze = model_from_head.transform_vector3(look.forward);
+        let gaze = gaze
+            .try_normalize()
+            .ok_or(IkError::NotInvertible(look.joints[0].0))?;
+        let way = self.target - eye;
+        let Some(to_target) = way.try_normalize() else {
+            return Ok(None);
+        };
+        let allowed = look.limited(&self.base.matrix3, to_target, self.memory, self.dt);
+        let wanted = slerp(DQuat::IDENTITY, arc(gaze, allowed), self.weight) * gaze;
+        // As a point as far away as the target: the eye moves when the head turns.
+        let point = eye + wanted * way.length();
+        Ok(Some((Sight { eye, gaze }, point)))
     }
 }
 

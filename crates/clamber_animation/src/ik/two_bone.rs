@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::bend::{Reach, bend};
 use super::{IkError, PoleMemory, arc, frame_turn};
 use crate::pose::{rotation_of, store_rotation};
-use crate::space::{invertible, model_from_joint, model_from_parent, uniform_scale};
+use crate::space::{invertible, model_from_joint, model_from_parent, uniform_inverse};
 
 /// An arm or a leg of a skeleton.
 ///
@@ -288,8 +288,7 @@ impl TwoBone {
         if !upper_from_lower.is_finite() {
             return Err(IkError::NotFinite("the pose"));
         }
-        uniform_scale(&upper_from_lower, self.lower)?;
-        let lower_from_upper = invertible(&upper_from_lower, self.lower)?;
+        let lower_from_upper = uniform_inverse(&upper_from_lower, self.lower)?;
         let model_from_parent = model_from_parent(skeleton, pose, self.upper);
         if !model_from_parent.is_finite() {
             return Err(IkError::NotFinite("the pose"));

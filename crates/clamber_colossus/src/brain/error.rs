@@ -93,6 +93,16 @@ pub enum BrainProblem {
         /// How many there may be.
         most: usize,
     },
+    /// Joints of a leg or of the head that cannot be moved by inverse kinematics.
+    #[error("the {limb} of {joints} cannot be moved: {fault}")]
+    Limb {
+        /// The leg or the head.
+        limb: &'static str,
+        /// Its joints, in the order of the file.
+        joints: String,
+        /// What is wrong with them.
+        fault: String,
+    },
     /// A clip of an attack lacks a marker, or has them in another order.
     #[error("the clip `{clip}` of an attack needs the markers `active` and, later, `recovery`")]
     Phases {

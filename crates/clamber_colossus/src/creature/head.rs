@@ -1,5 +1,6 @@
 //! The head of the pose.
 
+use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
 use super::{Creature, Surroundings};
@@ -13,7 +14,7 @@ const GLANCE: f64 = 3.5;
 
 impl Creature {
     /// Turns the head to what the creature looks at.
-    pub(super) fn turn_head(&mut self, around: &Surroundings<'_>, dt: f64) {
+    pub(super) fn turn_head(&mut self, world: &Similarity, around: &Surroundings<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let Some((look, _)) = kind.look() else { return };
         let size = (kind.height() * self.config.scale / 1.75).max(0.1).sqrt();
@@ -26,7 +27,6 @@ impl Creature {
             }
             self.state.gaze.step(target, LOOKS * size, dt);
         }
-        let world = self.state.world_from_model(self.config.scale);
         let target = world.inverse_transform_point(self.state.gaze.value);
         let weight = self.state.gaze_weight.value.clamp(0.0, 1.0);
         if weight > 1e-3 {

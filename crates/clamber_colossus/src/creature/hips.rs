@@ -3,6 +3,7 @@
 
 use clamber_animation::joint_in_model;
 use clamber_animation::rig::JointId;
+use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,7 @@ const STRETCH: f64 = 0.985;
 const MOST_DROP: f64 = 0.35;
 
 /// How low hips are on a slope before legs need it, as a share of the leg's length and the slope's tangent.
-const SLOPE_DROP: f64 = 0.25;
+const SLOPE_DROP: f64 = 0.32;
 
 /// Half time in which hips rise again when they need not be low any more, seconds: longer than a step.
 const RISES: f64 = 3.0;
@@ -101,13 +102,12 @@ pub(super) fn approach(value: f64, velocity: f64, goal: f64, most: f64, dt: f64)
 }
 
 impl Creature {
-    /// Moves the hips of the pose for legs that are put somewhere.
-    pub(super) fn shift_hips(&mut self, legs: &[PutLeg], dt: f64) {
+    /// Moves the hips of the pose for legs that are put somewhere. Returns by how much, in model space.
+    pub(super) fn shift_hips(&mut self, world: &Similarity, legs: &[PutLeg], dt: f64) -> DVec3 {
         let Some(joint) = self.kind.hips() else {
-            return;
+            return DVec3::ZERO;
         };
-        let world = self.state.world_from_model(self.config.scale);
-        let scale = self.config.scale;
+        let scale = world.scale;
         let length = legs.iter().map(|leg| leg.reach).fold(0.0, f64::max) * scale;
         let before = self.state.hips.drop;
         let steep = SLOPE_DROP * self.state.steepness * length;
@@ -144,7 +144,9 @@ impl Creature {
         self.tremble(rate);
         self.state.hips.ring(rate, dt);
         let offset = at + DVec3::Y * self.state.hips.tremor[0];
-        self.offset_joint(joint, world.inverse_transform_vector(offset));
+        let offset = world.inverse_transform_vector(offset);
+        self.offset_joint(joint, offset);
+        offset
     }
 
     /// Impacts and steps of this tick begin to tremble.
@@ -160,7 +162,7 @@ impl Creature {
         }
     }
 
-    /// Moves a joint of the pose by an offset in model space.
+    /// Moves a joint of the pose, and all below it, by an offset in model space.
     fn offset_joint(&mut self, joint: JointId, offset: DVec3) {
         let skeleton = self.kind.skeleton();
         let parent = skeleton.joints()[joint.index()].parent;

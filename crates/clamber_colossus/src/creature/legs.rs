@@ -1,10 +1,10 @@
 //! The feet of the pose.
 
-use clamber_animation::ik::{TwoBoneGoal, aim};
-use clamber_animation::joint_in_model;
-use clamber_surface::geometry::{rotation_from_axis_angle, slerp};
+use clamber_animation::ik::{TwoBoneGoal, orient};
+use clamber_animation::joints_in_model;
+use clamber_surface::geometry::{Similarity, rotation_from_axis_angle, slerp};
 use clamber_world::Obstacle;
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 
 use super::Creature;
 use super::report::CreatureEvent;
@@ -16,10 +16,13 @@ use crate::kind::{Contacts, Leg, rotation_of};
 const SOFT: f64 = 0.93;
 
 /// A foot looks at what it stands on in one of so many ticks.
-const LOOKS: u64 = 4;
+const LOOKS: u64 = 8;
 
 /// From which share of its length on a leg lets go of the ground: before it is straight.
 const STRETCHED: f64 = 0.994;
+
+/// Ground that is this much above a foot is a wall, as a share of the leg's length: feet do not step on it.
+const WALL: f64 = 0.25;
 
 /// The most acceleration with which a foot goes to whom it strikes, metres a second squared.
 const BLOW: f64 = 40.0;
@@ -30,8 +33,17 @@ const STANDING: f64 = 8.0;
 /// Times of a clip that are compared with the feet when it begins.
 const PHASES: u32 = 48;
 
-/// The axes of an ankle that keep their directions.
-const FOOT_AXES: [DVec3; 2] = [DVec3::Y, DVec3::Z];
+/// A leg as its clip has it.
+struct ClipLeg {
+    /// In model space.
+    hip: DVec3,
+    /// The ball of the foot, in world space.
+    ball: DVec3,
+    /// Rotation of the ankle in model space, and its foot's turn about up, also in radians.
+    rotation: DQuat,
+    turn: DQuat,
+    heading: f64,
+}
 
 /// Where a leg is put in a tick, in model space.
 #[derive(Clone, Copy, Debug)]
@@ -43,33 +55,46 @@ pub(super) struct PutLeg {
     pub(super) ball: DVec3,
     /// Length of thigh and shin together.
     pub(super) reach: f64,
-    directions: [DVec3; 2],
+    /// Of the ankle.
+    rotation: DQuat,
     /// How flat its foot is, from 0 to 1.
     flat: f64,
+    /// How firmly it stands, from 0 to 1.
+    firm: f64,
     pub(super) wants_step: bool,
     pub(super) is_planted: bool,
 }
 
 impl Creature {
     /// Puts the feet of the pose on the ground, and the hips so that they reach it.
-    pub(super) fn put_feet(&mut self, ground: &Ground<'_>, dt: f64) {
+    pub(super) fn put_feet(&mut self, world: &Similarity, ground: &Ground<'_>, dt: f64) {
         let kind = std::sync::Arc::clone(&self.kind);
         let aims = self.aimed_leg();
-        let mut legs = Vec::with_capacity(kind.legs().len());
+        let mut legs = std::mem::take(&mut self.legs);
+        legs.clear();
         for (index, leg) in kind.legs().iter().enumerate() {
-            let [hip, ankle, ball] = [leg.hip, leg.ankle, leg.ball].map(|joint| {
-                joint_in_model(kind.skeleton(), &self.state.pose, joint).unwrap_or_default()
-            });
+            let joints = [leg.hip, leg.ankle, leg.ball];
+            let frames = joints_in_model(kind.skeleton(), &self.state.pose, joints);
+            let [hip, ankle, ball] = frames.unwrap_or_default();
+            let rotation = rotation_of(&ankle);
+            let turn = turn_about_up(rotation * leg.level.conjugate());
+            let clip = ClipLeg {
+                hip: hip.translation,
+                ball: world.transform_point(ball.translation),
+                rotation,
+                turn,
+                heading: 2.0 * libm::atan2(turn.y, turn.w),
+            };
             let others_stand = (self.state.feet.iter().enumerate())
                 .all(|(other, foot)| other == index || foot.is_planted());
-            let heading = yaw_of(rotation_of(&ankle) * leg.level.conjugate());
-            let goal = self.foot_goal(index, leg, (ball.translation, heading), others_stand, aims);
+            let goal = self.foot_goal(world, index, &clip, others_stand, aims);
             let foot = &self.state.feet[index];
             let sole = Sole {
                 ground,
                 shape: &leg.sole,
                 turn: rotation_from_axis_angle(DVec3::Y, goal.heading + foot.yaw()),
-                scale: self.config.scale,
+                scale: world.scale,
+                wall: WALL * leg.length * world.scale,
             };
             let foot = &mut self.state.feet[index];
             if self.state.ticks <= 1 && goal.stands {
@@ -81,49 +106,34 @@ impl Creature {
                     .events
                     .push(CreatureEvent::Plant { leg: index, place });
             }
-            legs.push(self.put(leg, &self.state.feet[index], goal.clip, [hip, ankle]));
+            legs.push(put(world, leg, &self.state.feet[index], &clip));
         }
-        self.shift_hips(&legs, dt);
+        let moved = self.shift_hips(world, &legs, dt);
         for (index, (leg, put)) in kind.legs().iter().zip(&legs).enumerate() {
-            let distance = self.bend_leg(leg, put);
-            self.state.feet[index].set_stretched(distance > STRETCHED * put.reach);
+            self.bend_leg(leg, put);
+            // All legs hang below the hips.
+            let distance = (put.hip + moved).distance(put.ankle);
+            let is_stretched = distance > STRETCHED * put.reach;
+            self.state.feet[index].set_stretched(is_stretched);
         }
+        self.legs = legs;
     }
 
-    /// Where a leg's ankle goes.
-    fn put(&self, leg: &Leg, foot: &Foot, clip: DVec3, [hip, ankle]: [DAffine3; 2]) -> PutLeg {
-        let world = self.state.world_from_model(self.config.scale);
-        let lean = DQuat::from_rotation_arc(DVec3::Y, world.rotation.conjugate() * foot.normal());
-        let clip_rotation = rotation_of(&ankle);
-        let heading =
-            rotation_from_axis_angle(DVec3::Y, yaw_of(clip_rotation * leg.level.conjugate()));
-        let turn = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw());
-        // The foot keeps its own rotation, whatever the shin does: that of its clip, or flat on the ground.
-        let rotation = turn * slerp(clip_rotation, heading * leg.level, foot.flat());
-        let ball_at = world.inverse_transform_point(clip + foot.offset());
-        PutLeg {
-            hip: hip.translation,
-            ankle: ball_at + rotation * leg.from_ball,
-            reach: leg.length,
-            directions: FOOT_AXES.map(|axis| rotation * axis),
-            ball: ball_at,
-            flat: foot.flat(),
-            wants_step: foot.wants_step(),
-            is_planted: foot.is_planted(),
-        }
-    }
-
-    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. `None` if there
-    /// is no such leg, or no ground below it.
+    /// Height of a foot's sole above the ground: of its point that is lowest, negative if that is in the ground. Ground that is
+    /// more than a quarter of the leg's length above the foot is a wall, and does not count. `None` if there is no such leg, or
+    /// no ground below it.
     pub fn foot_clearance(&self, leg: usize, terrain: &[&dyn Obstacle]) -> Option<f64> {
         let ground = Ground {
             terrain,
             reach: 0.5 * self.kind.height() * self.config.scale,
         };
-        let points = &self.kind.legs().get(leg)?.sole.points;
-        let places = self.on_sole(leg, points);
+        let shape = self.kind.legs().get(leg)?;
+        let wall = WALL * shape.length * self.config.scale;
+        let places = self.on_sole(leg, &shape.sole.points);
         let heights = places.filter_map(|place| Some(place.y - ground.below(place)?.0));
-        heights.min_by(f64::total_cmp)
+        heights
+            .filter(|height| *height > -wall)
+            .min_by(f64::total_cmp)
     }
 
     /// The corners of a rectangle around a foot's sole, in world space, one after the other around it. `None` if there is
@@ -157,15 +167,18 @@ impl Creature {
 
     fn foot_goal(
         &self,
+        world: &Similarity,
         index: usize,
-        leg: &Leg,
-        (ball, heading): (DVec3, f64),
+        &ClipLeg {
+            ball: clip,
+            heading,
+            ..
+        }: &ClipLeg,
         others_stand: bool,
         aims: Option<usize>,
     ) -> FootGoal {
-        let scale = self.config.scale;
-        let world = self.state.world_from_model(scale);
-        let clip = world.transform_point(ball);
+        let leg = &self.kind.legs()[index];
+        let scale = world.scale;
         let layer = self.state.animator.layers().first();
         let (time, speed) = layer.map_or((0.0, 0.0), |layer| {
             (layer.time, layer.speed * self.state.animator.rate())
@@ -175,8 +188,8 @@ impl Creature {
         let stands = is_idle || contacts.is_none_or(|contacts| contacts.stands(time));
         let settled = contacts.map_or(clip, |contacts| world.transform_point(contacts.ball(time)));
         let landing = contacts
-            .and_then(|contacts| contacts.next(time))
-            .filter(|_| speed > 0.0);
+            .filter(|_| speed > 0.0 && !stands)
+            .and_then(|contacts| contacts.next(time));
         let lands_in = landing
             .map_or(1.0, |(wait, _)| wait / speed.max(1e-3))
             .min(4.0);
@@ -192,6 +205,7 @@ impl Creature {
             }
             _ => DVec3::ZERO,
         };
+        let aside = aside + self.past_others(index);
         // A blow is meant, and no correction.
         let most_aside = if aims == Some(index) {
             BLOW
@@ -222,6 +236,22 @@ impl Creature {
             is_gait: matches!(self.state.playing, Playing::Walk | Playing::Turn(_)),
             is_lifted: !is_idle && contacts.is_some_and(|contacts| contacts.lifts_after(time)),
         }
+    }
+
+    /// How far aside a leg has to pass those beside it: as far as they stand nearer to it than in their clip.
+    fn past_others(&self, index: usize) -> DVec3 {
+        let leg = &self.kind.legs()[index];
+        let heading = self.state.heading();
+        let left = DVec3::new(heading.z, 0.0, -heading.x);
+        let others = self.kind.legs().iter().zip(&self.state.feet);
+        let nearer = others.filter_map(|(other, foot)| {
+            let way = leg.stands_at - other.stands_at;
+            let is_beside = way.x.abs() > way.z.abs();
+            let near = foot.offset().dot(left) * way.x.signum();
+            (is_beside && foot.is_planted() && near > 0.0).then_some(near * way.x.signum())
+        });
+        let most = nearer.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        left * most.unwrap_or(0.0)
     }
 
     /// The time of the clip that is begun at which its feet are where the creature's are.
@@ -271,30 +301,59 @@ impl Creature {
         strike.leg.filter(|_| time < strike.active[1])
     }
 
-    /// Bends a leg so that its ankle is where the foot wants it. Returns how far that is from the hip.
-    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) -> f64 {
+    /// Bends a leg so that its ankle is where the foot wants it.
+    fn bend_leg(&mut self, leg: &Leg, put: &PutLeg) {
         let skeleton = self.kind.skeleton();
         // A leg in flight is not stretched to its end, so that its knee does not snap.
         let goal = TwoBoneGoal {
-            soft: SOFT + (1.0 - SOFT) * put.flat,
+            soft: SOFT + (1.0 - SOFT) * put.firm,
             ..TwoBoneGoal::reach(put.ankle)
         };
         let pose = &mut self.state.pose;
-        let hip = joint_in_model(skeleton, pose, leg.hip);
         // A leg that cannot be bent stays as its clip has it.
         if leg.ik.solve(skeleton, pose, &goal, None).is_ok() {
-            let _ = aim(skeleton, pose, leg.ankle, FOOT_AXES, put.directions);
-            if leg.ball != leg.ankle {
+            let _ = orient(skeleton, pose, leg.ankle, put.rotation);
+            if leg.ball != leg.ankle && put.flat > 0.0 {
                 let rest = self.kind.clips().rest().transforms[leg.ball.index()].rotation;
                 let toe = &mut pose.transforms[leg.ball.index()].rotation;
                 *toe = slerp(toe.as_dquat(), rest.as_dquat(), put.flat).as_quat();
             }
         }
-        hip.map_or(0.0, |hip| hip.translation.distance(put.ankle))
     }
 }
 
-/// The turn about up of a rotation: its twist about Y.
-fn yaw_of(rotation: DQuat) -> f64 {
-    2.0 * libm::atan2(rotation.y, rotation.w)
+/// Where a leg's ankle goes.
+fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
+    let normal = world.rotation.conjugate() * foot.normal();
+    // The foot keeps its own rotation, whatever the shin does: that of its clip, or flat on the ground.
+    let flat = foot.flat();
+    let flattened = if flat > 0.0 {
+        slerp(clip.rotation, clip.turn * leg.level, flat)
+    } else {
+        clip.rotation
+    };
+    let lean = DQuat::from_rotation_arc(DVec3::Y, normal);
+    let rotation = lean * rotation_from_axis_angle(DVec3::Y, foot.yaw()) * flattened;
+    let ball = world.inverse_transform_point(clip.ball + foot.offset());
+    PutLeg {
+        hip: clip.hip,
+        ankle: ball + rotation * leg.from_ball,
+        reach: leg.length,
+        rotation,
+        ball,
+        flat,
+        firm: foot.firm(),
+        wants_step: foot.wants_step(),
+        is_planted: foot.is_planted(),
+    }
+}
+
+/// The turn about up of a rotation: its twist about Y. Any turn for one that turns it upside down.
+fn turn_about_up(rotation: DQuat) -> DQuat {
+    let length = (rotation.y * rotation.y + rotation.w * rotation.w).sqrt();
+    if length > 1e-9 {
+        DQuat::from_xyzw(0.0, rotation.y / length, 0.0, rotation.w / length)
+    } else {
+        DQuat::IDENTITY
+    }
 }

@@ -24,6 +24,7 @@ pub use report::{AttackPhase, Blow, CreatureEvent, CreatureReport};
 pub use state::CreatureState;
 pub use world::{Noise, Person, Riding, Surroundings, Wound};
 
+use self::legs::PutLeg;
 use crate::error::ColossusError;
 use crate::kind::CreatureKind;
 
@@ -41,6 +42,7 @@ pub struct Creature {
     buffers: PoseBuffers,
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
+    legs: Vec<PutLeg>,
     /// True while the skin is known to be without motion.
     is_still: bool,
 }
@@ -60,6 +62,7 @@ impl Creature {
             buffers: PoseBuffers::default(),
             report: CreatureReport::default(),
             events: Vec::new(),
+            legs: Vec::new(),
             is_still: false,
             kind,
             config,

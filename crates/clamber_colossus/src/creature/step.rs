@@ -2,6 +2,7 @@
 
 use clamber_animation::rig::Playback;
 use clamber_animation::{Animator, ClipId, LayerKind};
+use clamber_surface::geometry::Similarity;
 use glam::DVec3;
 
 use super::report::CreatureEvent;
@@ -41,8 +42,8 @@ impl Creature {
         self.is_still = false;
         self.act()?;
         self.move_on(around, dt)?;
-        self.take_pose(around, dt)?;
         let world_from_model = self.state.world_from_model(self.config.scale);
+        self.take_pose(&world_from_model, around, dt)?;
         self.surface.advance(&self.palette, world_from_model)?;
         self.strike(around, dt);
         Ok(&self.report)
@@ -215,7 +216,12 @@ impl Creature {
         Ok(())
     }
 
-    fn take_pose(&mut self, around: &Surroundings<'_>, dt: f64) -> Result<(), ColossusError> {
+    fn take_pose(
+        &mut self,
+        world: &Similarity,
+        around: &Surroundings<'_>,
+        dt: f64,
+    ) -> Result<(), ColossusError> {
         self.state.animator.pose_into(
             self.kind.clips(),
             &mut self.state.pose,
@@ -225,8 +231,8 @@ impl Creature {
             terrain: around.terrain,
             reach: 0.5 * self.kind.height() * self.config.scale,
         };
-        self.put_feet(&ground, dt);
-        self.turn_head(around, dt);
+        self.put_feet(world, &ground, dt);
+        self.turn_head(world, around, dt);
         self.kind
             .skeleton()
             .palette_into(&self.state.pose, &mut self.palette)?;

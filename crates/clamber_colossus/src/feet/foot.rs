@@ -61,6 +61,8 @@ pub(crate) struct Foot {
     yaw: Spring<f64>,
     /// How flat it is on the ground: from 0, as its clip has it, to 1.
     flat: Spring<f64>,
+    /// How firmly it stands: from 0, in flight, to 1.
+    firm: Spring<f64>,
     /// Normal of the ground that it leans to.
     normal: DVec3,
     /// How far a planted ball still is from its place.
@@ -117,9 +119,9 @@ const STEP_TIME: f64 = 1.5;
 const STEP_HEIGHT: f64 = 0.04;
 
 /// The most acceleration of an offset up and down, and to the sides, metres a second squared, and of a foot's turn, radians a
-/// second squared. Together the first two are 6, which skin below the knee may have in a swing.
-const MOST_UP: f64 = 4.5;
-pub(crate) const MOST_ASIDE: f64 = 3.9;
+/// second squared. Together the first two are 5.6: below 6, which skin below the knee may have in a swing.
+const MOST_UP: f64 = 4.4;
+pub(crate) const MOST_ASIDE: f64 = 3.4;
 const MOST_TURN: f64 = 3.0;
 
 /// Shares of a swing at which the ground on its way is looked at.
@@ -151,6 +153,9 @@ const SAME: f64 = 0.03;
 /// Half time in which a foot that has come down reaches its exact place, seconds.
 const SETTLES: f64 = 0.08;
 
+/// Half time in which a foot that was lifted loses its hold, as a share of the time of a step.
+const LETS_GO: f64 = 0.25;
+
 const GRAVITY: f64 = 9.81;
 
 impl Foot {
@@ -162,6 +167,7 @@ impl Foot {
             offset: Spring::default(),
             yaw: Spring::default(),
             flat: Spring::default(),
+            firm: Spring::default(),
             normal: DVec3::Y,
             settling: Spring::default(),
             path: Path::default(),
@@ -201,6 +207,11 @@ impl Foot {
         self.flat.value.clamp(0.0, 1.0)
     }
 
+    /// How firmly it stands: from 0, in flight, to 1. It lets go less fast than it gets a hold.
+    pub(crate) fn firm(&self) -> f64 {
+        self.firm.value.clamp(0.0, 1.0)
+    }
+
     /// Normal of the ground that it leans to.
     pub(crate) fn normal(&self) -> DVec3 {
         self.normal
@@ -210,7 +221,7 @@ impl Foot {
     pub(crate) fn place(&mut self, goal: &FootGoal, sole: &Sole<'_>) {
         self.plant(goal, sole);
         self.settling = Spring::default();
-        self.flat = Spring::at(1.0);
+        (self.flat, self.firm) = (Spring::at(1.0), Spring::at(1.0));
         if let Hold::Planted { at, .. } = self.hold {
             self.normal = at.normal;
             self.offset = Spring::at(at.ball - goal.clip);
@@ -230,6 +241,12 @@ impl Foot {
         }
         let flat = f64::from(u8::from(self.is_planted()));
         self.flat.step(flat, SETTLES, dt);
+        let time = if self.is_planted() {
+            SETTLES
+        } else {
+            LETS_GO * goal.step_time()
+        };
+        self.firm.step(flat, time, dt);
         self.clip = goal.clip;
         was_up && self.is_planted()
     }
@@ -266,7 +283,7 @@ impl Foot {
                 self.path.left = 0.0;
             }
             Hold::Swings if goal.stands && !self.is_late(goal) => {
-                let ball = goal.clip + self.offset.value;
+                let ball = self.clip + self.offset.value;
                 if ball.y - sole.at(ball).ball.y > HIGH * goal.leg {
                     let velocity = (goal.clip - self.clip) / dt + self.offset.velocity;
                     self.hold = Hold::Lands {
@@ -361,9 +378,10 @@ impl Foot {
             self.path = self.path_over(goal, sole, &lands, left);
         }
         self.path.left -= dt;
+        let before = [self.offset.value.y, self.offset.velocity.y];
         let mut up = Spring {
-            value: self.offset.value.y,
-            velocity: self.offset.velocity.y,
+            value: before[0],
+            velocity: before[1],
         };
         arrive(
             &mut up,
@@ -388,9 +406,10 @@ impl Foot {
         let least = self.path.floor + goal.ball_height;
         if ball < least {
             let out = (2.0 * MOST_UP * (least - ball)).sqrt();
-            let faster = (out - self.offset.velocity.y).clamp(0.0, MOST_UP * dt);
-            self.offset.velocity.y += faster;
-            self.offset.value.y += faster * dt;
+            let most = before[1] + MOST_UP * dt;
+            let velocity = out.min(most).max(self.offset.velocity.y);
+            self.offset.value.y += 0.5 * (velocity - self.offset.velocity.y) * dt;
+            self.offset.velocity.y = velocity;
         }
     }
 
@@ -426,17 +445,18 @@ impl Foot {
         (mut ball, to, left): (Spring<DVec3>, Footing, f64),
         dt: f64,
     ) {
-        arrive(&mut ball, to.ball, left.max(LEAST), MOST_UP, dt);
+        // It takes longer than planned if it is too fast for that.
+        let left = unhurried(&ball, to.ball, left.max(LEAST), MOST_UP);
+        arrive(&mut ball, to.ball, left, MOST_UP, dt);
         self.set(ball.value - goal.clip, dt);
-        arrive(&mut self.yaw, 0.0, left.max(LEAST), MOST_TURN, dt);
+        arrive(&mut self.yaw, 0.0, left, MOST_TURN, dt);
         self.lean(to.normal, LEANS, dt);
         self.hold = Hold::Lands {
             ball,
             to,
             left: left - dt,
         };
-        // It takes longer than planned if it was fast.
-        if left <= dt && (ball.value - to.ball).length() < ARRIVED * goal.leg {
+        if left <= LEAST && (ball.value - to.ball).length() < ARRIVED * goal.leg {
             self.plant(goal, sole);
         }
     }
@@ -501,6 +521,22 @@ impl FootGoal {
 /// The acceleration with which [`arrive`] begins.
 fn pull([value, velocity]: [f64; 2], goal: f64, left: f64) -> f64 {
     (goal - value) * (6.0 / (left * left)) - velocity * (4.0 / left)
+}
+
+/// The least time of at least `left` seconds in which [`arrive`] needs no more than an acceleration, at its beginning and its
+/// end.
+fn unhurried(spring: &Spring<DVec3>, goal: DVec3, left: f64, most: f64) -> f64 {
+    let (away, velocity) = (goal - spring.value, spring.velocity);
+    let mut left = left;
+    for _ in 0..24 {
+        let way = away * (6.0 / (left * left));
+        let (begins, ends) = (way - velocity * (4.0 / left), velocity * (2.0 / left) - way);
+        if begins.length().max(ends.length()) <= most {
+            break;
+        }
+        left *= 1.2;
+    }
+    left
 }
 
 /// Moves a value so that it is at its goal, at rest, in `left` seconds, by a cubic in time; or as far as an acceleration allows.

@@ -8,7 +8,7 @@ use crate::kind::SoleShape;
 const MOST_LEAN: f64 = 0.577;
 
 /// So many points of a sole are enough to foresee where it will stand.
-const FEW: usize = 24;
+const FEW: usize = 12;
 
 /// The sole of a foot above the ground.
 pub(crate) struct Sole<'a> {
@@ -17,6 +17,8 @@ pub(crate) struct Sole<'a> {
     /// From the model's axes at rest to the foot's heading in the world; and metres per unit.
     pub(crate) turn: DQuat,
     pub(crate) scale: f64,
+    /// What is higher than this above the foot is a wall, metres.
+    pub(crate) wall: f64,
 }
 
 /// Where a foot stands.
@@ -29,9 +31,10 @@ pub(crate) struct Footing {
 }
 
 impl Sole<'_> {
-    /// Height of the ground below a place; `None` if there is none.
+    /// Height of the ground below a place; `None` if there is none, or a wall.
     pub(crate) fn below(&self, place: DVec3) -> Option<f64> {
-        self.ground.below(place).map(|(height, _)| height)
+        let height = self.ground.below(place).map(|(height, _)| height);
+        height.filter(|height| height - place.y < self.wall)
     }
 
     /// Height of the ground that a foot has to pass over at a place of its ball, if it leans to a normal: the highest of those

@@ -15,6 +15,9 @@ use crate::error::ColossusError;
 const STANDS_BELOW: f64 = 0.012;
 const STANDS_SLOWER: f64 = 0.2;
 
+/// A leg does not fold further than to this angle between thigh and shin, radians: 20 degrees, a deep squat.
+const LEAST_KNEE: f64 = 0.349;
+
 /// Samples a second in which a clip is searched for contacts.
 const SAMPLES: f64 = 60.0;
 
@@ -28,6 +31,8 @@ pub(crate) struct Leg {
     pub(crate) ankle: JointId,
     /// The ball of the foot: the toe joint, or the ankle.
     pub(crate) ball: JointId,
+    /// Where the ball is at rest, in model space.
+    pub(crate) stands_at: DVec3,
     /// Length of thigh and shin together.
     pub(crate) length: f64,
     /// Rotation of the ankle at rest, in model space, when the sole is level; and from the ball to the ankle, in the
@@ -70,9 +75,12 @@ impl Leg {
             Knee::Backward => -DVec3::Z,
         };
         let skeleton = names.skeleton;
-        let ik = TwoBone::new(skeleton, joints, knee)?;
         let rest = skeleton.rest_pose();
-        let lengths = ik.lengths(skeleton, &rest)?;
+        let solved = TwoBone::new(skeleton, joints, knee)
+            .and_then(|ik| ik.with_least_angle(LEAST_KNEE))
+            .and_then(|ik| Ok((ik, ik.lengths(skeleton, &rest)?)));
+        let limb = |error| names.limb("leg", file.joints.iter(), error);
+        let (ik, lengths) = solved.map_err(limb)?;
         let place = |joint| {
             joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)
         };
@@ -86,6 +94,7 @@ impl Leg {
             ankle,
             ball,
             level,
+            stands_at: at,
             from_ball: level.conjugate() * (place(ankle) - at),
             length,
             sole: SoleShape::new(skeleton, mesh, ankle, at, length),

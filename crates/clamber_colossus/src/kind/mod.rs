@@ -9,7 +9,7 @@ mod strikes;
 
 use std::sync::Arc;
 
-use clamber_animation::ik::{LookAt, LookLimits};
+use clamber_animation::ik::{IkError, LookAt, LookLimits};
 use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
@@ -287,6 +287,44 @@ pub(crate) struct Names<'a> {
 }
 
 impl Names<'_> {
+    /// An error of inverse kinematics, with names of joints.
+    pub(crate) fn limb<'n>(
+        &self,
+        limb: &'static str,
+        joints: impl Iterator<Item = &'n String>,
+        error: IkError,
+    ) -> BrainError {
+        let name = |joint: JointId| {
+            let joint = self.skeleton.joints().get(joint.index());
+            joint.map_or("?", |joint| joint.name.as_str())
+        };
+        let fault = match error {
+            IkError::NotAChain { joint, ancestor } => format!(
+                "in the skeleton, `{}` is not below `{}`",
+                name(joint),
+                name(ancestor)
+            ),
+            IkError::NoLength(joint) => {
+                format!("the bone that ends at `{}` has no length", name(joint))
+            }
+            IkError::NotInvertible(joint) => {
+                format!("`{}` or a joint above it is scaled by 0", name(joint))
+            }
+            IkError::Sheared(joint) => format!(
+                "`{}` or a joint above it scales its axes unevenly",
+                name(joint)
+            ),
+            other => other.to_string(),
+        };
+        let joints: Vec<String> = joints.map(|name| format!("`{name}`")).collect();
+        let joints = joints.join(", ");
+        whole(BrainProblem::Limb {
+            limb,
+            joints,
+            fault,
+        })
+    }
+
     pub(crate) fn clip(&self, name: &str) -> Result<ClipId, BrainProblem> {
         self.clips.find(name).ok_or_else(|| BrainProblem::Unknown {
             what: "clip",
@@ -449,21 +487,17 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
         chain.push((names.joint(name).map_err(whole)?, *share));
     }
     let Some(&(head, _)) = chain.first() else {
-        return Err(
-            clamber_animation::ik::IkError::BadSetUp("a head needs at least one joint").into(),
-        );
+        let error = IkError::BadSetUp("it has no joints");
+        return Err(names.limb("head", [].into_iter(), error).into());
     };
     let rest = names.skeleton.rest_pose();
     let model_from_head = clamber_animation::joint_in_model(names.skeleton, &rest, head);
     let forward = model_from_head.map_or(DVec3::Z, |frame| frame.matrix3.inverse() * DVec3::Z);
     let [yaw, pitch] = file.limits_deg.map(f64::to_radians);
-    let look = LookAt::new(
-        names.skeleton,
-        &chain,
-        DVec3::from_array(file.eye),
-        forward,
-        DVec3::Y,
-    )?
-    .with_limits(LookLimits { yaw, pitch })?;
+    let eye = DVec3::from_array(file.eye);
+    let look = LookAt::new(names.skeleton, &chain, eye, forward, DVec3::Y)
+        .and_then(|look| look.with_limits(LookLimits { yaw, pitch }));
+    let joints = file.joints.iter().map(|(name, _)| name);
+    let look = look.map_err(|error| names.limb("head", joints, error))?;
     Ok((look, head))
 }

@@ -8,7 +8,9 @@
 
 use std::sync::Arc;
 
-use clamber_colossus::{Brain, Creature, CreatureConfig, CreatureKind, CreatureParts, Person};
+use clamber_colossus::{
+    Brain, ColossusError, Creature, CreatureConfig, CreatureKind, CreatureParts, Person,
+};
 use clamber_surface::geometry::WorldCapsule;
 use clamber_surface::mesh::VertexId;
 use clamber_world::rapier3d::parry::utils::Array2;
@@ -38,6 +40,11 @@ pub(crate) fn brain_with(start: &str, states: &str) -> String {
 
 /// The giant with this brain.
 pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
+    Arc::new(try_kind(brain).unwrap())
+}
+
+/// The giant with this brain, which may not fit it.
+pub(crate) fn try_kind(brain: &str) -> Result<CreatureKind, ColossusError> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/colossus.glb");
     let rig = clamber_gltf::load(path).unwrap();
     let parts = CreatureParts {
@@ -47,7 +54,7 @@ pub(crate) fn kind(brain: &str) -> Arc<CreatureKind> {
         weak_points: rig.weak_points,
     };
     let brain = Brain::from_json(brain, TICK).unwrap();
-    Arc::new(CreatureKind::new(parts, brain).unwrap())
+    CreatureKind::new(parts, brain)
 }
 
 pub(crate) fn creature(kind: &Arc<CreatureKind>, config: CreatureConfig) -> Creature {
@@ -123,17 +130,29 @@ pub(crate) struct Feel {
 impl Feel {
     /// Takes a place; returns the acceleration that is felt there.
     pub(crate) fn step(&mut self, place: DVec3) -> f64 {
+        let acceleration = self.raw(place);
+        self.filter(acceleration)
+    }
+
+    /// Takes a place; returns its acceleration, not filtered.
+    pub(crate) fn raw(&mut self, place: DVec3) -> DVec3 {
         let Some([from, velocity]) = self.before else {
             self.before = Some([place, DVec3::NAN]);
-            return 0.0;
+            return DVec3::ZERO;
         };
         let now = (place - from) / TICK;
         self.before = Some([place, now]);
         if velocity.is_nan() {
-            return 0.0;
+            DVec3::ZERO
+        } else {
+            (now - velocity) / TICK
         }
+    }
+
+    /// Takes an acceleration; returns how much of it is felt.
+    pub(crate) fn filter(&mut self, acceleration: DVec3) -> f64 {
         let keep = libm::exp(-TICK / 0.1);
-        self.felt = self.felt * keep + (now - velocity) / TICK * (1.0 - keep);
+        self.felt = self.felt * keep + acceleration * (1.0 - keep);
         self.felt.length()
     }
 }

@@ -59,7 +59,7 @@ pub struct BattleOptions {
     pub rocks: u32,
 
     /// Seed for the climber's start and the rocks' places; the same number gives the same battle.
-    #[arg(long, default_value_t = 28)]
+    #[arg(long, default_value_t = 74)]
     pub seed: u64,
 
     /// Folder for summary.json and timeline.svg.
