@@ -38,5 +38,10 @@ pub(super) fn print(options: &InspectOptions) -> Result<bool, InspectError> {
         None => brain.report(),
     };
     print!("{report}");
+    if options.creature.is_none() {
+        println!(
+            "joints, clips and markers were not looked for: name the creature's file by --creature"
+        );
+    }
     Ok(report.never.is_empty())
 }

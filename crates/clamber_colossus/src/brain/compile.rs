@@ -20,7 +20,7 @@ impl Brain {
             BrainError {
                 line: (line > 0).then_some(line),
                 state: state_on(text, line),
-                problem: Box::new(BrainProblem::Text(error.to_string())),
+                problem: Box::new(BrainProblem::Text(without_place(&error.to_string()))),
             }
         })?;
         Compiler::new(&file, tick, Some(text)).compile()
@@ -412,4 +412,10 @@ impl Brain {
             problem: Box::new(problem),
         }
     }
+}
+
+/// The text of an error without the line and column at its end, of which the line is told apart.
+fn without_place(error: &str) -> String {
+    let end = error.rfind(" at line ").unwrap_or(error.len());
+    error[..end].to_owned()
 }

@@ -60,8 +60,8 @@ impl Comparison {
 pub(crate) enum ConditionFault {
     /// It is neither a name nor `name operator number`.
     Form,
-    /// There is no such sense, mood or region.
-    Name(String),
+    /// There is no such sense, mood or region; those that there are.
+    Name(String, String),
 }
 
 impl fmt::Display for ConditionFault {
@@ -70,7 +70,7 @@ impl fmt::Display for ConditionFault {
             Self::Form => f.write_str(
                 "is neither a name, `!name`, nor a name, an operator (<, <=, ==, !=, >=, >) and a number, with spaces between them",
             ),
-            Self::Name(name) => write!(f, "names `{name}`, which is no sense, mood or region of this file"),
+            Self::Name(name, known) => write!(f, "names `{name}`, which is no sense, mood or region of this file; there is {known}"),
         }
     }
 }
@@ -136,7 +136,12 @@ impl Condition {
 
 impl Source {
     fn find(name: &str, file: &BrainFile) -> Result<Self, ConditionFault> {
-        let unknown = || ConditionFault::Name(name.to_owned());
+        let unknown = || {
+            let senses = Sense::all().map(|sense| sense.name().to_owned());
+            let own = file.moods.keys().chain(&file.senses).cloned();
+            let known: Vec<String> = senses.chain(own).collect();
+            ConditionFault::Name(name.to_owned(), super::list(known.iter()))
+        };
         if let Some((sense, region)) = name.split_once('@') {
             let sense = RegionSense::find(sense).ok_or_else(unknown)?;
             let region = file.regions.keys().position(|known| known == region);

@@ -103,6 +103,15 @@ pub enum BrainProblem {
         /// What is wrong with them.
         fault: String,
     },
+    /// A walk's `strike` names a clip with which no state attacks.
+    #[error("`strike` names the clip `{clip}`, and no state attacks with that")]
+    NoAttack {
+        /// The clip.
+        clip: String,
+    },
+    /// An act needs a gait, and the body has none.
+    #[error("it walks or turns, and `body` has no `gait`")]
+    NoGait,
     /// A clip of an attack lacks a marker, or has them in another order.
     #[error("the clip `{clip}` of an attack needs the markers `active` and, later, `recovery`")]
     Phases {

@@ -156,6 +156,11 @@ impl Brain {
                     "to `{}`: no clip of the state has a marker `{marker}`",
                     self.path(transition.to)
                 )
+            } else if self.waits_for_no_end(transition) {
+                format!(
+                    "to `{}`: its act has no end, so `done` never holds",
+                    self.path(transition.to)
+                )
             } else if self.is_hidden(transition) {
                 format!(
                     "to `{}`: another transition is always taken before it",
@@ -269,6 +274,18 @@ impl Brain {
             _ => false,
         });
         (!found).then(|| wanted.clone())
+    }
+
+    /// True if a transition of a single state waits for the end of an act that has none.
+    fn waits_for_no_end(&self, transition: &Transition) -> bool {
+        use super::condition::Source;
+        let state = &self.states[transition.from.index()];
+        let is_endless = matches!(state.act, Some(super::Act::Play(_) | super::Act::Sleep));
+        let waits = |condition: &Condition| {
+            let is_done = condition.source == Source::Sense(crate::senses::Sense::Done);
+            is_done && condition.interval()[0] > 0.0
+        };
+        is_endless && transition.when.iter().any(waits)
     }
 
     /// True if a transition without conditions and with a higher priority stands beside it.

@@ -12,13 +12,13 @@ pub struct CreatureConfig {
     pub yaw: f64,
     /// Metres per unit of its file. Its clips are slowed by the square root of it, as gravity is the same at any size.
     pub scale: f64,
-    /// Seed of its lots.
+    /// Seed of its lots; 0 by default.
     pub seed: u64,
-    /// It does not walk further from where it began, metres.
+    /// It does not walk further from where it began, metres; 100 by default.
     pub arena: f64,
-    /// It does not walk onto steeper ground, radians.
+    /// It does not walk onto steeper ground, radians; 25 degrees by default.
     pub most_slope: f64,
-    /// It does not see further, metres.
+    /// It does not see further, metres; 150 by default.
     pub sight: f64,
 }
 

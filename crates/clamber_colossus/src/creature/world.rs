@@ -18,7 +18,7 @@ pub struct Surroundings<'a> {
 pub struct Person {
     /// The person's id, which stays the same.
     pub id: u64,
-    /// The body, in world space.
+    /// The body, in world space: a person of 1.75 m has ends 0.3 and 1.45 m above its feet, and a radius of 0.3 m.
     pub body: WorldCapsule,
     /// Where it stands on this creature or holds it; `None` if it does not.
     pub riding: Option<Riding>,
@@ -27,7 +27,7 @@ pub struct Person {
 /// How somebody is on a creature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Riding {
-    /// The point of the creature's skin.
+    /// The point of the creature's skin: of a climber the `material` of its support's contact, or of what it holds.
     pub at: MaterialPoint,
     /// True if the person hangs, rather than stands or grips.
     pub hangs: bool,
@@ -45,9 +45,11 @@ pub struct Noise {
 /// A blow or an arrow that struck a creature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wound {
-    /// Where it struck, in world space.
+    /// Where it struck, in world space: the first open weak point whose ball this place is in takes the damage.
     pub place: DVec3,
-    /// The point of the skin.
+    /// The point of the skin: it tells the region, and the plate that takes the blow if there is one. Of a hit on the
+    /// creature's surface it is `MaterialPoint::on_triangle(hit.triangle, hit.barycentric)`, of a contact with an
+    /// [`Obstacle`] its `material`.
     pub at: MaterialPoint,
     /// Damage that it does to a weak point there.
     pub damage: f64,

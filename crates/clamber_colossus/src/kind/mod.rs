@@ -81,7 +81,7 @@ impl CreatureKind {
     ///
     /// # Errors
     /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the state and its line;
-    /// [`ColossusError::Animation`] and [`ColossusError::Ik`] if the parts do not fit each other or a leg cannot be bent.
+    /// or if its legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit each other.
     pub fn new(parts: CreatureParts, brain: Brain) -> Result<Self, ColossusError> {
         let CreatureParts {
             skeleton,
@@ -428,26 +428,17 @@ fn compile(
         Act::Attack(attack) => Some(strike(names, attack, legs).map_err(here)?),
         Act::Walk(walk) => match &walk.strike {
             Some(clip) => {
-                let attack = attack_with(brain, clip).ok_or_else(|| {
-                    here(BrainProblem::Unknown {
-                        what: "attack with the clip",
-                        name: clip.clone(),
-                        known: "no other state that attacks with it".into(),
-                    })
-                })?;
-                Some(strike(names, attack, legs).map_err(here)?)
+                let (owner, attack) = attack_with(brain, clip)
+                    .ok_or_else(|| here(BrainProblem::NoAttack { clip: clip.clone() }))?;
+                let there = |problem| brain.error_in(owner, problem);
+                Some(strike(names, attack, legs).map_err(there)?)
             }
             None => None,
         },
         _ => None,
     };
     if matches!(act, Act::Walk(_) | Act::Turn(_)) && gait.is_none() {
-        return Err(here(BrainProblem::Unknown {
-            what: "part of the body",
-            name: "gait".into(),
-            known: "no walk and no turn without it".into(),
-        })
-        .into());
+        return Err(here(BrainProblem::NoGait).into());
     }
     let mut contacts = Vec::new();
     if let Some(clip) = clip {
@@ -474,9 +465,9 @@ fn strike(names: &Names<'_>, attack: &Attack, legs: &[Leg]) -> Result<Strike, Br
     Strike::new(names, attack, limb, legs)
 }
 
-fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<&'a Attack> {
+fn attack_with<'a>(brain: &'a Brain, clip: &str) -> Option<(StateId, &'a Attack)> {
     brain.states().find_map(|state| match brain.act(state) {
-        Some(Act::Attack(attack)) if attack.clip == clip => Some(attack),
+        Some(Act::Attack(attack)) if attack.clip == clip => Some((state, attack)),
         _ => None,
     })
 }

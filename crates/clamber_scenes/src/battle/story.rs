@@ -1,7 +1,7 @@
 /// The climber's task in a battle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Story {
-    /// The climber comes over an outcrop, is knocked down by a stomp, grips a leg and climbs to the top.
+    /// The climber comes over an outcrop, runs from blows, grips a leg and climbs to the top.
     Climb,
     /// The climber is dropped on the back, and stands, walks and jumps there.
     Ride,
