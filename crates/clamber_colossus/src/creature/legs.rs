@@ -193,19 +193,25 @@ impl Creature {
         let lands_in = landing
             .map_or(1.0, |(wait, _)| wait / speed.max(1e-3))
             .min(4.0);
-        // Where the creature will be then.
-        let ahead = self.state.heading() * (self.state.speed * lands_in);
+        let forward = self.state.heading();
         let at = landing.map_or(clip, |(_, place)| world.transform_point(place));
-        let lands_at = if stands { clip } else { at + ahead };
+        let lands_at = if stands {
+            clip
+        } else {
+            // Where the creature will be then.
+            at + forward * (self.state.speed * lands_in)
+        };
         let is_walk = self.state.playing == Playing::Walk;
         let aside = match landing {
             _ if aims == Some(index) => self.state.aim,
-            Some((_, place)) if is_walk => {
-                self.state.heading() * (place.z * scale * (self.stride() - 1.0))
-            }
+            Some((_, place)) if is_walk => forward * (place.z * scale * (self.stride() - 1.0)),
             _ => DVec3::ZERO,
         };
-        let aside = aside + self.past_others(index);
+        let aside = if stands {
+            aside
+        } else {
+            aside + self.past_others(index, forward)
+        };
         // A blow is meant, and no correction.
         let most_aside = if aims == Some(index) {
             BLOW
@@ -239,10 +245,9 @@ impl Creature {
     }
 
     /// How far aside a leg has to pass those beside it: as far as they stand nearer to it than in their clip.
-    fn past_others(&self, index: usize) -> DVec3 {
+    fn past_others(&self, index: usize, forward: DVec3) -> DVec3 {
         let leg = &self.kind.legs()[index];
-        let heading = self.state.heading();
-        let left = DVec3::new(heading.z, 0.0, -heading.x);
+        let left = DVec3::new(forward.z, 0.0, -forward.x);
         let others = self.kind.legs().iter().zip(&self.state.feet);
         let nearer = others.filter_map(|(other, foot)| {
             let way = leg.stands_at - other.stands_at;

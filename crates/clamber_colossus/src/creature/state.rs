@@ -273,7 +273,8 @@ impl CreatureState {
 
     /// Its heading as a unit vector.
     pub(super) fn heading(&self) -> DVec3 {
-        DVec3::new(libm::sin(self.yaw), 0.0, libm::cos(self.yaw))
+        let (sin, cos) = libm::sincos(self.yaw);
+        DVec3::new(sin, 0.0, cos)
     }
 
     pub(super) fn check(&self, kind: &CreatureKind) -> Result<(), ColossusError> {

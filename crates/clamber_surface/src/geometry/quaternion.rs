@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3};
 /// Rotation by `angle` radians about the unit vector `axis`, right-handed. Unlike glam's `from_axis_angle`, it has the
 /// same bits on every platform.
 pub fn rotation_from_axis_angle(axis: DVec3, angle: f64) -> DQuat {
-    let s = libm::sin(angle * 0.5);
-    DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, libm::cos(angle * 0.5))
+    let (s, c) = libm::sincos(angle * 0.5);
+    DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
 }
 
 /// The rotation vector of a unit quaternion: its axis times its angle in radians, at most pi; zero for the identity.
