@@ -11,7 +11,7 @@ use clamber_surface::mesh::VertexId;
 use clamber_world::rapier3d::prelude::{ColliderBuilder, PhysicsWorld};
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::DVec3;
-use support::{Feel, Sole, TICK, add_boulders, ground, sole};
+use support::{Feel, Sole, TICK, ground, sole, strew_boulders};
 
 const WALKS: &str = r#"{
     "rests": { "act": { "play": "idle" }, "transitions": [{ "to": "roams", "after": 3 }] },
@@ -187,15 +187,7 @@ fn on_a_slope_of_25_degrees() {
 #[test]
 fn on_boulders_of_2_m() {
     let mut world = ground(|_, _| 0.0);
-    let mut random = fastrand::Rng::with_seed(3);
-    let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
-    let places: Vec<_> = (0..600)
-        .map(|_| {
-            let place = DVec3::new(lot(-125.0, 125.0), 0.0, lot(-125.0, 125.0));
-            (place, lot(3.0, 4.5), lot(0.5, 2.0))
-        })
-        .collect();
-    add_boulders(&mut world, &places);
+    strew_boulders(&mut world, 3);
     let figures = walk(&world, config(), 120.0);
     check(&figures);
     // As uphill, where it comes down from a boulder.

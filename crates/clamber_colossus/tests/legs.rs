@@ -12,7 +12,7 @@ use clamber_world::rapier3d::parry::shape::ConvexPolyhedron;
 use clamber_world::rapier3d::prelude::{PhysicsWorld, Pose};
 use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
 use glam::{DQuat, DVec3, Vec3};
-use support::{TICK, add_boulders, ground, person};
+use support::{TICK, ground, person, strew_boulders};
 
 /// It walks about, and kicks and stomps in between.
 const LIVES: &str = r#"{
@@ -169,15 +169,7 @@ fn on_a_slope_of_25_degrees() {
 #[test]
 fn on_boulders_of_2_m() {
     let mut world = ground(|_, _| 0.0);
-    let mut random = fastrand::Rng::with_seed(7);
-    let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
-    let places: Vec<_> = (0..600)
-        .map(|_| {
-            let place = DVec3::new(lot(-125.0, 125.0), 0.0, lot(-125.0, 125.0));
-            (place, lot(3.0, 4.5), lot(0.5, 2.0))
-        })
-        .collect();
-    add_boulders(&mut world, &places);
+    strew_boulders(&mut world, 7);
     for seed in [4, 5, 8, 11] {
         check(&live(&world, seed, 180.0));
     }

@@ -88,6 +88,19 @@ pub(crate) fn add_boulders(world: &mut PhysicsWorld, places: &[(DVec3, f64, f64)
     world.detect_collisions(&(), &());
 }
 
+/// Strews 600 boulders over 250 m, which stand out by 0.5 to 2 m.
+pub(crate) fn strew_boulders(world: &mut PhysicsWorld, seed: u64) {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut lot = |from: f64, to: f64| from + (to - from) * random.f64();
+    let places: Vec<_> = (0..600)
+        .map(|_| {
+            let place = DVec3::new(lot(-125.0, 125.0), 0.0, lot(-125.0, 125.0));
+            (place, lot(3.0, 4.5), lot(0.5, 2.0))
+        })
+        .collect();
+    add_boulders(world, &places);
+}
+
 /// The triangles of a foot's sole: those of its rigid skin that are near the ground at rest.
 pub(crate) struct Sole {
     pub(crate) triangles: Vec<[VertexId; 3]>,
