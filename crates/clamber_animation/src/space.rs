@@ -58,8 +58,9 @@ pub fn joint_in_model(skeleton: &Skeleton, pose: &Pose, joint: JointId) -> Optio
     is_there.then(|| model_from_joint(skeleton, pose, joint))
 }
 
-/// [`joint_in_model`] of several joints, such as those of a limb. A joint that stands right after one above it goes on from
-/// there: give a limb's joints from its root to its tip.
+/// The transforms of several joints in model space in a pose, as [`joint_in_model`] gives them; `None` if the pose or the
+/// skeleton lacks one. Less work for joints of one limb, if they are given from its root to its tip: each is composed from
+/// the one before it, if that is above it.
 pub fn joints_in_model<const N: usize>(
     skeleton: &Skeleton,
     pose: &Pose,

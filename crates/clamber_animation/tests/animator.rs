@@ -287,6 +287,56 @@ fn root_motion_moves_the_creature_as_the_clip_did() {
     assert!(world_from_model.translation.length() > 1.0);
 }
 
+/// What an additive layer adds is the difference of two whole poses of its clip, also under root motion, and in joints that
+/// the clip does not move: nothing.
+#[test]
+fn an_additive_layer_adds_the_difference_of_whole_poses() {
+    let skeleton = skeleton();
+    let idle = turning("idle", DVec3::X, 0.1, 0.7);
+    let clips = vec![idle, walk_in_a_circle()];
+    let moving = AnimationSet::new(&skeleton, clips.clone()).unwrap();
+    let sets = [
+        moving.clone(),
+        moving.with_root_motion(&skeleton, JointId(0)).unwrap(),
+    ];
+    let mut rng = fastrand::Rng::with_seed(8);
+    for set in &sets {
+        for _ in 0..200 {
+            let (time, weight) = (rng.f64() * 3.0, rng.f64());
+            let below = Layer {
+                time: rng.f64(),
+                ..Layer::new(ClipId(0))
+            };
+            let added = Layer {
+                kind: LayerKind::Additive,
+                time,
+                weight,
+                ..Layer::new(ClipId(1))
+            };
+            let found = pose(set, &Animator::new(vec![below, added]));
+            let [base, first, sampled] = [
+                below,
+                Layer::new(ClipId(1)),
+                Layer {
+                    time,
+                    ..Layer::new(ClipId(1))
+                },
+            ]
+            .map(|layer| pose(set, &Animator::new(vec![layer])));
+            for joint in 0..3 {
+                let [found, base, first, sampled] =
+                    [&found, &base, &first, &sampled].map(|pose| pose.transforms[joint]);
+                let way = (sampled.translation - first.translation) * weight as f32;
+                let place = base.translation + way;
+                assert!(found.translation.distance(place) < 1e-5, "{joint}");
+                let turn = first.rotation.as_dquat().conjugate() * sampled.rotation.as_dquat();
+                let turn = clamber_surface::geometry::slerp(DQuat::IDENTITY, turn, weight);
+                assert_turn(found.rotation, base.rotation.as_dquat() * turn);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_layer_that_is_held_over_a_walk_stops_its_motion() {
     let skeleton = skeleton();

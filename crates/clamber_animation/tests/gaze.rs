@@ -5,8 +5,9 @@
 mod common;
 
 use clamber_animation::glam::{DQuat, DVec3, Vec3};
-use clamber_animation::ik::{Chain, IkError, LookAt, LookMemory, Reach, aim};
+use clamber_animation::ik::{Chain, IkError, LookAt, LookMemory, Reach, aim, orient};
 use clamber_animation::rig::{JointId, Pose, Skeleton};
+use clamber_animation::{joint_in_model, joints_in_model};
 use clamber_surface::geometry::{rotation_from_axis_angle, rotation_vector};
 use common::{joint, place};
 
@@ -169,6 +170,87 @@ fn mirrored_and_scaled_bodies_look_where_they_should() {
         matches!(parallel, Err(IkError::BadSetUp(_))),
         "{parallel:?}"
     );
+}
+
+/// A pose of the torso with random rotations, and a scale of one of its joints.
+fn scaled_pose(rng: &mut fastrand::Rng, scaled: usize, scale: Vec3) -> Pose {
+    let mut pose = torso().rest_pose();
+    for transform in &mut pose.transforms {
+        transform.rotation = common::rotation(rng).as_quat();
+    }
+    pose.transforms[scaled].scale = scale;
+    pose
+}
+
+#[test]
+fn joints_are_oriented_below_any_parents() {
+    let mut rng = fastrand::Rng::with_seed(21);
+    for scale in [1.0, 3.0, 1.0000002, -1.0] {
+        for scaled in 0..5 {
+            for _ in 0..40 {
+                let mut pose = scaled_pose(&mut rng, scaled, Vec3::splat(scale));
+                let wanted = common::rotation(&mut rng);
+                orient(&torso(), &mut pose, HEAD, wanted).unwrap();
+                let head = joint_in_model(&torso(), &pose, HEAD).unwrap().matrix3;
+                for axis in [DVec3::Y, DVec3::Z] {
+                    let off = angle(head * axis, wanted * axis);
+                    assert!(off < 1e-6, "{scale} at {scaled}: {off}");
+                }
+            }
+        }
+    }
+    let before = scaled_pose(&mut rng, 1, Vec3::new(1.0, 2.0, 1.0));
+    let mut pose = before.clone();
+    let wrong = [
+        (JointId(9), DQuat::IDENTITY),
+        (HEAD, DQuat::IDENTITY),
+        (JointId(0), DQuat::from_xyzw(f64::NAN, 0.0, 0.0, 1.0)),
+        (JointId(0), DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+    ];
+    for (joint, rotation) in wrong {
+        assert!(
+            orient(&torso(), &mut pose, joint, rotation).is_err(),
+            "{joint} {rotation}"
+        );
+        assert_eq!(pose, before);
+    }
+}
+
+#[test]
+fn frames_of_several_joints_are_those_of_each() {
+    let mut rng = fastrand::Rng::with_seed(22);
+    for scale in [Vec3::ONE, Vec3::new(1.0, -2.0, 0.5)] {
+        for _ in 0..300 {
+            let scaled = rng.usize(..5);
+            let pose = scaled_pose(&mut rng, scaled, scale);
+            // In any order, also twice.
+            let joints = [(); 4].map(|()| JointId(rng.u32(..5)));
+            let together = joints_in_model(&torso(), &pose, joints).unwrap();
+            for (joint, frame) in joints.into_iter().zip(together) {
+                let alone = joint_in_model(&torso(), &pose, joint).unwrap();
+                assert!(
+                    frame.abs_diff_eq(alone, 1e-12),
+                    "{joints:?}: {frame} {alone}"
+                );
+            }
+        }
+    }
+    let pose = torso().rest_pose();
+    assert!(joints_in_model(&torso(), &pose, [HEAD, JointId(5)]).is_none());
+    assert!(joints_in_model(&torso(), &Pose::default(), [HEAD]).is_none());
+}
+
+#[test]
+fn a_look_at_chain_has_a_most_length() {
+    let column = |count: u32| {
+        let up = Vec3::Y * 0.1;
+        let joints = (0..count).map(|index| joint(index.checked_sub(1), up));
+        let skeleton = Skeleton::new(joints.collect()).unwrap();
+        let chain = [(JointId(count - 1), 0.5), (JointId(0), 1.0)];
+        LookAt::new(&skeleton, &chain, DVec3::ZERO, DVec3::Z, DVec3::Y)
+    };
+    assert!(column(256).is_ok());
+    assert!(matches!(column(257), Err(IkError::BadSetUp(_))));
 }
 
 #[test]

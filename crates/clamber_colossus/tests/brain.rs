@@ -91,6 +91,8 @@ fn what_does_not_exist_is_refused_with_line_and_state() {
         if !state.is_empty() {
             assert_eq!(error.state.as_deref(), Some(state), "{wrong}: {error}");
         }
+        // The line is told once.
+        assert!(!error.to_string().contains(" at line "), "{error}");
     }
     let text = FILE.replacen(r#""start": "idle""#, r#""start": "dead""#, 1);
     let error = Brain::from_json(&text, TICK).unwrap_err();
@@ -99,6 +101,26 @@ fn what_does_not_exist_is_refused_with_line_and_state() {
         (Some(7), Some("calm")),
         "{error}"
     );
+}
+
+#[test]
+fn a_condition_that_is_misspelt_is_told_what_there_is() {
+    for (right, wrong, known) in [
+        (
+            "prey_distance < 30",
+            "prey_distanse < 30",
+            ["`prey_distance`", "`storm`"],
+        ),
+        (
+            "riders@head >= 1",
+            "riders@haed >= 1",
+            ["`riders@head`", "`hurt@head`"],
+        ),
+    ] {
+        let error = Brain::from_json(&FILE.replacen(right, wrong, 1), TICK).unwrap_err();
+        let error = error.to_string();
+        assert!(known.iter().all(|known| error.contains(known)), "{error}");
+    }
 }
 
 #[test]
@@ -226,4 +248,17 @@ fn a_report_tells_what_can_never_happen() {
             .any(|never| never.contains("nothing leads here")),
         "{never:?}"
     );
+    // What is played again and again is never over.
+    for (done, is_told) in [("done", true), ("done >= 1", true), ("!done", false)] {
+        let text = FILE.replace(
+            r#"[2, 6] }"#,
+            &format!(r#"[2, 6] }}, {{ "to": "roam", "when": ["{done}"] }}"#),
+        );
+        let report = Brain::from_json(&text, TICK).unwrap().report();
+        let never = report
+            .never
+            .iter()
+            .any(|never| never.what.contains("no end"));
+        assert_eq!(never, is_told, "{done}: {report}");
+    }
 }

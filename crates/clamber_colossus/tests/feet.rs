@@ -80,7 +80,7 @@ fn walk(world: &PhysicsWorld, config: CreatureConfig, seconds: f64) -> Figures {
             place(&giant, joint) - world.transform_point(frame.translation) + height
         });
         let mut felt: Vec<f64> = (0..2).map(|at| feels[at].step(added[at])).collect();
-        // While a foot does not follow its clip, all of its motion counts, and not that of the clip.
+        // A foot that does not follow its clip is judged by its own motion alone.
         for foot in 2..4 {
             let over_clip = feels[foot].raw(added[foot]);
             let all = feels[2 + foot].raw(place(&giant, watched[foot]));
@@ -253,4 +253,42 @@ fn a_foot_comes_down_where_its_ground_is_gone() {
     println!("down after {:.2} s", (down - 240) as f64 * TICK);
     assert!((down..600).all(stands));
     assert!(down < 240 + 240 && giant.state().is_planted(0));
+}
+
+/// A foot beside a wall, into which its sole reaches, is not put onto it.
+#[test]
+fn a_wall_is_not_stepped_on() {
+    let kind = support::kind(&support::brain_with(
+        "rests",
+        r#"{ "rests": { "act": { "play": "idle" } } }"#,
+    ));
+    let left = kind.skeleton().find("toe.L").unwrap();
+    let mut world = ground(|_, _| 0.0);
+    let alone = support::creature(&kind, config());
+    let ball = place(&alone, left);
+    // Right below the outer half of its foot.
+    let wall = ColliderBuilder::cuboid(10.0, 10.0, 40.0)
+        .translation((ball.with_y(10.0) + DVec3::X * 11.0).as_vec3());
+    world.insert_collider(wall, None);
+    world.detect_collisions(&(), &());
+    let poses = BodyPoses::default();
+    let terrain = RapierTerrain::of_world(&world, &poses);
+    let all: [&dyn Obstacle; 1] = [&terrain];
+    let mut giant = support::creature(&kind, config());
+    let reaches = |giant: &Creature| {
+        let sole = giant.sole(0).unwrap();
+        sole.iter()
+            .any(|corner| corner.x > f64::from((ball.x + 1.0) as f32))
+    };
+    for _ in 0..120 {
+        let around = Surroundings {
+            terrain: &all,
+            ..Surroundings::default()
+        };
+        giant.step(&around).unwrap();
+    }
+    assert!(reaches(&giant), "the foot does not reach into the wall");
+    let rise = place(&giant, left).y - ball.y;
+    assert!(rise.abs() < 0.3, "{rise}");
+    assert!(giant.foot_clearance(0, &all).unwrap().abs() < 0.1);
 }

@@ -57,6 +57,43 @@ fn limbs_that_are_none_are_refused_by_name() {
     }
 }
 
+#[test]
+fn acts_that_cannot_be_are_refused_where_they_stand() {
+    let attack = r#""attack": { "clip": "stomp", "limb": ["tow.R"], "damage": 0.5, "throw": 9 }"#;
+    let walk = r#""walk": { "to": "prey", "within": 8, "strike": "stomp" }"#;
+    let comes = |act: &str| format!(r#"{{ "act": {{ {act} }} }}"#);
+    for (states, state, message) in [
+        (
+            format!(r#"{{ "comes": {} }}"#, comes(walk)),
+            "comes",
+            "no state attacks with that",
+        ),
+        (
+            format!(
+                r#"{{ "comes": {}, "hits": {} }}"#,
+                comes(walk),
+                comes(attack)
+            ),
+            "hits",
+            "there is no joint `tow.R`",
+        ),
+    ] {
+        let error = support::try_kind(&support::brain_with("comes", &states)).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.contains(&format!("state `{state}`")) && error.contains(message),
+            "{error}"
+        );
+    }
+    let mut file: serde_json::Value = serde_json::from_str(&brain_file()).unwrap();
+    file["body"].as_object_mut().unwrap().remove("gait");
+    let error = support::try_kind(&file.to_string()).unwrap_err();
+    assert!(
+        error.to_string().contains("`body` has no `gait`"),
+        "{error}"
+    );
+}
+
 /// Random senses for a million ticks: few transitions in each, all states are seen, death comes from all, and is final.
 #[test]
 fn its_brain_lives_through_anything() {

@@ -152,7 +152,7 @@ fn check(figures: &Figures) {
     // Within what rounding a pose to f32 leaves.
     assert!(figures.knee > 19.9f64.to_radians(), "{figures:?}");
     assert!(figures.front > -0.005, "{figures:?}");
-    assert!(figures.depth < 0.12, "{figures:?}");
+    assert!(figures.depth < 0.02, "{figures:?}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn on_a_slope_of_25_degrees() {
 fn on_boulders_of_2_m() {
     let mut world = ground(|_, _| 0.0);
     strew_boulders(&mut world, 7);
-    for seed in [4, 5, 8, 11] {
+    for seed in [13, 31, 39, 56] {
         check(&live(&world, seed, 180.0));
     }
 }

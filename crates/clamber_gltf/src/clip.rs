@@ -9,7 +9,7 @@ use gltf::animation::{self, Property};
 use crate::accessor::Reader;
 use crate::contents::Contents;
 use crate::extras;
-use crate::transforms::whole;
+use crate::transforms::without_rounding;
 use crate::{GltfErrorKind, ImportWarning};
 
 /// Loads all animations that move the skeleton, each with only the channels that move it.
@@ -94,7 +94,13 @@ fn keyframes(
     Ok(match channel.target().property() {
         Property::Translation => Some(Keyframes::Translation(vectors()?)),
         Property::Scale => {
-            let values = vectors()?.into_iter().map(whole).collect();
+            let mut values = vectors()?;
+            // A spline also has tangents, which are no scales.
+            if channel.sampler().interpolation() != animation::Interpolation::CubicSpline {
+                values
+                    .iter_mut()
+                    .for_each(|value| *value = without_rounding(*value));
+            }
             Some(Keyframes::Scale(values))
         }
         Property::Rotation => {

@@ -25,7 +25,7 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
         } => Transform {
             translation: Vec3::from_array(translation),
             rotation: Quat::from_array(rotation),
-            scale: whole(Vec3::from_array(scale)),
+            scale: without_rounding(Vec3::from_array(scale)),
         },
         gltf::scene::Transform::Matrix { matrix } => {
             let (transform, error) = decompose(&matrix);
@@ -45,8 +45,8 @@ pub(crate) fn of_nodes(nodes: &[Node<'_>], warnings: &mut Vec<ImportWarning>) ->
 }
 
 /// A scale, without the rounding errors that exporters write where none is meant: Blender's are mostly below 1e-6. Joints
-/// without a scale are posed with less work, and what hangs from them is at most that share of its length elsewhere.
-pub(crate) fn whole(scale: Vec3) -> Vec3 {
+/// without a scale are posed with less work. Each joint moves what hangs from it by at most 1e-6 of its distance.
+pub(crate) fn without_rounding(scale: Vec3) -> Vec3 {
     let axis = |axis: f32| {
         if (axis - 1.0).abs() <= ROUNDED {
             1.0
@@ -91,7 +91,7 @@ fn decompose(matrix: &[[f32; 4]; 4]) -> (Transform, f64) {
     let transform = Transform {
         translation: column(3).as_vec3(),
         rotation: rotation.as_quat(),
-        scale: whole(scale.as_vec3()),
+        scale: without_rounding(scale.as_vec3()),
     };
     (transform, error)
 }
@@ -124,11 +124,11 @@ mod tests {
     #[test]
     fn scales_are_1_where_rounding_alone_is_not() {
         let rounded = Vec3::new(0.999_999_94, 1.000_000_2, 1.0);
-        assert_eq!(whole(rounded), Vec3::ONE);
+        assert_eq!(without_rounding(rounded), Vec3::ONE);
         for meant in [1.00001, 0.9999, -1.0, 0.0, 2.0] {
-            assert_eq!(whole(Vec3::splat(meant)), Vec3::splat(meant));
+            assert_eq!(without_rounding(Vec3::splat(meant)), Vec3::splat(meant));
         }
-        assert!(whole(Vec3::splat(f32::NAN)).is_nan());
+        assert!(without_rounding(Vec3::splat(f32::NAN)).is_nan());
     }
 
     #[test]

@@ -196,7 +196,7 @@ impl Touchable<'_, '_> {
         step(&all)
     }
 
-    /// Calls `look` with the ground and what stands on it: worlds of physics engines, and obstacles of the app.
+    /// Calls `look` with the terrain: the worlds of physics engines, and obstacles of the app.
     #[cfg(feature = "colossus")]
     pub(crate) fn terrain<T>(&self, look: impl FnOnce(&[&dyn Obstacle]) -> T) -> T {
         let mut all: Vec<&dyn Obstacle> = Vec::new();

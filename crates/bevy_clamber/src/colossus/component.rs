@@ -81,8 +81,8 @@ impl ColossusBody {
         brain.path(self.creature.state().current())
     }
 
-    /// Strikes it, with an arrow or a blade, at a place in world space: that of Bevy plus [`WorldOrigin`](crate::WorldOrigin). Returns the damage done, which is 0 unless an open
-    /// weak point is there. It feels the blow in any case.
+    /// An arrow or a blade strikes it at a place in world space, which is Bevy's plus [`WorldOrigin`](crate::WorldOrigin).
+    /// Returns the damage done, which is 0 unless an open weak point is there. It feels the blow in any case.
     ///
     /// `reach` is how far from its skin the place may be, metres; beyond it nothing happens.
     pub fn strike(&mut self, place: DVec3, damage: f64, reach: f64) -> f64 {

@@ -32,10 +32,8 @@ impl Default for LookLimits {
 /// so that the gaze arrives; no iteration is needed (Guillaume Blanc, ozz-animation, sample "look at").
 #[derive(Clone, Debug, PartialEq)]
 pub struct LookAt {
-    /// From the head down, with shares.
-    joints: Vec<(JointId, f64)>,
-    /// From the last of them up to the head, with the joints between.
-    path: Vec<JointId>,
+    /// From the chain's last joint up to the head, with shares; joints between those of the chain have none.
+    path: Vec<(JointId, Option<f64>)>,
     /// In the head's own space: where the eye is, and where it looks.
     eye: DVec3,
     forward: DVec3,
@@ -55,6 +53,9 @@ pub struct LookMemory {
     since: f64,
 }
 
+/// The most joints from a chain's last one up to its head: they are turned by recursion.
+const MOST_JOINTS: usize = 256;
+
 /// How far beyond straight behind a target must be to change the side, and how long the side stays, radians and seconds.
 const BEHIND: f64 = 0.35;
 const STAYS: f64 = 1.0;
@@ -65,7 +66,7 @@ impl LookAt {
     /// model space at rest.
     ///
     /// # Errors
-    /// [`IkError::BadSetUp`] if the chain is empty, a share is not from 0 to 1, or `forward` or `up` have no length or are
+    /// [`IkError::BadSetUp`] if the chain is empty or spans more than 256 joints, a share is not from 0 to 1, or `forward` or `up` have no length or are
     /// parallel at rest; [`IkError::NoJoint`]; [`IkError::NotAChain`] if a joint is not above the joint before it;
     /// [`IkError::NotInvertible`].
     pub fn new(
@@ -108,13 +109,21 @@ impl LookAt {
         if level.is_none() {
             return Err(IkError::BadSetUp("forward and up are parallel"));
         }
-        let mut path = vec![head];
-        while let Some(&joint) = path.last().filter(|joint| **joint != last) {
-            path.push(skeleton.joints()[joint.index()].parent.unwrap_or(last));
+        let share = |joint| chain.iter().find(|(one, _)| *one == joint);
+        let parent = |joint: &JointId| skeleton.joints()[joint.index()].parent;
+        let up_to_last =
+            core::iter::successors(Some(head), |joint| parent(joint).filter(|_| *joint != last));
+        let mut path: Vec<_> = up_to_last
+            .map(|joint| (joint, share(joint).map(|(_, share)| *share)))
+            .take(MOST_JOINTS + 1)
+            .collect();
+        if path.len() > MOST_JOINTS {
+            return Err(IkError::BadSetUp(
+                "a look-at chain spans more than 256 joints",
+            ));
         }
         path.reverse();
         Ok(Self {
-            joints: chain.to_vec(),
             path,
             eye,
             forward: forward.normalize(),
@@ -153,22 +162,21 @@ impl LookAt {
         memory: &mut LookMemory,
         dt: f64,
     ) -> Result<f64, IkError> {
-        check_pose(skeleton, pose, self.joints.iter().map(|(joint, _)| *joint))?;
+        check_pose(skeleton, pose, self.path.iter().map(|(joint, _)| *joint))?;
         if !target.is_finite() || !weight.is_finite() {
             return Err(IkError::NotFinite("a target or a weight"));
         }
-        let last = self.joints[self.joints.len() - 1].0;
+        let last = self.path[0].0;
         let base = model_from_parent(skeleton, pose, last);
         if !base.is_finite() {
             return Err(IkError::NotFinite("the pose"));
         }
         crate::space::uniform_scale(&base.matrix3, last)?;
         // Everything that can fail, before anything is changed.
-        for &joint in &self.path[1..] {
-            let parent = skeleton.joints()[joint.index()].parent.unwrap_or(last);
-            let scale = pose.transforms[parent.index()].scale.as_dvec3();
+        for (joint, _) in &self.path[..self.path.len() - 1] {
+            let scale = pose.transforms[joint.index()].scale.as_dvec3();
             if scale.abs() != DVec3::ONE {
-                crate::space::uniform_scale(&DMat3::from_diagonal(scale), parent)?;
+                crate::space::uniform_scale(&DMat3::from_diagonal(scale), *joint)?;
             }
         }
         let mut gaze = Gaze {
@@ -249,15 +257,14 @@ impl Gaze<'_> {
         index: usize,
         model_from_parent: &DAffine3,
     ) -> Result<Option<(Sight, DVec3)>, IkError> {
-        let Some(&joint) = self.look.path.get(index) else {
+        let Some(&(joint, share)) = self.look.path.get(index) else {
             return self.begin(model_from_parent);
         };
         let model = *model_from_parent * pose.transforms[joint.index()].to_affine();
         let Some((mut sight, point)) = self.turn(pose, index + 1, &model)? else {
             return Ok(None);
         };
-        let share = self.look.joints.iter().find(|(known, _)| *known == joint);
-        let Some(&(_, share)) = share else {
+        let Some(share) = share else {
             return Ok(Some((sight, point)));
         };
         let origin = model.translation;
@@ -285,7 +292,7 @@ impl Gaze<'_> {
         let gaze = model_from_head.transform_vector3(look.forward);
         let gaze = gaze
             .try_normalize()
-            .ok_or(IkError::NotInvertible(look.joints[0].0))?;
+            .ok_or(IkError::NotInvertible(look.path[look.path.len() - 1].0))?;
         let way = self.target - eye;
         let Some(to_target) = way.try_normalize() else {
             return Ok(None);

@@ -414,7 +414,7 @@ impl Brain {
     }
 }
 
-/// The text of an error without the line and column at its end, of which the line is told apart.
+/// An error's text without the line and column at its end: [`BrainError::line`] has the line.
 fn without_place(error: &str) -> String {
     let end = error.rfind(" at line ").unwrap_or(error.len());
     error[..end].to_owned()

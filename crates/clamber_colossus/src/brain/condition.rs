@@ -117,6 +117,11 @@ impl Condition {
             Source::Mood(index) => mood(index),
             Source::Own(index) => senses.own(index),
         };
+        self.holds_for(number)
+    }
+
+    /// True for this number of what it asks for.
+    pub(crate) fn holds_for(&self, number: f64) -> bool {
         self.comparison.holds(number, self.value)
     }
 
@@ -137,9 +142,16 @@ impl Condition {
 impl Source {
     fn find(name: &str, file: &BrainFile) -> Result<Self, ConditionFault> {
         let unknown = || {
-            let senses = Sense::all().map(|sense| sense.name().to_owned());
-            let own = file.moods.keys().chain(&file.senses).cloned();
-            let known: Vec<String> = senses.chain(own).collect();
+            let known: Vec<String> = if name.contains('@') {
+                let of_region = |region: &String| {
+                    RegionSense::ALL.map(|sense| format!("{}@{region}", sense.name()))
+                };
+                file.regions.keys().flat_map(of_region).collect()
+            } else {
+                let senses = Sense::all().map(|sense| sense.name().to_owned());
+                let own = file.moods.keys().chain(&file.senses).cloned();
+                senses.chain(own).collect()
+            };
             ConditionFault::Name(name.to_owned(), super::list(known.iter()))
         };
         if let Some((sense, region)) = name.split_once('@') {

@@ -100,7 +100,7 @@ pub enum BrainProblem {
         limb: &'static str,
         /// Its joints, in the order of the file.
         joints: String,
-        /// What is wrong with them.
+        /// Why they cannot be moved.
         fault: String,
     },
     /// A walk's `strike` names a clip with which no state attacks.

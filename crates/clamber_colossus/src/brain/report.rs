@@ -283,7 +283,7 @@ impl Brain {
         let is_endless = matches!(state.act, Some(super::Act::Play(_) | super::Act::Sleep));
         let waits = |condition: &Condition| {
             let is_done = condition.source == Source::Sense(crate::senses::Sense::Done);
-            is_done && condition.interval()[0] > 0.0
+            is_done && !condition.holds_for(0.0)
         };
         is_endless && transition.when.iter().any(waits)
     }

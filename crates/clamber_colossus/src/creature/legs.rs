@@ -330,7 +330,7 @@ impl Creature {
 /// Where a leg's ankle goes.
 fn put(world: &Similarity, leg: &Leg, foot: &Foot, clip: &ClipLeg) -> PutLeg {
     let normal = world.rotation.conjugate() * foot.normal();
-    // The foot keeps its own rotation, whatever the shin does: that of its clip, or flat on the ground.
+    // The foot's rotation does not depend on the shin's: it is that of its clip, or flat on the ground.
     let flat = foot.flat();
     let flattened = if flat > 0.0 {
         slerp(clip.rotation, clip.turn * leg.level, flat)

@@ -42,6 +42,7 @@ pub struct Creature {
     buffers: PoseBuffers,
     report: CreatureReport,
     events: Vec<clamber_animation::AnimationEvent>,
+    /// Kept from tick to tick, so that a step does not allocate.
     legs: Vec<PutLeg>,
     /// True while the skin is known to be without motion.
     is_still: bool,

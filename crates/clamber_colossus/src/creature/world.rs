@@ -27,7 +27,7 @@ pub struct Person {
 /// How somebody is on a creature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Riding {
-    /// The point of the creature's skin: of a climber the `material` of its support's contact, or of what it holds.
+    /// The point of the creature's skin that it stands on or holds. A climber has it in the `material` of its support.
     pub at: MaterialPoint,
     /// True if the person hangs, rather than stands or grips.
     pub hangs: bool,

@@ -378,10 +378,10 @@ impl Foot {
             self.path = self.path_over(goal, sole, &lands, left);
         }
         self.path.left -= dt;
-        let before = [self.offset.value.y, self.offset.velocity.y];
+        let most = self.offset.velocity.y + MOST_UP * dt;
         let mut up = Spring {
-            value: before[0],
-            velocity: before[1],
+            value: self.offset.value.y,
+            velocity: self.offset.velocity.y,
         };
         arrive(
             &mut up,
@@ -406,7 +406,6 @@ impl Foot {
         let least = self.path.floor + goal.ball_height;
         if ball < least {
             let out = (2.0 * MOST_UP * (least - ball)).sqrt();
-            let most = before[1] + MOST_UP * dt;
             let velocity = out.min(most).max(self.offset.velocity.y);
             self.offset.value.y += 0.5 * (velocity - self.offset.velocity.y) * dt;
             self.offset.velocity.y = velocity;

@@ -17,7 +17,7 @@ pub(crate) struct Sole<'a> {
     /// From the model's axes at rest to the foot's heading in the world; and metres per unit.
     pub(crate) turn: DQuat,
     pub(crate) scale: f64,
-    /// What is higher than this above the foot is a wall, metres.
+    /// Ground that is more than this above the foot counts as a wall, metres.
     pub(crate) wall: f64,
 }
 

@@ -79,7 +79,7 @@ impl Leg {
         let solved = TwoBone::new(skeleton, joints, knee)
             .and_then(|ik| ik.with_least_angle(LEAST_KNEE))
             .and_then(|ik| Ok((ik, ik.lengths(skeleton, &rest)?)));
-        let limb = |error| names.limb("leg", file.joints.iter(), error);
+        let limb = |error| names.limb_error("leg", file.joints.iter(), error);
         let (ik, lengths) = solved.map_err(limb)?;
         let place = |joint| {
             joint_in_model(skeleton, &rest, joint).map_or(DVec3::ZERO, |frame| frame.translation)

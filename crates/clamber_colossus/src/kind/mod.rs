@@ -80,8 +80,8 @@ impl CreatureKind {
     /// Puts a body and a brain together.
     ///
     /// # Errors
-    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the state and its line;
-    /// or if its legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit each other.
+    /// [`ColossusError::Brain`] if the brain names a clip, joint or weak point that the parts do not have, with the state and
+    /// its line, or if legs or head cannot be moved; [`ColossusError::Animation`] if the parts do not fit each other.
     pub fn new(parts: CreatureParts, brain: Brain) -> Result<Self, ColossusError> {
         let CreatureParts {
             skeleton,
@@ -288,7 +288,7 @@ pub(crate) struct Names<'a> {
 
 impl Names<'_> {
     /// An error of inverse kinematics, with names of joints.
-    pub(crate) fn limb<'n>(
+    pub(crate) fn limb_error<'n>(
         &self,
         limb: &'static str,
         joints: impl Iterator<Item = &'n String>,
@@ -479,7 +479,7 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
     }
     let Some(&(head, _)) = chain.first() else {
         let error = IkError::BadSetUp("it has no joints");
-        return Err(names.limb("head", [].into_iter(), error).into());
+        return Err(names.limb_error("head", [].into_iter(), error).into());
     };
     let rest = names.skeleton.rest_pose();
     let model_from_head = clamber_animation::joint_in_model(names.skeleton, &rest, head);
@@ -489,6 +489,6 @@ fn look(names: &Names<'_>, file: &HeadFile) -> Result<(LookAt, JointId), Colossu
     let look = LookAt::new(names.skeleton, &chain, eye, forward, DVec3::Y)
         .and_then(|look| look.with_limits(LookLimits { yaw, pitch }));
     let joints = file.joints.iter().map(|(name, _)| name);
-    let look = look.map_err(|error| names.limb("head", joints, error))?;
+    let look = look.map_err(|error| names.limb_error("head", joints, error))?;
     Ok((look, head))
 }
