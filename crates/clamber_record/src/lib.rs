@@ -3,7 +3,6 @@
 mod config;
 mod error;
 mod file;
-mod fingerprint;
 mod info;
 mod messages;
 mod recorder;
@@ -14,8 +13,8 @@ pub mod topics;
 mod views;
 mod writing;
 
+pub use clamber_surface::surface::{creature_fingerprint, palette_fingerprint};
 pub use error::RecordError;
-pub use fingerprint::{creature_fingerprint, palette_fingerprint};
 pub use info::RecordingInfo;
 pub use recorder::{FigureView, RecordOptions, Recorder, TickView};
 pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording};

@@ -2,6 +2,7 @@ use std::io::Write;
 
 use clamber_surface::rig::Skeleton;
 use clamber_surface::skin::skin_into;
+use clamber_surface::surface::matrices_fingerprint;
 use foxglove::Encode;
 use foxglove::messages::{FrameTransforms, Log, PointCloud, SceneUpdate};
 use glam::Vec3;
@@ -9,7 +10,6 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
 
-use crate::fingerprint::matrices_fingerprint;
 use crate::messages::{Brain, Snapshot, Tick, Touched};
 use crate::taken::{Taken, TakenSkin};
 use crate::views::{Frames, Scene, Skin, line};

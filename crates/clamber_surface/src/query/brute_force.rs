@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::hit::{Best, Earliest, First, FoundPoint, capsule_hit, sort_by_distance, sort_by_time};
 use super::instance::Instance;
 use super::probe::{Probe, Sweep, with_probe};
+use super::span::Span;
 use super::{
     CapsuleHit, CastOptions, ModelSpace, MovingTriangle, SurfaceHit, SweepHit, TargetMotion, length,
 };
@@ -124,7 +125,7 @@ impl<'a> BruteForce<'a> {
         let mut earliest = Earliest::default();
         let tolerance = options.tolerance_for(capsule, &self.instance.mesh);
         with_probe!(capsule, displacements, probe => {
-            let sweep = Sweep::new(probe, tolerance?)?;
+            let sweep = Sweep::new(probe, tolerance?, Span::new(options.during)?)?;
             self.contacts(&sweep, options.target, |first| earliest.offer(first));
             earliest.hit(self.instance, &sweep)
         })
@@ -154,7 +155,8 @@ impl<'a> BruteForce<'a> {
         hits.clear();
         let tolerance = options.tolerance_for(capsule, &self.instance.mesh);
         with_probe!(capsule, displacements, probe => {
-            if let Some(sweep) = tolerance.and_then(|tolerance| Sweep::new(probe, tolerance)) {
+            let span = tolerance.zip(Span::new(options.during));
+            if let Some(sweep) = span.and_then(|(tolerance, span)| Sweep::new(probe, tolerance, span)) {
                 self.contacts(&sweep, options.target, |first| {
                     hits.extend(self.instance.sweep_hit(&sweep, first));
                 });
@@ -190,7 +192,10 @@ impl<'a> BruteForce<'a> {
                 TargetMotion::Still => current,
                 TargetMotion::Moving => self.instance.corners_in(&self.instance.previous, triangle),
             };
-            let corners = [previous, current];
+            let corners = match target {
+                TargetMotion::Still => [previous, current],
+                TargetMotion::Moving => sweep.span.corners([previous, current]),
+            };
             if let (Some(contact), _) = first_contact(corners, &sweep.core, 1.0) {
                 visit(First {
                     triangle,

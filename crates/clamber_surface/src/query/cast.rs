@@ -12,6 +12,7 @@ use super::cluster::{PosedCluster, by_eight};
 use super::hit::{Earliest, First, sort_by_time};
 use super::instance::Instance;
 use super::probe::{Sweep, with_probe};
+use super::span::Span;
 use super::traverse::traverse;
 use super::{ModelSpace, SweepHit, broad, root};
 use crate::geometry::triangle::first_contact_of_eight;
@@ -39,7 +40,7 @@ pub enum TargetMotion {
 /// let fine = CastOptions::MOVING.with_tolerance(1e-5);
 /// assert_eq!((fine.target, fine.tolerance), (TargetMotion::Moving, Some(1e-5)));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CastOptions {
     /// Whether the skin moves during the cast.
@@ -50,6 +51,17 @@ pub struct CastOptions {
     /// `None` stands for 1/4,000 of the shape's radius, or for 2^-23 of the mesh's radius (the spacing of f32 at that
     /// size) if that is larger. Such a gap is too small to see.
     pub tolerance: Option<f64>,
+    /// The part of the tick that the cast takes, from which share of it to which, 0..=1 and in order; the whole tick by
+    /// default. Skin that [moves](TargetMotion::Moving) goes this part of its way meanwhile. What moves on an arc is cast in
+    /// several parts, one after the other. Times of contacts are shares of the cast, not of the tick. A cast with another
+    /// order or NaN finds nothing.
+    pub during: [f64; 2],
+}
+
+impl Default for CastOptions {
+    fn default() -> Self {
+        Self::STILL
+    }
 }
 
 impl CastOptions {
@@ -57,12 +69,14 @@ impl CastOptions {
     pub const STILL: Self = Self {
         target: TargetMotion::Still,
         tolerance: None,
+        during: [0.0, 1.0],
     };
 
     /// A cast at skin that moves over the tick.
     pub const MOVING: Self = Self {
         target: TargetMotion::Moving,
         tolerance: None,
+        during: [0.0, 1.0],
     };
 
     /// The same options with another tolerance, in model units; for a cast in world space, in metres.
@@ -70,6 +84,15 @@ impl CastOptions {
     pub const fn with_tolerance(self, tolerance: f64) -> Self {
         Self {
             tolerance: Some(tolerance),
+            ..self
+        }
+    }
+
+    /// The same options for a part of the tick: see [`CastOptions::during`].
+    #[must_use]
+    pub const fn during(self, from: f64, to: f64) -> Self {
+        Self {
+            during: [from, to],
             ..self
         }
     }
@@ -89,7 +112,7 @@ impl From<TargetMotion> for CastOptions {
     fn from(target: TargetMotion) -> Self {
         Self {
             target,
-            tolerance: None,
+            ..Self::STILL
         }
     }
 }
@@ -143,7 +166,7 @@ impl ModelSpace<'_> {
         let instance = self.instance;
         let tolerance = options.tolerance_for(capsule, &instance.mesh)?;
         with_probe!(capsule, displacements, probe => {
-            let sweep = Sweep::new(probe, tolerance)?;
+            let sweep = Sweep::new(probe, tolerance, Span::new(options.during)?)?;
             if instance.moves(options.target) {
                 let poses = [&instance.previous, &instance.current];
                 instance.first_contact(poses, &sweep, counts)
@@ -167,8 +190,11 @@ impl ModelSpace<'_> {
         let Some(tolerance) = options.tolerance_for(capsule, &instance.mesh) else {
             return;
         };
+        let Some(span) = Span::new(options.during) else {
+            return;
+        };
         with_probe!(capsule, displacements, probe => {
-            let Some(sweep) = Sweep::new(probe, tolerance) else {
+            let Some(sweep) = Sweep::new(probe, tolerance, span) else {
                 return;
             };
             if instance.moves(options.target) {
@@ -251,12 +277,18 @@ impl Instance {
         touched_by: impl Fn(&PosedCluster<'a, P>) -> f64,
         mut visit: impl FnMut(First) -> f64,
     ) {
-        let mut posed = PosedCluster::new(self, poses);
+        let mut posed = PosedCluster::during(self, poses, sweep.span);
         let (mut tested, mut steps) = (0, 0);
         traverse::<EARLIEST_FIRST>(
             self.mesh.hierarchy(),
             1.0,
-            |node, limit| broad::along(&self.spheres(poses, node), sweep, round_up_to_f32(limit)),
+            |node, limit| {
+                let mut spheres = self.spheres(poses, node);
+                if let ([first, .., last], false) = (&mut spheres[..], sweep.span.is_whole()) {
+                    sweep.span.spheres([first, last]);
+                }
+                broad::along(&spheres, sweep, round_up_to_f32(limit))
+            },
             &mut |cluster, mut limit| {
                 if !posed.visit(cluster) {
                     return Some(limit);

@@ -5,6 +5,7 @@ use super::instance::Instance;
 use super::narrow::{self, MovingBall, Survivors};
 use super::planes::Planes;
 use super::probe::Probe;
+use super::span::Span;
 use crate::geometry::triangle::{Corners8, EIGHT, ShearedRay};
 use crate::mesh::clusters::{BLOCK, Cluster, CornerBlock, MAX_SLOTS};
 use crate::mesh::{PartId, TriangleId};
@@ -24,12 +25,21 @@ pub(super) struct PosedCluster<'a, const P: usize> {
     corners: &'a [CornerBlock],
     triangles: &'a [TriangleId],
     positions: [ClusterPositions; P],
+    /// The part of the motion between two poses.
+    span: Span,
 }
 
 impl<'a, const P: usize> PosedCluster<'a, P> {
     /// Holds no cluster yet: call [`PosedCluster::visit`] first. Made once per query, since it is large.
     pub(super) fn new(instance: &'a Instance, poses: [&'a PosedMesh; P]) -> Self {
+        Self::during(instance, poses, Span::WHOLE)
+    }
+
+    /// The same for a part of the motion between two poses: the cluster moves from where it is at the start of the span to
+    /// where it is at its end.
+    pub(super) fn during(instance: &'a Instance, poses: [&'a PosedMesh; P], span: Span) -> Self {
         Self {
+            span,
             instance,
             poses,
             cluster: &Cluster::NONE,
@@ -51,6 +61,9 @@ impl<'a, const P: usize> PosedCluster<'a, P> {
         self.triangles = self.cluster.triangles(clusters);
         for (pose, positions) in self.poses.iter().zip(&mut self.positions) {
             pose.positions(mesh, index, positions);
+        }
+        if let ([first, .., last], false) = (&mut self.positions[..], self.span.is_whole()) {
+            self.span.positions([first, last], self.cluster.rows());
         }
         true
     }

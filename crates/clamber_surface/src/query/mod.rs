@@ -19,6 +19,7 @@ mod planes;
 mod probe;
 mod ray;
 mod root;
+mod span;
 mod traverse;
 
 pub use boxes::MovingTriangle;

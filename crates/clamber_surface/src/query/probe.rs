@@ -1,5 +1,6 @@
 use glam::{DVec3, Vec3};
 
+use super::span::Span;
 use crate::geometry::triangle::{
     Corners8, MovingCore, Points8, TrianglePoint, closest_point, closest_points,
     closest_to_segment, closest_to_segments,
@@ -149,17 +150,20 @@ impl<const N: usize> Probe<N> {
 pub(super) struct Sweep<const N: usize> {
     pub(super) probe: Probe<N>,
     pub(super) core: MovingCore<N>,
+    /// The part of the tick that it takes.
+    pub(super) span: Span,
 }
 
 impl<const N: usize> Sweep<N> {
     /// A sweep for which a gap of up to `tolerance` is a contact. `None` if a motion or the tolerance is not finite, or
     /// if the tolerance is negative.
-    pub(super) fn new(probe: Probe<N>, tolerance: f32) -> Option<Self> {
+    pub(super) fn new(probe: Probe<N>, tolerance: f32, span: Span) -> Option<Self> {
         let moves = probe.motions.iter().all(|motion| motion.is_finite());
         let usable = moves && (0.0..f32::INFINITY).contains(&tolerance);
         usable.then(|| Self {
             probe,
             core: MovingCore::new(probe.ends, probe.motions, probe.radius, tolerance),
+            span,
         })
     }
 

@@ -7,6 +7,7 @@ mod hidden;
 mod inside;
 mod nearest;
 mod places;
+mod spans;
 mod sweeps;
 mod watertight;
 

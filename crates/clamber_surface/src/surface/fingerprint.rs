@@ -1,10 +1,11 @@
 //! 64-bit hashes for comparing runs, not for hash tables. If any bit of the hashed data differs, the hash
 //! differs too, in all likelihood.
 
-use clamber_surface::geometry::Affine;
-use clamber_surface::mesh::{ColliderMesh, SurfaceKind, VertexId};
-use clamber_surface::rig::{Clip, Interpolation, Keyframes, Palette, Skeleton, Transform};
 use glam::{Quat, Vec3};
+
+use crate::geometry::Affine;
+use crate::mesh::{ColliderMesh, SurfaceKind, VertexId};
+use crate::rig::{Clip, Interpolation, Keyframes, Palette, Skeleton, Transform};
 
 /// Hashes 64-bit words one after another. It takes one multiplication per word, since it runs every tick.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +68,8 @@ pub fn palette_fingerprint(palette: &Palette) -> u64 {
     matrices_fingerprint(palette.matrices())
 }
 
-pub(crate) fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
+/// [`palette_fingerprint`] of a palette that is given by its matrices.
+pub fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
     // Two folds side by side, since each multiplication waits for the one before it in the same fold.
     let (mut even, mut odd) = (Fold::START, Fold::START);
     for matrix in matrices {
@@ -87,7 +89,7 @@ pub(crate) fn matrices_fingerprint(matrices: &[Affine]) -> u64 {
 /// A 64-bit hash of everything that determines a creature's motion, for comparing creatures.
 ///
 /// It covers the joints, the clips with every key frame, and the mesh with its influences and tags. It leaves out
-/// [`SurfaceTag::user`](clamber_surface::mesh::SurfaceTag::user).
+/// [`SurfaceTag::user`](crate::mesh::SurfaceTag::user).
 pub fn creature_fingerprint(skeleton: &Skeleton, clips: &[Clip], mesh: &ColliderMesh) -> u64 {
     let mut fold = Fold::START;
     fold.word(skeleton.joints().len() as u64);
