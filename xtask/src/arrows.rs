@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Metadata};
 
 /// The workspace crates that each one may depend on. A crate that is not listed may not exist.
-const ALLOWED: [(&str, &[&str]); 19] = [
+const ALLOWED: [(&str, &[&str]); 20] = [
     ("clamber_oracle", &[]),
     // Only for its feature `oracle`.
     ("clamber_surface", &["clamber_oracle"]),
@@ -26,6 +26,15 @@ const ALLOWED: [(&str, &[&str]); 19] = [
     (
         "clamber_colossus",
         &["clamber_surface", "clamber_world", "clamber_animation"],
+    ),
+    (
+        "clamber_fight",
+        &[
+            "clamber_surface",
+            "clamber_world",
+            "clamber_climber",
+            "clamber_colossus",
+        ],
     ),
     ("clamber_gltf", &["clamber_surface"]),
     ("clamber_render", &["clamber_surface", "clamber_gltf"]),

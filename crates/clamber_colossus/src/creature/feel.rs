@@ -111,29 +111,16 @@ impl Creature {
             senses.set_in_region(RegionSense::Struck, region, felt().count() as f64);
             senses.set_in_region(RegionSense::Hurt, region, damage(&mut felt()));
         }
-        let points = self.kind.weak_points().iter().zip(&self.state.hit_points);
-        let (mut full, mut left, mut count, mut dead) = (0.0, 0.0, 0.0, false);
-        for (point, hit_points) in points {
-            full += point.hit_points;
-            left += hit_points;
-            count += f64::from(u8::from(*hit_points > 0.0));
-            dead |= point.major && *hit_points <= 0.0;
-        }
-        let health = if dead {
-            0.0
-        } else if full > 0.0 {
-            left / full
-        } else {
-            1.0
-        };
-        senses.set(Sense::Health, health);
+        senses.set(Sense::Health, self.health());
         senses.set(
             Sense::Staggered,
             f64::from(std::mem::take(&mut self.state.staggered)),
         );
         let whole = self.state.plates.iter().filter(|plate| plate.left > 0);
         senses.set(Sense::Plates, whole.count() as f64);
-        senses.set(Sense::WeakPoints, count);
+        let points = self.state.hit_points.iter();
+        let count = points.filter(|hit_points| **hit_points > 0.0).count();
+        senses.set(Sense::WeakPoints, count as f64);
     }
 
     /// Looks for prey: whoever does not ride, is in front of its head, and is not hidden by terrain.

@@ -83,6 +83,20 @@ impl Creature {
         0.0
     }
 
+    /// The share of the hit points of all weak points that is left: 0 once a major one is used up, and 1 without any.
+    pub fn health(&self) -> f64 {
+        let points = self.kind.weak_points().iter().zip(&self.state.hit_points);
+        let (mut full, mut left) = (0.0, 0.0);
+        for (point, hit_points) in points {
+            if point.major && *hit_points <= 0.0 {
+                return 0.0;
+            }
+            full += point.hit_points;
+            left += hit_points;
+        }
+        if full > 0.0 { left / full } else { 1.0 }
+    }
+
     /// Where a weak point is, in world space; `None` if there is no such weak point.
     pub fn weak_point(&self, index: usize) -> Option<DVec3> {
         let point = self.kind.weak_points().get(index)?;

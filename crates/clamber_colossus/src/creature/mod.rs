@@ -120,11 +120,19 @@ impl Creature {
     ///
     /// # Errors
     /// [`ColossusError::OtherKind`] if the state is of another kind of creature, and those of posing. Nothing is changed then.
-    pub fn restore(&mut self, state: CreatureState) -> Result<(), ColossusError> {
+    pub fn restore(&mut self, mut state: CreatureState) -> Result<(), ColossusError> {
+        self.swap_state(&mut state)
+    }
+
+    /// [`Creature::restore`], and gives back the state that it had.
+    ///
+    /// # Errors
+    /// As [`Creature::restore`]. Neither state is changed then.
+    pub fn swap_state(&mut self, state: &mut CreatureState) -> Result<(), ColossusError> {
         state.check(&self.kind)?;
-        let before = std::mem::replace(&mut self.state, state);
+        std::mem::swap(&mut self.state, state);
         if let Err(error) = self.place() {
-            self.state = before;
+            std::mem::swap(&mut self.state, state);
             self.place()?;
             return Err(error);
         }

@@ -33,7 +33,7 @@ impl Creature {
         self.report.events.clear();
         self.report.events.append(&mut self.state.told);
         self.report.blows.clear();
-        self.state.ticks += 1;
+        self.state.ticks = self.state.ticks.wrapping_add(1);
         self.feel(around);
         self.think();
         if self.sleeps()? {

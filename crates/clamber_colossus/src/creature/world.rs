@@ -1,6 +1,7 @@
 use clamber_surface::geometry::WorldCapsule;
 use clamber_world::{MaterialPoint, Obstacle};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// What is around a creature in a tick.
 #[derive(Clone, Copy, Default)]
@@ -34,7 +35,7 @@ pub struct Riding {
 }
 
 /// Something to be heard.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Where it comes from, in world space.
     pub place: DVec3,

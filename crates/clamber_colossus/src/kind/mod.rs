@@ -13,6 +13,7 @@ use clamber_animation::ik::{IkError, LookAt, LookLimits};
 use clamber_animation::rig::{Channel, Clip, JointId, Keyframes, Playback, Skeleton, WeakPoint};
 use clamber_animation::{AnimationSet, ClipId};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
+use clamber_surface::surface::creature_fingerprint;
 use glam::DVec3;
 
 pub use file::{BodyFile, GaitFile, HeadFile, Knee, LegFile, PlateFile};
@@ -181,6 +182,29 @@ impl CreatureKind {
             weak_points,
             brain,
         })
+    }
+
+    /// A 64-bit hash of all that the kind consists of, for comparing peers and saved states: skeleton, clips, skin, weak
+    /// points, and the brain's file.
+    pub fn fingerprint(&self) -> u64 {
+        let body = creature_fingerprint(&self.skeleton, self.clips.clips(), &self.mesh);
+        let mut hash = body ^ self.brain.tick().to_bits();
+        let mut add = |word: u64| {
+            hash = (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        };
+        for point in &self.weak_points {
+            point.name.bytes().for_each(|byte| add(u64::from(byte)));
+            for x in point.position.to_array() {
+                add(u64::from(x.to_bits()));
+            }
+            add(u64::from(point.joint.0) << 32 | u64::from(point.radius.to_bits()));
+            add(point.hit_points.to_bits());
+            add(u64::from(point.order) << 1 | u64::from(point.major));
+        }
+        // A file that was read can be written.
+        let file = serde_json::to_string(self.brain.file()).unwrap_or_default();
+        file.bytes().for_each(|byte| add(u64::from(byte)));
+        hash
     }
 
     /// The skeleton.

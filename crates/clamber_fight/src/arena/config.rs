@@ -1,0 +1,48 @@
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{ArenaError, positive, within};
+
+/// What all in an arena share.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArenaConfig {
+    /// Length of a tick, seconds; 1/60 by default. Brains have to be made for the same one.
+    pub tick: f64,
+    /// Gravity of projectiles, metres a second squared; 9.81 along -Y by default. Climbers have their own.
+    pub gravity: DVec3,
+    /// Where the sun is: swords show the way only in its light. Any length; 45 degrees above +Z by default.
+    pub sun: DVec3,
+    /// Arrows that may stick at the same time: of more, the oldest fall. 500 by default.
+    pub stuck_arrows: u32,
+    /// Whoever is lower than this dies: it has fallen out of the world. 10 km below 0 by default.
+    pub floor: f64,
+    /// Seed of the fighters' random streams. Creatures have their own.
+    pub seed: u64,
+}
+
+impl Default for ArenaConfig {
+    /// 60 ticks a second, Earth's gravity, 500 arrows.
+    fn default() -> Self {
+        Self {
+            tick: 1.0 / 60.0,
+            gravity: DVec3::new(0.0, -9.81, 0.0),
+            sun: DVec3::new(0.0, 1.0, 1.0),
+            stuck_arrows: 500,
+            floor: -1e4,
+            seed: 0,
+        }
+    }
+}
+
+impl ArenaConfig {
+    pub(super) fn check(&self) -> Result<(), ArenaError> {
+        positive("tick", self.tick)?;
+        for x in self.gravity.to_array() {
+            within("gravity", "finite", x, [f64::MIN, f64::MAX])?;
+        }
+        for x in self.sun.to_array() {
+            within("sun", "finite", x, [f64::MIN, f64::MAX])?;
+        }
+        within("floor", "finite", self.floor, [f64::MIN, f64::MAX])
+    }
+}

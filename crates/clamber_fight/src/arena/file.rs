@@ -1,0 +1,88 @@
+//! A saved arena as bytes: a version, the hash of the assets, the state, and a checksum.
+
+use super::fingerprint::hash_of;
+use super::{Arena, ArenaState};
+use crate::error::ArenaError;
+
+/// What a saved arena begins with.
+const MAGIC: [u8; 8] = *b"clamarna";
+
+/// Version of the format. Whatever changes what is saved raises it.
+const VERSION: u32 = 1;
+
+/// Length of what comes before the state: [`MAGIC`], version, hash of the assets, checksum.
+const HEADER: usize = 8 + 4 + 8 + 8;
+
+impl Arena {
+    /// All that changes as bytes, for a file or to send it: a header with version, hash of the assets and a checksum, then the
+    /// state in the format of the crate postcard.
+    ///
+    /// # Errors
+    /// [`ArenaError::Damaged`] if it cannot be written, which does not happen.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ArenaError> {
+        let state = postcard::to_stdvec(&self.save())
+            .map_err(|error| ArenaError::Damaged(error.to_string()))?;
+        let mut bytes = Vec::with_capacity(HEADER + state.len());
+        bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(self.assets().to_le_bytes());
+        bytes.extend(checksum(&state).to_le_bytes());
+        bytes.extend(state);
+        Ok(bytes)
+    }
+
+    /// Goes back to what [`Arena::to_bytes`] gave.
+    ///
+    /// # Errors
+    /// [`ArenaError::Damaged`] if these are other bytes, [`ArenaError::Version`] if they are of another version,
+    /// [`ArenaError::Assets`] if other creatures or configurations were in the arena then, and as [`Arena::restore`]. Nothing is
+    /// changed then.
+    pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), ArenaError> {
+        self.restore(&self.read(bytes)?)
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<ArenaState, ArenaError> {
+        let damaged = |reason: &str| ArenaError::Damaged(reason.to_owned());
+        let (magic, rest) = split::<8>(bytes).ok_or_else(|| damaged("it is too short"))?;
+        if magic != MAGIC {
+            return Err(damaged("it begins otherwise"));
+        }
+        let (version, rest) = split::<4>(rest).ok_or_else(|| damaged("it is too short"))?;
+        let (found, expected) = (u32::from_le_bytes(version), VERSION);
+        if found != expected {
+            return Err(ArenaError::Version { found, expected });
+        }
+        let (assets, rest) = split::<8>(rest).ok_or_else(|| damaged("it is too short"))?;
+        let (sum, state) = split::<8>(rest).ok_or_else(|| damaged("it is too short"))?;
+        if u64::from_le_bytes(sum) != checksum(state) {
+            return Err(damaged("its checksum is another one"));
+        }
+        let (found, expected) = (u64::from_le_bytes(assets), self.assets());
+        if found != expected {
+            return Err(ArenaError::Assets { found, expected });
+        }
+        let read = postcard::take_from_bytes::<ArenaState>(state);
+        let (state, rest) = read.map_err(|error| ArenaError::Damaged(error.to_string()))?;
+        if rest.is_empty() {
+            Ok(state)
+        } else {
+            Err(damaged("there is something after its end"))
+        }
+    }
+}
+
+fn split<const N: usize>(bytes: &[u8]) -> Option<([u8; N], &[u8])> {
+    let (first, rest) = bytes.split_first_chunk::<N>()?;
+    Some((*first, rest))
+}
+
+fn checksum(bytes: &[u8]) -> u64 {
+    // As bytes, not as a sequence of them: eight at a time.
+    struct Bytes<'a>(&'a [u8]);
+    impl serde::Serialize for Bytes<'_> {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            serializer.serialize_bytes(self.0)
+        }
+    }
+    hash_of(0, &Bytes(bytes))
+}

@@ -1,0 +1,316 @@
+//! A hash of all that changes, over what is saved of it: what is left out of a saved state cannot be in the hash, and what is in
+//! it is.
+
+use std::fmt::Display;
+
+use serde::Serialize;
+use serde::ser::{
+    self, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
+    SerializeTupleStruct, SerializeTupleVariant,
+};
+
+use super::{Arena, ArenaState};
+use crate::fighter::FighterState;
+
+impl Arena {
+    /// A 64-bit hash of every bit of what [`Arena::save`] would save, for comparing runs and peers; not for hash tables.
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash = Hasher::default();
+        hash.take(&(self.tick, self.next_projectile));
+        for creature in &self.creatures {
+            hash.take(creature.state());
+        }
+        for fighter in &self.fighters {
+            hash.take(fighter.climber().state());
+            add_fighter(&mut hash, fighter.rest());
+        }
+        hash.take(&(&self.projectiles, &self.noises));
+        hash.0
+    }
+}
+
+impl ArenaState {
+    /// [`Arena::fingerprint`] of the arena of which this was saved.
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash = Hasher::default();
+        hash.take(&(self.tick, self.next_projectile));
+        for creature in &self.creatures {
+            hash.take(creature);
+        }
+        for fighter in &self.fighters {
+            hash.take(&fighter.climber);
+            add_fighter(&mut hash, fighter);
+        }
+        hash.take(&(&self.projectiles, &self.noises));
+        hash.0
+    }
+}
+
+/// All of a fighter beside its climber.
+fn add_fighter(hash: &mut Hasher, state: &FighterState) {
+    let FighterState {
+        climber: _,
+        act,
+        actions,
+        blow,
+        harm,
+        hit_stop,
+        dead,
+        arrows,
+        random,
+    } = state;
+    hash.take(&(act, actions, blow, harm, hit_stop, dead, arrows, random));
+}
+
+/// Hash of a value, as it is serialised.
+pub(super) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
+    let mut hash = Hasher(start);
+    hash.take(value);
+    hash.0
+}
+
+/// Hashes 64-bit words one after another, each by a multiplication.
+#[derive(Clone, Copy, Debug)]
+struct Hasher(u64);
+
+impl Default for Hasher {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hasher {
+    fn word(&mut self, word: u64) {
+        // 2^64 divided by the golden ratio: an odd number with well spread bits.
+        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.word(bytes.len() as u64);
+        for chunk in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..chunk.len()].copy_from_slice(chunk);
+            self.word(u64::from_le_bytes(word));
+        }
+    }
+
+    fn take(&mut self, value: &impl Serialize) {
+        // A hasher refuses nothing.
+        let _ = value.serialize(self);
+    }
+}
+
+/// Never made: a hasher refuses nothing.
+#[derive(Debug)]
+struct Never;
+
+impl Display for Never {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("cannot be hashed")
+    }
+}
+
+impl std::error::Error for Never {}
+
+impl ser::Error for Never {
+    fn custom<T: Display>(_: T) -> Self {
+        Self
+    }
+}
+
+macro_rules! words {
+    ($($name:ident: $kind:ty),*) => { $(
+        fn $name(self, v: $kind) -> Result<(), Never> {
+            self.word(v as u64);
+            Ok(())
+        }
+    )* };
+}
+
+impl ser::Serializer for &mut Hasher {
+    type Ok = ();
+    type Error = Never;
+    type SerializeSeq = Self;
+    type SerializeTuple = Self;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = Self;
+    type SerializeStruct = Self;
+    type SerializeStructVariant = Self;
+
+    words!(
+        serialize_bool: bool, serialize_i8: i8, serialize_i16: i16, serialize_i32: i32, serialize_i64: i64,
+        serialize_u8: u8, serialize_u16: u16, serialize_u32: u32, serialize_u64: u64, serialize_char: char
+    );
+
+    fn serialize_f32(self, v: f32) -> Result<(), Never> {
+        self.word(u64::from(v.to_bits()));
+        Ok(())
+    }
+
+    fn serialize_f64(self, v: f64) -> Result<(), Never> {
+        self.word(v.to_bits());
+        Ok(())
+    }
+
+    fn serialize_str(self, v: &str) -> Result<(), Never> {
+        self.bytes(v.as_bytes());
+        Ok(())
+    }
+
+    fn serialize_bytes(self, v: &[u8]) -> Result<(), Never> {
+        self.bytes(v);
+        Ok(())
+    }
+
+    fn serialize_none(self) -> Result<(), Never> {
+        self.word(0);
+        Ok(())
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), Never> {
+        self.word(1);
+        value.serialize(self)
+    }
+
+    fn serialize_unit(self) -> Result<(), Never> {
+        Ok(())
+    }
+
+    fn serialize_unit_struct(self, _: &'static str) -> Result<(), Never> {
+        Ok(())
+    }
+
+    fn serialize_unit_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+    ) -> Result<(), Never> {
+        self.word(u64::from(index));
+        Ok(())
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), Never> {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+        value: &T,
+    ) -> Result<(), Never> {
+        self.word(u64::from(index));
+        value.serialize(self)
+    }
+
+    fn serialize_seq(self, length: Option<usize>) -> Result<Self, Never> {
+        self.word(length.unwrap_or(0) as u64);
+        Ok(self)
+    }
+
+    fn serialize_tuple(self, _: usize) -> Result<Self, Never> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, Never> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, Never> {
+        self.word(u64::from(index));
+        Ok(self)
+    }
+
+    fn serialize_map(self, length: Option<usize>) -> Result<Self, Never> {
+        self.word(length.unwrap_or(0) as u64);
+        Ok(self)
+    }
+
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, Never> {
+        Ok(self)
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        index: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, Never> {
+        self.word(u64::from(index));
+        Ok(self)
+    }
+}
+
+macro_rules! elements {
+    ($($kind:ident: $name:ident),*) => { $(
+        impl $kind for &mut Hasher {
+            type Ok = ();
+            type Error = Never;
+
+            fn $name<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Never> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), Never> {
+                Ok(())
+            }
+        }
+    )* };
+}
+
+elements!(
+    SerializeSeq: serialize_element,
+    SerializeTuple: serialize_element,
+    SerializeTupleStruct: serialize_field,
+    SerializeTupleVariant: serialize_field
+);
+
+macro_rules! fields {
+    ($($kind:ident),*) => { $(
+        impl $kind for &mut Hasher {
+            type Ok = ();
+            type Error = Never;
+
+            fn serialize_field<T: Serialize + ?Sized>(&mut self, _: &'static str, value: &T) -> Result<(), Never> {
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result<(), Never> {
+                Ok(())
+            }
+        }
+    )* };
+}
+
+fields!(SerializeStruct, SerializeStructVariant);
+
+impl SerializeMap for &mut Hasher {
+    type Ok = ();
+    type Error = Never;
+
+    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), Never> {
+        key.serialize(&mut **self)
+    }
+
+    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Never> {
+        value.serialize(&mut **self)
+    }
+
+    fn end(self) -> Result<(), Never> {
+        Ok(())
+    }
+}

@@ -1,0 +1,314 @@
+//! One step of an arena, in the order in which it happens.
+
+use clamber_climber::{Blow, ClimberError, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
+use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Obstacle, ObstacleId};
+
+use super::{
+    Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
+};
+use crate::error::ArenaError;
+use crate::fighter::{BodyFrame, Fighter, Wielding};
+use crate::projectile::{Air, Flown};
+
+/// Memory that is used again in each step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    people: Vec<Person>,
+    bodies: Vec<ClimberObstacle>,
+    outcome: Outcome,
+}
+
+/// Fighters that are farther from each other than this times a fighter's radius, beside the way that both make in the tick, do
+/// not touch.
+const APART: f64 = 20.0;
+
+impl Arena {
+    /// Lets a tick pass. `inputs` has one input for each fighter, in their order. Fur can be gripped.
+    ///
+    /// In this order: creatures sense what was around them at the end of the last tick, decide, move, and strike; fighters' climbers
+    /// move among terrain, creatures and each other; weapons go on, then projectiles; what they hit does damage, by the time of
+    /// the hit within the tick. A blow that a creature deals reaches its fighter with the next step.
+    ///
+    /// # Errors
+    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::Climber`] for an input that is not finite, and
+    /// [`ArenaError::TerrainId`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
+    /// to be restored then.
+    pub fn step(
+        &mut self,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<&[ArenaEvent], ArenaError> {
+        self.step_with(inputs, terrain, &StepRules::default())
+    }
+
+    /// [`Arena::step`] by a game's own rules for climbers: what can be gripped, and custom modes.
+    ///
+    /// # Errors
+    /// As [`Arena::step`].
+    pub fn step_with(
+        &mut self,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
+    ) -> Result<&[ArenaEvent], ArenaError> {
+        self.check(inputs, terrain)?;
+        self.tick = self.tick.wrapping_add(1);
+        self.events.clear();
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let stepped = self.step_checked(inputs, terrain, rules, &mut scratch);
+        self.scratch = scratch;
+        stepped?;
+        Ok(&self.events)
+    }
+
+    fn check(
+        &self,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), ArenaError> {
+        let (fighters, found) = (self.fighters.len(), inputs.len());
+        if fighters != found {
+            return Err(ArenaError::Inputs { fighters, found });
+        }
+        for (fighter, input) in inputs.iter().enumerate() {
+            if input.blow.is_some() {
+                return Err(ArenaError::Blow { fighter });
+            }
+            let vectors = [input.walk, input.climb, input.aim];
+            if !vectors.iter().all(|v| v.is_finite()) {
+                return Err(ClimberError::NotFinite("input").into());
+            }
+        }
+        match terrain.iter().find(|(id, _)| id.0 >= CREATURES) {
+            Some((id, _)) => Err(ArenaError::TerrainId {
+                found: id.0,
+                below: CREATURES,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn step_checked(
+        &mut self,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<(), ArenaError> {
+        self.step_creatures(terrain, &mut scratch.people)?;
+        scratch.outcome.clear(self.next_projectile);
+        self.step_fighters(inputs, terrain, rules, scratch)?;
+        self.step_projectiles(terrain, &mut scratch.outcome);
+        self.next_projectile = scratch.outcome.next;
+        self.projectiles.append(&mut scratch.outcome.shot);
+        self.noises.append(&mut scratch.outcome.noises);
+        self.events.append(&mut scratch.outcome.events);
+        self.do_damage(&mut scratch.outcome);
+        self.deal_blows();
+        Ok(())
+    }
+
+    fn step_creatures(
+        &mut self,
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        people: &mut Vec<Person>,
+    ) -> Result<(), ArenaError> {
+        let ground: Vec<&dyn Obstacle> = terrain.iter().map(|(_, obstacle)| *obstacle).collect();
+        for (index, creature) in (0..).map(CreatureId).zip(&mut self.creatures) {
+            people.clear();
+            // The dead are of no interest.
+            let living = self.fighters.iter().filter(|fighter| !fighter.is_dead());
+            people.extend(living.map(|fighter| person(fighter, creature_obstacle(index))));
+            let around = Surroundings {
+                terrain: &ground,
+                people,
+                noises: &self.noises,
+            };
+            let report = creature.step(&around)?;
+            self.events
+                .extend(report.events.iter().map(|event| ArenaEvent::Creature {
+                    creature: index,
+                    event: event.clone(),
+                }));
+        }
+        self.noises.clear();
+        Ok(())
+    }
+
+    fn step_fighters(
+        &mut self,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<(), ArenaError> {
+        let dt = self.config.tick;
+        for fighter in &mut self.fighters {
+            fighter.take_harm()?;
+        }
+        // Before any of them moves, so that their order does not matter.
+        scratch.bodies.clear();
+        let bodies = self.fighters.iter();
+        scratch
+            .bodies
+            .extend(bodies.map(|fighter| ClimberObstacle::new(fighter.climber(), dt)));
+        let mut obstacles: Vec<(ObstacleId, &dyn Obstacle)> = terrain.to_vec();
+        for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
+            obstacles.push((creature_obstacle(index), creature.surface()));
+        }
+        let fixed = obstacles.len();
+        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
+        for index in 0..self.fighters.len() {
+            obstacles.truncate(fixed);
+            let ours = &self.fighters[index];
+            for (other, body) in self.fighters.iter().zip(&scratch.bodies) {
+                if other.id() != ours.id() && !other.is_dead() && are_near(ours, other, dt) {
+                    obstacles.push((fighter_obstacle(other.id()), body));
+                }
+            }
+            let fighter = &mut self.fighters[index];
+            let is_held = fighter.be_held(dt);
+            let input = fighter.begin(&inputs[index], is_held);
+            let before = BodyFrame::of(fighter.climber());
+            fighter.step(&input, &obstacles, rules, dt)?;
+            let id = fighter.id();
+            let events = fighter.report().events.iter();
+            self.events.extend(events.map(|event| ArenaEvent::Climber {
+                fighter: id,
+                event: *event,
+            }));
+            fighter.live(dt, self.config.floor, &mut self.events)?;
+            if !fighter.is_dead() {
+                let wielding = Wielding {
+                    before,
+                    input: &inputs[index],
+                    skins: &skins,
+                    dt,
+                    is_held,
+                    is_struck: input.blow.is_some(),
+                };
+                fighter.wield(&wielding, &mut scratch.outcome);
+            }
+        }
+        Ok(())
+    }
+
+    fn step_projectiles(&mut self, terrain: &[(ObstacleId, &dyn Obstacle)], outcome: &mut Outcome) {
+        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
+        let air = Air {
+            skins: &skins,
+            terrain,
+            gravity: self.config.gravity,
+            dt: self.config.tick,
+        };
+        let fighters = &self.fighters;
+        self.projectiles.retain_mut(|projectile| {
+            let shooter = fighters.get(projectile.by.0 as usize);
+            shooter.is_some_and(|shooter| {
+                projectile.step(shooter.config(), &air, outcome) == Flown::There
+            })
+        });
+        let stuck = self.projectiles.iter().filter(|one| one.is_stuck()).count();
+        let too_many = stuck.saturating_sub(self.config.stuck_arrows as usize);
+        let oldest = self.projectiles.iter_mut().filter(|one| one.is_stuck());
+        for projectile in oldest.take(too_many) {
+            projectile.fall(&air, outcome);
+        }
+    }
+
+    /// What was hit takes damage: first what was hit first, and of what was hit at the same time first what blades hit, then by
+    /// the numbers of fighters and projectiles.
+    fn do_damage(&mut self, outcome: &mut Outcome) {
+        outcome.hits.sort_by(|a, b| a.time.total_cmp(&b.time));
+        for hit in &outcome.hits {
+            let Some(creature) = self.creatures.get_mut(hit.creature) else {
+                continue;
+            };
+            let was_alive = creature.health() > 0.0;
+            let damage = creature.hurt(&Wound {
+                place: hit.place,
+                at: hit.at,
+                damage: hit.damage,
+            });
+            let id = CreatureId(hit.creature as u32);
+            self.events.push(ArenaEvent::Hit {
+                by: hit.by,
+                weapon: hit.weapon,
+                projectile: hit.projectile,
+                creature: id,
+                at: hit.at,
+                place: hit.place,
+                time: hit.time,
+                damage,
+            });
+            if was_alive && creature.health() <= 0.0 {
+                self.events.push(ArenaEvent::Killed {
+                    creature: id,
+                    by: hit.by,
+                });
+            }
+        }
+    }
+
+    /// Blows reach their fighters with the next tick: of several the hardest, with the damage of all.
+    fn deal_blows(&mut self) {
+        for (index, creature) in (0..).map(CreatureId).zip(&self.creatures) {
+            for blow in &creature.report().blows {
+                let fighter = usize::try_from(blow.person).ok();
+                let Some(fighter) = fighter.and_then(|one| self.fighters.get_mut(one)) else {
+                    continue;
+                };
+                let (velocity, damage) = (blow.velocity, blow.damage.clamp(0.0, 1.0));
+                self.events.push(ArenaEvent::Struck {
+                    creature: index,
+                    fighter: fighter.id(),
+                    velocity,
+                    damage,
+                    place: blow.place,
+                });
+                let mut dealt = Blow {
+                    velocity,
+                    damage,
+                    by: Some(creature_obstacle(index)),
+                };
+                let state = fighter.rest_mut();
+                if let Some(other) = state.blow {
+                    if other.velocity.length_squared() >= velocity.length_squared() {
+                        (dealt.velocity, dealt.by) = (other.velocity, other.by);
+                    }
+                    dealt.damage = (dealt.damage + other.damage).min(1.0);
+                }
+                state.blow = Some(dealt);
+            }
+        }
+    }
+}
+
+/// A fighter as a creature senses it.
+fn person(fighter: &Fighter, creature: ObstacleId) -> Person {
+    let climber = fighter.climber();
+    let state = climber.state();
+    let support = state
+        .support
+        .filter(|support| support.attachment.obstacle == creature);
+    Person {
+        id: u64::from(fighter.id().0),
+        body: climber.body(),
+        riding: support.map(|support| Riding {
+            at: support.attachment.material,
+            hangs: state.mode == ClimberMode::Hanging,
+        }),
+    }
+}
+
+/// False only if two fighters cannot touch in this tick.
+fn are_near(ours: &Fighter, other: &Fighter, dt: f64) -> bool {
+    let [a, b] = [ours, other].map(|fighter| {
+        let (state, body) = (fighter.climber().state(), fighter.config().climber.body);
+        let reach = APART * body.radius + body.height + state.velocity.length() * dt;
+        (state.position, reach)
+    });
+    a.0.distance(b.0) <= a.1 + b.1
+}

@@ -1,0 +1,435 @@
+//! What a fighter does with its weapons in a tick: what its buttons begin, what breaks it off, and how it goes on.
+
+use clamber_climber::{Climber, ClimberError, ClimberEvent, ClimberInput, ClimberMode};
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::{Attachment, MaterialPoint, ObstacleId};
+use glam::DVec3;
+
+use super::{Act, BodyFrame, Fighter, Target, arrows};
+use crate::actions::{BOW, CUT, STAB, THROW};
+use crate::arena::{
+    ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
+};
+
+/// Walking speed with a drawn bow, as a share.
+const DRAWN_WALK: f64 = 0.5;
+
+/// What a fighter's weapons need of a tick.
+#[derive(Clone, Copy)]
+pub(crate) struct Wielding<'a> {
+    /// The body before the climber's step.
+    pub(crate) before: BodyFrame,
+    pub(crate) input: &'a ClimberInput,
+    pub(crate) skins: &'a [&'a SkinnedSurface],
+    pub(crate) dt: f64,
+    /// True if its own impact holds it in this tick.
+    pub(crate) is_held: bool,
+    /// True if a blow struck it in this tick.
+    pub(crate) is_struck: bool,
+}
+
+impl Fighter {
+    /// Lets the buttons begin what they begin, and gives the climber's input.
+    pub(crate) fn begin(&mut self, input: &ClimberInput, is_held: bool) -> ClimberInput {
+        let pressed = input.actions & !self.state.actions;
+        self.state.actions = input.actions;
+        let blow = self.state.blow.take();
+        if self.is_dead() {
+            return ClimberInput {
+                blow,
+                ..ClimberInput::IDLE
+            };
+        }
+        if !is_held {
+            self.press(input.actions, pressed);
+        }
+        let mut input = ClimberInput { blow, ..*input };
+        let mode = self.climber.state().mode;
+        let stands_still = match self.state.act {
+            Act::Raise { .. } | Act::Charge { .. } | Act::Strike { .. } | Act::PullOut { .. } => {
+                mode != ClimberMode::Falling
+            }
+            _ => is_held,
+        };
+        if stands_still {
+            (input.walk, input.climb, input.jump) = (DVec3::ZERO, DVec3::ZERO, false);
+        }
+        if matches!(self.state.act, Act::Draw { .. }) {
+            input.walk *= DRAWN_WALK;
+        }
+        input
+    }
+
+    fn press(&mut self, actions: u32, pressed: u32) {
+        use ClimberMode::{Falling, Holding, Sliding, Standing};
+        let mode = self.climber.state().mode;
+        let is_free = matches!(mode, Standing | Sliding | Falling);
+        let (has_sword, config) = (self.config.sword.is_some(), &self.config);
+        match self.state.act {
+            Act::Ready if has_sword && pressed & STAB != 0 => {
+                if matches!(mode, Standing | Holding | Falling) {
+                    let falls = mode == Falling;
+                    self.state.act = Act::Raise {
+                        seconds: 0.0,
+                        falls,
+                    };
+                }
+            }
+            Act::Ready if has_sword && pressed & CUT != 0 && is_free => {
+                let struck = Vec::new();
+                self.state.act = Act::Cut {
+                    seconds: 0.0,
+                    struck,
+                };
+            }
+            Act::Ready if config.bow.is_some() && actions & BOW != 0 && is_free => {
+                let counted = config.bow.is_some_and(|bow| bow.arrows.is_some());
+                if !counted || self.state.arrows > 0 {
+                    self.state.act = Act::Draw { drawn: 0.0 };
+                }
+            }
+            Act::Ready if pressed & THROW != 0 && is_free => {
+                if let Some(stones) = config.stones {
+                    // The stone is thrown at the end of this tick.
+                    self.state.act = Act::Throw {
+                        seconds: stones.again,
+                    };
+                    self.throws = true;
+                }
+            }
+            Act::Charge { charge, falls } if pressed & STAB != 0 => {
+                self.state.act = if falls {
+                    Act::Plunge { charge }
+                } else {
+                    Act::Strike {
+                        seconds: 0.0,
+                        charge,
+                        target: Target::Open,
+                    }
+                };
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes damage without a blow that was waiting for this tick, and lies if it is dead.
+    pub(crate) fn take_harm(&mut self) -> Result<(), ClimberError> {
+        let harm = std::mem::take(&mut self.state.harm);
+        let mut state = *self.climber.state();
+        if self.is_dead() {
+            if self.config.climber.tumble.is_none() {
+                return Ok(());
+            }
+            // The dead lie.
+            (state.mode, state.support, state.tumbling.still) = (ClimberMode::Tumbling, None, 0.0);
+        } else if harm > 0.0 {
+            state.hit_points = (state.hit_points - harm).max(0.0);
+        } else {
+            return Ok(());
+        }
+        self.climber.restore(state)
+    }
+
+    /// True if its own impact holds it in this tick, which passes meanwhile.
+    pub(crate) fn be_held(&mut self, dt: f64) -> bool {
+        let left = self.state.hit_stop - dt;
+        // Less than half a tick is rounding.
+        self.state.hit_stop = if left > 0.5 * dt { left } else { 0.0 };
+        left > -0.5 * dt
+    }
+
+    /// After the climber's step: being crushed, death, also below the world's floor, and standing up again.
+    pub(crate) fn live(
+        &mut self,
+        dt: f64,
+        floor: f64,
+        events: &mut Vec<ArenaEvent>,
+    ) -> Result<(), ClimberError> {
+        if let Some(crush) = &self.config.crush {
+            let crushes = self.report.events.iter().any(
+                |event| matches!(event, ClimberEvent::Crushed { depth } if *depth > crush.depth),
+            );
+            if crushes {
+                self.state.harm += crush.damage * dt;
+            }
+        }
+        let (fighter, state) = (self.id, self.climber.state());
+        match self.state.dead {
+            None if state.hit_points <= 0.0 || state.position.y < floor => {
+                self.state.dead = Some(0.0);
+                self.state.act = Act::Ready;
+                self.state.hit_stop = 0.0;
+                events.push(ArenaEvent::Died { fighter });
+            }
+            None => {}
+            Some(seconds) => {
+                let seconds = seconds + dt;
+                self.state.dead = Some(seconds);
+                if self.config.respawn.is_some_and(|after| seconds >= after) {
+                    self.stand_up_again()?;
+                    events.push(ArenaEvent::Rose { fighter });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn stand_up_again(&mut self) -> Result<(), ClimberError> {
+        let fresh = Climber::new(self.config.climber, self.spawn)?;
+        self.climber.restore(*fresh.state())?;
+        self.state.dead = None;
+        self.state.blow = None;
+        self.state.harm = 0.0;
+        self.state.arrows = arrows(&self.config);
+        Ok(())
+    }
+
+    /// True if what it does with its weapons is broken off: a stab by a shake beyond the one that makes it hang, by the loss of
+    /// its hold or a blow, and what needs both hands by a hold.
+    fn is_broken_off(&self, is_struck: bool) -> bool {
+        use ClimberMode::{Falling, Hanging, LedgeHanging, Sliding, Standing, Tumbling};
+        let state = self.climber.state();
+        let stabs = |falls: bool| {
+            let most = self
+                .config
+                .climber
+                .grip
+                .map_or(f64::INFINITY, |grip| grip.hang_acceleration);
+            let shakes = state.support.is_some() && state.shake.length() > most;
+            let has_lost = matches!(state.mode, Hanging | LedgeHanging | Tumbling | Sliding)
+                || state.mode == Falling && !falls;
+            is_struck || shakes || has_lost
+        };
+        match self.state.act {
+            Act::Ready | Act::PullOut { .. } | Act::Throw { .. } => false,
+            Act::Raise { falls, .. } | Act::Charge { falls, .. } => stabs(falls),
+            Act::Strike { .. } => stabs(false),
+            Act::Plunge { .. } => is_struck || matches!(state.mode, Tumbling),
+            Act::Cut { .. } | Act::Draw { .. } => {
+                is_struck || !matches!(state.mode, Standing | Sliding | Falling)
+            }
+        }
+    }
+
+    /// Goes on with what it does with its weapons, after the climber's step.
+    pub(crate) fn wield(&mut self, tick: &Wielding<'_>, out: &mut Outcome) {
+        if std::mem::take(&mut self.throws)
+            && let Some(stone) = self.throw(tick.input.aim, out.next_projectile())
+        {
+            out.shoot(stone);
+        }
+        if self.is_broken_off(tick.is_struck) {
+            self.state.act = Act::Ready;
+            out.events.push(ArenaEvent::BrokenOff { fighter: self.id });
+            return;
+        }
+        if tick.is_held {
+            return;
+        }
+        let dt = tick.dt;
+        let act = std::mem::take(&mut self.state.act);
+        self.state.act = match act {
+            Act::Ready => Act::Ready,
+            Act::Cut { seconds, struck } => self.go_on_cutting(seconds, struck, tick, out),
+            Act::Raise { seconds, falls } => self.go_on_raising(seconds + dt, falls),
+            Act::Charge { charge, falls } => self.go_on_charging(charge, falls, dt),
+            Act::Strike {
+                seconds,
+                charge,
+                target,
+            } => self.go_on_striking([seconds, charge], target, tick, out),
+            Act::Plunge { charge } => self.go_on_plunging(charge, tick, out),
+            Act::PullOut { seconds, target } => {
+                let target = follow(target, tick);
+                if seconds > dt {
+                    Act::PullOut {
+                        seconds: seconds - dt,
+                        target,
+                    }
+                } else {
+                    Act::Ready
+                }
+            }
+            Act::Draw { drawn } => self.go_on_drawing(drawn, tick, out),
+            Act::Throw { seconds } if seconds > dt => Act::Throw {
+                seconds: seconds - dt,
+            },
+            Act::Throw { .. } => Act::Ready,
+        };
+    }
+
+    fn go_on_cutting(
+        &mut self,
+        seconds: f64,
+        mut struck: Vec<(ObstacleId, u32)>,
+        tick: &Wielding<'_>,
+        out: &mut Outcome,
+    ) -> Act {
+        let Some(sword) = self.config.sword else {
+            return Act::Ready;
+        };
+        let (until, frames) = (
+            seconds + tick.dt,
+            [tick.before, BodyFrame::of(&self.climber)],
+        );
+        let mut hits = Vec::new();
+        let times = [seconds, until];
+        sword.cut_through(times, frames, tick.dt, tick.skins, &mut struck, &mut hits);
+        for found in &hits {
+            let hit = &found.hit.hit;
+            self.state.hit_stop = self.config.hit_stop;
+            out.hits.push(Hit {
+                by: self.id,
+                weapon: Weapon::Cut,
+                projectile: None,
+                creature: found.creature,
+                at: MaterialPoint::on_triangle(hit.triangle, hit.barycentric),
+                place: hit.point,
+                time: found.time,
+                damage: sword.cut_damage,
+            });
+        }
+        if until < sword.wind_up + sword.cut + sword.recover {
+            Act::Cut {
+                seconds: until,
+                struck,
+            }
+        } else {
+            Act::Ready
+        }
+    }
+
+    fn go_on_raising(&self, seconds: f64, falls: bool) -> Act {
+        let falls = falls && self.climber.state().mode == ClimberMode::Falling;
+        match &self.config.sword {
+            Some(sword) if seconds < sword.raise => Act::Raise { seconds, falls },
+            // Out of a fall a stab has its full strength.
+            Some(_) => Act::Charge {
+                charge: if falls { 1.0 } else { 0.0 },
+                falls,
+            },
+            None => Act::Ready,
+        }
+    }
+
+    fn go_on_charging(&self, charge: f64, falls: bool, dt: f64) -> Act {
+        let Some(sword) = &self.config.sword else {
+            return Act::Ready;
+        };
+        let is_pressed = self.state.actions & STAB != 0;
+        let rate = if is_pressed { sword.pressed } else { 1.0 } / sword.charge;
+        Act::Charge {
+            charge: (charge + rate * dt).min(1.0),
+            falls: falls && self.climber.state().mode == ClimberMode::Falling,
+        }
+    }
+
+    fn go_on_striking(
+        &mut self,
+        [seconds, charge]: [f64; 2],
+        target: Target,
+        tick: &Wielding<'_>,
+        out: &mut Outcome,
+    ) -> Act {
+        let Some(sword) = self.config.sword else {
+            return Act::Ready;
+        };
+        let target = match target {
+            Target::Open => self.stab_target(tick.skins),
+            target => follow(target, tick),
+        };
+        let until = seconds + tick.dt;
+        if until < sword.strike {
+            return Act::Strike {
+                seconds: until,
+                charge,
+                target,
+            };
+        }
+        if let Target::Skin(at) = &target
+            && let Some(creature) = creature_index(at.obstacle)
+        {
+            self.state.hit_stop = self.config.hit_stop;
+            out.hits.push(Hit {
+                by: self.id,
+                weapon: Weapon::Stab,
+                projectile: None,
+                creature,
+                at: at.material,
+                place: at.point,
+                time: ((sword.strike - seconds) / tick.dt).clamp(0.0, 1.0),
+                damage: sword.stab_damage * charge,
+            });
+        }
+        Act::PullOut {
+            seconds: sword.pull_out,
+            target,
+        }
+    }
+
+    fn go_on_plunging(&mut self, charge: f64, tick: &Wielding<'_>, out: &mut Outcome) -> Act {
+        let Some(sword) = self.config.sword else {
+            return Act::Ready;
+        };
+        let frames = [tick.before, BodyFrame::of(&self.climber)];
+        let Some((creature, hit)) = self.plunge_contact(frames, tick.skins) else {
+            let falls = self.climber.state().mode == ClimberMode::Falling;
+            // It has come down beside.
+            return if falls {
+                Act::Plunge { charge }
+            } else {
+                Act::Ready
+            };
+        };
+        self.state.hit_stop = self.config.hit_stop;
+        let contact = hit.contact;
+        out.hits.push(Hit {
+            by: self.id,
+            weapon: Weapon::Stab,
+            projectile: None,
+            creature,
+            at: contact.material,
+            place: contact.point,
+            time: hit.time,
+            damage: sword.stab_damage * charge,
+        });
+        let obstacle = creature_obstacle(CreatureId(creature as u32));
+        let surface = tick.skins[creature];
+        let at = Attachment::new(obstacle, surface, &contact, contact.point);
+        let into = frames[1].direction(DVec3::NEG_Y);
+        Act::PullOut {
+            seconds: sword.pull_out_fallen,
+            target: Target::Skin(at.moved_to(at.point + into)),
+        }
+    }
+
+    fn go_on_drawing(&mut self, drawn: f64, tick: &Wielding<'_>, out: &mut Outcome) -> Act {
+        let Some(bow) = self.config.bow else {
+            return Act::Ready;
+        };
+        if tick.input.actions & BOW != 0 {
+            let drawn = (drawn + tick.dt / bow.draw).min(1.0);
+            return Act::Draw { drawn };
+        }
+        if drawn >= bow.least_draw
+            && let Some(arrow) = self.shoot(tick.input.aim, drawn, out.next_projectile())
+        {
+            out.shoot(arrow);
+        }
+        Act::Ready
+    }
+}
+
+/// Follows the skin over the tick; the blade is in the air if the skin is gone.
+fn follow(target: Target, tick: &Wielding<'_>) -> Target {
+    let Target::Skin(mut at) = target else {
+        return target;
+    };
+    let skin = creature_index(at.obstacle).and_then(|index| tick.skins.get(index));
+    // More than rounding, less than anybody sees.
+    const SLACK: f64 = 0.01;
+    match skin.and_then(|skin| at.follow(*skin, tick.dt, SLACK)) {
+        Some(_) => Target::Skin(at),
+        None => Target::Air,
+    }
+}

@@ -1,0 +1,283 @@
+use clamber_climber::ClimberConfig;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{ArenaError, not_negative, positive, within};
+
+/// A fighter's body and weapons. A weapon that is `None` it does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FighterConfig {
+    /// Body and abilities.
+    pub climber: ClimberConfig,
+    /// The sword.
+    pub sword: Option<SwordConfig>,
+    /// The bow.
+    pub bow: Option<BowConfig>,
+    /// Stones to throw.
+    pub stones: Option<StoneConfig>,
+    /// What being crushed costs.
+    pub crush: Option<CrushConfig>,
+    /// Seconds for which whoever struck is held still by the impact; 0.1 by default. The creature never is: its riders would
+    /// feel it.
+    pub hit_stop: f64,
+    /// Seconds after its death at which a fighter stands where it began, unhurt; `None` for never. 4 by default.
+    pub respawn: Option<f64>,
+}
+
+/// A sword, and how it is used.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SwordConfig {
+    /// The shoulder, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    pub shoulder: DVec3,
+    /// Length from the shoulder to the blade's beginning, metres; 0.6 by default.
+    pub arm: f64,
+    /// Length of the blade, metres; 1.2 by default.
+    pub blade: f64,
+    /// Radius of the blade as a capsule, metres; 0.02 by default.
+    pub radius: f64,
+    /// Seconds before the blade cuts; 0.15 by default.
+    pub wind_up: f64,
+    /// Seconds for which it cuts; 0.175 by default.
+    pub cut: f64,
+    /// Seconds after the cut until the next act can begin; 0.25 by default.
+    pub recover: f64,
+    /// Angle of the cut, from the right to the left, radians; 200 degrees by default.
+    pub angle: f64,
+    /// Damage of a cut; 0.1 by default.
+    pub cut_damage: f64,
+    /// Seconds to raise the sword for a stab; 0.3 by default.
+    pub raise: f64,
+    /// Seconds of charging after which a stab has its full strength; 2 by default.
+    pub charge: f64,
+    /// How much faster the charge grows while the button stays down; 1.25 by default.
+    pub pressed: f64,
+    /// Seconds of the strike; 0.12 by default.
+    pub strike: f64,
+    /// How far from its shoulder a stab reaches the skin, metres; 1.8 by default.
+    pub reach: f64,
+    /// How deep the blade goes, metres; 0.4 by default.
+    pub depth: f64,
+    /// Seconds to pull the blade out; 0.6 by default.
+    pub pull_out: f64,
+    /// Seconds to pull it out after a stab out of a fall; 1.6 by default.
+    pub pull_out_fallen: f64,
+    /// Damage of a fully charged stab; 1 by default.
+    pub stab_damage: f64,
+}
+
+/// A bow and its arrows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BowConfig {
+    /// Where an arrow's tip is when it is let go, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    pub nock: DVec3,
+    /// Seconds until the bow is fully drawn; 1 by default.
+    pub draw: f64,
+    /// The bow shoots only from this share of a full draw on; 0.2 by default.
+    pub least_draw: f64,
+    /// Speed of an arrow from a fully drawn bow, metres a second; 56.4 by default. It grows with the draw.
+    pub speed: f64,
+    /// Drag: the deceleration is this times the square of the speed, 1/m; 0 by default. An arrow of 20 g and 5.5 mm has
+    /// 0.0011.
+    pub drag: f64,
+    /// Radius of an arrow's tip, metres; 0.005 by default.
+    pub radius: f64,
+    /// How deep an arrow sticks, metres; 0.15 by default.
+    pub depth: f64,
+    /// Damage of an arrow at full speed, which grows with its energy; 0.05 by default.
+    pub damage: f64,
+    /// How far arrows stray, as an angle for each metre a second that the archer moves, radians; 0.004 by default.
+    pub stray: f64,
+    /// Arrows that it has, and gets back when it stands up again; `None` for as many as it wants.
+    pub arrows: Option<u32>,
+}
+
+/// Stones to throw, which hurt nobody but are heard.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StoneConfig {
+    /// Where a stone is when it is let go, from the centre of the climber's ball: to its right, up, and ahead, metres.
+    pub hand: DVec3,
+    /// Speed, metres a second; 18 by default.
+    pub speed: f64,
+    /// Radius, metres; 0.05 by default.
+    pub radius: f64,
+    /// How loud it is where it hits; 2 by default.
+    pub loudness: f64,
+    /// Seconds until the next throw; 0.8 by default.
+    pub again: f64,
+}
+
+/// What it costs to be crushed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CrushConfig {
+    /// The room that may be missing without harm, metres; 0.05 by default.
+    pub depth: f64,
+    /// Hit points a second; 1 by default.
+    pub damage: f64,
+}
+
+impl FighterConfig {
+    /// All weapons, and [`ClimberConfig::colossus_climber`]. The default.
+    pub const fn hero() -> Self {
+        Self {
+            climber: ClimberConfig::colossus_climber(),
+            sword: Some(SwordConfig::DEFAULT),
+            bow: Some(BowConfig::DEFAULT),
+            stones: Some(StoneConfig::DEFAULT),
+            crush: Some(CrushConfig::DEFAULT),
+            hit_stop: 0.1,
+            respawn: Some(4.0),
+        }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), ArenaError> {
+        if let Some(sword) = &self.sword {
+            sword.check()?;
+        }
+        if let Some(bow) = &self.bow {
+            bow.check()?;
+        }
+        if let Some(stones) = &self.stones {
+            stones.check()?;
+        }
+        if let Some(crush) = &self.crush {
+            not_negative("crush.depth", crush.depth)?;
+            not_negative("crush.damage", crush.damage)?;
+        }
+        within("hit_stop", "from 0 to 10", self.hit_stop, [0.0, 10.0])?;
+        not_negative("respawn", self.respawn.unwrap_or(0.0))
+    }
+}
+
+impl Default for FighterConfig {
+    fn default() -> Self {
+        Self::hero()
+    }
+}
+
+impl SwordConfig {
+    const DEFAULT: Self = Self {
+        shoulder: DVec3::new(0.2, 0.9, 0.0),
+        arm: 0.6,
+        blade: 1.2,
+        radius: 0.02,
+        wind_up: 0.15,
+        cut: 0.175,
+        recover: 0.25,
+        angle: 200.0 / 180.0 * core::f64::consts::PI,
+        cut_damage: 0.1,
+        raise: 0.3,
+        charge: 2.0,
+        pressed: 1.25,
+        strike: 0.12,
+        reach: 1.8,
+        depth: 0.4,
+        pull_out: 0.6,
+        pull_out_fallen: 1.6,
+        stab_damage: 1.0,
+    };
+
+    fn check(&self) -> Result<(), ArenaError> {
+        place("sword.shoulder", self.shoulder)?;
+        not_negative("sword.arm", self.arm)?;
+        positive("sword.blade", self.blade)?;
+        positive("sword.radius", self.radius)?;
+        not_negative("sword.wind_up", self.wind_up)?;
+        positive("sword.cut", self.cut)?;
+        not_negative("sword.recover", self.recover)?;
+        let turn = core::f64::consts::TAU;
+        within("sword.angle", "from 0 to a turn", self.angle, [0.0, turn])?;
+        not_negative("sword.cut_damage", self.cut_damage)?;
+        not_negative("sword.raise", self.raise)?;
+        positive("sword.charge", self.charge)?;
+        within("sword.pressed", "from 1 to 100", self.pressed, [1.0, 100.0])?;
+        positive("sword.strike", self.strike)?;
+        positive("sword.reach", self.reach)?;
+        not_negative("sword.depth", self.depth)?;
+        not_negative("sword.pull_out", self.pull_out)?;
+        not_negative("sword.pull_out_fallen", self.pull_out_fallen)?;
+        not_negative("sword.stab_damage", self.stab_damage)
+    }
+}
+
+impl Default for SwordConfig {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl BowConfig {
+    const DEFAULT: Self = Self {
+        nock: DVec3::new(0.0, 1.0, 0.6),
+        draw: 1.0,
+        least_draw: 0.2,
+        speed: 56.4,
+        drag: 0.0,
+        radius: 0.005,
+        depth: 0.15,
+        damage: 0.05,
+        stray: 0.004,
+        arrows: None,
+    };
+
+    fn check(&self) -> Result<(), ArenaError> {
+        place("bow.nock", self.nock)?;
+        positive("bow.draw", self.draw)?;
+        within("bow.least_draw", "from 0 to 1", self.least_draw, [0.0, 1.0])?;
+        within("bow.speed", "from 0 to 10,000", self.speed, [0.0, 1e4])?;
+        within("bow.drag", "from 0 to 1", self.drag, [0.0, 1.0])?;
+        positive("bow.radius", self.radius)?;
+        not_negative("bow.depth", self.depth)?;
+        not_negative("bow.damage", self.damage)?;
+        not_negative("bow.stray", self.stray)
+    }
+}
+
+impl Default for BowConfig {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl StoneConfig {
+    const DEFAULT: Self = Self {
+        hand: DVec3::new(0.3, 1.2, 0.4),
+        speed: 18.0,
+        radius: 0.05,
+        loudness: 2.0,
+        again: 0.8,
+    };
+
+    fn check(&self) -> Result<(), ArenaError> {
+        place("stones.hand", self.hand)?;
+        within("stones.speed", "from 0 to 10,000", self.speed, [0.0, 1e4])?;
+        positive("stones.radius", self.radius)?;
+        not_negative("stones.loudness", self.loudness)?;
+        not_negative("stones.again", self.again)
+    }
+}
+
+impl Default for StoneConfig {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl CrushConfig {
+    const DEFAULT: Self = Self {
+        depth: 0.05,
+        damage: 1.0,
+    };
+}
+
+impl Default for CrushConfig {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+fn place(name: &'static str, found: DVec3) -> Result<(), ArenaError> {
+    for x in found.to_array() {
+        within(name, "finite", x, [f64::MIN, f64::MAX])?;
+    }
+    Ok(())
+}

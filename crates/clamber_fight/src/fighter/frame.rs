@@ -1,0 +1,65 @@
+use clamber_climber::Climber;
+use clamber_surface::geometry::slerp;
+use glam::{DMat3, DQuat, DVec3};
+
+/// A climber's body as its weapons see it: a place, and where right, up and ahead are. On a hold it faces what it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyFrame {
+    /// Centre of the climber's ball, in world space.
+    pub origin: DVec3,
+    /// Its rotation: x is its right, y up, and -z ahead.
+    pub rotation: DQuat,
+}
+
+/// How much of its heading a body that holds on turns its head to, beside up: it decides on skin that is level.
+const HEADING: f64 = 0.5;
+
+impl BodyFrame {
+    /// Of a climber after its last step.
+    pub fn of(climber: &Climber) -> Self {
+        let (state, up) = (climber.state(), climber.config().up());
+        let out = state
+            .support
+            .filter(|_| state.mode.is_holding())
+            .map(|support| support.normal_in_world());
+        let (up, ahead) = match out {
+            None => (up, state.heading),
+            Some(out) => {
+                let wanted = up + state.heading * HEADING;
+                let along = wanted - out * wanted.dot(out);
+                (along.normalize_or(out.any_orthonormal_vector()), -out)
+            }
+        };
+        let right = ahead.cross(up).normalize_or(up.any_orthonormal_vector());
+        let back = right.cross(up);
+        Self {
+            origin: state.position,
+            rotation: DQuat::from_mat3(&DMat3::from_cols(right, up, back)).normalize(),
+        }
+    }
+
+    /// A place that is given by how far it is to the right, up, and ahead.
+    pub fn at(&self, place: DVec3) -> DVec3 {
+        self.origin + self.direction(place)
+    }
+
+    /// A direction that is given by its parts to the right, up, and ahead.
+    pub fn direction(&self, direction: DVec3) -> DVec3 {
+        self.rotation * DVec3::new(direction.x, direction.y, -direction.z)
+    }
+
+    /// The frame at a share of the way to another one.
+    pub fn to(&self, other: &Self, share: f64) -> Self {
+        Self {
+            origin: self.origin + (other.origin - self.origin) * share,
+            rotation: slerp(self.rotation, other.rotation, share),
+        }
+    }
+
+    /// The angle between two frames, radians.
+    pub(super) fn angle_to(&self, other: &Self) -> f64 {
+        let turn = self.rotation.conjugate() * other.rotation;
+        let sin = DVec3::new(turn.x, turn.y, turn.z).length();
+        2.0 * libm::atan2(sin, turn.w.abs())
+    }
+}

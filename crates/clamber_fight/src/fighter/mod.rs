@@ -1,0 +1,174 @@
+//! A fighter: a climber with weapons.
+
+mod act;
+mod blade;
+mod config;
+mod cut;
+mod frame;
+mod shoot;
+mod stab;
+mod state;
+
+use clamber_climber::{Climber, ClimberInput, StepReport, StepRules};
+use clamber_world::{Obstacle, ObstacleId};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+pub(crate) use act::Wielding;
+pub use blade::Blade;
+pub use config::{BowConfig, CrushConfig, FighterConfig, StoneConfig, SwordConfig};
+pub use frame::BodyFrame;
+pub use state::{Act, FighterState, Target};
+
+use crate::error::ArenaError;
+
+/// A fighter of an arena, by its number: they are numbered in the order in which they are added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct FighterId(pub u32);
+
+/// A climber with weapons.
+#[derive(Clone, Debug)]
+pub struct Fighter {
+    id: FighterId,
+    config: FighterConfig,
+    /// Where it begins.
+    spawn: DVec3,
+    climber: Climber,
+    /// All that changes beside the climber; its `climber` is out of date between ticks.
+    state: FighterState,
+    report: StepReport,
+    /// True in the tick in which it throws a stone, between its two halves.
+    throws: bool,
+}
+
+impl Fighter {
+    pub(crate) fn new(
+        id: FighterId,
+        config: FighterConfig,
+        spawn: DVec3,
+        seed: u64,
+    ) -> Result<Self, ArenaError> {
+        config.check()?;
+        let climber = Climber::new(config.climber, spawn)?;
+        let state = FighterState {
+            climber: *climber.state(),
+            act: Act::Ready,
+            actions: 0,
+            blow: None,
+            harm: 0.0,
+            hit_stop: 0.0,
+            dead: None,
+            arrows: arrows(&config),
+            random: seed,
+        };
+        Ok(Self {
+            id,
+            config,
+            spawn,
+            climber,
+            state,
+            report: StepReport::default(),
+            throws: false,
+        })
+    }
+
+    /// Its number.
+    pub fn id(&self) -> FighterId {
+        self.id
+    }
+
+    /// Its body and weapons.
+    pub fn config(&self) -> &FighterConfig {
+        &self.config
+    }
+
+    /// The climber, after the last tick.
+    pub fn climber(&self) -> &Climber {
+        &self.climber
+    }
+
+    /// What it does with its weapons.
+    pub fn act(&self) -> &Act {
+        &self.state.act
+    }
+
+    /// What happened in its climber's last step, and what it pushed.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// True from its death until it stands up again.
+    pub fn is_dead(&self) -> bool {
+        self.state.dead.is_some()
+    }
+
+    /// Arrows left; `None` if they are not counted.
+    pub fn arrows(&self) -> Option<u32> {
+        let bow = self.config.bow.as_ref()?;
+        bow.arrows.map(|_| self.state.arrows)
+    }
+
+    /// Strength of the stab that is being charged, from 0 to 1; 0 if there is none.
+    pub fn charge(&self) -> f64 {
+        match self.state.act {
+            Act::Charge { charge, .. } | Act::Strike { charge, .. } | Act::Plunge { charge } => {
+                charge
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// How far its bow is drawn, from 0 to 1.
+    pub fn drawn(&self) -> f64 {
+        match self.state.act {
+            Act::Draw { drawn } => drawn,
+            _ => 0.0,
+        }
+    }
+
+    /// All that changes.
+    pub fn state(&self) -> FighterState {
+        FighterState {
+            climber: *self.climber.state(),
+            ..self.state.clone()
+        }
+    }
+
+    /// All that changes beside the climber.
+    pub(crate) fn rest(&self) -> &FighterState {
+        &self.state
+    }
+
+    pub(crate) fn rest_mut(&mut self) -> &mut FighterState {
+        &mut self.state
+    }
+
+    /// Steps the climber.
+    pub(crate) fn step(
+        &mut self,
+        input: &ClimberInput,
+        obstacles: &[(ObstacleId, &dyn Obstacle)],
+        rules: &StepRules<'_>,
+        dt: f64,
+    ) -> Result<(), ArenaError> {
+        self.report = self.climber.step_with(input, obstacles, rules, dt)?;
+        Ok(())
+    }
+
+    /// Refuses states that its climber cannot be in.
+    pub(crate) fn check(&self, state: &FighterState) -> Result<(), ArenaError> {
+        let mut climber = Climber::new(self.config.climber, self.spawn)?;
+        Ok(climber.restore(state.climber)?)
+    }
+
+    pub(crate) fn restore(&mut self, state: &FighterState) -> Result<(), ArenaError> {
+        self.climber.restore(state.climber)?;
+        self.state.clone_from(state);
+        self.report = StepReport::default();
+        Ok(())
+    }
+}
+
+fn arrows(config: &FighterConfig) -> u32 {
+    config.bow.and_then(|bow| bow.arrows).unwrap_or(0)
+}

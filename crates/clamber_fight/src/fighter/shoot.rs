@@ -1,0 +1,81 @@
+//! Arrows and stones leave the hand.
+
+use clamber_surface::geometry::rotation_from_axis_angle;
+use glam::DVec3;
+
+use super::{BodyFrame, Fighter};
+use crate::projectile::{Projectile, ProjectileId, ProjectileKind, ProjectileMotion};
+
+/// A faster archer than this does not stray more, radians.
+const MOST_STRAY: f64 = 0.5;
+
+impl Fighter {
+    /// Where it aims: along the input's aim, or ahead of it if that is zero.
+    pub(super) fn aim(&self, aim: DVec3) -> DVec3 {
+        let ahead = || BodyFrame::of(&self.climber).direction(DVec3::Z);
+        aim.try_normalize().unwrap_or_else(ahead)
+    }
+
+    /// Where an arrow's tip is when it is let go, in world space; `None` without a bow.
+    pub fn nock(&self) -> Option<DVec3> {
+        let bow = self.config.bow.as_ref()?;
+        Some(BodyFrame::of(&self.climber).at(bow.nock))
+    }
+
+    /// Velocity of an arrow that would be let go now at a draw from 0 to 1, if it did not stray; `None` without a bow.
+    pub fn arrow_velocity(&self, aim: DVec3, drawn: f64) -> Option<DVec3> {
+        let bow = self.config.bow.as_ref()?;
+        let own = self.climber.state().velocity;
+        Some(self.aim(aim) * (bow.speed * drawn.clamp(0.0, 1.0)) + own)
+    }
+
+    /// Lets an arrow go.
+    pub(super) fn shoot(&mut self, aim: DVec3, drawn: f64, id: ProjectileId) -> Option<Projectile> {
+        let bow = self.config.bow?;
+        if bow.arrows.is_some() {
+            self.state.arrows = self.state.arrows.checked_sub(1)?;
+        }
+        let (position, velocity) = (self.nock()?, self.arrow_velocity(aim, drawn)?);
+        let state = self.climber.state();
+        let moves = (state.velocity - state.base_velocity).length();
+        let velocity = self.stray(velocity, (bow.stray * moves).min(MOST_STRAY));
+        Some(Projectile {
+            id,
+            kind: ProjectileKind::Arrow,
+            by: self.id,
+            seconds: 0.0,
+            motion: ProjectileMotion::Flying { position, velocity },
+        })
+    }
+
+    /// Throws a stone.
+    pub(super) fn throw(&mut self, aim: DVec3, id: ProjectileId) -> Option<Projectile> {
+        let stones = self.config.stones?;
+        let position = BodyFrame::of(&self.climber).at(stones.hand);
+        let velocity = self.aim(aim) * stones.speed + self.climber.state().velocity;
+        Some(Projectile {
+            id,
+            kind: ProjectileKind::Stone,
+            by: self.id,
+            seconds: 0.0,
+            motion: ProjectileMotion::Flying { position, velocity },
+        })
+    }
+
+    /// Turns a velocity by up to an angle, in any direction, all places of the cone's disc being equally likely.
+    fn stray(&mut self, velocity: DVec3, angle: f64) -> DVec3 {
+        if angle <= 0.0 {
+            return velocity;
+        }
+        let mut random = fastrand::Rng::with_seed(self.state.random);
+        let (around, off) = (
+            random.f64() * core::f64::consts::TAU,
+            random.f64().sqrt() * angle,
+        );
+        self.state.random = random.get_seed();
+        let along = velocity.normalize_or(DVec3::Y);
+        let aside = along.any_orthonormal_vector();
+        let axis = rotation_from_axis_angle(along, around) * aside;
+        rotation_from_axis_angle(axis, off) * velocity
+    }
+}

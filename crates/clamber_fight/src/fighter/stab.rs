@@ -1,0 +1,85 @@
+//! Stabs: where they go, and when the blade is there.
+
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::{CastOptions, SkinnedSurface, TargetMotion};
+use clamber_world::{Attachment, Obstacle, SweepContact};
+use glam::DVec3;
+
+use super::{Blade, BodyFrame, Fighter, SwordConfig, Target};
+use crate::arena::{CreatureId, creature_obstacle};
+
+/// Where a stab begins to look for skin, from the centre of the climber's ball, as shares of the ball's radius: how far ahead
+/// along the skin, and how far above it.
+const ALONG: f64 = 0.9;
+const ABOVE: f64 = 1.0;
+
+impl SwordConfig {
+    /// The blade with its tip where the stab goes.
+    pub(super) fn struck(&self, frame: &BodyFrame, target: &Target) -> Blade {
+        let below = self.below(frame);
+        match target {
+            Target::Skin(at) => {
+                let into = at.offset_in_world().normalize_or(DVec3::NEG_Y);
+                below.in_skin(at.point, into)
+            }
+            Target::Open | Target::Air => below,
+        }
+    }
+}
+
+impl Fighter {
+    /// The point of the skin before it into which a stab would go: below where it stands, ahead of it, or before its hands. The
+    /// attachment's offset is a unit vector into the skin.
+    pub(crate) fn stab_target(&self, skins: &[&SkinnedSurface]) -> Target {
+        let Some(sword) = &self.config.sword else {
+            return Target::Air;
+        };
+        let frame = BodyFrame::of(&self.climber);
+        let holds = self.climber.state().mode.is_holding();
+        let (along, into) = if holds {
+            (DVec3::Y, DVec3::Z)
+        } else {
+            (DVec3::Z, DVec3::NEG_Y)
+        };
+        let radius = self.config.climber.body.radius;
+        let from = frame.at((along * ALONG - into * ABOVE) * radius);
+        let into = frame.direction(into);
+        let hits = skins.iter().enumerate().filter_map(|(index, skin)| {
+            let hit = Obstacle::cast_ray(*skin, from, into, sword.reach)?;
+            Some((hit, index, *skin))
+        });
+        let first = hits.min_by(|a, b| {
+            let by_distance = a.0.distance.total_cmp(&b.0.distance);
+            by_distance.then(a.1.cmp(&b.1))
+        });
+        let Some((hit, index, skin)) = first else {
+            return Target::Air;
+        };
+        let obstacle = creature_obstacle(CreatureId(index as u32));
+        let at = Attachment::new(obstacle, skin, &hit, hit.point);
+        // The offset is where the blade goes from there.
+        Target::Skin(at.moved_to(at.point + into))
+    }
+
+    /// The first skin that the blade below a falling body meets between two places of the body.
+    pub(super) fn plunge_contact(
+        &self,
+        frames: [BodyFrame; 2],
+        skins: &[&SkinnedSurface],
+    ) -> Option<(usize, SweepContact)> {
+        let sword = self.config.sword.as_ref()?;
+        let [from, to] = frames.map(|frame| sword.below(&frame));
+        let capsule = WorldCapsule {
+            ends: [from.hilt, from.tip],
+            radius: sword.radius,
+        };
+        let ways = [to.hilt - from.hilt, to.tip - from.tip];
+        let options =
+            CastOptions::from(TargetMotion::Moving).with_tolerance(capsule.sweep_tolerance());
+        let contacts = skins.iter().enumerate().filter_map(|(index, skin)| {
+            let hit = skin.in_world().cast_capsule(&capsule, ways, &options)?;
+            Some((index, SweepContact::from(hit)))
+        });
+        contacts.min_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)))
+    }
+}

@@ -1,0 +1,24 @@
+#![doc = include_str!("../README.md")]
+
+pub mod actions;
+pub mod aim;
+mod arena;
+mod error;
+mod fighter;
+mod projectile;
+#[cfg(test)]
+mod testing;
+
+pub use actions::PlayerInput;
+pub use arena::{
+    Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, SwordLight, Weapon, creature_obstacle,
+    fighter_obstacle,
+};
+pub use error::ArenaError;
+pub use fighter::{
+    Act, Blade, BodyFrame, BowConfig, CrushConfig, Fighter, FighterConfig, FighterId, FighterState,
+    StoneConfig, SwordConfig, Target,
+};
+pub use projectile::{
+    Flight, Projectile, ProjectileId, ProjectileKind, ProjectileMotion, ProjectilePlace,
+};

@@ -1,0 +1,133 @@
+use glam::DVec3;
+
+/// What acts on a projectile in flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// Gravity, metres a second squared.
+    pub gravity: DVec3,
+    /// Drag: the deceleration is this times the square of the speed, 1/m.
+    pub drag: f64,
+}
+
+/// The longest step with drag, seconds. Runge and Kutta's method of fourth order then errs by less than a micrometre in 4 s at
+/// 60 m/s.
+const LONGEST: f64 = 1.0 / 60.0;
+
+impl Flight {
+    /// Position and velocity after `dt` seconds.
+    ///
+    /// Without drag this is exact: `p + v t + g t^2 / 2`. With drag it is integrated by the classical Runge-Kutta method, in
+    /// steps of at most 1/60 s.
+    pub fn step(&self, position: DVec3, velocity: DVec3, dt: f64) -> (DVec3, DVec3) {
+        if self.drag == 0.0 {
+            let moved = position + velocity * dt + self.gravity * (0.5 * dt * dt);
+            return (moved, velocity + self.gravity * dt);
+        }
+        let steps = (dt / LONGEST).ceil().clamp(1.0, 1e6);
+        let h = dt / steps;
+        let (mut p, mut v) = (position, velocity);
+        for _ in 0..steps as u32 {
+            let a1 = self.acceleration(v);
+            let v2 = v + a1 * (0.5 * h);
+            let a2 = self.acceleration(v2);
+            let v3 = v + a2 * (0.5 * h);
+            let a3 = self.acceleration(v3);
+            let v4 = v + a3 * h;
+            let a4 = self.acceleration(v4);
+            p += (v + (v2 + v3) * 2.0 + v4) * (h / 6.0);
+            v += (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
+        }
+        (p, v)
+    }
+
+    fn acceleration(&self, velocity: DVec3) -> DVec3 {
+        self.gravity - velocity * (velocity.length() * self.drag)
+    }
+
+    /// Places along a flight, one each `dt` seconds, from its beginning on: for an arc that is drawn while somebody aims.
+    pub fn arc(self, position: DVec3, velocity: DVec3, dt: f64) -> impl Iterator<Item = DVec3> {
+        let mut now = (position, velocity);
+        std::iter::from_fn(move || {
+            let here = now.0;
+            now = self.step(now.0, now.1, dt);
+            here.is_finite().then_some(here)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
+
+    #[test]
+    fn an_arrow_keeps_to_its_parabola_at_every_rate() {
+        let (from, way) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(40.0, 39.7, 3.0));
+        for rate in [30u32, 60, 144, 240] {
+            let flight = Flight {
+                gravity: GRAVITY,
+                drag: 0.0,
+            };
+            let (mut p, mut v) = (from, way);
+            for _ in 0..4 * rate {
+                (p, v) = flight.step(p, v, 1.0 / f64::from(rate));
+            }
+            let exact = from + way * 4.0 + GRAVITY * 8.0;
+            assert!(p.distance(exact) < 1e-9, "{rate} Hz: {}", p.distance(exact));
+        }
+    }
+
+    #[test]
+    fn drag_takes_its_share_of_the_speed() {
+        // 56.4 m/s lose exp(-k s) over a distance s without gravity: 7.4 % over 70 m.
+        let drag = 1.1e-3;
+        for rate in [30u32, 60, 240] {
+            let flight = Flight {
+                gravity: DVec3::ZERO,
+                drag,
+            };
+            let (mut p, mut v) = (DVec3::ZERO, DVec3::X * 56.4);
+            let dt = 1.0 / f64::from(rate);
+            while p.x < 70.0 {
+                (p, v) = flight.step(p, v, dt);
+            }
+            let lost = 1.0 - v.x / 56.4;
+            let exact = 1.0 - libm::exp(-drag * p.x);
+            assert!((lost - exact).abs() < 1e-9, "{rate} Hz: {lost} {exact}");
+            assert!(
+                (lost - 0.075).abs() < 0.002 + (p.x - 70.0) * drag,
+                "{rate} Hz: {lost}"
+            );
+        }
+        // With gravity, the same place at every rate.
+        let after = |rate: u32| {
+            let flight = Flight {
+                gravity: GRAVITY,
+                drag,
+            };
+            let (mut p, mut v) = (DVec3::ZERO, DVec3::new(40.0, 39.7, 0.0));
+            for _ in 0..4 * rate {
+                (p, v) = flight.step(p, v, 1.0 / f64::from(rate));
+            }
+            p
+        };
+        let fine = after(6000);
+        for rate in [30, 60, 240] {
+            let apart = after(rate).distance(fine);
+            assert!(apart < 1e-6, "{rate} Hz: {apart}");
+        }
+    }
+
+    #[test]
+    fn an_arc_begins_where_it_is_shot() {
+        let flight = Flight {
+            gravity: GRAVITY,
+            drag: 0.0,
+        };
+        let places: Vec<DVec3> = flight.arc(DVec3::X, DVec3::Y, 0.5).take(3).collect();
+        assert_eq!(places[0], DVec3::X);
+        let exact = DVec3::new(1.0, 1.0 - 4.905, 0.0);
+        assert!(places[2].distance(exact) < 1e-12, "{places:?}");
+    }
+}

@@ -1,0 +1,274 @@
+//! One tick of the projectiles.
+
+use clamber_colossus::Noise;
+use clamber_surface::geometry::WorldCapsule;
+use clamber_surface::surface::{SkinnedSurface, TargetMotion};
+use clamber_world::{Obstacle, ObstacleId, SweepContact};
+use glam::DVec3;
+
+use super::stuck::stick;
+use super::{Flight, Projectile, ProjectileKind, ProjectileMotion};
+use crate::arena::{
+    ArenaEvent, CreatureId, Hit, Outcome, Weapon, creature_index, creature_obstacle,
+};
+use crate::fighter::FighterConfig;
+
+/// Seconds after which an arrow that has met nothing is gone, and one that falls.
+const LONGEST_FLIGHT: f64 = 20.0;
+const LONGEST_FALL: f64 = 10.0;
+
+/// Distance, metres, by which moving terrain may be elsewhere than an arrow in it remembers, beside its motion.
+const SLACK: f64 = 0.01;
+
+/// What projectiles fly through.
+#[derive(Clone, Copy)]
+pub(crate) struct Air<'a> {
+    pub(crate) skins: &'a [&'a SkinnedSurface],
+    pub(crate) terrain: &'a [(ObstacleId, &'a dyn Obstacle)],
+    pub(crate) gravity: DVec3,
+    pub(crate) dt: f64,
+}
+
+/// Whether a projectile is still there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flown {
+    There,
+    Gone,
+}
+
+impl<'a> Air<'a> {
+    /// The obstacle with an id.
+    pub(crate) fn obstacle(&self, id: ObstacleId) -> Option<&'a dyn Obstacle> {
+        if let Some(index) = creature_index(id) {
+            let skin: &'a dyn Obstacle = *self.skins.get(index)?;
+            return Some(skin);
+        }
+        let found = self.terrain.iter().find(|(known, _)| *known == id);
+        found.map(|(_, obstacle)| *obstacle)
+    }
+
+    /// The first contact of a ball over the tick, with whatever moves meanwhile. At equal times the smaller id wins.
+    fn first_contact(
+        &self,
+        from: DVec3,
+        way: DVec3,
+        radius: f64,
+    ) -> Option<(ObstacleId, &'a dyn Obstacle, SweepContact)> {
+        let ball = WorldCapsule::ball(from, radius);
+        let creatures = (0..).zip(self.skins).map(|(index, skin)| {
+            let id = creature_obstacle(CreatureId(index));
+            let obstacle: &'a dyn Obstacle = *skin;
+            (id, obstacle)
+        });
+        let all = self.terrain.iter().copied().chain(creatures);
+        let hits = all.filter_map(|(id, obstacle)| {
+            let is_near = obstacle.bounds().is_none_or(|(center, size)| {
+                let middle = from + way * 0.5;
+                middle.distance(center)
+                    <= size + radius + 0.5 * way.length() + ball.sweep_tolerance()
+            });
+            if !is_near {
+                return None;
+            }
+            let hit = obstacle.cast_capsule(&ball, [way; 2], TargetMotion::Moving)?;
+            Some((id, obstacle, hit))
+        });
+        hits.min_by(|a, b| a.2.time.total_cmp(&b.2.time).then(a.0.cmp(&b.0)))
+    }
+}
+
+impl Projectile {
+    /// Lets a tick pass.
+    pub(crate) fn step(
+        &mut self,
+        shooter: &FighterConfig,
+        air: &Air<'_>,
+        out: &mut Outcome,
+    ) -> Flown {
+        self.seconds += air.dt;
+        match self.motion {
+            ProjectileMotion::Flying { position, velocity } => {
+                self.fly(shooter, [position, velocity], air, out)
+            }
+            ProjectileMotion::Stuck { .. } => {
+                self.stay(air, out);
+                Flown::There
+            }
+            ProjectileMotion::Falling {
+                position,
+                velocity,
+                direction,
+            } => {
+                let flight = Flight {
+                    gravity: air.gravity,
+                    drag: 0.0,
+                };
+                let (to, velocity) = flight.step(position, velocity, air.dt);
+                let radius = shooter.bow.map_or(0.01, |bow| bow.radius);
+                let meets = air.first_contact(position, to - position, radius);
+                // What it has just come loose from touches it still.
+                let ends = meets.is_some_and(|(.., hit)| !hit.started_inside || self.seconds > 0.5);
+                if ends || self.seconds > LONGEST_FALL {
+                    return Flown::Gone;
+                }
+                self.motion = ProjectileMotion::Falling {
+                    position: to,
+                    velocity,
+                    direction,
+                };
+                Flown::There
+            }
+        }
+    }
+
+    fn fly(
+        &mut self,
+        shooter: &FighterConfig,
+        [position, velocity]: [DVec3; 2],
+        air: &Air<'_>,
+        out: &mut Outcome,
+    ) -> Flown {
+        let (radius, drag) = match self.kind {
+            ProjectileKind::Arrow => shooter
+                .bow
+                .map_or((0.005, 0.0), |bow| (bow.radius, bow.drag)),
+            ProjectileKind::Stone => (shooter.stones.map_or(0.05, |stones| stones.radius), 0.0),
+        };
+        let flight = Flight {
+            gravity: air.gravity,
+            drag,
+        };
+        let (to, faster) = flight.step(position, velocity, air.dt);
+        let Some((id, obstacle, hit)) = air.first_contact(position, to - position, radius) else {
+            if self.seconds > LONGEST_FLIGHT || !to.is_finite() {
+                return Flown::Gone;
+            }
+            self.motion = ProjectileMotion::Flying {
+                position: to,
+                velocity: faster,
+            };
+            return Flown::There;
+        };
+        let at_contact = velocity + (faster - velocity) * hit.time;
+        self.hit(shooter, id, &hit, at_contact, out);
+        if self.kind == ProjectileKind::Stone {
+            return Flown::Gone;
+        }
+        let depth = shooter.bow.map_or(0.0, |bow| bow.depth);
+        let direction = at_contact.normalize_or(DVec3::NEG_Y);
+        let Some(motion) = stick(id, obstacle, &hit, direction, depth, air.dt) else {
+            return Flown::Gone;
+        };
+        self.motion = motion;
+        self.seconds = 0.0;
+        out.events.push(ArenaEvent::Stuck {
+            projectile: self.id,
+            obstacle: id,
+            place: hit.contact.point,
+        });
+        Flown::There
+    }
+
+    /// Tells whom it struck, and who hears it.
+    fn hit(
+        &self,
+        shooter: &FighterConfig,
+        id: ObstacleId,
+        hit: &SweepContact,
+        velocity: DVec3,
+        out: &mut Outcome,
+    ) {
+        let (weapon, damage) = match self.kind {
+            ProjectileKind::Arrow => {
+                let (damage, full) = shooter
+                    .bow
+                    .map_or((0.0, 1.0), |bow| (bow.damage, bow.speed));
+                let share = velocity.length_squared() / (full * full).max(f64::MIN_POSITIVE);
+                (Weapon::Arrow, damage * share)
+            }
+            ProjectileKind::Stone => (Weapon::Stone, 0.0),
+        };
+        if let (ProjectileKind::Stone, Some(stones)) = (self.kind, shooter.stones) {
+            out.noises.push(Noise {
+                place: hit.contact.point,
+                loudness: stones.loudness,
+            });
+        }
+        if let Some(creature) = creature_index(id) {
+            out.hits.push(Hit {
+                by: self.by,
+                weapon,
+                projectile: Some(self.id),
+                creature,
+                at: hit.contact.material,
+                place: hit.contact.point,
+                time: hit.time,
+                damage,
+            });
+        }
+    }
+
+    /// Stays where it sticks, as long as that is there.
+    fn stay(&mut self, air: &Air<'_>, out: &mut Outcome) {
+        let ProjectileMotion::Stuck { at, direction } = &mut self.motion else {
+            return;
+        };
+        let is_there = match creature_index(at.obstacle) {
+            Some(index) => air.skins.get(index).is_some_and(|skin| {
+                let triangle = at.material.triangle();
+                triangle.is_some_and(|triangle| skin.is_enabled(triangle))
+            }),
+            // Terrain can be asked for no less than where it is.
+            None => air
+                .obstacle(at.obstacle)
+                .is_some_and(|obstacle| at.follow(obstacle, air.dt, SLACK).is_some()),
+        };
+        if !is_there {
+            let _ = direction;
+            self.fall(air, out);
+        }
+    }
+
+    /// Comes loose, with the velocity of what it stuck in.
+    pub(crate) fn fall(&mut self, air: &Air<'_>, out: &mut Outcome) {
+        let ProjectileMotion::Stuck { at, direction } = self.motion else {
+            return;
+        };
+        let loose =
+            |position: DVec3, velocity: DVec3, frame: glam::DQuat| ProjectileMotion::Falling {
+                position,
+                velocity,
+                direction: frame * direction,
+            };
+        let still = loose(at.position(), DVec3::ZERO, at.frame);
+        let skin = creature_index(at.obstacle).and_then(|index| air.skins.get(index));
+        self.motion = match skin {
+            // Hidden skin has a motion as well.
+            Some(skin) => {
+                let anchor = at.material.anchor_on(skin);
+                let motion = anchor.and_then(|anchor| skin.in_world().motion(&anchor, air.dt).ok());
+                motion.map_or(still, |motion| {
+                    // The tip turns about the point of the skin.
+                    let arm = motion.frame * at.offset;
+                    let velocity = motion.velocity + motion.angular_velocity.cross(arm);
+                    loose(motion.position + arm, velocity, motion.frame)
+                })
+            }
+            None => {
+                let motion = air
+                    .obstacle(at.obstacle)
+                    .and_then(|o| o.motion(&at.material, air.dt));
+                motion.map_or(still, |motion| {
+                    loose(at.position(), motion.velocity, at.frame)
+                })
+            }
+        };
+        self.seconds = 0.0;
+        out.events.push(ArenaEvent::CameLoose {
+            projectile: self.id,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,334 @@
+//! Creatures, arenas and inputs that tests share.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "helpers of tests, of which each file uses some"
+)]
+
+use std::sync::Arc;
+
+use clamber_climber::{ClimberInput, ClimberMode};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind, CreatureParts};
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaEvent, CreatureId, FighterConfig, FighterId, SwordConfig,
+};
+use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+};
+use clamber_surface::rig::{
+    Channel, Clip, Interpolation, Joint, JointId, Keyframes, Skeleton, Transform, WeakPoint,
+};
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+/// Cells of the slab along each side.
+const CELLS: u32 = 16;
+
+/// Half the length of its sides, metres.
+pub(crate) const HALF: f32 = 6.0;
+
+/// Height of the plate of stone above the fur.
+pub(crate) const PLATE: f64 = 0.5;
+
+pub(crate) const GROUND: ObstacleId = ObstacleId(0);
+
+/// A slab: a level square of fur on one joint, with a clip, a plate over a quarter of it, and weak points.
+#[derive(Clone, Debug)]
+pub(crate) struct Slab {
+    /// Ticks a second.
+    pub(crate) rate: f64,
+    /// Times, translations and scales of the joint.
+    pub(crate) keys: Vec<(f32, Vec3, Vec3)>,
+    pub(crate) weak_points: Vec<WeakPoint>,
+    /// Whether there is a plate of stone over a quarter of it.
+    pub(crate) plate: bool,
+}
+
+impl Default for Slab {
+    fn default() -> Self {
+        Self {
+            rate: 60.0,
+            keys: vec![(0.0, Vec3::ZERO, Vec3::ONE)],
+            weak_points: Vec::new(),
+            plate: false,
+        }
+    }
+}
+
+/// A weak point in the middle of the fur.
+pub(crate) fn weak_point(name: &str, at: Vec3, hit_points: f64, order: u32) -> WeakPoint {
+    let mut point = WeakPoint::new(name, JointId(0), at);
+    (point.radius, point.hit_points, point.order) = (2.0, hit_points, order);
+    point
+}
+
+impl Slab {
+    pub(crate) fn kind(&self) -> Arc<CreatureKind> {
+        let (mut positions, mut triangles, mut tags) = (Vec::new(), Vec::new(), Vec::new());
+        let fur = (0.0, SurfaceKind::Fur, 0, -HALF);
+        let plate = (PLATE as f32, SurfaceKind::Stone, 7, 0.0);
+        for (height, kind, user, from) in [fur, plate].into_iter().take(1 + usize::from(self.plate))
+        {
+            let first = positions.len() as u32;
+            let place = |index: u32| from + (HALF - from) * index as f32 / CELLS as f32;
+            for row in 0..=CELLS {
+                for column in 0..=CELLS {
+                    positions.push(Vec3::new(place(column), height, place(row)));
+                }
+            }
+            for row in 0..CELLS {
+                for column in 0..CELLS {
+                    let a = first + row * (CELLS + 1) + column;
+                    let (b, c, d) = (a + 1, a + CELLS + 1, a + CELLS + 2);
+                    triangles.extend([[a, c, d], [a, d, b]]);
+                    tags.extend([SurfaceTag::new(kind).with_user(user); 2]);
+                }
+            }
+        }
+        let bone = Influence {
+            joint: JointId(0),
+            weight: 1.0,
+        };
+        let source = MeshSource {
+            positions: &positions,
+            triangles: &triangles,
+            influences: &vec![bone; positions.len()],
+            tags: &tags,
+            joint_count: 1,
+            ..MeshSource::default()
+        };
+        let mesh = ColliderMesh::build(&source, &BuildOptions::default())
+            .unwrap()
+            .0;
+        let root = Joint {
+            name: "root".into(),
+            parent: None,
+            rest: Transform::IDENTITY,
+            inverse_bind: Affine::IDENTITY,
+        };
+        let times: Vec<f32> = self.keys.iter().map(|key| key.0).collect();
+        let channel = |values: Keyframes| {
+            Channel::new(JointId(0), Interpolation::Linear, times.clone(), values).unwrap()
+        };
+        let moves = channel(Keyframes::Translation(
+            self.keys.iter().map(|key| key.1).collect(),
+        ));
+        let scales = channel(Keyframes::Scale(
+            self.keys.iter().map(|key| key.2).collect(),
+        ));
+        let parts = CreatureParts {
+            skeleton: Skeleton::new(vec![root]).unwrap(),
+            clips: vec![Clip::new("lie", vec![moves, scales])],
+            mesh: Arc::new(mesh),
+            weak_points: self.weak_points.clone(),
+        };
+        let plates = if self.plate {
+            r#""plates": [{ "name": "shell", "user": 7, "stagger": 2, "count": 1 }]"#
+        } else {
+            ""
+        };
+        let brain = format!(
+            r#"{{ "body": {{ {plates} }}, "start": "lies", "states": {{ "lies": {{ "act": {{ "play": "lie" }} }} }} }}"#
+        );
+        let brain = Brain::from_json(&brain, 1.0 / self.rate).unwrap();
+        Arc::new(CreatureKind::new(parts, brain).unwrap())
+    }
+
+    /// An arena with the slab, and fighters at these places.
+    pub(crate) fn arena(&self, config: FighterConfig, places: &[DVec3]) -> Arena {
+        let arena = ArenaConfig {
+            tick: 1.0 / self.rate,
+            ..ArenaConfig::default()
+        };
+        let mut arena = Arena::new(arena).unwrap();
+        arena
+            .add_creature(self.kind(), CreatureConfig::default())
+            .unwrap();
+        for place in places {
+            arena.add_fighter(config, *place).unwrap();
+        }
+        arena
+    }
+}
+
+pub(crate) fn sword() -> SwordConfig {
+    SwordConfig::default()
+}
+
+pub(crate) const HERO: FighterId = FighterId(0);
+pub(crate) const GIANT: CreatureId = CreatureId(0);
+
+/// An input with buttons and without a direction.
+pub(crate) fn pressing(actions: u32) -> ClimberInput {
+    ClimberInput {
+        actions,
+        ..ClimberInput::IDLE
+    }
+}
+
+/// Steps an arena over level ground far below, with one input for all.
+pub(crate) fn step(arena: &mut Arena, input: &ClimberInput) -> Vec<ArenaEvent> {
+    let ground = HalfSpace::below(-100.0);
+    let inputs = vec![*input; arena.fighters().len()];
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    arena.step(&inputs, &terrain).unwrap().to_vec()
+}
+
+pub(crate) fn mode(arena: &Arena) -> ClimberMode {
+    arena.fighter(HERO).unwrap().climber().state().mode
+}
+
+/// Steps until the hero stands.
+pub(crate) fn land(arena: &mut Arena) {
+    for _ in 0..600 {
+        step(arena, &ClimberInput::IDLE);
+        if mode(arena) == ClimberMode::Standing {
+            return;
+        }
+    }
+    panic!(
+        "it did not land: {:?}",
+        arena.fighter(HERO).unwrap().climber().state()
+    );
+}
+
+/// The damages of hits among events.
+pub(crate) fn hits(events: &[ArenaEvent]) -> Vec<f64> {
+    let hits = events.iter().filter_map(|event| match event {
+        ArenaEvent::Hit { damage, .. } => Some(*damage),
+        _ => None,
+    });
+    hits.collect()
+}
+
+/// The giant of `assets/`, with its brain.
+pub(crate) fn giant() -> Arc<CreatureKind> {
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/");
+    let rig = clamber_gltf::load(format!("{assets}colossus.glb")).unwrap();
+    let parts = CreatureParts {
+        skeleton: rig.skeleton,
+        clips: rig.clips,
+        mesh: rig.collider,
+        weak_points: rig.weak_points,
+    };
+    let brain = std::fs::read_to_string(format!("{assets}colossus.brain.json")).unwrap();
+    let brain = Brain::from_json(&brain, 1.0 / 60.0).unwrap();
+    Arc::new(CreatureKind::new(parts, brain).unwrap())
+}
+
+/// A fight in which everything happens: one rides the giant, stabs it and hangs on, another one runs about before it, shoots and
+/// throws, and one stands on a slab whose plate it breaks.
+pub(crate) struct Melee {
+    pub(crate) arena: Arena,
+    ground: HalfSpace,
+}
+
+/// Where the slab is.
+const SLAB: DVec3 = DVec3::new(60.0, 1.0, 60.0);
+
+impl Melee {
+    pub(crate) fn new(giant: &Arc<CreatureKind>) -> Self {
+        let mut arena = Arena::new(ArenaConfig {
+            seed: 5,
+            ..ArenaConfig::default()
+        })
+        .unwrap();
+        arena
+            .add_creature(
+                Arc::clone(giant),
+                CreatureConfig {
+                    seed: 3,
+                    ..CreatureConfig::default()
+                },
+            )
+            .unwrap();
+        let way = Vec3::new(0.5, 0.1, -0.3);
+        let slab = Slab {
+            keys: vec![
+                (0.0, Vec3::ZERO, Vec3::ONE),
+                (600.0, way * 600.0, Vec3::ONE),
+            ],
+            weak_points: vec![weak_point("heart", Vec3::new(3.0, 0.0, 3.0), 9.0, 0)],
+            plate: true,
+            ..Slab::default()
+        };
+        let lies = CreatureConfig {
+            position: SLAB,
+            ..CreatureConfig::default()
+        };
+        arena.add_creature(slab.kind(), lies).unwrap();
+        let mut config = FighterConfig::hero();
+        if let Some(stamina) = &mut config.climber.stamina {
+            stamina.shake_drain = 1.0 / 200.0;
+        }
+        // Strong stabs and cuts, so that much happens in little time.
+        if let Some(sword) = &mut config.sword {
+            (sword.charge, sword.cut_damage) = (0.7, 1.0);
+        }
+        let places = [
+            DVec3::new(0.0, 35.5, -1.0),
+            DVec3::new(3.0, 1.0, 24.0),
+            SLAB + DVec3::new(3.0, 1.5, 3.0),
+        ];
+        for place in places {
+            arena.add_fighter(config, place).unwrap();
+        }
+        Self {
+            arena,
+            ground: HalfSpace::below(0.0),
+        }
+    }
+
+    /// What each does in the tick that follows so many.
+    pub(crate) fn inputs(tick: u64) -> [ClimberInput; 3] {
+        use clamber_fight::actions::{BOW, CUT, STAB, THROW};
+        let second = tick / 60;
+        let wave = |period: f64| libm::sin(tick as f64 / 60.0 / period * core::f64::consts::TAU);
+        let rides = ClimberInput {
+            // It lets go after a while, so that the giant turns to the others.
+            grip: tick > 20 && tick < 1500,
+            climb: if second % 7 < 2 {
+                DVec3::new(wave(3.0), wave(5.0), wave(4.0))
+            } else {
+                DVec3::ZERO
+            },
+            jump: tick % 700 == 650,
+            actions: if tick % 97 < 20 { STAB } else { 0 },
+            ..ClimberInput::IDLE
+        };
+        // Later it stays and waits for what comes.
+        let runs = ClimberInput {
+            walk: DVec3::new(wave(6.0), 0.0, wave(7.0))
+                * f64::from(u8::from(second % 5 < 3 && tick < 2000)),
+            grip: true,
+            aim: DVec3::new(-0.1 + 0.1 * wave(3.0), 0.5, -1.0),
+            jump: tick % 130 == 0 && tick < 2000,
+            actions: match tick % 150 {
+                10..70 => BOW,
+                100 => THROW,
+                _ => 0,
+            },
+            ..ClimberInput::IDLE
+        };
+        let breaks = ClimberInput {
+            walk: DVec3::new(wave(2.0), 0.0, wave(3.0)) * 0.2,
+            aim: DVec3::new(0.3, -1.0, 0.2 * wave(5.0)),
+            actions: match tick % 240 {
+                20..80 => BOW,
+                120 => CUT,
+                180 | 230 => STAB,
+                _ => 0,
+            },
+            ..ClimberInput::IDLE
+        };
+        [rides, runs, breaks]
+    }
+
+    pub(crate) fn step(&mut self) -> Vec<ArenaEvent> {
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &self.ground)];
+        let inputs = Self::inputs(self.arena.tick());
+        self.arena.step(&inputs, &terrain).unwrap().to_vec()
+    }
+}
