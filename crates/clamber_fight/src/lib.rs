@@ -6,6 +6,8 @@ mod arena;
 mod error;
 mod fighter;
 mod projectile;
+#[cfg(feature = "ggrs")]
+pub mod rollback;
 #[cfg(test)]
 mod testing;
 

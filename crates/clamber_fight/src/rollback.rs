@@ -1,0 +1,137 @@
+//! Rollback over a network, by the crate [ggrs]: the arena's side of it.
+//!
+//! Peers send each other their players' inputs, guess those that have not arrived, and when a guess was wrong, go back and step
+//! again. All of that is ggrs's; this module saves, restores and steps the arena as it asks, and keeps what happened until it is
+//! certain.
+//!
+//! ```no_run
+//! use clamber_fight::rollback::{ArenaSession, Rollback};
+//! use clamber_fight::{Arena, PlayerInput};
+//! use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+//! use ggrs::{DesyncDetection, GgrsError, PlayerType, SessionBuilder, UdpNonBlockingSocket};
+//!
+//! # fn fight(mut arena: Arena, input: PlayerInput) -> Result<(), Box<dyn std::error::Error>> {
+//! let mut session = SessionBuilder::<ArenaSession<std::net::SocketAddr>>::new()
+//!     .with_num_players(2)?
+//!     .with_desync_detection_mode(DesyncDetection::On { interval: 60 })
+//!     .add_player(PlayerType::Local, 0)? // fighter 0 is ours
+//!     .add_player(PlayerType::Remote("192.168.0.2:7000".parse()?), 1)?
+//!     .start_p2p_session(UdpNonBlockingSocket::bind_to_port(7000)?)?;
+//! let mut rollback = Rollback::new(&arena);
+//! let ground = HalfSpace::below(0.0);
+//! let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(0), &ground)];
+//! loop {
+//!     // One fixed tick.
+//!     session.poll_remote_clients();
+//!     if session.current_state() == ggrs::SessionState::Running {
+//!         session.add_local_input(0, input)?;
+//!         match session.advance_frame() {
+//!             Ok(requests) => rollback.handle(&mut arena, requests, |arena, inputs| {
+//!                 arena.step(inputs, &terrain).map(drop)
+//!             })?,
+//!             Err(GgrsError::PredictionThreshold) => {} // the other one is too far behind: wait
+//!             Err(error) => return Err(error.into()),
+//!         }
+//!         for (tick, event) in rollback.confirmed(session.confirmed_frame()) {
+//!             println!("{tick}: {event:?}"); // each once, and none of a tick that is taken back
+//!         }
+//!     }
+//!     # return Ok(());
+//! }
+//! # }
+//! ```
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::hash::Hash;
+use std::marker::PhantomData;
+
+use clamber_climber::ClimberInput;
+/// The version of ggrs that this module uses.
+pub use ggrs;
+use ggrs::{Config, Frame, GgrsRequest, InputStatus, PredictRepeatLast};
+
+use crate::actions::PlayerInput;
+use crate::arena::{Arena, ArenaEvent, ArenaState};
+use crate::error::ArenaError;
+
+/// ggrs's configuration for an arena, with the peers' kind of address: `SessionBuilder::<ArenaSession<SocketAddr>>::new()`.
+#[derive(Debug)]
+pub struct ArenaSession<A>(PhantomData<A>);
+
+impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Config for ArenaSession<A> {
+    type Input = PlayerInput;
+    type InputPredictor = PredictRepeatLast;
+    type State = ArenaState;
+    type Address = A;
+}
+
+/// Does what ggrs asks for, and keeps events until they are certain.
+#[derive(Clone, Debug)]
+pub struct Rollback {
+    /// Tick of the arena when the session began.
+    began: u64,
+    /// Of each tick that is not yet confirmed, its events.
+    events: BTreeMap<u64, Vec<ArenaEvent>>,
+}
+
+impl Rollback {
+    /// For an arena at the beginning of a session.
+    pub fn new(arena: &Arena) -> Self {
+        Self {
+            began: arena.tick(),
+            events: BTreeMap::new(),
+        }
+    }
+
+    /// Does what a session asks for, in order: saves, restores, and steps by `step`, which gets one input for each player. All
+    /// states are saved with their [`Arena::fingerprint`] as checksum. A player who has left does nothing.
+    ///
+    /// # Errors
+    /// Those of `step`, and [`ArenaError::OtherArena`] if a state is asked for that was not saved.
+    pub fn handle<A: Clone + PartialEq + Eq + Hash + Debug + 'static>(
+        &mut self,
+        arena: &mut Arena,
+        requests: Vec<GgrsRequest<ArenaSession<A>>>,
+        mut step: impl FnMut(&mut Arena, &[ClimberInput]) -> Result<(), ArenaError>,
+    ) -> Result<(), ArenaError> {
+        for request in requests {
+            match request {
+                GgrsRequest::SaveGameState { cell, frame } => {
+                    let sum = u128::from(arena.fingerprint());
+                    cell.save(frame, Some(arena.save()), Some(sum));
+                }
+                GgrsRequest::LoadGameState { cell, .. } => {
+                    let missing = ArenaError::OtherArena("it was not saved");
+                    let state = cell.data().ok_or(missing)?;
+                    arena.restore(&state)?;
+                    // What is played again happens again.
+                    self.events.split_off(&(arena.tick() + 1));
+                }
+                GgrsRequest::AdvanceFrame { inputs } => {
+                    let input = |(input, status): &(PlayerInput, InputStatus)| match status {
+                        InputStatus::Disconnected => ClimberInput::IDLE,
+                        InputStatus::Confirmed | InputStatus::Predicted => input.to_input(),
+                    };
+                    let inputs: Vec<ClimberInput> = inputs.iter().map(input).collect();
+                    step(arena, &inputs)?;
+                    if !arena.events().is_empty() {
+                        self.events.insert(arena.tick(), arena.events().to_vec());
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What has happened for certain since the last call, with its ticks, in order. `frame` is the session's `confirmed_frame`
+    /// after [`Rollback::handle`]: all inputs up to there are known, and were played.
+    pub fn confirmed(&mut self, frame: Frame) -> impl Iterator<Item = (u64, ArenaEvent)> + use<> {
+        let certain = u64::try_from(frame).map_or(0, |frame| self.began + frame + 1);
+        let later = self.events.split_off(&(certain + 1));
+        let events = std::mem::replace(&mut self.events, later);
+        events
+            .into_iter()
+            .flat_map(|(tick, events)| events.into_iter().map(move |event| (tick, event)))
+    }
+}
