@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 sys.dont_write_bytecode = True
 
-from giant import blender, check, clips, glb, visual, weights  # noqa: E402
+from giant import blender, check, clips, glb, shell, visual, weights  # noqa: E402
 
 ONE_THREAD = "--one-thread"
 
@@ -32,7 +32,10 @@ def build(arguments):
     started = time.monotonic()
     blender.start()
     coarse, fine = visual.collision(), visual.visual(blender.thinned)
-    coarse_weights, fine_weights = weights.weights(coarse.mesh.points), weights.weights(fine.mesh.points)
+    coarse_weights, fine_weights = (
+        weights.rigid(weights.weights(dressed.mesh.points), visual.of_shell(dressed), shell.JOINT)
+        for dressed in (coarse, fine)
+    )
     moves = [clips.sampled(name, coarse.mesh.points, coarse_weights) for name in clips.TABLES]
 
     rig = blender.armature()

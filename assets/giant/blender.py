@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import clips, nets, visual
+from . import clips, nets, shell, visual
 from .signs import SIGNS
 from .skeleton import JOINTS
 from .turns import quaternions
@@ -56,6 +56,8 @@ def materials():
             shader.inputs["Emission"].default_value = (*glow, 1.0)
             shader.inputs["Emission Strength"].default_value = 1.0
         material["clamber"] = {"surface": surface, "ledge": True} if ledge else {"surface": surface}
+        if name == "shell":
+            material["clamber"]["user"] = shell.USER
         made.append(material)
     return made
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import decor, flesh, nets, stone
+from . import decor, flesh, nets, shell, stone
 from . import field as f
 from .signs import in_crest
 
@@ -29,6 +29,7 @@ MATERIALS = {
     "hide": ("skin", False, (0.20, 0.155, 0.125), 0.8, None),
     "stone": ("stone", False, (0.37, 0.345, 0.30), 0.9, None),
     "stone_ledge": ("stone", True, (0.43, 0.41, 0.345), 0.9, None),
+    "shell": ("stone", False, (0.30, 0.36, 0.37), 0.7, None),
     "glow": ("stone", False, (0.25, 0.85, 0.90), 0.4, (0.15, 0.95, 1.0)),
 }
 NAMES = list(MATERIALS)
@@ -45,10 +46,12 @@ class Dressed:
 
 
 def collision():
-    """The collision mesh: body and stone as one closed solid."""
+    """The collision mesh: body and stone as one closed solid, and the shell."""
     solid = lambda p: np.minimum(flesh.body(p), stone.smooth(p))
     mesh = _on_ground(nets.largest_piece(nets.mesh_field(solid, LOW, HIGH, COLLISION_CELL)))
-    return Dressed(mesh, _surface_materials(mesh))
+    plate = shell.collision()
+    materials = [_surface_materials(mesh), np.full(len(plate.triangles), NAMES.index("shell"))]
+    return Dressed(decor.joined([mesh, plate]), np.concatenate(materials))
 
 
 def visual(thinned):
@@ -60,7 +63,7 @@ def visual(thinned):
     rock = nets.kept(rock, flesh.body(_centres(rock)) > -HIDDEN_DEPTH)
     rock = nets.kept(rock, stone.smooth(_centres(rock)) > -VOID_DEPTH)
     parts = [_dressed_body(body), _dressed_stone(rock), _dressed_fur(fur, fur_shade, fur_uvs), _dressed_fur(*decor.crest())]
-    parts += [_dressed_glow(decor.sigils()), _dressed_glow(decor.eyes())]
+    parts += [_dressed_glow(decor.sigils()), _dressed_glow(decor.eyes()), _dressed_shell(shell.visual())]
     return Dressed(
         decor.joined([part.mesh for part in parts]),
         *(np.concatenate([getattr(part, name) for part in parts]) for name in ("materials", "colours", "uvs")),
@@ -127,6 +130,20 @@ def _dressed_stone(mesh):
     tint = np.array([1.0, 1.0, 1.0]) * (1.0 - moss[:, None]) + np.array([0.55, 0.66, 0.36]) * moss[:, None]
     materials = _stone_materials(mesh, stone.distances(_centres(mesh)))
     return Dressed(mesh, materials, _colours(light * tone * (1.0 - 0.7 * groove), tint), _box_uvs(mesh))
+
+
+def _dressed_shell(mesh):
+    light = _openness(mesh.points, f.gradient(stone.smooth, mesh.points, 0.1))
+    tone = 1.0 + 0.2 * f.layered_noise(mesh.points * 0.8, 3, seed=61)
+    materials = np.full(len(mesh.triangles), NAMES.index("shell"))
+    return Dressed(mesh, materials, _colours(light * tone, np.ones((1, 3))), _box_uvs(mesh))
+
+
+def of_shell(dressed):
+    """For each vertex: whether it belongs to the shell."""
+    result = np.zeros(len(dressed.mesh.points), bool)
+    result[dressed.mesh.triangles[dressed.materials == NAMES.index("shell")]] = True
+    return result
 
 
 def _dressed_glow(mesh):

@@ -43,6 +43,14 @@ def weights(points):
     return _strongest(result)
 
 
+def rigid(weights, there, joint):
+    """The same weights, but where `there` is true, on one joint alone."""
+    result = weights.copy()
+    result[there] = 0.0
+    result[there, INDEX[joint]] = 1.0
+    return result
+
+
 def _flesh_weights(points):
     """Weights by distance to the bones, without plates."""
     closeness = np.zeros((len(points), len(JOINTS)))

@@ -121,14 +121,18 @@ impl Creature {
         *left > 0.0 && (exposed.contains(&point.name) || before.all(|(_, left)| *left <= 0.0))
     }
 
-    /// Hides the plates that are broken, and shows the others.
+    /// Hides the plates that are broken, and shows the others, of those that are otherwise.
     pub(super) fn hide_broken_plates(&mut self) {
         for plate in 0..self.kind.plates().len() {
-            self.show_plate(plate, self.state.plates[plate].left > 0);
+            let shows = self.state.plates[plate].left > 0;
+            if self.shows_plate[plate] != shows {
+                self.show_plate(plate, shows);
+            }
         }
     }
 
     fn show_plate(&mut self, plate: usize, shows: bool) {
+        self.shows_plate[plate] = shows;
         for triangle in &self.kind.plates()[plate].triangles {
             // Refused only for triangles that a game has edited away.
             let _ = if shows {

@@ -46,6 +46,8 @@ pub struct Creature {
     legs: Vec<PutLeg>,
     /// True while the skin is known to be without motion.
     is_still: bool,
+    /// Of each plate, whether the skin shows it: as its state says.
+    shows_plate: Vec<bool>,
 }
 
 impl Creature {
@@ -65,6 +67,7 @@ impl Creature {
             events: Vec::new(),
             legs: Vec::new(),
             is_still: false,
+            shows_plate: vec![true; kind.plates().len()],
             kind,
             config,
             state,

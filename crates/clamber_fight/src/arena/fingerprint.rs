@@ -25,7 +25,7 @@ impl Arena {
             add_fighter(&mut hash, fighter.rest());
         }
         hash.take(&(&self.projectiles, &self.noises));
-        hash.0
+        hash.hash()
     }
 }
 
@@ -42,7 +42,7 @@ impl ArenaState {
             add_fighter(&mut hash, fighter);
         }
         hash.take(&(&self.projectiles, &self.noises));
-        hash.0
+        hash.hash()
     }
 }
 
@@ -64,25 +64,35 @@ fn add_fighter(hash: &mut Hasher, state: &FighterState) {
 
 /// Hash of a value, as it is serialised.
 pub(super) fn hash_of(start: u64, value: &impl Serialize) -> u64 {
-    let mut hash = Hasher(start);
+    let mut hash = Hasher::new(start);
     hash.take(value);
-    hash.0
+    hash.hash()
 }
 
 /// Hashes 64-bit words one after another, each by a multiplication.
+///
+/// Two hashes take turns, since each multiplication waits for the one before it in the same hash.
 #[derive(Clone, Copy, Debug)]
-struct Hasher(u64);
+struct Hasher([u64; 2]);
 
 impl Default for Hasher {
     fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+        Self::new(0xcbf2_9ce4_8422_2325)
     }
 }
 
 impl Hasher {
+    fn new(start: u64) -> Self {
+        Self([start, !start])
+    }
+
     fn word(&mut self, word: u64) {
-        // 2^64 divided by the golden ratio: an odd number with well spread bits.
-        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let [turn, other] = self.0;
+        self.0 = [other, add(turn, word)];
+    }
+
+    fn hash(&self) -> u64 {
+        add(self.0[0], self.0[1])
     }
 
     fn bytes(&mut self, bytes: &[u8]) {
@@ -98,6 +108,11 @@ impl Hasher {
         // A hasher refuses nothing.
         let _ = value.serialize(self);
     }
+}
+
+fn add(hash: u64, word: u64) -> u64 {
+    // 2^64 divided by the golden ratio: an odd number with well spread bits.
+    (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
 /// Never made: a hasher refuses nothing.

@@ -1,0 +1,419 @@
+//! What do an arena's save, load and rollback cost, beside one of its ticks? And what do many climbers, giants and arrows?
+//!
+//! The giant in the valley with its brain; one climber rides it, one stands before it. All take turns on one thread; times are
+//! medians.
+//!
+//! - A plain tick, a save, a load, a fingerprint, and a rollback of eight ticks as ggrs asks for it: one load, and eight times a
+//!   tick, a save and a fingerprint. The same where a plate breaks in the fifth of the eight ticks.
+//! - 64 climbers and four giants: a tick as a share of a sixtieth of a second.
+//! - 500 arrows that stick in the giant: a tick more than without them.
+//!
+//! Prints a table and writes it to `target/measure/arena.csv`: name, value, bound, holds.
+//!
+//! Run it with `cargo bench -p clamber_benches --bench arena`; briefly with `-- --test`.
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clamber::climber::ClimberInput;
+use clamber::world::{Attachment, BodyPoses, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
+use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
+use clamber_fight::actions::STAB;
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, FighterConfig, FighterId, Projectile,
+    ProjectileId, ProjectileKind, ProjectileMotion, creature_obstacle,
+};
+use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::{giant, valley};
+use glam::DVec3;
+
+const GROUND: ObstacleId = ObstacleId(0);
+
+/// Ticks of a rollback.
+const BACK: usize = 8;
+
+const GRIP: ClimberInput = ClimberInput {
+    grip: true,
+    ..ClimberInput::IDLE
+};
+
+type Failure = Box<dyn Error>;
+
+fn main() -> ExitCode {
+    match run(is_brief()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(brief: bool) -> Result<(), Failure> {
+    let rounds = if brief { 20 } else { 3000 };
+    let kind = kind()?;
+    let world = valley::world();
+    let poses = BodyPoses::default();
+    let valley = RapierTerrain::of_world(&world, &poses);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &valley)];
+    let mut cells = Cells::default();
+
+    let mut riding = riders(&kind)?;
+    for _ in 0..60 {
+        riding.step(&[GRIP, ClimberInput::IDLE], &terrain)?;
+    }
+    let times = measure(&mut riding, &terrain, rounds, |_| GRIP)?;
+    let tick = report(&mut cells, "", &times);
+    let bytes = riding.to_bytes()?.len();
+    cells.value("a snapshot as bytes", bytes as f64);
+
+    let mut breaking = before_the_break(&kind, &terrain)?;
+    let times = measure_break(&mut breaking, &terrain, rounds / 10 + 2)?;
+    report(&mut cells, ", a plate breaks", &times);
+
+    crowd(&kind, &terrain, rounds / 10 + 2, &mut cells)?;
+    arrows(&kind, &terrain, rounds, tick, &mut cells)?;
+    cells.finish("arena", brief)
+}
+
+/// The giant.
+fn kind() -> Result<Arc<CreatureKind>, Failure> {
+    let brain = std::fs::read_to_string(giant::brain_path())?;
+    let brain = Brain::from_json(&brain, 1.0 / 60.0)?;
+    Ok(Arc::new(giant::giant()?.with_brain(brain)?))
+}
+
+/// A climber that never tires and whose stabs break any plate.
+fn hero() -> FighterConfig {
+    let mut config = FighterConfig::hero();
+    config.climber.stamina = None;
+    if let Some(sword) = &mut config.sword {
+        sword.stab_damage = 1000.0;
+    }
+    config
+}
+
+/// One climber above the giant's back, another one before the giant.
+fn riders(kind: &Arc<CreatureKind>) -> Result<Arena, Failure> {
+    let mut arena = Arena::new(ArenaConfig::default())?;
+    let place = CreatureConfig {
+        position: DVec3::Y * valley::height(0.0, 0.0),
+        ..CreatureConfig::default()
+    };
+    arena.add_creature(Arc::clone(kind), place)?;
+    arena.add_fighter(hero(), DVec3::new(0.0, 37.0, -3.0))?;
+    let before = DVec3::new(4.0, valley::height(4.0, 25.0) + 1.0, 25.0);
+    arena.add_fighter(hero(), before)?;
+    Ok(arena)
+}
+
+/// Medians, microseconds: a tick, a save, a load, a fingerprint, and a rollback.
+struct Times {
+    tick: f64,
+    save: f64,
+    load: f64,
+    fingerprint: f64,
+    rollback: f64,
+}
+
+fn measure(
+    arena: &mut Arena,
+    terrain: &[(ObstacleId, &dyn Obstacle)],
+    rounds: usize,
+    input: impl Fn(usize) -> ClimberInput,
+) -> Result<Times, Failure> {
+    let mut all: [Vec<f64>; 5] = Default::default();
+    let mut saved: Vec<ArenaState> = vec![arena.save(); BACK];
+    let inputs = |tick: usize| [input(tick), ClimberInput::IDLE];
+    for round in 0..rounds {
+        let from = arena.save();
+        for tick in 0..BACK {
+            all[0].push(timed(|| {
+                Ok(arena.step(&inputs(tick), terrain).map(drop)?)
+            })?);
+            all[1].push(timed(|| {
+                saved[tick] = arena.save();
+                Ok(())
+            })?);
+            all[3].push(timed(|| {
+                std::hint::black_box(arena.fingerprint());
+                Ok(())
+            })?);
+        }
+        all[4].push(timed(|| {
+            arena.restore(&from)?;
+            for (tick, saved) in saved.iter_mut().enumerate() {
+                arena.step(&inputs(tick), terrain)?;
+                *saved = arena.save();
+                std::hint::black_box(arena.fingerprint());
+            }
+            Ok(())
+        })?);
+        // Back and forth, so that what is loaded is another state than the arena's.
+        let now = arena.save();
+        all[2].push(timed(|| Ok(arena.restore(&from)?))?);
+        all[2].push(timed(|| Ok(arena.restore(&now)?))?);
+        if round % 100 == 99 {
+            arena.step(&[GRIP, ClimberInput::IDLE], terrain)?;
+        }
+    }
+    let [tick, save, load, fingerprint, rollback] = all.map(|mut times| quantile(&mut times, 0.5));
+    Ok(Times {
+        tick,
+        save,
+        load,
+        fingerprint,
+        rollback,
+    })
+}
+
+fn report(cells: &mut Cells, what: &str, times: &Times) -> f64 {
+    let Times {
+        tick,
+        save,
+        load,
+        fingerprint,
+        rollback,
+    } = times;
+    for (name, value) in [
+        ("a tick", tick),
+        ("a save", save),
+        ("a load", load),
+        ("a fingerprint", fingerprint),
+        ("a rollback of eight ticks", rollback),
+    ] {
+        cells.value(&format!("{name}{what}, us"), *value);
+    }
+    let mut ratio = |name: &str, value: f64, most: f64| {
+        cells.push(
+            &format!("{name}{what} / a tick"),
+            value / tick,
+            Bound::Most(most),
+        );
+    };
+    ratio("a save", *save, 0.1);
+    ratio("a load", *load, 0.3);
+    ratio("a rollback of eight ticks", *rollback, 10.0);
+    *tick
+}
+
+/// The arena four ticks before a stab breaks the plate over the giant's nape.
+fn before_the_break(
+    kind: &Arc<CreatureKind>,
+    terrain: &[(ObstacleId, &dyn Obstacle)],
+) -> Result<Arena, Failure> {
+    let mut arena = Arena::new(ArenaConfig::default())?;
+    let place = CreatureConfig {
+        position: DVec3::Y * valley::height(0.0, 0.0),
+        ..CreatureConfig::default()
+    };
+    let giant = arena.add_creature(Arc::clone(kind), place)?;
+    let nape = kind
+        .weak_points()
+        .iter()
+        .position(|point| point.name.contains("nape"));
+    let nape = arena
+        .creature(giant)
+        .and_then(|giant| giant.weak_point(nape?));
+    let nape = nape.ok_or("the giant has no weak point on its nape")?;
+    let mut config = hero();
+    // It stays on its feet, whatever the giant does.
+    config.climber.ground.throw_acceleration = f64::INFINITY;
+    config.climber.tumble = None;
+    arena.add_fighter(config, nape + DVec3::Y * 2.5)?;
+    arena.add_fighter(
+        hero(),
+        DVec3::new(4.0, valley::height(4.0, 25.0) + 1.0, 25.0),
+    )?;
+    let mut states = vec![arena.save()];
+    for tick in 0..1200 {
+        let pressed = if tick % 60 == 50 { STAB } else { 0 };
+        let input = ClimberInput {
+            actions: pressed,
+            ..ClimberInput::IDLE
+        };
+        arena.step(&[input, ClimberInput::IDLE], terrain)?;
+        states.push(arena.save());
+        let broken = arena
+            .creature(giant)
+            .is_some_and(|giant| giant.state().plate(0) == 0);
+        if broken && states.len() > BACK {
+            let state = &states[states.len() - 1 - BACK / 2];
+            arena.restore(state)?;
+            return Ok(arena);
+        }
+    }
+    let act = arena.fighter(FighterId(0)).map(|one| one.act().clone());
+    Err(format!("no stab breaks the plate: {act:?}").into())
+}
+
+/// As [`measure`], over and over from the same state.
+fn measure_break(
+    arena: &mut Arena,
+    terrain: &[(ObstacleId, &dyn Obstacle)],
+    rounds: usize,
+) -> Result<Times, Failure> {
+    let from = arena.save();
+    let mut all: Vec<Times> = Vec::new();
+    for _ in 0..rounds {
+        arena.restore(&from)?;
+        let times = measure(arena, terrain, 1, |_| ClimberInput::IDLE)?;
+        let broken = arena
+            .creature(CreatureId(0))
+            .is_some_and(|one| one.state().plate(0) == 0);
+        if !broken {
+            return Err("the plate is whole after the eight ticks".into());
+        }
+        all.push(times);
+    }
+    let median = |of: fn(&Times) -> f64| quantile(&mut all.iter().map(of).collect::<Vec<_>>(), 0.5);
+    Ok(Times {
+        tick: median(|times| times.tick),
+        save: median(|times| times.save),
+        load: median(|times| times.load),
+        fingerprint: median(|times| times.fingerprint),
+        rollback: median(|times| times.rollback),
+    })
+}
+
+/// 64 climbers and four giants.
+fn crowd(
+    kind: &Arc<CreatureKind>,
+    terrain: &[(ObstacleId, &dyn Obstacle)],
+    rounds: usize,
+    cells: &mut Cells,
+) -> Result<(), Failure> {
+    let mut arena = Arena::new(ArenaConfig::default())?;
+    for giant in 0..4u64 {
+        let (x, z) = (
+            if giant % 2 == 0 { -30.0 } else { 30.0 },
+            if giant < 2 { -30.0 } else { 30.0 },
+        );
+        let config = CreatureConfig {
+            position: DVec3::new(x, valley::height(x, z), z),
+            seed: giant,
+            ..CreatureConfig::default()
+        };
+        arena.add_creature(Arc::clone(kind), config)?;
+        for climber in 0..16 {
+            // A quarter of them on the giant's back, the others around it.
+            let (aside, along) = (f64::from(climber % 4) - 1.5, f64::from(climber / 4) - 1.5);
+            let place = if climber < 4 {
+                DVec3::new(x + 2.0 * aside, 38.0, z - 2.0)
+            } else {
+                let (x, z) = (x + 8.0 * aside, z + 8.0 * along);
+                DVec3::new(x, valley::height(x, z) + 1.0, z)
+            };
+            arena.add_fighter(hero(), place)?;
+        }
+    }
+    let walk = |tick: usize, climber: usize| {
+        let turn = tick as f64 / 60.0 + climber as f64;
+        let (sin, cos) = libm::sincos(turn);
+        ClimberInput {
+            walk: DVec3::new(sin, 0.0, cos),
+            ..GRIP
+        }
+    };
+    let mut times = Vec::new();
+    for tick in 0..60 + rounds {
+        let inputs: Vec<ClimberInput> = (0..64).map(|climber| walk(tick, climber)).collect();
+        let time = timed(|| Ok(arena.step(&inputs, terrain).map(drop)?))?;
+        if tick >= 60 {
+            times.push(time);
+        }
+    }
+    let slow = quantile(&mut times, 0.99);
+    cells.value(
+        "64 climbers and 4 giants, a tick, us",
+        quantile(&mut times, 0.5),
+    );
+    cells.value("64 climbers and 4 giants, 99 % of ticks within, us", slow);
+    cells.push(
+        "64 climbers and 4 giants, 99 % of ticks / 60th of a second",
+        slow * 60e-6,
+        Bound::Most(0.5),
+    );
+    Ok(())
+}
+
+/// 500 arrows in the giant.
+fn arrows(
+    kind: &Arc<CreatureKind>,
+    terrain: &[(ObstacleId, &dyn Obstacle)],
+    rounds: usize,
+    tick: f64,
+    cells: &mut Cells,
+) -> Result<(), Failure> {
+    let (mut bare, mut full) = (riders(kind)?, riders(kind)?);
+    let mut state = full.save();
+    let creature = full.creature(CreatureId(0)).ok_or("no giant")?;
+    let surface = creature.surface();
+    let count = surface.mesh().triangles().len() as u64;
+    for arrow in 0..500 {
+        let triangle = clamber::mesh::TriangleId((arrow * count / 500) as u32);
+        let material = MaterialPoint::on_triangle(triangle, [1.0 / 3.0; 3]);
+        let motion = surface
+            .motion(&material, 1.0 / 60.0)
+            .ok_or("a triangle without motion")?;
+        let contact = clamber::world::Contact {
+            point: motion.position,
+            normal: DVec3::Y,
+            distance: 0.0,
+            material,
+            tag: Default::default(),
+        };
+        state.projectiles.push(Projectile {
+            id: ProjectileId(arrow),
+            kind: ProjectileKind::Arrow,
+            by: FighterId(0),
+            seconds: 0.0,
+            motion: ProjectileMotion::Stuck {
+                at: Attachment::new(
+                    creature_obstacle(CreatureId(0)),
+                    surface,
+                    &contact,
+                    contact.point,
+                ),
+                direction: DVec3::NEG_Y,
+            },
+        });
+    }
+    state.next_projectile = 500;
+    full.restore(&state)?;
+    let mut times: [Vec<f64>; 2] = Default::default();
+    for _ in 0..rounds {
+        for (arena, times) in [&mut bare, &mut full].into_iter().zip(&mut times) {
+            times.push(timed(|| {
+                Ok(arena.step(&[GRIP, ClimberInput::IDLE], terrain).map(drop)?)
+            })?);
+        }
+    }
+    let [without, with] = times.map(|mut times| quantile(&mut times, 0.5));
+    cells.push(
+        "500 arrows that stick, a tick more, us",
+        with - without,
+        Bound::Most(100.0),
+    );
+    cells.value(
+        "500 arrows that stick, a tick more / a tick",
+        (with - without) / tick,
+    );
+    let lost = full
+        .events()
+        .iter()
+        .any(|one| matches!(one, ArenaEvent::CameLoose { .. }));
+    if full.projectiles().len() != 500 || lost {
+        return Err("arrows are lost".into());
+    }
+    Ok(())
+}
+
+/// Microseconds.
+fn timed(work: impl FnOnce() -> Result<(), Failure>) -> Result<f64, Failure> {
+    let start = Instant::now();
+    work()?;
+    Ok(start.elapsed().as_secs_f64() * 1e6)
+}
