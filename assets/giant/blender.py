@@ -151,7 +151,7 @@ def weak_points(rig, surface_height):
         frame = Matrix((right, Vector(sign.up), Vector(sign.normal))).transposed().to_4x4()
         frame.translation = place
         empty.matrix_world = frame
-        empty["clamber"] = {"weak_point": {"hit_points": sign.hit_points, "major": sign.major}}
+        empty["clamber"] = {"weak_point": {"hit_points": sign.hit_points, "major": sign.major, "radius": sign.size}}
 
 
 def animate(rig, clip):

@@ -47,3 +47,9 @@ def in_crest(points):
     """Whether points on the top of the head are in its crest of hair."""
     away = points - np.asarray(SIGNS[0].place)
     return (np.linalg.norm(away, axis=1) < CREST_RADIUS) & (away[:, 1] > CREST_FRONT)
+
+
+def near_sign(points):
+    """Whether points are in the bare patch around a sigil."""
+    gaps = [np.linalg.norm(points - np.asarray(sign.place), axis=1) / sign.size for sign in SIGNS]
+    return np.min(gaps, axis=0) < BARE + 0.5

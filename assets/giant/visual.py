@@ -6,7 +6,7 @@ import numpy as np
 
 from . import decor, flesh, nets, shell, stone
 from . import field as f
-from .signs import in_crest
+from .signs import in_crest, near_sign
 
 # Where the creature is in its rest pose, with room around it.
 LOW, HIGH = (-21.0, -15.0, -1.5), (21.0, 13.0, 43.0)
@@ -91,7 +91,8 @@ def _surface_materials(mesh):
     centres = _centres(mesh)
     plates = stone.distances(centres)
     is_stone = plates.min(axis=0) < flesh.body(centres) + 0.05
-    furry = flesh.fur_amount(centres) > 0.5
+    # Around a sigil the hair is short, and can be held all the same.
+    furry = (flesh.fur_amount(centres) > 0.5) | near_sign(centres)
     result = np.where(is_stone, _stone_materials(mesh, plates), np.where(furry, NAMES.index("fur"), NAMES.index("hide")))
     return np.where(in_crest(centres), NAMES.index("fur"), result)
 

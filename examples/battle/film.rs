@@ -56,8 +56,9 @@ impl Film {
         eprintln!("pictures by {}", gpu.name());
         let mut renderer = Renderer::new(gpu, film.width, film.rows)?;
         let path = battle.creature.clone().unwrap_or_else(giant::path);
-        let creature = add_visual(&mut renderer, &load(path)?)?;
-        let stage = Stage::new(&mut renderer, creature)?;
+        let rig = load(path)?;
+        let creature = add_visual(&mut renderer, &rig)?;
+        let stage = Stage::new(&mut renderer, creature)?.with_plates(&rig);
         if let Some(folder) = &film.frames {
             let failed = |error| format!("{}: {error}", folder.display());
             std::fs::create_dir_all(folder).map_err(failed)?;

@@ -70,6 +70,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_climber",
             "clamber_body",
             "clamber_colossus",
+            "clamber_fight",
             "clamber_gltf",
             "clamber_record",
             "clamber_render",

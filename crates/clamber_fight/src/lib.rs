@@ -13,8 +13,8 @@ mod testing;
 
 pub use actions::PlayerInput;
 pub use arena::{
-    Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, SwordLight, Weapon, creature_obstacle,
-    fighter_obstacle,
+    Aimed, Arena, ArenaConfig, ArenaEvent, ArenaState, CreatureId, SwordLight, Weapon,
+    creature_obstacle, fighter_obstacle,
 };
 pub use error::ArenaError;
 pub use fighter::{

@@ -27,6 +27,8 @@ pub struct Stage {
     hero: Hero,
     hero_meshes: Vec<RenderMeshId>,
     watched: bool,
+    /// Those of the creature's meshes that are plates, with the numbers by which its brain names them.
+    plates: Vec<(RenderMeshId, u32)>,
 }
 
 /// Why a stage cannot be set.
@@ -56,7 +58,36 @@ impl Stage {
             hero_meshes: add_visual(renderer, &rig)?,
             hero: Hero::new(rig)?,
             watched: false,
+            plates: Vec::new(),
         })
+    }
+
+    /// Tells which of the creature's meshes are plates, which are drawn until they break: the file's whose meshes
+    /// [`add_visual`] added.
+    #[must_use]
+    pub fn with_plates(mut self, rig: &Rig) -> Self {
+        let user = |mesh: &clamber_gltf::VisualMesh| {
+            let first = mesh.primitives.first();
+            first.map_or(0, |primitive| primitive.tag.user)
+        };
+        let all = self
+            .creature
+            .iter()
+            .copied()
+            .zip(rig.visual.iter().map(user));
+        self.plates = all.filter(|(_, user)| *user > 0).collect();
+        self
+    }
+
+    /// True unless a mesh is a plate that is broken.
+    fn shows(&self, mesh: RenderMeshId, battle: &Battle<'_>) -> bool {
+        let plate = self.plates.iter().find(|(id, _)| *id == mesh);
+        let (Some((_, user)), Some(life)) = (plate, battle.life()) else {
+            return true;
+        };
+        let files = &life.kind().brain().file().body.plates;
+        let index = files.iter().position(|file| file.user == *user);
+        index.is_none_or(|index| life.state().plate(index) > 0)
     }
 
     /// Poses the hero for the battle's current tick, `dt` seconds after the last one that was watched.
@@ -86,7 +117,9 @@ impl Stage {
         if battle.has_outcrop() {
             drawn.push(at(self.outcrop, Similarity::IDENTITY, None));
         }
-        drawn.extend(self.creature.iter().map(|mesh| Drawn {
+        let shown = self.creature.iter();
+        let shown = shown.filter(|mesh| self.shows(**mesh, battle));
+        drawn.extend(shown.map(|mesh| Drawn {
             mesh: *mesh,
             world_from_model: *battle.surface().world_from_model(),
             palette: Some(palette),

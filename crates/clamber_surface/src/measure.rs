@@ -10,4 +10,4 @@ pub use answers::posed_triangles;
 pub use crate::query::brute_force::BruteForce;
 pub use crate::skin::reference::{error_bound, skin_vertex_reference};
 pub use crate::skin::whole::{skin_clusters, skin_scalar};
-pub use crate::surface::winding::winding_number;
+pub use crate::surface::winding::{winding_number, winding_of};

@@ -1,5 +1,6 @@
 //! The arena: all that fights, stepped in one order.
 
+mod aimed;
 mod assets;
 mod config;
 mod event;
@@ -16,6 +17,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+pub use aimed::Aimed;
 pub use config::ArenaConfig;
 pub use event::{ArenaEvent, Weapon};
 pub use light::SwordLight;

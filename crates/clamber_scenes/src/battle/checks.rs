@@ -318,7 +318,7 @@ fn is_inside(surface: &SkinnedSurface, point: DVec3) -> bool {
     let in_model = surface.world_from_model().inverse_transform_point(point);
     let mut positions = Vec::new();
     surface.skin_all(&mut positions);
-    solid_angle::is_inside(&positions, surface.mesh(), in_model)
+    solid_angle::is_inside_skin(&positions, surface, in_model)
 }
 
 #[cfg(test)]

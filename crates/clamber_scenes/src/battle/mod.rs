@@ -5,13 +5,15 @@
 //! In a ride the creature plays its clips by a timetable, and the climber is dropped on its back. The rocks fall on the
 //! creature and roll off.
 //!
-//! Order of a tick: the creature steps, then the climber, then the physics with the rocks, and the scene checks the
-//! result.
+//! A fight is a thin program over [`clamber_fight::Arena`]: the script gives the inputs. Order of a tick: the creature and
+//! the climber step, then the physics with the rocks, and the scene checks the result.
 
 pub mod bot;
 mod checks;
 mod choreography;
 mod faults;
+mod fencer;
+mod goals;
 mod options;
 mod outcrop;
 mod performer;
@@ -26,6 +28,7 @@ mod scene;
 mod snapshot;
 mod story;
 mod summary;
+mod tally;
 mod timeline;
 
 use std::path::PathBuf;
@@ -43,12 +46,14 @@ pub use scene::{Battle, CREATURE, TERRAIN, TICK};
 pub use snapshot::BattleSnapshot;
 pub use story::Story;
 pub use summary::{Check, ModeTicks, StateTicks, Summary};
+pub use tally::Tally;
 
 use options::Progress;
 
 use crate::CreatureError;
 use clamber_climber::ClimberError;
 use clamber_colossus::{BrainError, ColossusError};
+use clamber_fight::ArenaError;
 use clamber_surface::rig::RigError;
 use clamber_surface::surface::SurfaceError;
 use clamber_world::DebrisError;
@@ -86,6 +91,9 @@ pub enum BattleError {
     /// The creature cannot live by its brain.
     #[error("the creature cannot live by its brain: {0}")]
     Colossus(#[from] ColossusError),
+    /// The arena refuses something.
+    #[error(transparent)]
+    Arena(#[from] ArenaError),
     /// The creature has no way from the ground to its top.
     #[error(
         "found no way up {creature}: no grippable skin leads from near the ground to the top; try --story ride"

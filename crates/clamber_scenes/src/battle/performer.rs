@@ -2,18 +2,22 @@
 
 use std::sync::Arc;
 
-use clamber_climber::{Blow, Climber};
+use clamber_climber::{
+    CanGrip, Climber, ClimberConfig, ClimberInput, ClimberState, StepReport, StepRules,
+};
 use clamber_colossus::brain::Act;
-use clamber_colossus::{AttackPhase, Brain, CreatureConfig, Surroundings};
+use clamber_colossus::{AttackPhase, Brain, CreatureConfig};
+use clamber_fight::{
+    Arena, ArenaConfig, ArenaState, CreatureId, Fighter, FighterConfig, FighterId,
+};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::SkinnedSurface;
-use clamber_world::Obstacle;
+use clamber_world::{Obstacle, ObstacleId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::scene::{CREATURE, TICK};
+use super::scene::{CREATURE, TERRAIN, TICK};
 use super::{BattleError, BattleOptions, Choreography};
-use crate::person::person;
 use crate::{Creature, valley};
 
 /// Where a creature with a brain begins, metres: beyond the outcrop.
@@ -23,10 +27,14 @@ const HOME: [f64; 2] = [65.0, 0.0];
 const ARENA: f64 = 35.0;
 const SIGHT: f64 = 60.0;
 
-/// The climber's number among the people that the creature senses.
-const CLIMBER: u64 = 0;
+/// Whoever is lower than this has left the valley, metres.
+const FLOOR: f64 = -30.0;
 
-/// The creature's part of a battle.
+/// The creature that fights, and who fights it.
+const GIANT: CreatureId = CreatureId(0);
+const HERO: FighterId = FighterId(0);
+
+/// The creature's part of a battle, and the climber: both fight in an arena, or the climber rides a timetable.
 pub struct Performer<'a> {
     creature: &'a Creature,
     part: Part<'a>,
@@ -34,15 +42,23 @@ pub struct Performer<'a> {
 }
 
 enum Part<'a> {
-    Lives(Box<clamber_colossus::Creature>),
-    Plays(Box<(Choreography<'a>, SkinnedSurface)>),
+    Fights(Box<Arena>),
+    Plays(Box<Play<'a>>),
+}
+
+/// A creature that plays its clips by a timetable, and its rider.
+struct Play<'a> {
+    choreography: Choreography<'a>,
+    surface: SkinnedSurface,
+    climber: Climber,
+    report: StepReport,
 }
 
 /// All that changes in a performer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PerformerState {
-    /// Of a creature with a brain.
-    Lives(Box<clamber_colossus::CreatureState>),
+    /// Of a fight: the climber's as well.
+    Fights(Box<ArenaState>),
     /// Of a timetable.
     Plays {
         /// Time of the creature's clips, seconds: the sum of the ticks' lengths.
@@ -62,20 +78,26 @@ pub(super) struct Sight {
 }
 
 impl<'a> Performer<'a> {
-    /// A creature at the beginning of a battle: with a brain if the options have one, or else with a timetable.
+    /// A creature at the beginning of a battle: with a brain if the options have one, or else with a timetable. Nobody fights or
+    /// rides it yet.
     ///
     /// # Errors
     /// [`BattleError::NoHeight`] if it is flat, [`BattleError::Brain`] and [`BattleError::Colossus`] if its brain cannot be
     /// read or does not fit it, [`BattleError::Creature`] if a clip does not fit its skeleton.
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
         let part = match options.load_brain()? {
-            Some(brain) => Part::Lives(Box::new(alive(creature, brain, options)?)),
+            Some(brain) => Part::Fights(Box::new(arena(creature, brain, options)?)),
             None => {
                 let mut choreography = Choreography::new(creature, options.height())?;
                 let mut surface = SkinnedSurface::new(Arc::clone(&creature.collider));
                 let (palette, world_from_model) = choreography.pose()?;
                 surface.place(palette, world_from_model)?;
-                Part::Plays(Box::new((choreography, surface)))
+                Part::Plays(Box::new(Play {
+                    choreography,
+                    surface,
+                    climber: Climber::new(ClimberConfig::walker(), DVec3::ZERO)?,
+                    report: StepReport::default(),
+                }))
             }
         };
         Ok(Self {
@@ -85,41 +107,88 @@ impl<'a> Performer<'a> {
         })
     }
 
-    /// Lets a tick pass, and gives the blow that the climber gets with it.
+    /// Lets a climber enter. In a fight it has sword and bow.
+    ///
+    /// # Errors
+    /// [`BattleError`] if the climber cannot be made.
+    pub(super) fn enter(
+        &mut self,
+        config: ClimberConfig,
+        position: DVec3,
+    ) -> Result<(), BattleError> {
+        match &mut self.part {
+            Part::Fights(arena) => {
+                let config = FighterConfig {
+                    climber: config,
+                    respawn: Some(3.0),
+                    ..FighterConfig::hero()
+                };
+                arena.add_fighter(config, position)?;
+            }
+            Part::Plays(play) => play.climber = Climber::new(config, position)?,
+        }
+        Ok(())
+    }
+
+    /// Puts a rider somewhere.
+    ///
+    /// # Errors
+    /// [`BattleError::Climber`] if it refuses the state.
+    pub(super) fn put(&mut self, state: ClimberState) -> Result<(), BattleError> {
+        match &mut self.part {
+            Part::Fights(arena) => {
+                let mut saved = arena.save();
+                if let Some(fighter) = saved.fighters.first_mut() {
+                    fighter.climber = state;
+                }
+                arena.restore(&saved)?;
+            }
+            Part::Plays(play) => play.climber.restore(state)?,
+        }
+        Ok(())
+    }
+
+    /// Poses a creature with a timetable for the next tick. One that fights decides in its own step.
     ///
     /// # Errors
     /// [`BattleError`] if the creature cannot be posed.
-    pub fn step(
+    pub(super) fn advance(&mut self) -> Result<(), BattleError> {
+        let Part::Plays(play) = &mut self.part else {
+            return Ok(());
+        };
+        let before = play.surface.world_from_model().translation;
+        play.choreography.advance(TICK)?;
+        let (palette, world_from_model) = play.choreography.pose()?;
+        play.surface.advance(palette, world_from_model)?;
+        self.velocity = (self.surface().world_from_model().translation - before) / TICK;
+        Ok(())
+    }
+
+    /// Lets a tick pass: the whole arena's, or the rider's on the creature that was posed for it.
+    ///
+    /// # Errors
+    /// [`BattleError`] if the creature cannot be posed, or the input is not finite.
+    pub(super) fn step(
         &mut self,
-        climber: &Climber,
+        input: &ClimberInput,
         terrain: &dyn Obstacle,
-    ) -> Result<Option<Blow>, BattleError> {
+        can_grip: &CanGrip<'_>,
+    ) -> Result<(), BattleError> {
         let before = self.surface().world_from_model().translation;
-        let mut blow = None;
+        let rules = StepRules::gripping(can_grip);
         match &mut self.part {
-            Part::Lives(life) => {
-                let around = Surroundings {
-                    terrain: &[terrain],
-                    people: &[person(climber, CLIMBER, CREATURE)],
-                    noises: &[],
-                };
-                let report = life.step(&around)?;
-                blow = report.blows.first().map(|blow| Blow {
-                    velocity: blow.velocity,
-                    damage: blow.damage.clamp(0.0, 1.0),
-                    by: Some(CREATURE),
-                });
+            Part::Fights(arena) => {
+                arena.step_with(&[*input], &[(TERRAIN, terrain)], &rules)?;
+                let moved = self.surface().world_from_model().translation - before;
+                self.velocity = moved / TICK;
             }
-            Part::Plays(plays) => {
-                let (choreography, surface) = &mut **plays;
-                choreography.advance(TICK)?;
-                let (palette, world_from_model) = choreography.pose()?;
-                surface.advance(palette, world_from_model)?;
+            Part::Plays(play) => {
+                let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
+                    [(TERRAIN, terrain), (CREATURE, &play.surface)];
+                play.report = play.climber.step_with(input, &obstacles, &rules, TICK)?;
             }
         }
-        let moved = self.surface().world_from_model().translation - before;
-        self.velocity = moved / TICK;
-        Ok(blow)
+        Ok(())
     }
 
     /// The creature as it was loaded.
@@ -127,27 +196,54 @@ impl<'a> Performer<'a> {
         self.creature
     }
 
+    /// The arena of a fight; `None` if the creature plays a timetable.
+    pub fn arena(&self) -> Option<&Arena> {
+        match &self.part {
+            Part::Fights(arena) => Some(arena),
+            Part::Plays(_) => None,
+        }
+    }
+
     /// The creature that lives; `None` if it plays a timetable.
     pub fn life(&self) -> Option<&clamber_colossus::Creature> {
+        self.arena()?.creature(GIANT)
+    }
+
+    /// Who fights; `None` if the creature plays a timetable.
+    pub fn fighter(&self) -> Option<&Fighter> {
+        self.arena()?.fighter(HERO)
+    }
+
+    /// The climber.
+    pub fn climber(&self) -> &Climber {
         match &self.part {
-            Part::Lives(life) => Some(life),
-            Part::Plays(_) => None,
+            // Somebody has entered.
+            Part::Fights(arena) => arena.fighters()[0].climber(),
+            Part::Plays(play) => &play.climber,
+        }
+    }
+
+    /// The report of the climber's last step.
+    pub fn report(&self) -> &StepReport {
+        match &self.part {
+            Part::Fights(arena) => arena.fighters()[0].report(),
+            Part::Plays(play) => &play.report,
         }
     }
 
     /// The skin, as posed by the last step.
     pub fn surface(&self) -> &SkinnedSurface {
         match &self.part {
-            Part::Lives(life) => life.surface(),
-            Part::Plays(plays) => &plays.1,
+            Part::Fights(arena) => arena.creatures()[0].surface(),
+            Part::Plays(play) => &play.surface,
         }
     }
 
     /// The palette of the last step.
     pub fn palette(&self) -> &Palette {
         match &self.part {
-            Part::Lives(life) => life.palette(),
-            Part::Plays(plays) => plays.0.palette(),
+            Part::Fights(arena) => arena.creatures()[0].palette(),
+            Part::Plays(play) => play.choreography.palette(),
         }
     }
 
@@ -159,22 +255,26 @@ impl<'a> Performer<'a> {
     /// What it is doing, as text for messages.
     pub fn playing(&self) -> String {
         match &self.part {
-            Part::Lives(life) => life.kind().brain().path(life.state().current()).to_owned(),
-            Part::Plays(plays) => plays.0.playing(),
+            Part::Fights(arena) => {
+                let life = &arena.creatures()[0];
+                life.kind().brain().path(life.state().current()).to_owned()
+            }
+            Part::Plays(play) => play.choreography.playing(),
         }
     }
 
     /// Names of the clips that are not loops and are therefore played back and forth.
     pub fn turned_back(&self) -> Vec<String> {
         match &self.part {
-            Part::Lives(_) => Vec::new(),
-            Part::Plays(plays) => plays.0.turned_back(),
+            Part::Fights(_) => Vec::new(),
+            Part::Plays(play) => play.choreography.turned_back(),
         }
     }
 
     pub(super) fn sight(&self) -> Sight {
         match &self.part {
-            Part::Lives(life) => {
+            Part::Fights(arena) => {
+                let life = &arena.creatures()[0];
                 let attack = life.attack().map(|(_, phase)| phase);
                 let act = life.kind().brain().act(life.state().current());
                 let is_quiet =
@@ -185,8 +285,8 @@ impl<'a> Performer<'a> {
                     attacks,
                 }
             }
-            Part::Plays(plays) => Sight {
-                is_calm: plays.0.is_calm(),
+            Part::Plays(play) => Sight {
+                is_calm: play.choreography.is_calm(),
                 attacks: false,
             },
         }
@@ -194,23 +294,27 @@ impl<'a> Performer<'a> {
 
     pub(super) fn state(&self) -> PerformerState {
         match &self.part {
-            Part::Lives(life) => PerformerState::Lives(Box::new(life.state().clone())),
-            Part::Plays(plays) => {
-                let (time, walked) = plays.0.progress();
+            Part::Fights(arena) => PerformerState::Fights(Box::new(arena.save())),
+            Part::Plays(play) => {
+                let (time, walked) = play.choreography.progress();
                 PerformerState::Plays { time, walked }
             }
         }
     }
 
-    /// Restores a state; the skin stands there without motion.
-    pub(super) fn restore(&mut self, state: &PerformerState) -> Result<(), BattleError> {
+    /// Restores a state, and the climber's; the skin stands there without motion.
+    pub(super) fn restore(
+        &mut self,
+        state: &PerformerState,
+        climber: ClimberState,
+    ) -> Result<(), BattleError> {
         match (&mut self.part, state) {
-            (Part::Lives(life), PerformerState::Lives(state)) => life.restore((**state).clone())?,
-            (Part::Plays(plays), PerformerState::Plays { time, walked }) => {
-                let (choreography, surface) = &mut **plays;
-                choreography.go_to((*time, *walked));
-                let (palette, world_from_model) = choreography.pose()?;
-                surface.place(palette, world_from_model)?;
+            (Part::Fights(arena), PerformerState::Fights(state)) => arena.restore(state)?,
+            (Part::Plays(play), PerformerState::Plays { time, walked }) => {
+                play.climber.restore(climber)?;
+                play.choreography.go_to((*time, *walked));
+                let (palette, world_from_model) = play.choreography.pose()?;
+                play.surface.place(palette, world_from_model)?;
             }
             _ => {
                 let reason = "the snapshot is of a battle with a brain, or this one is".to_owned();
@@ -222,11 +326,8 @@ impl<'a> Performer<'a> {
     }
 }
 
-fn alive(
-    creature: &Creature,
-    brain: Brain,
-    options: &BattleOptions,
-) -> Result<clamber_colossus::Creature, BattleError> {
+/// An arena with the creature alone.
+fn arena(creature: &Creature, brain: Brain, options: &BattleOptions) -> Result<Arena, BattleError> {
     let kind = creature.with_brain(brain)?;
     let scale = options.height() / kind.height();
     if !(scale.is_normal() && scale > 0.0) {
@@ -244,5 +345,12 @@ fn alive(
         sight: SIGHT,
         ..CreatureConfig::default()
     };
-    Ok(clamber_colossus::Creature::new(Arc::new(kind), config)?)
+    let mut arena = Arena::new(ArenaConfig {
+        tick: TICK,
+        floor: FLOOR,
+        seed: options.seed,
+        ..ArenaConfig::default()
+    })?;
+    arena.add_creature(Arc::new(kind), config)?;
+    Ok(arena)
 }

@@ -1,4 +1,4 @@
-//! The script of a climber on its way from the ground to the creature's top.
+//! The script of a climber on its way from the ground to the creature's weak points and its top.
 //!
 //! It reads the climber's place and mode, and remembers the target of the climb. After a fall it starts again from the
 //! ground.
@@ -8,9 +8,11 @@ use clamber_surface::mesh::{SurfaceKind, SurfaceTag, TriangleId, VertexId};
 use clamber_surface::surface::SkinnedSurface;
 use glam::DVec3;
 
+use super::fencer::Fencer;
+use super::goals::Goals;
 use super::performer::Sight;
 use super::scene::CREATURE;
-use super::{BattleError, outcrop};
+use super::{BattleError, Performer, outcrop};
 use crate::Creature;
 use crate::tour::{Ascent, Ways};
 
@@ -19,6 +21,9 @@ use crate::tour::{Ascent, Ways};
 const AHEAD: f64 = 1.2;
 const FAR_AHEAD: f64 = 4.0;
 const PATIENCE: f64 = 2.0;
+
+/// Seconds for which a creature has to look calm until it is taken for calm.
+const SURE: f64 = 0.5;
 
 /// It jumps within this distance of the outcrop's wall and of its foothold, metres.
 const JUMP: f64 = 0.9;
@@ -61,7 +66,12 @@ const CALM: f64 = 3.0;
 /// The script's plan and memory.
 #[derive(Clone, Debug)]
 pub(super) struct Pilot {
-    ascent: Ascent,
+    goals: Goals,
+    /// The goal that it goes for, by its index.
+    goal: usize,
+    fencer: Fencer,
+    /// Since when the creature looks calm, seconds.
+    calm: Option<f64>,
     /// The vertex where it means to get on, how often it has jumped for it, and the vertices where it could not get on.
     foothold: Option<VertexId>,
     tries: u32,
@@ -90,17 +100,23 @@ pub(super) struct Pilot {
 
 impl Pilot {
     /// The script for a creature. [`BattleError::NoWay`] if no grippable skin leads from near the ground to the top.
-    pub(super) fn new(creature: &Creature) -> Result<Self, BattleError> {
+    pub(super) fn new(performer: &Performer<'_>) -> Result<Self, BattleError> {
+        let creature = performer.creature();
         let grips = Grips::of(creature);
         let ways = Ways::over(creature, |tag| grips.can(tag))?;
-        let ascent = Ascent::new(creature, &ways);
-        if ascent.feet().is_empty() {
+        let kind = performer.life().map(|life| &**life.kind());
+        let goals = Goals::new(creature, kind, &ways);
+        let goal = goals.top();
+        if !goals.get(goal).ascent.leads_anywhere() {
             return Err(BattleError::NoWay {
                 creature: creature.name.clone(),
             });
         }
         Ok(Self {
-            ascent,
+            goals,
+            goal,
+            fencer: Fencer::default(),
+            calm: None,
             foothold: None,
             tries: 0,
             given_up: Vec::new(),
@@ -125,6 +141,7 @@ impl Pilot {
 
     /// It is put back to the start.
     pub(super) fn begin_again(&mut self) {
+        self.fencer.begin_again();
         *self = Self {
             foothold: None,
             tries: 0,
@@ -138,14 +155,11 @@ impl Pilot {
     }
 
     /// The input of the tick that begins at `seconds`.
-    pub(super) fn input(
-        &mut self,
-        climber: &Climber,
-        surface: &SkinnedSurface,
-        sight: Sight,
-        seconds: f64,
-    ) -> ClimberInput {
+    pub(super) fn input(&mut self, performer: &Performer<'_>, seconds: f64) -> ClimberInput {
+        let (climber, surface) = (performer.climber(), performer.surface());
+        let sight = self.look(performer.sight(), seconds);
         let state = climber.state();
+        self.choose(performer);
         self.attacked = self.attacked.or(Some(seconds)).filter(|_| sight.attacks);
         self.hangs = self.hangs.filter(|_| state.mode == ClimberMode::Hanging);
         let on_creature = state
@@ -177,21 +191,65 @@ impl Pilot {
                     self.at_top = false;
                     (self.mounted, self.left, self.since) = (true, f32::INFINITY, seconds);
                 }
-                self.go_up(climber, surface, triangle, sight, seconds)
+                let goal = self.goals.get(self.goal);
+                if let Some(stab) = self.fencer.stab(performer, goal) {
+                    self.since = seconds;
+                    return stab;
+                }
+                self.go_up(performer, triangle, sight, seconds)
             }
-            _ => self.come(climber, surface, sight, seconds),
+            _ => {
+                let shot = self.crossed.then(|| self.fencer.shoot(performer, sight));
+                match shot.flatten() {
+                    Some(shot) => shot,
+                    None => self.come(climber, surface, sight, seconds),
+                }
+            }
         }
+    }
+
+    /// A creature is calm once it has looked so for a while.
+    fn look(&mut self, sight: Sight, seconds: f64) -> Sight {
+        self.calm = sight.is_calm.then_some(self.calm.unwrap_or(seconds));
+        Sight {
+            is_calm: self.calm.is_some_and(|since| seconds - since >= SURE),
+            ..sight
+        }
+    }
+
+    /// Goes for another goal if the one that it goes for is reached: for the nearest by the way from where it is.
+    fn choose(&mut self, performer: &Performer<'_>) {
+        let open = self.goals.open(performer);
+        if open.contains(&self.goal) {
+            return;
+        }
+        let here = self.entered.map(|(_, here)| here);
+        let left = |goal: &usize| {
+            let ascent = &self.goals.get(*goal).ascent;
+            here.map_or(f32::INFINITY, |here| ascent.left(here))
+        };
+        let nearest = open
+            .iter()
+            .copied()
+            .min_by(|a, b| left(a).total_cmp(&left(b)));
+        self.goal = nearest.unwrap_or(self.goals.top());
+        (self.entered, self.foothold, self.at_top) = (None, None, false);
+        self.left = f32::INFINITY;
+    }
+
+    fn ascent(&self) -> &Ascent {
+        &self.goals.get(self.goal).ascent
     }
 
     /// The input on the creature.
     fn go_up(
         &mut self,
-        climber: &Climber,
-        surface: &SkinnedSurface,
+        performer: &Performer<'_>,
         triangle: TriangleId,
         sight: Sight,
         seconds: f64,
     ) -> ClimberInput {
+        let (climber, surface) = (performer.climber(), performer.surface());
         let state = climber.state();
         let stands = state.mode == ClimberMode::Standing;
         let is_level = state
@@ -204,7 +262,8 @@ impl Pilot {
         if state.shake.length() > CALM || !sight.is_calm && (stands || self.at_top) {
             return holds(true);
         }
-        if self.at_top {
+        let goal = self.goals.get(self.goal);
+        if self.at_top && goal.weak_point.is_none() {
             return holds(!stands && !is_level);
         }
         let least = if stands { RESTED } else { TIRED };
@@ -215,7 +274,11 @@ impl Pilot {
         let Some(target) = self.follow(surface, triangle, state.position, seconds) else {
             return ClimberInput::default();
         };
-        let toward = place(surface, target) - state.position;
+        let toward = match self.fencer.miss(performer, self.goals.get(self.goal)) {
+            // The blade has to come over the weak point.
+            Some(miss) if self.at_top => miss,
+            _ => place(surface, target) - state.position,
+        };
         ClimberInput {
             climb: toward.normalize_or(climber.config().up()),
             walk: toward,
@@ -240,18 +303,23 @@ impl Pilot {
             None => self.enter(surface, triangle, position)?,
         };
         self.entered = Some((triangle, here));
-        let left = self.ascent.left(here);
+        let left = self.ascent().left(here);
         if left < self.left {
             (self.left, self.since) = (left, seconds);
         }
         let stuck = (seconds - self.since).rem_euclid(2.0 * PATIENCE) > PATIENCE;
         let ahead = if stuck { FAR_AHEAD } else { AHEAD };
-        if self.ascent.next(here).is_none() {
+        // On the top it stays; to a weak point it goes back if it is thrown aside.
+        let is_top = self.goals.get(self.goal).weak_point.is_none();
+        self.at_top &= is_top;
+        if self.ascent().next(here).is_none() {
             self.at_top = true;
-            self.arrived.get_or_insert(seconds);
+            if self.goals.get(self.goal).weak_point.is_none() {
+                self.arrived.get_or_insert(seconds);
+            }
         }
         let mut target = here;
-        while let Some(next) = self.ascent.next(target) {
+        while let Some(next) = self.ascent().next(target) {
             target = next;
             if place(surface, target).distance(position) > ahead {
                 break;
@@ -270,12 +338,12 @@ impl Pilot {
     ) -> Option<VertexId> {
         let corners = surface.mesh().triangles().get(triangle.index())?;
         let by_way = |a: &VertexId, b: &VertexId| {
-            let [a, b] = [a, b].map(|vertex| self.ascent.left(*vertex));
+            let [a, b] = [a, b].map(|vertex| self.ascent().left(*vertex));
             a.total_cmp(&b)
         };
-        let leads_up = |vertex: &VertexId| self.ascent.left(*vertex).is_finite();
+        let leads_up = |vertex: &VertexId| self.ascent().left(*vertex).is_finite();
         let here = corners.iter().copied().filter(leads_up).min_by(by_way);
-        here.or_else(|| nearest(surface, self.ascent.vertices(), position))
+        here.or_else(|| nearest(surface, self.ascent().vertices(), position))
     }
 
     /// The input on the ground or in the air.
@@ -359,7 +427,7 @@ impl Pilot {
             let mut given_up = self.given_up.iter();
             given_up.all(|other| place(surface, *other).distance(here) > ELSEWHERE)
         };
-        let feet = self.ascent.feet().iter().copied().filter(is_other);
+        let feet = self.ascent().feet().iter().copied().filter(is_other);
         feet.min_by(|a, b| cost(a).total_cmp(&cost(b)))
     }
 

@@ -81,7 +81,7 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             report: battle.report(),
             surface: battle.surface(),
             palette: battle.palette(),
-            scene_fingerprint: battle.rocks_fingerprint(),
+            scene_fingerprint: battle.scene_fingerprint(),
         })?;
         if let Some(life) = battle.life() {
             self.recorder.brain(life)?;
@@ -210,7 +210,7 @@ pub fn replay(recording: &Recording, from: Option<u64>) -> Result<Replay, Battle
         Ok::<_, BattleError>(Replayed {
             state: *battle.climber().state(),
             palette_fingerprint: palette_fingerprint(battle.palette()),
-            scene_fingerprint: from.is_none().then(|| battle.rocks_fingerprint()),
+            scene_fingerprint: from.is_none().then(|| battle.scene_fingerprint()),
         })
     };
     let mut agreed = 0;

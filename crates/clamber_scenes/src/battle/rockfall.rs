@@ -134,7 +134,7 @@ impl Rockfall {
         for (index, rock) in self.rocks.iter().enumerate() {
             let place = world.bodies[*rock].translation().as_dvec3();
             let in_model = surface.world_from_model().inverse_transform_point(place);
-            let inside = solid_angle::is_inside(&positions, surface.mesh(), in_model);
+            let inside = solid_angle::is_inside_skin(&positions, surface, in_model);
             if inside && !self.debris.is_let_through(*rock) {
                 self.report.fell_through += 1;
                 faults.note(ROCKS_INSIDE, || {

@@ -1,9 +1,9 @@
 use std::time::Instant;
 
 use clamber_climber::{
-    Blow, Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, GripConfig, StepReport,
-    StepRules,
+    Climber, ClimberConfig, ClimberEvent, ClimberInput, ClimberState, GripConfig, StepReport,
 };
+use clamber_fight::{Arena, ArenaEvent, CreatureId, creature_obstacle};
 use clamber_surface::rig::Palette;
 use clamber_surface::surface::{Diagnostics, SkinnedSurface};
 use clamber_world::rapier3d::dynamics::RigidBodySet;
@@ -18,7 +18,7 @@ use super::faults::Moment;
 use super::pilot::{Grips, Pilot};
 use super::rockfall::Rockfall;
 use super::{
-    BattleError, BattleOptions, BattleSnapshot, Performer, Recording, Sample, Story, outcrop,
+    BattleError, BattleOptions, BattleSnapshot, Performer, Recording, Sample, Story, Tally, outcrop,
 };
 use crate::{Creature, valley};
 
@@ -29,7 +29,7 @@ pub const TICK: f64 = 1.0 / 60.0;
 pub const TERRAIN: ObstacleId = ObstacleId(0);
 
 /// The creature's obstacle id.
-pub const CREATURE: ObstacleId = ObstacleId(1);
+pub const CREATURE: ObstacleId = creature_obstacle(CreatureId(0));
 
 /// Height above the perch from which the climber is first dropped, metres.
 const DROP: f64 = 2.0;
@@ -54,7 +54,6 @@ pub struct Battle<'a> {
     world: PhysicsWorld,
     before: BodyPoses,
     rocks: Rockfall,
-    climber: Climber,
     grips: Grips,
     /// The point above which the climber is dropped to ride, and from above which rocks fall.
     perch: MaterialPoint,
@@ -71,10 +70,9 @@ pub struct Battle<'a> {
     drops: u32,
     landings: u32,
     deaths: u32,
-    blows: u32,
     seed: u64,
     input: ClimberInput,
-    report: StepReport,
+    tally: Tally,
     recording: Recording,
     watch: Watch,
     rocks_fingerprint: u64,
@@ -89,7 +87,7 @@ impl<'a> Battle<'a> {
     /// [`BattleError::Outcrop`], and the errors of the creature, the climber and the debris.
     pub fn new(creature: &'a Creature, options: &BattleOptions) -> Result<Self, BattleError> {
         let (height, seed, story) = (options.height(), options.seed, options.story());
-        let performer = Performer::new(creature, options)?;
+        let mut performer = Performer::new(creature, options)?;
         let perch =
             find_perch(performer.surface(), height, seed).ok_or_else(|| BattleError::NoPerch {
                 creature: creature.name.clone(),
@@ -100,11 +98,12 @@ impl<'a> Battle<'a> {
                 outcrop::insert(&mut world)?;
                 (
                     climber_before_the_outcrop(seed)?,
-                    Some(Pilot::new(creature)?),
+                    Some(Pilot::new(&performer)?),
                 )
             }
             Story::Ride => (rider_above(perch.point, DROP)?, None),
         };
+        performer.enter(*climber.config(), climber.state().position)?;
         let above = perch.point + DVec3::Y * (ROCKS_ABOVE * height);
         let rocks = Rockfall::new(&mut world, options.rocks as usize, seed, above, height)?;
         Ok(Self {
@@ -113,7 +112,6 @@ impl<'a> Battle<'a> {
             world,
             before: BodyPoses::default(),
             rocks,
-            climber,
             grips: Grips::of(creature),
             perch: perch.material,
             drops: u32::from(pilot.is_none()),
@@ -125,10 +123,9 @@ impl<'a> Battle<'a> {
             slides: false,
             landings: 0,
             deaths: 0,
-            blows: 0,
             seed,
             input: ClimberInput::default(),
-            report: StepReport::default(),
+            tally: Tally::default(),
             recording: Recording::default(),
             watch: Watch::default(),
         })
@@ -140,26 +137,23 @@ impl<'a> Battle<'a> {
     /// [`BattleError`] if a clip does not fit the creature.
     pub fn step(&mut self, intent: Intent) -> Result<(), BattleError> {
         let start = Instant::now();
-        let blow = self.step_creature()?;
+        self.performer.advance()?;
         let seconds = self.tick as f64 * TICK;
-        let (surface, perch) = (self.performer.surface(), &self.perch);
-        let mut input = match &mut self.pilot {
-            Some(pilot) if intent == Intent::Climb => {
-                pilot.input(&self.climber, surface, self.performer.sight(), seconds)
-            }
+        let climber = self.performer.climber();
+        let input = match &mut self.pilot {
+            Some(pilot) if intent == Intent::Climb => pilot.input(&self.performer, seconds),
             _ => {
                 let scene = RiderScene {
-                    surface,
-                    perch,
+                    surface: self.performer.surface(),
+                    perch: &self.perch,
                     velocity: self.performer.velocity(),
                     seconds,
                     height: self.height,
                 };
-                self.rider.input(intent, &self.climber, &scene)
+                self.rider.input(intent, climber, &scene)
             }
         };
-        input.blow = blow;
-        self.step_posed(input, start)
+        self.step_advanced(input, start)
     }
 
     /// Runs one tick with a given input, such as one from a recording.
@@ -168,34 +162,23 @@ impl<'a> Battle<'a> {
     /// [`BattleError`] if a clip does not fit the creature, or the input is not finite.
     pub fn step_with(&mut self, input: ClimberInput) -> Result<(), BattleError> {
         let start = Instant::now();
-        self.step_creature()?;
-        self.step_posed(input, start)
+        self.performer.advance()?;
+        self.step_advanced(input, start)
     }
 
-    /// The creature's step; gives the blow that it deals the climber.
-    fn step_creature(&mut self) -> Result<Option<Blow>, BattleError> {
+    /// The rest of a tick that began at `start`.
+    fn step_advanced(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
         let bodies = &self.world.bodies;
         let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
         let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
-        self.performer.step(&self.climber, &terrain)
-    }
-
-    /// The rest of a tick that began at `start`, after the creature's step.
-    fn step_posed(&mut self, input: ClimberInput, start: Instant) -> Result<(), BattleError> {
-        let bodies = &self.world.bodies;
-        let fixed = |_: ColliderHandle, collider: &Collider| is_fixed(bodies, collider);
-        let terrain = RapierTerrain::of_world(&self.world, &self.before).with_filter(&fixed);
-        let obstacles: [(ObstacleId, &dyn Obstacle); 2] =
-            [(TERRAIN, &terrain), (CREATURE, self.performer.surface())];
         let grips = self.grips;
         let can_grip =
             |obstacle, contact: &Contact| obstacle == CREATURE && grips.can(&contact.tag);
-        let climber = &mut self.climber;
+        let climber = self.performer.climber();
         let state = climber.state();
         let own = state.velocity - state.base_velocity;
         self.slides = own.length() > climber.config().ground.walk_speed;
-        let report =
-            climber.step_with(&input, &obstacles, &StepRules::gripping(&can_grip), TICK)?;
+        self.performer.step(&input, &terrain, &can_grip)?;
         let microseconds = start.elapsed().as_secs_f64() * 1e6;
         let touched = self.performer.surface().diagnostics();
 
@@ -206,7 +189,7 @@ impl<'a> Battle<'a> {
         let moment = moment(&self.performer, self.height, self.tick);
         let faults = &mut self.watch.faults;
         self.rocks.step(&moment, &mut self.world, above, faults)?;
-        (self.input, self.report) = (input, report);
+        self.input = input;
         self.record(touched, microseconds);
         self.lift_if_grounded()
     }
@@ -220,17 +203,17 @@ impl<'a> Battle<'a> {
     }
 
     fn record(&mut self, touched: Diagnostics, microseconds: f64) {
-        let (input, report) = (self.input, &self.report);
-        let state = *self.climber.state();
+        let (input, report) = (self.input, self.performer.report());
+        let state = *self.performer.climber().state();
         let landed = |event: &ClimberEvent| matches!(event, ClimberEvent::Landed { .. });
-        self.blows += u32::from(input.blow.is_some());
+        self.tally.tick(self.performer.arena());
         self.landings += report.events.iter().filter(|event| landed(event)).count() as u32;
         let idle = input == ClimberInput::default() && !self.slides;
         let palette = self.performer.palette();
         let climbs = self.pilot.is_some();
         let moment = moment(&self.performer, self.height, self.tick);
         let watched = Watched {
-            climber: &self.climber,
+            climber: self.performer.climber(),
             report,
             idle,
             climbs,
@@ -251,20 +234,33 @@ impl<'a> Battle<'a> {
         };
         self.rocks_fingerprint = self.rocks.fingerprint(&self.world.bodies);
         let rocks = self.rocks_fingerprint;
-        self.recording.push(sample, state.fingerprint() ^ rocks);
+        let fight = self.performer.arena().map_or(0, Arena::fingerprint);
+        self.recording
+            .push(sample, state.fingerprint() ^ rocks ^ fight.rotate_left(1));
     }
 
     /// A climber that died or is out of the valley begins again.
     fn begin_again_if_dead(&mut self) -> Result<(), BattleError> {
-        let state = self.climber.state();
-        let is_lost = !valley::contains(state.position.x, state.position.z);
-        if !is_lost && state.hit_points > 0.0 {
+        let state = self.performer.climber().state();
+        let begins_again = match self.performer.arena() {
+            Some(arena) => {
+                let rose = |event: &ArenaEvent| matches!(event, ArenaEvent::Rose { .. });
+                arena.events().iter().any(rose)
+            }
+            None => {
+                let is_lost = !valley::contains(state.position.x, state.position.z);
+                is_lost || state.hit_points <= 0.0
+            }
+        };
+        if !begins_again {
             return Ok(());
         }
         let moment = moment(&self.performer, self.height, self.tick);
         self.watch.fell(&moment, state.position);
-        self.climber
-            .restore(*climber_before_the_outcrop(self.seed)?.state())?;
+        if self.performer.arena().is_none() {
+            self.performer
+                .put(*climber_before_the_outcrop(self.seed)?.state())?;
+        }
         if let Some(pilot) = &mut self.pilot {
             pilot.begin_again();
         }
@@ -277,7 +273,7 @@ impl<'a> Battle<'a> {
         if self.pilot.is_some() {
             return self.begin_again_if_dead();
         }
-        let state = self.climber.state();
+        let state = self.performer.climber().state();
         let on_ground = state
             .support
             .is_some_and(|support| support.attachment.obstacle == TERRAIN);
@@ -303,7 +299,7 @@ impl<'a> Battle<'a> {
             velocity: self.performer.velocity(),
             ..*rider_above(place, DROP_AGAIN)?.state()
         };
-        self.climber.restore(dropped)?;
+        self.performer.put(dropped)?;
         self.watch.dropped();
         self.rider.dropped();
         self.grounded = 0;
@@ -320,7 +316,7 @@ impl<'a> Battle<'a> {
             drops: self.drops,
             landings: self.landings,
             deaths: self.deaths,
-            blows: self.blows,
+            tally: self.tally,
         }
     }
 
@@ -336,14 +332,13 @@ impl<'a> Battle<'a> {
         snapshot: &BattleSnapshot,
         state: ClimberState,
     ) -> Result<(), BattleError> {
-        self.climber.restore(state)?;
-        self.performer.restore(&snapshot.creature)?;
+        self.performer.restore(&snapshot.creature, state)?;
         self.tick = snapshot.tick;
         self.grounded = snapshot.grounded;
         self.drops = snapshot.drops;
         self.landings = snapshot.landings;
         self.deaths = snapshot.deaths;
-        self.blows = snapshot.blows;
+        self.tally = snapshot.tally;
         Ok(())
     }
 
@@ -354,7 +349,7 @@ impl<'a> Battle<'a> {
 
     /// The climber.
     pub fn climber(&self) -> &Climber {
-        &self.climber
+        self.performer.climber()
     }
 
     /// The creature.
@@ -379,7 +374,7 @@ impl<'a> Battle<'a> {
 
     /// The climber's report of the last tick.
     pub fn report(&self) -> &StepReport {
-        &self.report
+        self.performer.report()
     }
 
     /// The physics world: the valley, the outcrop in a climb, and the rocks.
@@ -395,6 +390,12 @@ impl<'a> Battle<'a> {
     /// A 64-bit hash of the rocks' positions and rotations after the last tick.
     pub fn rocks_fingerprint(&self) -> u64 {
         self.rocks_fingerprint
+    }
+
+    /// A 64-bit hash of all beside the climber and the creature's pose: the rocks, and all that changes in a fight.
+    pub fn scene_fingerprint(&self) -> u64 {
+        let fight = self.performer.arena().map_or(0, Arena::fingerprint);
+        self.rocks_fingerprint ^ fight.rotate_left(1)
     }
 
     /// The ticks so far.
@@ -429,7 +430,17 @@ impl<'a> Battle<'a> {
 
     /// How often the creature struck the climber.
     pub fn blows(&self) -> u32 {
-        self.blows
+        self.tally.blows
+    }
+
+    /// What was shot, struck and killed so far; nothing in a ride.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// The arena of a fight; `None` if the creature plays a timetable.
+    pub fn arena(&self) -> Option<&Arena> {
+        self.performer.arena()
     }
 
     /// How often the climber landed, on anything.
@@ -472,9 +483,12 @@ fn climber_before_the_outcrop(seed: u64) -> Result<Climber, BattleError> {
     config.ground.jump_speed = 6.0;
     if let Some(stamina) = &mut config.stamina {
         // Strong enough for the walk of a creature this tall, which swings by metres high up.
-        stamina.hold_drain = 1.0 / 90.0;
+        stamina.hold_drain = 1.0 / 150.0;
         stamina.shake_threshold = 10.0;
-        stamina.shake_drain = 1.0 / 120.0;
+        stamina.shake_drain = 1.0 / 600.0;
+    }
+    if let Some(grip) = &mut config.grip {
+        grip.climb_speed = 2.2;
     }
     let mut rng = fastrand::Rng::with_seed(seed);
     let aside = (2.0 * rng.f64() - 1.0) * ASIDE;

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::{BattleError, PerformerState};
+use super::{BattleError, PerformerState, Tally};
 
 /// The state of a battle at a tick, besides the climber's state. It does not include the rocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,8 +17,8 @@ pub struct BattleSnapshot {
     pub landings: u32,
     /// How often a climber died or was lost, and began again.
     pub deaths: u32,
-    /// How often the creature struck the climber.
-    pub blows: u32,
+    /// What was shot, struck and killed.
+    pub tally: Tally,
 }
 
 impl BattleSnapshot {

@@ -8,7 +8,7 @@ use super::checks::{
     DRIFT, FALLS, INSIDE, MAX_DRIFT, MAX_PUSH_OUT, MAX_PUSHED_OFF, MAX_STANDS_OFF, NOT_RIDING,
     OUT_OF_REACH, PUSH_OUT, PUSHED_OFF, ROCKS_INSIDE, STANDS_OFF,
 };
-use super::{Battle, BattleError, BattleOptions, Story};
+use super::{Battle, BattleError, BattleOptions, Story, TICK, Tally};
 use crate::json::number;
 use crate::measure::quantile;
 
@@ -90,6 +90,8 @@ pub struct Summary {
     pub landings: u32,
     /// How often the creature struck the climber.
     pub blows: u32,
+    /// What was shot, struck and killed; nothing in a ride.
+    pub tally: Tally,
     /// How often the climber died or was thrown out of the valley, and began again; 0 in a ride.
     pub deaths: u32,
     /// The states that the creature's brain was in; empty without a brain.
@@ -179,8 +181,14 @@ impl Summary {
         }
         // With other seeds, brains and creatures the climber may lose the fight, or never be knocked over.
         if !rides && options.is_default_fight() {
-            let missed = if battle.arrived().is_some() { 0.0 } else { 1.0 };
-            checks.push(check("never at the top", missed, 0.0));
+            let tally = battle.tally();
+            let lives = if tally.killed == 0 { 1.0 } else { 0.0 };
+            checks.push(check("creatures alive at the end", lives, 0.0));
+            let points = battle
+                .life()
+                .map_or(0, |life| life.kind().weak_points().len());
+            let whole = points.saturating_sub(tally.weak_points as usize);
+            checks.push(check("weak points not used up", whole as f64, 0.0));
             checks.push(check("modes never seen", never as f64, 0.0));
         }
         Self {
@@ -198,6 +206,7 @@ impl Summary {
             ticks_inside: watch.fell_through,
             landings: battle.landings(),
             blows: battle.blows(),
+            tally: *battle.tally(),
             deaths: battle.deaths(),
             states: states(battle),
             modes: modes.to_vec(),
@@ -287,6 +296,29 @@ impl fmt::Display for Summary {
                 "blows, deaths",
                 format!("{}, {}", self.blows, self.deaths),
             )?;
+            let Tally {
+                arrows,
+                arrow_hits,
+                stabs,
+                broken_off,
+                damage,
+                weak_points,
+                plates,
+                killed,
+                ..
+            } = self.tally;
+            row(f, "arrows, hits", format!("{arrows}, {arrow_hits}"))?;
+            row(
+                f,
+                "stabs, broken off",
+                format!("{stabs}, {broken_off}; damage {damage:.2}"),
+            )?;
+            row(f, "weak points, plates", format!("{weak_points}, {plates}"))?;
+            let killed = match killed {
+                0 => "never".into(),
+                ticks => format!("after {:.1} s", ticks as f64 * TICK),
+            };
+            row(f, "killed the creature", killed)?;
         }
         if !self.states.is_empty() || self.arrived_s.is_some() {
             let arrived = self

@@ -29,7 +29,12 @@ const TOP: f32 = 0.03;
 impl Ascent {
     /// The ascent along `ways`, which must be of the same creature.
     pub fn new(creature: &Creature, ways: &Ways) -> Self {
-        let (next, left) = ways.tree(&crown(creature, ways));
+        Self::to(ways, &crown(creature, ways))
+    }
+
+    /// Ways to other places than the top: to the nearest of these vertices.
+    pub fn to(ways: &Ways, places: &[u32]) -> Self {
+        let (next, left) = ways.tree(places);
         let leads_up = |vertex: &&u32| left[**vertex as usize].is_finite();
         let feet = ways.feet().iter().filter(leads_up);
         Self {
@@ -48,6 +53,11 @@ impl Ascent {
     pub fn left(&self, vertex: VertexId) -> f32 {
         let left = self.left.get(vertex.index());
         left.copied().unwrap_or(f32::INFINITY)
+    }
+
+    /// True if there is any way.
+    pub fn leads_anywhere(&self) -> bool {
+        !self.feet.is_empty()
     }
 
     /// Vertices near the ground from which a way leads to the top.

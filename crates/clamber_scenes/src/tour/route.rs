@@ -125,7 +125,7 @@ impl Ways {
     }
 
     /// Positions of all vertices at rest.
-    pub(super) fn rest(&self) -> &[Vec3] {
+    pub(crate) fn rest(&self) -> &[Vec3] {
         &self.rest
     }
 
@@ -135,7 +135,7 @@ impl Ways {
     }
 
     /// The vertices with at least one way.
-    pub(super) fn used(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn used(&self) -> impl Iterator<Item = u32> {
         let vertices = 0..self.rest.len() as u32;
         vertices.filter(|vertex| !self.neighbours[*vertex as usize].is_empty())
     }

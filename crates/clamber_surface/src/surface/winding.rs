@@ -15,9 +15,17 @@ use crate::mesh::ColliderMesh;
 /// can judge them, and looks at every triangle.
 pub fn winding_number(positions: &[Vec3], mesh: &ColliderMesh, point: DVec3) -> f64 {
     let triangles = mesh.triangles().iter();
+    winding_of(
+        triangles.map(|corners| corners.map(|v| positions[v.index()])),
+        point,
+    )
+}
+
+/// [`winding_number`] of triangles that are given by their corners.
+pub fn winding_of(triangles: impl Iterator<Item = [Vec3; 3]>, point: DVec3) -> f64 {
     let covered: f64 = triangles
         .map(|corners| {
-            let [a, b, c] = corners.map(|v| positions[v.index()].as_dvec3() - point);
+            let [a, b, c] = corners.map(|corner| corner.as_dvec3() - point);
             let (la, lb, lc) = (a.length(), b.length(), c.length());
             let volume = a.dot(b.cross(c));
             let spread = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;

@@ -1,0 +1,56 @@
+//! Where a stab would go.
+
+use clamber_surface::surface::SkinnedSurface;
+use clamber_world::MaterialPoint;
+use glam::DVec3;
+
+use super::{Arena, CreatureId, creature_index};
+use crate::fighter::{FighterId, Target};
+
+/// A point of a creature's skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aimed {
+    /// The creature.
+    pub creature: CreatureId,
+    /// The point of its skin.
+    pub at: MaterialPoint,
+    /// Where that is, in world space.
+    pub place: DVec3,
+    /// The open weak point that a hit there would hurt, by its index.
+    pub weak_point: Option<usize>,
+    /// The whole plate that would take the hit instead, by its index.
+    pub plate: Option<usize>,
+}
+
+impl Arena {
+    /// Where a fighter's stab would go if it struck now: for a mark on the screen, and for bots. `None` without a sword, and if no
+    /// skin is in reach.
+    pub fn stab_aim(&self, fighter: FighterId) -> Option<Aimed> {
+        let fighter = self.fighter(fighter)?;
+        let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(|one| one.surface()).collect();
+        let Target::Skin(at) = fighter.stab_target(&skins) else {
+            return None;
+        };
+        let index = creature_index(at.obstacle)?;
+        let creature = self.creatures.get(index)?;
+        let plate = at
+            .material
+            .triangle()
+            .and_then(|triangle| creature.kind().plate_of(triangle));
+        let points = 0..creature.kind().weak_points().len();
+        let is_here = |index: &usize| {
+            let radius = f64::from(creature.kind().weak_points()[*index].radius);
+            let place = creature.weak_point(*index);
+            let near = place
+                .is_some_and(|place| place.distance(at.point) <= radius * creature.config().scale);
+            near && creature.is_open(*index)
+        };
+        Some(Aimed {
+            creature: CreatureId(index as u32),
+            at: at.material,
+            place: at.point,
+            weak_point: points.into_iter().find(is_here),
+            plate: plate.filter(|plate| creature.state().plate(*plate) > 0),
+        })
+    }
+}
