@@ -54,6 +54,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_animation",
             "clamber_body",
             "clamber_colossus",
+            "clamber_fight",
             "clamber_world",
             "clamber_mover",
             "clamber_climber",
@@ -114,7 +115,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 16] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 18] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
@@ -126,7 +127,9 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 16] = [
     ("clamber_cli", "clamber_scenes"),
     ("clamber_benches", "clamber_body"),
     ("clamber_benches", "clamber_colossus"),
+    ("clamber_benches", "clamber_fight"),
     ("clamber_benches", "clamber_scenes"),
+    ("clamber_fight", "clamber_gltf"),
     ("clamber_recipes", "clamber"),
     ("clamber_fuzz", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
@@ -138,10 +141,11 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 16] = [
 const REFLECTION: &str = "bevy_reflect";
 
 /// Crates outside the workspace that only one crate of it may know.
-const KEPT_TO: [(&str, &str); 9] = [
+const KEPT_TO: [(&str, &str); 10] = [
     ("avian3d", "bevy_clamber"),
     ("rapier3d", "clamber_world"),
     ("parry3d", "clamber_world"),
+    ("ggrs", "clamber_fight"),
     ("gltf", "clamber_gltf"),
     ("wgpu", "clamber_render"),
     ("embedded-graphics", "clamber_render"),

@@ -12,7 +12,7 @@ use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 const FEATURES: &str = "\
     bevy_clamber/clamber_gltf,bevy_clamber/colossus,bevy_clamber/diagnostics,bevy_clamber/gizmos,bevy_clamber/gltf,\
     bevy_clamber/input,bevy_clamber/picking,clamber/record,clamber/render,clamber_benches/record,clamber_benches/render,\
-    clamber_climber/serde,clamber_oracle/exact";
+    clamber_climber/serde,clamber/ggrs,clamber_oracle/exact";
 
 /// The packages whose tests `cargo test` runs in full: the workspace's default members, but for the oracle, which has
 /// more tests with its feature.

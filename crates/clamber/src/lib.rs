@@ -16,6 +16,9 @@ pub use clamber_climber as climber;
 #[cfg(feature = "colossus")]
 #[doc(inline)]
 pub use clamber_colossus as colossus;
+#[cfg(feature = "fight")]
+#[doc(inline)]
+pub use clamber_fight as fight;
 #[cfg(feature = "gltf")]
 #[doc(inline)]
 pub use clamber_gltf as gltf;

@@ -1,0 +1,79 @@
+//! A line between two peers of one process that delays messages and loses some.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use clamber::fight::rollback::ggrs::{Message, NonBlockingSocket};
+
+/// A message under way: when it arrives, milliseconds, to whom, from whom.
+type UnderWay = (f64, usize, usize, Message);
+
+struct Shared {
+    now: f64,
+    under_way: Vec<UnderWay>,
+    random: fastrand::Rng,
+    /// One way and by how much more or less, milliseconds; and the share that gets lost.
+    takes: [f64; 2],
+    lost: f64,
+}
+
+/// One end of the line.
+#[derive(Clone)]
+pub(crate) struct Line {
+    shared: Rc<RefCell<Shared>>,
+    ours: usize,
+}
+
+impl Line {
+    /// Both ends.
+    pub(crate) fn pair(round_trip: f64, jitter: f64, lost: f64) -> Result<[Self; 2], String> {
+        let is_time = |x: f64| (0.0..=1000.0).contains(&x);
+        if !(is_time(round_trip) && is_time(jitter) && (0.0..=50.0).contains(&lost)) {
+            return Err("a line takes from 0 to 1000 ms and loses from 0 to 50 %".to_owned());
+        }
+        let shared = Rc::new(RefCell::new(Shared {
+            now: 0.0,
+            under_way: Vec::new(),
+            random: fastrand::Rng::with_seed(1),
+            takes: [0.5 * round_trip, 0.5 * jitter],
+            lost: lost / 100.0,
+        }));
+        Ok([0, 1].map(|ours| Self {
+            shared: Rc::clone(&shared),
+            ours,
+        }))
+    }
+
+    /// Lets time pass, milliseconds.
+    pub(crate) fn wait(&self, milliseconds: f64) {
+        self.shared.borrow_mut().now += milliseconds;
+    }
+}
+
+impl NonBlockingSocket<usize> for Line {
+    fn send_to(&mut self, message: &Message, to: &usize) {
+        let mut shared = self.shared.borrow_mut();
+        if shared.random.f64() < shared.lost {
+            return;
+        }
+        let [takes, more] = shared.takes;
+        let takes = takes + more * (2.0 * shared.random.f64() - 1.0);
+        let arrives = shared.now + takes.max(0.0);
+        shared
+            .under_way
+            .push((arrives, *to, self.ours, message.clone()));
+    }
+
+    fn receive_all_messages(&mut self) -> Vec<(usize, Message)> {
+        let mut shared = self.shared.borrow_mut();
+        let now = shared.now;
+        let (mut here, rest): (Vec<_>, Vec<_>) = std::mem::take(&mut shared.under_way)
+            .into_iter()
+            .partition(|one| one.1 == self.ours && one.0 <= now);
+        shared.under_way = rest;
+        here.sort_by(|a, b| a.0.total_cmp(&b.0));
+        here.into_iter()
+            .map(|(_, _, from, message)| (from, message))
+            .collect()
+    }
+}
