@@ -32,9 +32,9 @@ use crate::projectile::{Projectile, ProjectileId, ProjectileMotion, ProjectilePl
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct CreatureId(pub u32);
 
-/// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones.
-const CREATURES: u64 = 1 << 40;
-const FIGHTERS: u64 = 1 << 41;
+/// Where the obstacle ids of creatures and of fighters begin. Terrain has smaller ones, such as the bits of an engine's entities.
+const CREATURES: u64 = 1 << 62;
+const FIGHTERS: u64 = 1 << 63;
 
 /// The obstacle id of a creature: climbers' states and contacts name it.
 pub const fn creature_obstacle(creature: CreatureId) -> ObstacleId {
