@@ -163,8 +163,8 @@ fn meshes_have_the_tags_and_materials_of_the_file() {
         assert!(surface.mesh().tags().iter().all(|found| *found == tag));
         kinds.insert(tag);
     }
-    // Fur, skin, stone, ledges.
-    assert_eq!(kinds.len(), 4);
+    // Fur, skin, stone, ledges, the shell.
+    assert_eq!(kinds.len(), 5);
 }
 
 /// The transforms of all joints, and the player, after some frames of 1/64 s.

@@ -76,15 +76,16 @@ fn extras_of_materials_tag_the_giant() {
         ("hide", SurfaceTag::new(SurfaceKind::Skin)),
         ("stone", stone),
         ("stone_ledge", stone.with_ledge()),
+        ("shell", stone.with_user(1)),
         ("glow", stone),
     ] {
         assert_eq!(tags.get(material), Some(&tag), "{material}");
     }
-    assert_eq!(tags.len(), 5);
+    assert_eq!(tags.len(), 6);
     let surfaces = app
         .world_mut()
         .query::<&PosedSurface>()
         .iter(app.world())
         .count();
-    assert_eq!(surfaces, 4 + 5);
+    assert_eq!(surfaces, 5 + 6);
 }

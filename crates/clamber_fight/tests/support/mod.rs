@@ -268,7 +268,7 @@ impl Melee {
             (sword.charge, sword.cut_damage) = (0.7, 1.0);
         }
         let places = [
-            DVec3::new(0.0, 35.5, -1.0),
+            DVec3::new(4.2, 35.5, -2.0),
             DVec3::new(3.0, 1.0, 24.0),
             SLAB + DVec3::new(3.0, 1.5, 3.0),
         ];
