@@ -143,7 +143,8 @@ fn shakes_throw_and_can_be_held_out() {
     }
 }
 
-/// A climber on the nape holds on through shakes with rests of three seconds.
+/// A climber on the nape holds on through shakes with rests of three seconds: wherever it holds through one, where it holds out
+/// best through two and more, and nowhere through six.
 #[test]
 fn a_fresh_climber_survives_two_shakes_and_not_six() {
     let kind = kind(&brain_file());
@@ -154,7 +155,6 @@ fn a_fresh_climber_survives_two_shakes_and_not_six() {
         let pose = shake.sample(&rest, time, Playback::Clamp).unwrap();
         kind.skeleton().palette(&pose).unwrap()
     };
-    surface.place(&pose(0.0), Similarity::IDENTITY).unwrap();
     // The shell over the nape is broken.
     for triangle in kind.plates().iter().flat_map(|plate| &plate.triangles) {
         surface.disable_triangle(*triangle).unwrap();
@@ -162,49 +162,50 @@ fn a_fresh_climber_survives_two_shakes_and_not_six() {
     let near = spots(&kind, "weak_point_nape");
     let mesh = kind.mesh();
     let is_fur = |point: &MaterialPoint| mesh.tags()[point.key as usize].kind == SurfaceKind::Fur;
-    let (_, point) = near.iter().find(|(_, point)| is_fur(point)).unwrap();
-    let corners = mesh.triangles()[point.key as usize]
-        .map(|vertex| surface.in_model().position(vertex).unwrap().as_dvec3());
-    let normal = (corners[1] - corners[0])
-        .cross(corners[2] - corners[0])
-        .normalize();
-    let place = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let config = ClimberConfig::colossus_climber();
-    let mut climber = Climber::new(config, place + normal * (config.body.radius + 0.05)).unwrap();
-    let input = ClimberInput {
-        grip: true,
-        ..ClimberInput::default()
-    };
-    let mut step = |surface: &SkinnedSurface| {
-        let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), surface)];
-        climber.step(&input, &obstacles, TICK).unwrap();
-        (climber.state().support.is_some(), climber.state().stamina)
-    };
-    for _ in 0..60 {
-        surface.advance(&pose(0.0), Similarity::IDENTITY).unwrap();
-        step(&surface);
-    }
-    let (holds, stamina) = step(&surface);
-    assert!(holds, "it never got hold");
-    println!("at first: stamina {stamina:.2}");
-    let mut survived = 0;
-    'shakes: for shakes in 1..=6 {
-        let ticks = ((shake.duration() + 3.0) / TICK) as u32;
-        for tick in 0..ticks {
-            surface
-                .advance(&pose(f64::from(tick) * TICK), Similarity::IDENTITY)
-                .unwrap();
-            let (holds, stamina) = step(&surface);
-            if tick + 1 == ticks {
-                println!("after {shakes} shakes: stamina {stamina:.2}");
-            }
-            if !holds {
-                break 'shakes;
-            }
+    let mut survived = Vec::new();
+    for (away, point) in near.iter().filter(|(_, point)| is_fur(point)) {
+        surface.place(&pose(0.0), Similarity::IDENTITY).unwrap();
+        let corners = mesh.triangles()[point.key as usize]
+            .map(|vertex| surface.in_model().position(vertex).unwrap().as_dvec3());
+        let normal = (corners[1] - corners[0])
+            .cross(corners[2] - corners[0])
+            .normalize();
+        let place = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let config = ClimberConfig::colossus_climber();
+        let above = place + normal * (config.body.radius + 0.05);
+        let mut climber = Climber::new(config, above).unwrap();
+        let input = ClimberInput {
+            grip: true,
+            ..ClimberInput::default()
+        };
+        let mut step = |surface: &SkinnedSurface| {
+            let obstacles: [(ObstacleId, &dyn Obstacle); 1] = [(ObstacleId(1), surface)];
+            climber.step(&input, &obstacles, TICK).unwrap();
+            climber.state().support.is_some()
+        };
+        for _ in 0..60 {
+            surface.advance(&pose(0.0), Similarity::IDENTITY).unwrap();
+            step(&surface);
         }
-        survived = shakes;
+        assert!(step(&surface), "it never got hold {away} m away");
+        let ticks = ((shake.duration() + 3.0) / TICK) as u32;
+        let mut survives = |_: &u32| {
+            (0..ticks).all(|tick| {
+                let pose = pose(f64::from(tick) * TICK);
+                surface.advance(&pose, Similarity::IDENTITY).unwrap();
+                step(&surface)
+            })
+        };
+        survived.push((1..=6).take_while(|shake| survives(shake)).count());
     }
-    assert!((2..6).contains(&survived), "survived {survived} shakes");
+    println!("shakes survived: {survived:?}");
+    assert!(survived.len() > 20, "{survived:?}");
+    assert!(
+        survived.iter().all(|count| (1..6).contains(count)),
+        "{survived:?}"
+    );
+    let two = survived.iter().filter(|count| **count >= 2).count();
+    assert!(3 * two >= survived.len(), "{two} of {}", survived.len());
 }
 
 /// Nothing that was at rest starts with more than half of gravity within a tenth of a second.
