@@ -159,7 +159,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pace = DVec3::Z * giant.walk_speed.ok_or("no speed")?;
     let mut skin = SkinnedSurface::new(giant.collider.clone());
     // The player starts above the back, as fast as the giant.
-    let mut player = Controller::at(DVec3::new(0.0, 36.0, 0.0));
+    let mut player = Controller::at(DVec3::new(0.0, 36.0, -2.0));
     (player.velocity, player.base) = (pace, pace);
     let (mut rode, mut drift, mut walked, mut nearest) = (0, 0.0f64, 0.0, f64::INFINITY);
     let (mut jump_from, mut jump_height) = (DVec3::ZERO, 0.0f64);

@@ -129,12 +129,12 @@ fn measure(
     let inputs = |tick: usize| [input(tick), ClimberInput::IDLE];
     for round in 0..rounds {
         let from = arena.save();
-        for tick in 0..BACK {
+        for (tick, saved) in saved.iter_mut().enumerate() {
             all[0].push(timed(|| {
                 Ok(arena.step(&inputs(tick), terrain).map(drop)?)
             })?);
             all[1].push(timed(|| {
-                saved[tick] = arena.save();
+                *saved = arena.save();
                 Ok(())
             })?);
             all[3].push(timed(|| {

@@ -1,5 +1,7 @@
 //! Aims at moving targets, held against the exact quartic.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use clamber_fight::aim::lead;
 use dashu_int::IBig;
 use dashu_ratio::RBig;

@@ -203,12 +203,11 @@ impl Peer {
                 .unwrap();
         }
         let requests = match self.session.advance_frame() {
-            Ok(requests) => requests,
             Err(GgrsError::PredictionThreshold) => {
                 self.waits += 1;
                 return;
             }
-            Err(error) => panic!("{error}"),
+            requests => requests.unwrap(),
         };
         let mut steps = 0;
         for request in &requests {

@@ -1,6 +1,6 @@
 //! Stabs: charge, damage, what breaks them off, and where the blade goes. Scenes B26 to B28.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 mod support;
 

@@ -57,7 +57,7 @@ const SHOTS: [Shot; 4] = [
     Shot {
         name: "rider",
         tick: 300,
-        camera: |battle, _| beside(battle, DVec3::new(-5.0, 4.0, 8.0)),
+        camera: |battle, _| beside(battle, DVec3::new(2.4, 2.2, -3.0)),
         joint: "chest",
         near: &[SurfaceKind::Fur, SurfaceKind::Stone],
         overlay: false,

@@ -160,7 +160,7 @@ impl Arena {
         }
         let fixed = obstacles.len();
         let skins: Vec<&SkinnedSurface> = self.creatures.iter().map(Creature::surface).collect();
-        for index in 0..self.fighters.len() {
+        for (index, player) in inputs.iter().enumerate() {
             obstacles.truncate(fixed);
             let ours = &self.fighters[index];
             for (other, body) in self.fighters.iter().zip(&scratch.bodies) {
@@ -170,7 +170,7 @@ impl Arena {
             }
             let fighter = &mut self.fighters[index];
             let is_held = fighter.be_held(dt);
-            let input = fighter.begin(&inputs[index], is_held);
+            let input = fighter.begin(player, is_held);
             let before = BodyFrame::of(fighter.climber());
             fighter.step(&input, &obstacles, rules, dt)?;
             let id = fighter.id();

@@ -3,6 +3,7 @@
 #![allow(
     dead_code,
     clippy::unwrap_used,
+    clippy::panic,
     reason = "helpers of tests, of which each file uses some"
 )]
 
@@ -304,7 +305,7 @@ impl Melee {
                 * f64::from(u8::from(second % 5 < 3 && tick < 2000)),
             grip: true,
             aim: DVec3::new(-0.1 + 0.1 * wave(3.0), 0.5, -1.0),
-            jump: tick % 130 == 0 && tick < 2000,
+            jump: tick.is_multiple_of(130) && tick < 2000,
             actions: match tick % 150 {
                 10..70 => BOW,
                 100 => THROW,

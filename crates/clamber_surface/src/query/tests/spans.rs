@@ -58,7 +58,7 @@ fn a_part_of_a_tick_has_the_bits_of_brute_force() {
             space.cast_capsule_all(&stick, ways, &options, &mut all);
             reference.cast_capsule_all(&stick, ways, &options, &mut expected);
             assert_eq!(all, expected);
-            let mut counts = |hit: &SweepHit| hit.triangle.0 % 3 == 0;
+            let mut counts = |hit: &SweepHit| hit.triangle.0.is_multiple_of(3);
             let some = space.cast_capsule_where(&stick, ways, &options, &mut counts);
             assert_eq!(
                 some,
