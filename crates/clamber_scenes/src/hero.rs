@@ -1,11 +1,17 @@
 //! The project's hero as the body of a battle's climber.
 
+mod arms;
+
 use std::path::PathBuf;
 
+use arms::Arms;
+use clamber_body::clamber_animation::AnimationError;
+use clamber_body::clamber_animation::ik::IkError;
 use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
 use clamber_gltf::{GltfError, Rig};
 use clamber_surface::geometry::Similarity;
-use clamber_surface::rig::{Palette, RigError, Skeleton};
+use clamber_surface::rig::{Palette, Pose, RigError, Skeleton};
+use glam::DVec3;
 use thiserror::Error;
 
 use crate::battle::Battle;
@@ -15,7 +21,10 @@ use crate::battle::Battle;
 pub struct Hero {
     figure: Figure,
     body: Body,
+    /// The body's pose with its hands at its weapons.
+    pose: Pose,
     palette: Palette,
+    arms: Option<Arms>,
 }
 
 /// Why there is no hero.
@@ -37,6 +46,12 @@ pub enum HeroError {
     /// Its body cannot be posed.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// The clips of its weapons cannot be played.
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
+    /// Its hands cannot be brought to its weapons.
+    #[error(transparent)]
+    Ik(#[from] IkError),
 }
 
 /// Path of the hero's file.
@@ -58,9 +73,18 @@ impl Hero {
         let body = Body::new(&figure);
         Ok(Self {
             palette: figure.skeleton().palette(body.pose())?,
+            pose: body.pose().clone(),
             body,
             figure,
+            arms: None,
         })
+    }
+
+    /// Shows what it does with its weapons. Without it, the sword stays in its sheath and the bow on its back.
+    #[must_use]
+    pub fn with_arms(mut self) -> Self {
+        self.arms = Some(Arms::new(&self.figure));
+        self
     }
 
     /// The hero of the project's file.
@@ -83,6 +107,11 @@ impl Hero {
             let root = surface.world_from_model();
             root.transform_point(head.translation)
         });
+        let fighter = battle.performer().fighter();
+        if let (Some(arms), Some(fighter)) = (&mut self.arms, fighter) {
+            let aim = battle.input().aim;
+            arms.play(&self.figure, &mut self.body, fighter, aim, dt)?;
+        }
         battle.touched(|obstacles| {
             let frame = BodyFrame {
                 look_at,
@@ -90,8 +119,22 @@ impl Hero {
             };
             self.body.update(&self.figure, &frame, dt)
         })?;
-        self.palette = self.figure.skeleton().palette(self.body.pose())?;
+        self.pose.clone_from(self.body.pose());
+        if let (Some(arms), Some(fighter)) = (&mut self.arms, fighter) {
+            let root = self.body.world_from_model();
+            arms.reach(&self.figure, &mut self.pose, &root, fighter, dt)?;
+        }
+        self.palette = self.figure.skeleton().palette(&self.pose)?;
         Ok(())
+    }
+
+    /// The grip and the tip of the sword in its hand, in world space; `None` while it is in its sheath, and without
+    /// [arms](Hero::with_arms).
+    pub fn sword(&self) -> Option<[DVec3; 2]> {
+        let arms = self.arms.as_ref()?;
+        let ends = arms.sword(self.figure.skeleton(), &self.pose)?;
+        let root = self.world_from_model();
+        Some(ends.map(|end| root.transform_point(end)))
     }
 
     /// Its skeleton.

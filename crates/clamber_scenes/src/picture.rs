@@ -1,5 +1,8 @@
 //! A battle for the renderer: meshes of its creature, its climber and the ground, light and cameras.
 
+mod arrows;
+
+use arrows::Arrows;
 use clamber_gltf::Rig;
 use clamber_render::{
     Camera, Drawn, Light, Look, RenderError, RenderMesh, RenderMeshId, Renderer, SkinSource,
@@ -29,6 +32,7 @@ pub struct Stage {
     watched: bool,
     /// Those of the creature's meshes that are plates, with the numbers by which its brain names them.
     plates: Vec<(RenderMeshId, u32)>,
+    arrows: Option<Arrows>,
 }
 
 /// Why a stage cannot be set.
@@ -59,7 +63,23 @@ impl Stage {
             hero: Hero::new(rig)?,
             watched: false,
             plates: Vec::new(),
+            arrows: None,
         })
+    }
+
+    /// Draws what a fight has: the hero's sword and bow in its hands while it uses them, and arrows and stones.
+    ///
+    /// # Errors
+    /// [`StageError::Render`] if the meshes cannot be added to the renderer.
+    pub fn with_arms(mut self, renderer: &mut Renderer) -> Result<Self, StageError> {
+        self.arrows = Some(Arrows::add(renderer)?);
+        self.hero = self.hero.with_arms();
+        Ok(self)
+    }
+
+    /// The hero as it was last [watched](Stage::watch).
+    pub fn hero(&self) -> &Hero {
+        &self.hero
     }
 
     /// Tells which of the creature's meshes are plates, which are drawn until they break: the file's whose meshes
@@ -117,6 +137,7 @@ impl Stage {
         if battle.has_outcrop() {
             drawn.push(at(self.outcrop, Similarity::IDENTITY, None));
         }
+        drawn.extend(self.arrows.iter().flat_map(|arrows| arrows.drawn(battle)));
         let shown = self.creature.iter();
         let shown = shown.filter(|mesh| self.shows(**mesh, battle));
         drawn.extend(shown.map(|mesh| Drawn {
