@@ -13,6 +13,7 @@ use clamber_scenes::picture::{Stage, add_visual, light, orbit, sharp};
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
 
+use crate::chase::Chase;
 use crate::overlays::Overlays;
 use crate::{CameraKind, FilmOptions};
 
@@ -25,9 +26,6 @@ const ORBIT: f64 = 0.08;
 
 /// Distance of a close camera from the climber, metres.
 const CLOSE: f64 = 2.4;
-
-/// Distance that a chasing camera keeps in front of the skin, for the fur, metres.
-const FUR: f64 = 1.2;
 
 /// A camera, the scene that it films, and the outputs of its pictures.
 pub(crate) struct Film {
@@ -46,8 +44,7 @@ pub(crate) struct Film {
     from: u32,
     tick: u32,
     taken: u32,
-    /// Eye and target of a chasing camera, which lag behind the climber.
-    eye: Option<[DVec3; 2]>,
+    chase: Chase,
 }
 
 impl Film {
@@ -59,6 +56,7 @@ impl Film {
         let rig = load(path)?;
         let creature = add_visual(&mut renderer, &rig)?;
         let stage = Stage::new(&mut renderer, creature)?.with_plates(&rig);
+        let stage = stage.with_arms(&mut renderer)?;
         if let Some(folder) = &film.frames {
             let failed = |error| format!("{}: {error}", folder.display());
             std::fs::create_dir_all(folder).map_err(failed)?;
@@ -81,7 +79,7 @@ impl Film {
             from: (film.from / TICK) as u32,
             tick: 0,
             taken: 0,
-            eye: None,
+            chase: Chase::new(),
         })
     }
 
@@ -153,39 +151,9 @@ impl Film {
                 camera.field_of_view = 65f64.to_radians();
                 camera
             }
-            CameraKind::Chase => self.chase(battle, middle),
+            CameraKind::Chase => self.chase.follow(battle),
             CameraKind::Close => close(battle),
         }
-    }
-
-    /// The chasing camera: behind a climber that stands or is in the air, outward from the skin that it holds, and in
-    /// front of skin that would hide it.
-    fn chase(&mut self, battle: &Battle<'_>, middle: DVec3) -> Camera {
-        let (config, state) = (battle.climber().config(), battle.climber().state());
-        let out = match state.support {
-            Some(support) if state.mode.is_holding() => support.normal_in_world(),
-            _ => {
-                let root = battle.surface().world_from_model();
-                let outward = (state.position - middle) * DVec3::new(1.0, 0.0, 1.0);
-                -(root.rotation * DVec3::Z) + outward.normalize_or_zero() * 0.6
-            }
-        };
-        let level = out * DVec3::new(1.0, 0.0, 1.0);
-        let up = config.up();
-        let away = level.normalize_or(DVec3::X) * 8.0 + up * 4.0;
-        let wanted = [state.position + away, state.position];
-        let [eye, target] = self.eye.unwrap_or(wanted);
-        let target = target.lerp(wanted[1], 0.3);
-        let mut eye = eye.lerp(wanted[0], 0.06);
-        eye.y = eye.y.max(valley::height(eye.x, eye.z) + 1.0);
-        self.eye = Some([eye, target]);
-        // The camera stays in front of the skin by the length of fur.
-        let far = (eye - target).length();
-        let toward = (eye - target).normalize_or(up);
-        let hit = battle.surface().cast_ray(state.position, toward, far + FUR);
-        let before = |skin: f64| (skin - FUR).max(0.5 * skin).min(far);
-        let free = hit.map_or(far, |hit| before(hit.distance));
-        Camera::new(target + toward * free, target)
     }
 
     fn add_rocks(&mut self, battle: &Battle<'_>) -> Result<(), Failure> {

@@ -4,6 +4,8 @@
 //! `clamber_scenes::battle`. With `--features render` it can be filmed.
 
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
+mod chase;
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod film;
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod overlays;

@@ -1,0 +1,180 @@
+//! From where the climber is seen best: a score of some directions around it.
+
+use clamber_scenes::battle::{Battle, CREATURE, TERRAIN};
+use clamber_scenes::valley;
+use glam::DVec3;
+
+use super::ABOVE_GROUND;
+use super::face::Seen;
+use super::skin::{KEPT, Skin};
+
+/// Directions around the climber, and their heights above the horizon, radians.
+const AROUND: u32 = 16;
+const HEIGHTS: [f64; 5] = [-0.25, 0.1, 0.4, 0.75, 1.05];
+
+/// Skin nearer to the eye than this counts against a direction, metres.
+const ROOM: f64 = 4.0;
+
+/// Another direction has to be better by so much.
+const BETTER: f64 = 0.15;
+
+/// How much things count: a free view of the climber, skin near the eye, the ideal direction, a short way there, skin on
+/// the way there, too little height above the ground, and in a stab a free view of the face and a view from its front.
+const FREE: f64 = 3.0;
+const NEAR: f64 = 0.8;
+const IDEAL: f64 = 2.0;
+const SHORT: f64 = 0.6;
+const BLOCKED: f64 = 0.8;
+const LOW: f64 = 1.0;
+const FACE: f64 = 1.5;
+const FRONT: f64 = 2.0;
+
+/// Cosine of the angle from the face's front from which on it is seen well enough: hardly more than its profile, since from the
+/// front the head hides who is on the nape.
+const PROFILE: f64 = 0.25;
+
+/// The climber's head, above the middle of its ball, has to be seen in a stab as well, metres.
+const HEAD: f64 = 1.1;
+
+/// A direction should still be free after so many seconds.
+const SOON: f64 = 0.5;
+
+/// How far before the skin of the face its sight line begins, metres.
+const BEFORE_FACE: f64 = 0.5;
+
+/// How much higher than the climber the view is directed while it is not on the creature, metres.
+const LOOKS_UP: f64 = 1.7;
+
+/// What is around the climber in one tick.
+pub(super) struct Scene<'a> {
+    battle: &'a Battle<'a>,
+    pub(super) skin: &'a Skin,
+    pub(super) face: Option<Seen>,
+    pub(super) climber: DVec3,
+    /// Where it will be soon.
+    soon: DVec3,
+    pub(super) up: DVec3,
+    /// How much higher than the climber to look, metres.
+    pub(super) looks_up: f64,
+    on_creature: bool,
+}
+
+/// A choice of a direction.
+pub(super) struct Choice {
+    pub(super) pivot: DVec3,
+    pub(super) distance: f64,
+    /// Unit vectors: where the eye is now, and where it was to go.
+    pub(super) away: DVec3,
+    pub(super) wanted: DVec3,
+    /// The face should be seen as well.
+    pub(super) stab: bool,
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(battle: &'a Battle<'a>, skin: &'a Skin, face: Option<Seen>) -> Self {
+        let (config, state) = (battle.climber().config(), battle.climber().state());
+        let on_creature = state
+            .support
+            .is_some_and(|support| support.attachment.obstacle == CREATURE);
+        let way = state.velocity * SOON;
+        let free = skin.free(state.position, way, way.length());
+        let soon = state.position + way.clamp_length_max(0.9 * free);
+        Self {
+            battle,
+            skin,
+            face,
+            climber: state.position,
+            soon,
+            up: config.up(),
+            looks_up: if on_creature { 0.0 } else { LOOKS_UP },
+            on_creature,
+        }
+    }
+
+    /// Length of a way from a place that nothing blocks.
+    pub(super) fn free(&self, from: DVec3, way: DVec3) -> f64 {
+        let far = way.length();
+        let Some(toward) = way.try_normalize() else {
+            return far;
+        };
+        let skin = self.skin.free(from, toward, far);
+        let skin = if skin < far {
+            (skin - KEPT).max(0.5 * skin)
+        } else {
+            far
+        };
+        let ground = self.battle.touched(|obstacles| {
+            let mut terrain = obstacles.iter().filter(|(id, _)| *id == TERRAIN);
+            terrain.find_map(|(_, obstacle)| obstacle.cast_ray(from, toward, far))
+        });
+        ground.map_or(skin, |ground| skin.min(0.9 * ground.distance))
+    }
+
+    /// The direction from which the climber is best seen if nothing is in the way: outward from what it holds, along the
+    /// line from the giant to it, or from where the eye is already.
+    pub(super) fn ideal(&self, away: DVec3) -> DVec3 {
+        let state = self.battle.climber().state();
+        let level = |way: DVec3| way - self.up * way.dot(self.up);
+        let root = self.battle.surface().world_from_model().translation;
+        let outward = level(state.position - root).normalize_or_zero();
+        let stays = level(away).normalize_or(DVec3::X);
+        let out = state.support.map(|support| support.normal_in_world());
+        let (side, height) = match out {
+            Some(out) if state.mode.is_holding() && level(out).length() > 0.3 => (
+                level(out).normalize_or(stays),
+                0.35 + 0.5 * out.dot(self.up).max(-0.5),
+            ),
+            Some(_) if self.on_creature => (stays + outward * 0.3, 0.55),
+            _ => (outward + stays * 0.5, 0.2),
+        };
+        (side.normalize_or(stays) + self.up * height).normalize_or(DVec3::X)
+    }
+
+    /// The best direction from the pivot to the eye: a unit vector.
+    pub(super) fn choose(&self, choice: &Choice) -> DVec3 {
+        let ideal = self.ideal(choice.away);
+        let score = |toward: &DVec3| self.score(*toward, ideal, choice);
+        let around = (0..AROUND).flat_map(|side| {
+            let angle = f64::from(side) / f64::from(AROUND) * core::f64::consts::TAU;
+            let (sin, cos) = libm::sincos(angle);
+            HEIGHTS.map(|height| {
+                let (up, level) = libm::sincos(height);
+                DVec3::new(level * sin, up, level * cos)
+            })
+        });
+        let all = around.chain([ideal]).map(|toward| (score(&toward), toward));
+        let best = all.max_by(|a, b| a.0.total_cmp(&b.0));
+        match best {
+            Some((best, toward)) if best > score(&choice.wanted) + BETTER => toward,
+            _ => choice.wanted,
+        }
+    }
+
+    fn score(&self, toward: DVec3, ideal: DVec3, choice: &Choice) -> f64 {
+        let eye = choice.pivot + toward * choice.distance;
+        let sight = |from: DVec3, eye: DVec3| {
+            let way = eye - from;
+            self.free(from, way) / way.length().max(1e-9)
+        };
+        let room = self.skin.room(eye, ROOM) / ROOM;
+        let low = valley::height(eye.x, eye.z) + ABOVE_GROUND > eye.y;
+        let half_way = (choice.away + toward).normalize_or(self.up);
+        let between = sight(self.climber, choice.pivot + half_way * choice.distance);
+        let moved = self.soon - self.climber;
+        let free = sight(self.climber, eye).min(sight(self.soon, eye + moved));
+        let mut score = FREE * free + NEAR * room + SHORT * toward.dot(choice.away)
+            - if between < 0.8 { BLOCKED } else { 0.0 }
+            - if low { LOW } else { 0.0 };
+        match self.face.filter(|_| choice.stab) {
+            Some(face) => {
+                let from = face.place + face.ahead * BEFORE_FACE;
+                let front = (eye - from).normalize_or(face.ahead).dot(face.ahead);
+                let is_seen = sight(from, eye) > 0.95;
+                score += FACE * f64::from(u8::from(is_seen)) + FRONT * front.min(PROFILE);
+                score += FREE * sight(self.climber + self.up * HEAD, eye);
+            }
+            None => score += IDEAL * toward.dot(ideal),
+        }
+        score
+    }
+}
