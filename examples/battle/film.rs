@@ -14,6 +14,7 @@ use clamber_scenes::{giant, valley};
 use glam::DVec3;
 
 use crate::chase::Chase;
+use crate::effects::{Effects, View};
 use crate::overlays::Overlays;
 use crate::{CameraKind, FilmOptions};
 
@@ -34,6 +35,9 @@ pub(crate) struct Film {
     rocks: Vec<(RigidBodyHandle, RenderMeshId)>,
     camera: CameraKind,
     overlays: Overlays,
+    effects: Effects,
+    /// Rows of pixels of a picture.
+    rows: u32,
     height: f64,
     frames: Option<PathBuf>,
     gif: Option<Gif>,
@@ -71,6 +75,8 @@ impl Film {
             rocks: Vec::new(),
             camera: film.camera,
             overlays: Overlays::new(&film.overlay, battle.height()),
+            effects: Effects::new(battle.height()),
+            rows: film.rows,
             height: battle.height(),
             frames: film.frames.clone(),
             gif: gif.transpose()?,
@@ -88,6 +94,7 @@ impl Film {
         let tick = self.tick;
         self.tick += 1;
         self.overlays.watch(battle);
+        self.effects.watch(battle);
         self.stage.watch(battle, TICK)?;
         let camera = self.follow(battle);
         // The rate holds on average, even if it does not divide the ticks of a second.
@@ -114,11 +121,18 @@ impl Film {
                 palette: None,
             }
         }));
+        let mut overlay = self.overlays.draw(battle, &camera);
+        let view = View {
+            camera,
+            rows: self.rows,
+        };
+        let sword = self.stage.hero().sword();
+        self.effects.draw(&mut overlay, battle, &view, sword);
         let frame = Frame {
             camera,
             light: light(battle, self.height),
             drawn,
-            overlay: self.overlays.draw(battle, &camera),
+            overlay,
         };
         let mut image = self.renderer.draw(&frame)?;
         if let Some(gif) = &mut self.gif {

@@ -6,6 +6,10 @@
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod chase;
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
+mod colors;
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
+mod effects;
+#[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod film;
 #[cfg(all(feature = "render", feature = "gltf", feature = "rapier"))]
 mod overlays;

@@ -1,7 +1,4 @@
 //! Overlays on the pictures of a battle.
-//!
-//! The named colours are of Okabe and Ito's set, which colour-blind people can tell apart, with white and magenta
-//! added.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,6 +15,7 @@ use clamber_scenes::part_bounds::{JointMaps, PartBounds};
 use glam::{DVec3, Vec3};
 
 use crate::OverlayKind;
+use crate::colors::{MAGENTA, ORANGE, SKY_BLUE, VERMILION, WHITE, YELLOW, opaque, seen_through};
 
 /// Number of points of the climber's path that are drawn.
 const WAY: usize = 90;
@@ -52,13 +50,6 @@ const TEXT_AT: [u32; 2] = [16, 16];
 
 /// Pictures of fewer rows get small text.
 const ROWS_FOR_LARGE_TEXT: u32 = 600;
-
-const ORANGE: [f32; 3] = [0.79, 0.35, 0.0];
-const SKY_BLUE: [f32; 3] = [0.09, 0.46, 0.82];
-const YELLOW: [f32; 3] = [0.87, 0.78, 0.05];
-const VERMILION: [f32; 3] = [0.67, 0.11, 0.0];
-const MAGENTA: [f32; 3] = [1.0, 0.2, 0.8];
-const WHITE: [f32; 3] = [1.0; 3];
 
 /// The selected kinds of overlays, and their data from earlier ticks.
 pub(crate) struct Overlays {
@@ -219,16 +210,8 @@ fn follow(trail: &mut Vec<DVec3>, now: DVec3) {
     }
 }
 
-fn opaque([red, green, blue]: [f32; 3]) -> Color {
-    [red, green, blue, 1.0]
-}
-
-fn seen_through([red, green, blue]: [f32; 3], opacity: f32) -> Color {
-    [red, green, blue, opacity]
-}
-
 /// Moves a point nearer to the eye by some metres, at most half of its distance. It stays at the same pixel.
-fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
+pub(crate) fn nearer(place: DVec3, eye: DVec3, by: f64) -> DVec3 {
     let distance = (place - eye).length();
     eye + (place - eye) * (1.0 - (by / distance).min(0.5))
 }

@@ -1,0 +1,53 @@
+//! A mark over a climber that is small in the picture.
+
+use clamber::render::Overlay;
+use clamber_scenes::battle::Battle;
+
+use super::View;
+use crate::colors::{ORANGE, WHITE, seen_through};
+use crate::overlays::nearer;
+
+/// Height of the drawn climber, metres.
+const TALL: f64 = 1.75;
+
+/// A climber of more pixels has no mark, and one of fewer has the whole mark.
+const LARGE: f64 = 18.0;
+const SMALL: f64 = 12.0;
+
+/// The mark: an arrow head of so many pixels, so many above the climber's head.
+const WIDE: f64 = 11.0;
+const HIGH: f64 = 9.0;
+const ABOVE: f64 = 4.0;
+
+/// It is drawn so many metres nearer to the eye, so that fur does not hide it.
+const NEARER: f64 = 2.5;
+
+/// Draws the mark, if the climber is small enough.
+pub(super) fn draw(over: &mut Overlay, battle: &Battle<'_>, view: &View) {
+    let climber = battle.climber();
+    let feet = climber.state().position - climber.config().up() * climber.config().body.radius;
+    let head = feet + climber.config().up() * TALL;
+    let pixel = view.pixel(head);
+    if pixel <= 0.0 {
+        return;
+    }
+    let opacity = ((LARGE - TALL / pixel) / (LARGE - SMALL)).clamp(0.0, 1.0) as f32;
+    if opacity == 0.0 {
+        return;
+    }
+    let [right, up] = view.sides(head);
+    // On pictures of many rows it is as large a part of them as on small ones.
+    let pixel = pixel * (f64::from(view.rows) / 540.0).max(1.0);
+    let tip = head + up * (ABOVE * pixel);
+    let [left, other] = [-0.5, 0.5].map(|side| {
+        let corner = tip + up * (HIGH * pixel) + right * (side * WIDE * pixel);
+        nearer(corner, view.camera.eye, NEARER)
+    });
+    let tip = nearer(tip, view.camera.eye, NEARER);
+    over.triangle([tip, left, other], seen_through(ORANGE, 0.9 * opacity));
+    over.path(
+        &[tip, left, other, tip],
+        1.5,
+        seen_through(WHITE, 0.9 * opacity),
+    );
+}
