@@ -85,7 +85,7 @@ impl Film {
             from: (film.from / TICK) as u32,
             tick: 0,
             taken: 0,
-            chase: Chase::new(),
+            chase: Chase::new(battle.height()),
         })
     }
 

@@ -1,5 +1,6 @@
 //! From where the climber is seen best: a score of some directions around it.
 
+use clamber::prelude::*;
 use clamber_scenes::battle::{Battle, CREATURE, TERRAIN};
 use clamber_scenes::valley;
 use glam::DVec3;
@@ -33,6 +34,10 @@ const FRONT: f64 = 2.0;
 /// front the head hides who is on the nape.
 const PROFILE: f64 = 0.25;
 
+/// How much height counts in a stab, up to the sine of this angle: from a low place the head hides who is on its top.
+const HIGH: f64 = 2.0;
+const ENOUGH: f64 = 0.5;
+
 /// The climber's head, above the middle of its ball, has to be seen in a stab as well, metres.
 const HEAD: f64 = 1.1;
 
@@ -51,7 +56,9 @@ pub(super) struct Scene<'a> {
     pub(super) skin: &'a Skin,
     pub(super) face: Option<Seen>,
     pub(super) climber: DVec3,
-    /// Where it will be soon.
+    /// The middle of the giant's joints.
+    pub(super) giant: DVec3,
+    /// Where the climber will be soon.
     soon: DVec3,
     pub(super) up: DVec3,
     /// How much higher than the climber to look, metres.
@@ -84,6 +91,7 @@ impl<'a> Scene<'a> {
             skin,
             face,
             climber: state.position,
+            giant: giant(battle),
             soon,
             up: config.up(),
             looks_up: if on_creature { 0.0 } else { LOOKS_UP },
@@ -171,10 +179,20 @@ impl<'a> Scene<'a> {
                 let front = (eye - from).normalize_or(face.ahead).dot(face.ahead);
                 let is_seen = sight(from, eye) > 0.95;
                 score += FACE * f64::from(u8::from(is_seen)) + FRONT * front.min(PROFILE);
+                score += HIGH * toward.dot(self.up).min(ENOUGH);
                 score += FREE * sight(self.climber + self.up * HEAD, eye);
             }
             None => score += IDEAL * toward.dot(ideal),
         }
         score
     }
+}
+
+fn giant(battle: &Battle<'_>) -> DVec3 {
+    let palette = battle.palette();
+    let joints = palette.matrices().len() as u32;
+    let frames = (0..joints).filter_map(|joint| palette.model_from_joint(JointId(joint)));
+    let sum: DVec3 = frames.map(|frame| frame.translation).sum();
+    let middle = sum / f64::from(joints.max(1));
+    battle.surface().world_from_model().transform_point(middle)
 }

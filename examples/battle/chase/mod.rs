@@ -10,14 +10,14 @@ mod skin;
 
 use clamber::geometry::rotation_from_axis_angle;
 use clamber::render::Camera;
-use clamber_fight::Act;
+use clamber_fight::{Act, ArenaEvent};
 use clamber_scenes::battle::{Battle, TICK};
 use clamber_scenes::valley;
 use glam::DVec3;
 
 use choice::{Choice, Scene};
 use face::Face;
-use skin::Skin;
+use skin::{KEPT, LEAST, Skin};
 
 /// Distance from the climber, metres.
 const FAR: f64 = 7.5;
@@ -25,6 +25,10 @@ const FAR: f64 = 7.5;
 /// In a stab: for each metre between the climber and the face, and at least, metres.
 const FAR_IN_STAB: f64 = 1.1;
 const LEAST_IN_STAB: f64 = 8.0;
+
+/// Distance from a giant that falls dead, as a share of its height; and seconds of the way there.
+const FAR_FROM_DEAD: f64 = 0.75;
+const RETREATS: f64 = 2.5;
 
 /// The face is shown in stabs that are nearer to it than this, metres.
 const NEAR_FACE: f64 = 15.0;
@@ -70,6 +74,10 @@ pub(crate) struct Chase {
     face: Option<Face>,
     view: Option<View>,
     ticks: u32,
+    /// Height of the creature, metres.
+    height: f64,
+    /// The giant was killed.
+    is_dead: bool,
 }
 
 /// What the camera remembers of the last tick.
@@ -88,18 +96,23 @@ struct View {
     /// 0 for the usual view to 1 for that of a stab, and how many seconds more it is wanted.
     stab: f64,
     stays: f64,
+    /// The same for the view of a giant that falls dead.
+    wide: f64,
     eye: DVec3,
     /// Unit vector.
     look: DVec3,
 }
 
 impl Chase {
-    pub(crate) fn new() -> Self {
+    /// For a creature `height` metres tall.
+    pub(crate) fn new(height: f64) -> Self {
         Self {
             skin: None,
             face: None,
             view: None,
             ticks: 0,
+            height,
+            is_dead: false,
         }
     }
 
@@ -121,7 +134,14 @@ impl Chase {
             .filter(|view| view.climber.distance(climber) < PUT);
         let mut view = last.unwrap_or_else(|| first(&scene));
         view.climber = climber;
-        view.stays = if stabs(battle, &scene) {
+        let killed = |event: &ArenaEvent| matches!(event, ArenaEvent::Killed { .. });
+        self.is_dead |= battle
+            .arena()
+            .is_some_and(|arena| arena.events().iter().any(killed));
+        if self.is_dead {
+            view.wide = (view.wide + TICK / RETREATS).min(1.0);
+        }
+        view.stays = if stabs(battle, &scene) && !self.is_dead {
             STAYS
         } else {
             (view.stays - TICK).max(0.0)
@@ -130,7 +150,15 @@ impl Chase {
         let step = TICK / CHANGES;
         view.stab += (goal - view.stab).clamp(-step, step);
         let (center, distance) = middle(&scene, view.stab);
-        let raised = scene.up * (scene.looks_up * (1.0 - view.stab));
+        let wide = eased(view.wide);
+        let far = FAR_FROM_DEAD * self.height;
+        let (center, distance) = (
+            center.lerp(scene.giant, 0.4 * wide),
+            distance + (far - distance) * wide,
+        );
+        // Less where something comes between, so that the climber stays in the picture.
+        let near = (view.eye.distance(climber) / FAR).min(1.0);
+        let raised = scene.up * (scene.looks_up * near * (1.0 - view.stab) * (1.0 - wide));
         if last.is_none() {
             (view.pivot, view.target) = (center, center + raised);
         }
@@ -193,7 +221,15 @@ impl View {
         });
         let [moves, stays] = ways;
         let goes = is_new || moves.1 <= FASTEST * TICK || moves.1 <= stays.1;
-        self.eye = if goes { moves.0 } else { stays.0 };
+        let place = if goes { moves.0 } else { stays.0 };
+        // The rest of a long way is for the next ticks, unless skin is too near meanwhile.
+        let part = (place - self.eye).clamp_length_max(FASTEST * TICK);
+        let is_free = scene.skin.room(self.eye + part, KEPT) > LEAST;
+        self.eye = if is_new || !is_free {
+            place
+        } else {
+            self.eye + part
+        };
         let look = (self.target - self.eye).normalize_or(self.look);
         self.look = if is_new {
             look
@@ -224,6 +260,7 @@ fn first(scene: &Scene<'_>) -> View {
         free: 1.0,
         stab: 0.0,
         stays: 0.0,
+        wide: 0.0,
         eye: scene.climber + away * FAR,
         look: -away,
     }
@@ -248,11 +285,16 @@ fn middle(scene: &Scene<'_>, stab: f64) -> (DVec3, f64) {
     let Some(face) = scene.face else {
         return (climber, FAR);
     };
-    let eased = stab * stab * (3.0 - 2.0 * stab);
+    let eased = eased(stab);
     let between = climber.distance(face.place);
     let far = (FAR_IN_STAB * between).max(LEAST_IN_STAB);
     let center = climber.lerp(face.place, 0.4 * eased);
     (center, FAR + (far - FAR) * eased)
+}
+
+/// A share that begins and ends slowly.
+fn eased(share: f64) -> f64 {
+    share * share * (3.0 - 2.0 * share)
 }
 
 /// A unit vector turned towards another one by at most an angle.

@@ -4,8 +4,10 @@ use clamber::prelude::*;
 use clamber_scenes::battle::Battle;
 use glam::DVec3;
 
-/// Least distance of the eye from the skin, metres: visible fur reaches 0.8 m beyond it on a giant of 40 m.
+/// Distance of the eye from the skin, metres: what it keeps, and the least for a few ticks if skin comes from two sides.
+/// Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
 pub(super) const KEPT: f64 = 1.4;
+pub(super) const LEAST: f64 = 1.0;
 
 /// How often the eye is pushed away from skin on several sides.
 const ROUNDS: usize = 8;
