@@ -65,7 +65,7 @@ const CHOOSES: u32 = 3;
 const ABOVE_GROUND: f64 = 1.0;
 
 /// A climber that moves farther than this in a tick was put elsewhere, metres: the camera is there at once.
-const PUT: f64 = 4.0;
+const PUT: f64 = 8.0;
 
 /// The camera and its memory.
 #[derive(Debug)]
@@ -199,6 +199,8 @@ impl View {
     fn place(&mut self, scene: &Scene<'_>, distance: f64, is_new: bool) {
         let way = self.pivot + self.away * distance - scene.climber;
         let free = scene.free(scene.climber, way) / way.length().max(1e-9);
+        // With the face in the picture, a way past the head is better than one into it.
+        let free = free.max(self.stab).max(self.wide);
         let half = if free < self.free { NEARER } else { FARTHER };
         self.free = if is_new {
             free
@@ -224,12 +226,10 @@ impl View {
         let place = if goes { moves.0 } else { stays.0 };
         // The rest of a long way is for the next ticks, unless skin is too near meanwhile.
         let part = (place - self.eye).clamp_length_max(FASTEST * TICK);
-        let is_free = scene.skin.room(self.eye + part, KEPT) > LEAST;
-        self.eye = if is_new || !is_free {
-            place
-        } else {
-            self.eye + part
-        };
+        let parts = [1.0, 0.5, 0.0].map(|share| self.eye + part * share);
+        let is_free = |eye: &DVec3| scene.skin.room(*eye, KEPT) > LEAST;
+        let nearer = parts.into_iter().find(is_free).filter(|_| !is_new);
+        self.eye = nearer.unwrap_or(place);
         let look = (self.target - self.eye).normalize_or(self.look);
         self.look = if is_new {
             look

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Distance of the eye from the skin, metres: what it keeps, and the least for a few ticks if skin comes from two sides.
 /// Visible fur reaches 0.8 m beyond the skin on a giant of 40 m.
 pub(super) const KEPT: f64 = 1.4;
-pub(super) const LEAST: f64 = 1.0;
+pub(super) const LEAST: f64 = 0.9;
 
 /// How often the eye is pushed away from skin on several sides.
 const ROUNDS: usize = 8;
