@@ -19,8 +19,10 @@ const WIDE: f64 = 11.0;
 const HIGH: f64 = 9.0;
 const ABOVE: f64 = 4.0;
 
-/// It is drawn so many metres nearer to the eye, so that fur does not hide it.
+/// It is drawn so many metres nearer to the eye, so that fur does not hide it; its outline so near that nothing does: of a
+/// climber on the far side, the outline is seen and hardly more.
 const NEARER: f64 = 2.5;
+const NEAREST: f64 = 1e3;
 
 /// Draws the mark, if the climber is small enough.
 pub(super) fn draw(over: &mut Overlay, battle: &Battle<'_>, view: &View) {
@@ -39,15 +41,11 @@ pub(super) fn draw(over: &mut Overlay, battle: &Battle<'_>, view: &View) {
     // On pictures of many rows it is as large a part of them as on small ones.
     let pixel = pixel * (f64::from(view.rows) / 540.0).max(1.0);
     let tip = head + up * (ABOVE * pixel);
-    let [left, other] = [-0.5, 0.5].map(|side| {
-        let corner = tip + up * (HIGH * pixel) + right * (side * WIDE * pixel);
-        nearer(corner, view.camera.eye, NEARER)
-    });
-    let tip = nearer(tip, view.camera.eye, NEARER);
-    over.triangle([tip, left, other], seen_through(ORANGE, 0.9 * opacity));
-    over.path(
-        &[tip, left, other, tip],
-        1.5,
-        seen_through(WHITE, 0.9 * opacity),
-    );
+    let corners = [[0.0, 0.0], [-0.5, 1.0], [0.5, 1.0]]
+        .map(|[side, high]| tip + up * (high * HIGH * pixel) + right * (side * WIDE * pixel));
+    let eye = view.camera.eye;
+    let fill = corners.map(|corner| nearer(corner, eye, NEARER));
+    over.triangle(fill, seen_through(ORANGE, 0.9 * opacity));
+    let [a, b, c] = corners.map(|corner| nearer(corner, eye, NEAREST));
+    over.path(&[a, b, c, a], 1.5, seen_through(WHITE, 0.9 * opacity));
 }

@@ -21,13 +21,13 @@ const SPARKS: u32 = 11;
 const SPARKS_FLY: f64 = 1.1;
 
 /// Radius of the ring of a charge around the sword's grip, metres.
-const RING: f64 = 0.55;
+const RING: f64 = 0.5;
 
 /// Lines of a whole ring.
 const SIDES: u32 = 40;
 
 /// How much nearer to the eye sparks and rings are drawn, metres: fur does not hide them.
-const NEARER: f64 = 0.6;
+const NEARER: f64 = 0.4;
 
 /// What the weapons did in the last ticks.
 #[derive(Debug, Default)]
@@ -118,8 +118,8 @@ fn blade(over: &mut Overlay, battle: &Battle<'_>, view: &View, [grip, tip]: [DVe
         return;
     }
     let middle = nearer(grip.lerp(tip, 0.5), view.camera.eye, NEARER);
-    let color = [0.55, 0.8, 1.0, 0.4 * charge as f32];
-    glow(over, view, middle, 0.15 + 0.5 * charge, color);
+    let color = [0.55, 0.8, 1.0, 0.3 * charge as f32];
+    glow(over, view, middle, 0.12 + 0.2 * charge, color);
     let center = nearer(grip, view.camera.eye, NEARER);
     let [right, up] = view.sides(center);
     let at = |side: f64| {

@@ -1,8 +1,9 @@
 //! The hero's weapons: which clip shows what a fighter does, and where its hands bring sword and bow.
 //!
 //! The clips of a stab hold the sword with its blade down. Inverse kinematics then brings the hand to the hilt of the
-//! fight's blade, and the drawn tip to the point of the skin that the stab goes to. While a hand holds on, the blade comes
-//! down at a slant, since the body is between the hand and the skin.
+//! fight's blade, and the drawn tip to the point of the skin that the stab goes to. While the other hand holds on, the
+//! raised blade points up, as the fight has it, or the body would hide it; and it comes down at a slant, since the body is
+//! between the hand and the skin.
 
 use clamber_animation::ik::{IkError, TwoBoneGoal, orient};
 use clamber_animation::{AnimationError, AnimationSet, ClipId, Layer, damp, joint_in_model};
@@ -236,6 +237,7 @@ impl Arms {
         dt: f64,
     ) -> Result<(), IkError> {
         self.show_sword(pose);
+        self.turn_blade_up(pose, fighter);
         let aims = self.shown.is_some_and(|(one, _)| one.is_bow());
         self.aims = damp(self.aims, f64::from(u8::from(aims)), RETURNS, dt);
         if self.aims > 0.01 {
@@ -274,14 +276,37 @@ impl Arms {
         pose.transforms[sheathed.index()].scale = scale(!is_out);
     }
 
+    /// Turns the blade up in a fist that holds it blade down, while it is raised on a hold; a strike turns it down again.
+    fn turn_blade_up(&self, pose: &mut Pose, fighter: &Fighter) {
+        let (Some(sword), Some(config)) = (self.joints.sword, fighter.config().sword) else {
+            return;
+        };
+        let share = match fighter.act() {
+            Act::Raise { .. } | Act::Charge { .. } => 1.0,
+            Act::Strike { seconds, .. } => (1.0 - seconds / config.strike).clamp(0.0, 1.0),
+            _ => 0.0,
+        };
+        let holds = fighter.climber().state().mode.is_holding();
+        if share > 0.0 && holds {
+            let turn = rotation_from_axis_angle(DVec3::X, share * core::f64::consts::PI);
+            let own = &mut pose.transforms[sword.index()].rotation;
+            *own = (own.as_dquat() * turn).normalize().as_quat();
+        }
+    }
+
     /// Where the fight wants the grip: at the hilt while the sword is raised, or so that the tip is in the skin.
     fn wanted_grip(&self, root: &Similarity, fighter: &Fighter) -> Option<Grip> {
         let sword = fighter.config().sword?;
         let in_model = |place: DVec3| root.inverse_transform_point(place);
         let (target, deep) = match fighter.act() {
             Act::Raise { .. } | Act::Charge { .. } => {
-                let place = in_model(fighter.blade()?.hilt);
-                return Some(Grip { place, along: None });
+                let blade = fighter.blade()?;
+                let along = root.rotation.conjugate() * (blade.tip - blade.hilt);
+                let holds = fighter.climber().state().mode.is_holding();
+                return Some(Grip {
+                    place: in_model(blade.hilt),
+                    along: along.try_normalize().filter(|_| holds),
+                });
             }
             Act::Strike { target, .. } => (target, 0.0),
             Act::PullOut { seconds, target } => {
