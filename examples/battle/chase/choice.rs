@@ -35,7 +35,7 @@ const FRONT: f64 = 2.0;
 const PROFILE: f64 = 0.25;
 
 /// How much height counts in a stab, up to the sine of this angle: from a low place the head hides who is on its top.
-const HIGH: f64 = 2.0;
+const HIGH: f64 = 1.2;
 const ENOUGH: f64 = 0.5;
 
 /// The climber's head, above the middle of its ball, has to be seen in a stab as well, metres.

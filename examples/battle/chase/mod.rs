@@ -23,7 +23,7 @@ use skin::{KEPT, LEAST, Skin};
 const FAR: f64 = 7.5;
 
 /// In a stab: for each metre between the climber and the face, and at least, metres.
-const FAR_IN_STAB: f64 = 1.1;
+const FAR_IN_STAB: f64 = 1.3;
 const LEAST_IN_STAB: f64 = 8.0;
 
 /// Distance from a giant that falls dead, as a share of its height; and seconds of the way there.
@@ -288,7 +288,7 @@ fn middle(scene: &Scene<'_>, stab: f64) -> (DVec3, f64) {
     let eased = eased(stab);
     let between = climber.distance(face.place);
     let far = (FAR_IN_STAB * between).max(LEAST_IN_STAB);
-    let center = climber.lerp(face.place, 0.4 * eased);
+    let center = climber.lerp(face.place, 0.55 * eased);
     (center, FAR + (far - FAR) * eased)
 }
 
