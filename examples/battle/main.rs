@@ -127,7 +127,7 @@ impl FilmOptions {
 enum CameraKind {
     /// Circles around the creature.
     Orbit,
-    /// Follows the climber.
+    /// Follows the climber, outside of fur; in stabs near the giant's face it shows both.
     Chase,
     /// Beside the climber, near enough to see its hands.
     Close,

@@ -8,6 +8,7 @@ use arms::Arms;
 use clamber_body::clamber_animation::AnimationError;
 use clamber_body::clamber_animation::ik::IkError;
 use clamber_body::{Body, BodyError, BodyFrame, Figure, FigureError, Humanoid, HumanoidError};
+use clamber_fight::ArenaEvent;
 use clamber_gltf::{GltfError, Rig};
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Palette, Pose, RigError, Skeleton};
@@ -109,7 +110,11 @@ impl Hero {
         });
         let fighter = battle.performer().fighter();
         if let (Some(arms), Some(fighter)) = (&mut self.arms, fighter) {
-            let aim = battle.input().aim;
+            let shot = |event: &ArenaEvent| matches!(event, ArenaEvent::Shot { .. });
+            let has_shot = battle
+                .arena()
+                .is_some_and(|arena| arena.events().iter().any(shot));
+            let aim = (battle.input().aim, has_shot);
             arms.play(&self.figure, &mut self.body, fighter, aim, dt)?;
         }
         battle.touched(|obstacles| {

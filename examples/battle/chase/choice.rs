@@ -5,9 +5,9 @@ use clamber_scenes::battle::{Battle, CREATURE, TERRAIN};
 use clamber_scenes::valley;
 use glam::DVec3;
 
-use super::ABOVE_GROUND;
 use super::face::Seen;
 use super::skin::{KEPT, Skin};
+use super::view::ABOVE_GROUND;
 
 /// Directions around the climber, and their heights above the horizon, radians.
 const AROUND: u32 = 16;
