@@ -9,7 +9,7 @@ use prost::Message;
 
 use crate::file::{self, Kind};
 use crate::messages::{Snapshot, Tick};
-use crate::{RecordError, RecordingInfo, topics};
+use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
 
 /// The largest file that is read, bytes: a recording is read into memory. Twenty minutes of a battle have 240 MB.
 const LARGEST: u64 = 1 << 30;
@@ -83,29 +83,33 @@ pub struct Recording {
     ending: Ending,
 }
 
+/// Reads a file that is not too large.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
+    let failed = |source| RecordError::Io {
+        what: format!("cannot read {}", path.display()),
+        source,
+    };
+    let file = File::open(path).map_err(failed)?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed shows that a file is too long, whatever length the file system reports.
+    let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
+    let read = read.map_err(failed)? as u64;
+    if read > LARGEST {
+        return Err(RecordError::TooLarge {
+            bytes: read,
+            limit: LARGEST,
+        });
+    }
+    Ok(bytes)
+}
+
 impl Recording {
     /// Reads a recording from a file of at most 1 GiB.
     ///
     /// # Errors
     /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
-        let path = path.as_ref();
-        let failed = |source| RecordError::Io {
-            what: format!("cannot read {}", path.display()),
-            source,
-        };
-        let file = File::open(path).map_err(failed)?;
-        let mut bytes = Vec::new();
-        // One byte more than allowed shows that a file is too long, whatever length the file system reports.
-        let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
-        let read = read.map_err(failed)? as u64;
-        if read > LARGEST {
-            return Err(RecordError::TooLarge {
-                bytes: read,
-                limit: LARGEST,
-            });
-        }
-        Self::from_bytes(bytes)
+        Self::from_bytes(read_file(path.as_ref())?)
     }
 
     /// Reads a recording from the bytes of its file.
@@ -118,6 +122,10 @@ impl Recording {
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
         let mut contents = file::read(&bytes)?;
+        if contents.metadata.contains_key(ArenaInfo::METADATA) {
+            let kind = "it is a recording of an arena; read it with ArenaRecording".to_owned();
+            return Err(RecordError::NotARecording(kind));
+        }
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
                 let (ending, wanted) = (&contents.ending, format!("metadata named {name:?}"));
@@ -168,6 +176,8 @@ impl Recording {
                 }
                 self.snapshots.push((tick, place));
             }
+            // Only recordings of arenas have these.
+            Kind::Arena | Kind::ArenaSnapshot => {}
         }
         Ok(())
     }

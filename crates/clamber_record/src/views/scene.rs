@@ -71,7 +71,7 @@ impl Scene {
     }
 
     /// Adds the climber's body: a ball, or a capsule while it is upright and has a height.
-    fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
+    pub(crate) fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
         let tint = Some(color_of(state.mode));
         let diameter = 2.0 * self.radius;
         let ball = |center| SpherePrimitive {
@@ -158,7 +158,7 @@ fn color_of(mode: ClimberMode) -> Color {
 }
 
 /// The shortest rotation from +Z to a unit vector; about X where they are opposite.
-fn from_z_to(to: DVec3) -> DQuat {
+pub(crate) fn from_z_to(to: DVec3) -> DQuat {
     let axis = DVec3::Z.cross(to);
     let real = 1.0 + to.z;
     if real < 1e-9 {
