@@ -25,12 +25,16 @@ pub struct RecordOptions {
     /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4: 15 messages
     /// a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
     pub transforms_every: u32,
-    /// Ticks between two views of the skin, with its points and the touched triangles; 0 for none. Default 4, like the
-    /// transforms: a skin that is recorded less often lags the joints. This is the most expensive part: each view skins the whole
-    /// creature and takes some 15 kB. Raise both for large creatures.
+    /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the transforms: a skin
+    /// that is recorded less often lags the joints. Each view skins the whole creature and takes some 12 kB. Raise both for large
+    /// creatures.
     ///
     /// Until a view is written, it shares the surface's mesh. The first edit in that time has to copy the mesh.
     pub skin_every: u32,
+    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second. They are shown until
+    /// the next view of the skin. They count only in ticks with such a view. This is the most expensive part: a view takes some
+    /// 50 kB.
+    pub touched_every: u32,
     /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
     /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
@@ -44,6 +48,7 @@ impl Default for RecordOptions {
         Self {
             transforms_every: 4,
             skin_every: 4,
+            touched_every: 60,
             skin_points: 1000,
             chunk_ticks: 60,
         }

@@ -11,7 +11,7 @@ use crate::file::{self, Kind};
 use crate::messages::{Snapshot, Tick};
 use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
 
-/// The largest file that is read, bytes: a recording is read into memory. Twenty minutes of a battle have 240 MB.
+/// The largest file that is read, bytes: a recording is read into memory. Twenty minutes of a battle have some 600 MB.
 const LARGEST: u64 = 1 << 30;
 
 /// How the file of a recording ends.

@@ -49,7 +49,10 @@ pub(crate) struct Taken {
 pub(crate) struct TakenSkin {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) touched: Diagnostics,
-    pub(crate) triangles: Vec<TriangleId>,
+    /// `None` if they are not due.
+    pub(crate) triangles: Option<Vec<TriangleId>>,
+    /// Ticks until the next view.
+    pub(crate) every: u32,
 }
 
 impl Taken {
@@ -108,7 +111,9 @@ impl Taken {
         self.skin = due(options.skin_every).then(|| TakenSkin {
             mesh: Arc::clone(view.surface.mesh()),
             touched: view.surface.diagnostics(),
-            triangles: view.surface.touched_triangles().collect(),
+            triangles: due(options.touched_every)
+                .then(|| view.surface.touched_triangles().collect()),
+            every: options.skin_every,
         });
         self.figures.clear();
         self.scenery.clear();

@@ -72,7 +72,7 @@ impl<W: Write> Writing<W> {
             channels,
             frames: Frames::new(skeleton),
             skin: Skin::new(skin_points),
-            scene: Scene::new(&info.climber),
+            scene: Scene::new(&info.climber, info.tick_seconds),
             scenery: Sceneries::default(),
             creature: info.creature.clone(),
             joints: joints.collect(),

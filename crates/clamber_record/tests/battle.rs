@@ -368,6 +368,7 @@ fn recording_does_not_change_the_battle() {
     let how = RecordOptions {
         transforms_every: 1,
         skin_every: 1,
+        touched_every: 1,
         ..RecordOptions::default()
     };
     let mut recorder = BattleRecorder::new(Vec::new(), &recorded, &options, how).unwrap();
