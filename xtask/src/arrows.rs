@@ -84,6 +84,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_animation",
             "clamber_body",
             "clamber_colossus",
+            "clamber_fight",
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",

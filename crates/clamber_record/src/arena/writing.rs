@@ -72,7 +72,9 @@ impl<W: Write> ArenaWriting<W> {
             output,
             creatures,
             fighters: fighters
-                .map(|(number, config)| (info.fighter(number), Scene::new(config, info.tick_seconds)))
+                .map(|(number, config)| {
+                    (info.fighter(number), Scene::new(config, info.tick_seconds))
+                })
                 .collect(),
             skin: Skin::new(skin_points),
             meshes: Sceneries::default(),
