@@ -11,6 +11,7 @@ mod rigid_pose;
 #[cfg(feature = "parry")]
 pub mod shapes;
 mod surface;
+mod triangle_terrain;
 
 pub use attachment::{Attachment, Continuity, Followed};
 /// The shape that obstacles are queried with.
@@ -34,3 +35,4 @@ pub use rapier::{BodyPoses, RapierTerrain, apply_push};
 #[cfg(feature = "rapier")]
 pub use rapier3d;
 pub use rigid_pose::RigidPose;
+pub use triangle_terrain::{TerrainError, TriangleTerrain};
