@@ -21,7 +21,7 @@ pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 /// Whether an obstacle moves during a cast.
 pub use clamber_surface::surface::TargetMotion;
 #[cfg(feature = "rapier")]
-pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
+pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport, DebrisSnapshot};
 /// The version of glam that this crate's API uses.
 pub use glam;
 pub use half_space::HalfSpace;
