@@ -9,6 +9,7 @@ mod info;
 mod messages;
 mod names;
 mod output;
+mod places;
 mod recorder;
 mod recording;
 mod replay;

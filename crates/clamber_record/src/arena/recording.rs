@@ -2,12 +2,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use clamber_climber::ClimberInput;
-use prost::Message;
 
 use super::ArenaInfo;
 use crate::file::{self, Kind};
 use crate::messages::{ArenaSnapshot, ArenaTick};
-use crate::recording::read_file;
+use crate::places::{Places, decode, read_file};
 use crate::{Ending, RecordError, RecordingInfo, topics};
 
 /// A tick of an arena as it was recorded.
@@ -29,11 +28,7 @@ pub struct RecordedArenaTick {
 pub struct ArenaRecording {
     info: ArenaInfo,
     bytes: Vec<u8>,
-    first: u64,
-    /// The bytes of each tick's message.
-    ticks: Vec<Range<usize>>,
-    /// Ticks with a saved state, ascending, and the bytes of its message.
-    saved: Vec<(u64, Range<usize>)>,
+    places: Places,
     ending: Ending,
 }
 
@@ -71,9 +66,7 @@ impl ArenaRecording {
         let mut recording = Self {
             info,
             bytes,
-            first: 0,
-            ticks: Vec::new(),
-            saved: Vec::new(),
+            places: Places::default(),
             ending: contents.ending,
         };
         for (kind, place) in contents.messages {
@@ -89,30 +82,18 @@ impl ArenaRecording {
 
     /// Checks a message and stores its place.
     fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
-        let last = self.last().unwrap_or_default();
         match kind {
             Kind::Arena => {
                 let tick = self.decode_tick(&place)?.tick;
-                if self.ticks.is_empty() {
-                    self.first = tick;
-                }
-                let expected = self.first.checked_add(self.ticks.len() as u64);
-                if expected != Some(tick) {
-                    return Err(RecordError::Order { last, found: tick });
-                }
-                self.ticks.push(place);
+                self.places.add_tick(tick, place)
             }
             Kind::ArenaSnapshot => {
                 let tick = self.decode_saved(&place)?.tick;
-                if self.last() != Some(tick) {
-                    return Err(RecordError::Order { last, found: tick });
-                }
-                self.saved.push((tick, place));
+                self.places.add_saved(tick, place)
             }
             // Only recordings of one climber have these.
-            Kind::Tick | Kind::Snapshot => {}
+            Kind::Tick | Kind::Snapshot => Ok(()),
         }
-        Ok(())
     }
 
     /// The metadata of the recording.
@@ -127,23 +108,22 @@ impl ArenaRecording {
 
     /// Number of ticks.
     pub fn len(&self) -> usize {
-        self.ticks.len()
+        self.places.len()
     }
 
     /// True if there are no ticks.
     pub fn is_empty(&self) -> bool {
-        self.ticks.is_empty()
+        self.places.len() == 0
     }
 
     /// Number of the first tick; `None` without ticks.
     pub fn first(&self) -> Option<u64> {
-        (!self.is_empty()).then_some(self.first)
+        self.places.first()
     }
 
     /// Number of the last tick; `None` without ticks.
     pub fn last(&self) -> Option<u64> {
-        let steps = self.ticks.len().checked_sub(1)?;
-        Some(self.first + steps as u64)
+        self.places.last()
     }
 
     /// The ticks from this number on, in order: all for a number before the first one, none for a number after the last one.
@@ -151,9 +131,7 @@ impl ArenaRecording {
         &self,
         tick: u64,
     ) -> impl Iterator<Item = Result<RecordedArenaTick, RecordError>> + '_ {
-        let skipped = tick.saturating_sub(self.first);
-        let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
-        let ticks = self.ticks.iter().skip(skipped);
+        let ticks = self.places.from(tick);
         ticks.map(|place| self.decode_tick(place))
     }
 
@@ -164,18 +142,12 @@ impl ArenaRecording {
     /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
     /// state.
     pub fn saved(&self, tick: u64) -> Result<(u64, Vec<u8>), RecordError> {
-        let ticks = self.first().zip(self.last());
-        if ticks.is_none_or(|(first, last)| !(first..=last).contains(&tick)) {
-            return Err(RecordError::NoTick { asked: tick, ticks });
-        }
-        let after = self.saved.partition_point(|(at, _)| *at <= tick);
-        let nearest = after.checked_sub(1).map(|index| &self.saved[index]);
-        let (at, place) = nearest.ok_or(RecordError::NoSnapshot(tick))?;
-        Ok((*at, self.decode_saved(place)?.state.to_vec()))
+        let (at, place) = self.places.saved(tick)?;
+        Ok((at, self.decode_saved(place)?.state.to_vec()))
     }
 
     fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedArenaTick, RecordError> {
-        let tick: ArenaTick = self.decode(place, topics::ARENA)?;
+        let tick: ArenaTick = decode(&self.bytes, place, topics::ARENA)?;
         Ok(RecordedArenaTick {
             tick: tick.tick,
             inputs: tick.inputs.into_iter().map(Into::into).collect(),
@@ -185,18 +157,6 @@ impl ArenaRecording {
     }
 
     fn decode_saved(&self, place: &Range<usize>) -> Result<ArenaSnapshot, RecordError> {
-        self.decode(place, topics::ARENA_SNAPSHOT)
-    }
-
-    fn decode<M: Message + Default>(
-        &self,
-        place: &Range<usize>,
-        topic: &'static str,
-    ) -> Result<M, RecordError> {
-        M::decode(&self.bytes[place.clone()]).map_err(|error| RecordError::Message {
-            at: place.start,
-            topic,
-            reason: error.to_string(),
-        })
+        decode(&self.bytes, place, topics::ARENA_SNAPSHOT)
     }
 }
