@@ -45,6 +45,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_world",
             "clamber_climber",
             "clamber_colossus",
+            "clamber_fight",
         ],
     ),
     (
