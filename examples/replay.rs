@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber::record::{ArenaRecording, Ending, RecordError, Recording};
+use clamber::record::{AnyRecording, ArenaRecording, Ending};
 use clamber_scenes::{battle, duel};
 use clap::Parser;
 
@@ -39,9 +39,9 @@ fn main() -> ExitCode {
 
 fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let Options { path, from } = Options::parse();
-    let recording = match Recording::open(&path) {
-        Err(RecordError::NotARecording(_)) => return arena(&path, from),
-        recording => recording?,
+    let recording = match AnyRecording::open(&path)? {
+        AnyRecording::Climber(recording) => *recording,
+        AnyRecording::Arena(recording) => return arena(&path, &recording, from),
     };
     let (info, ticks) = (recording.info(), recording.len());
     let seconds = ticks.saturating_sub(1) as f64 * info.tick_seconds;
@@ -76,8 +76,11 @@ fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
 }
 
 /// Fights the recording of an arena again.
-fn arena(path: &Path, from: Option<u64>) -> Result<ExitCode, Box<dyn std::error::Error>> {
-    let recording = ArenaRecording::open(path)?;
+fn arena(
+    path: &Path,
+    recording: &ArenaRecording,
+    from: Option<u64>,
+) -> Result<ExitCode, Box<dyn std::error::Error>> {
     let (info, ticks) = (recording.info(), recording.len());
     println!(
         "{}: {} against {}, {ticks} ticks, written by version {}",
@@ -89,7 +92,7 @@ fn arena(path: &Path, from: Option<u64>) -> Result<ExitCode, Box<dyn std::error:
     if *recording.ending() != Ending::Whole {
         println!("{}, read {ticks} ticks", recording.ending());
     }
-    let replay = duel::replay(&recording, from)?;
+    let replay = duel::replay(recording, from)?;
     if let Some(difference) = &replay.difference {
         eprintln!("{difference}");
         eprintln!("replay: FAILED after {} ticks that agree", replay.agreed);

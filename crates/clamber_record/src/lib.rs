@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod any;
 mod arena;
 mod chunks;
 mod config;
@@ -18,6 +19,7 @@ pub mod topics;
 mod views;
 mod writing;
 
+pub use any::AnyRecording;
 pub use arena::{
     ArenaDifference, ArenaInfo, ArenaPart, ArenaRecorder, ArenaRecording, ArenaReplay,
     RecordedArenaTick,

@@ -2,7 +2,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
-use crate::file::{self, Kind};
+use crate::file::{self, Contents, Kind};
 use crate::messages::{Snapshot, Tick};
 use crate::places::{Places, decode, read_file};
 use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
@@ -91,7 +91,14 @@ impl Recording {
     /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
-        let mut contents = file::read(&bytes)?;
+        let contents = file::read(&bytes)?;
+        Self::from_contents(bytes, contents)
+    }
+
+    pub(crate) fn from_contents(
+        bytes: Vec<u8>,
+        mut contents: Contents,
+    ) -> Result<Self, RecordError> {
         if contents.metadata.contains_key(ArenaInfo::METADATA) {
             let kind = "it is a recording of an arena; read it with ArenaRecording".to_owned();
             return Err(RecordError::NotARecording(kind));

@@ -4,7 +4,7 @@ use std::path::Path;
 use clamber_climber::ClimberInput;
 
 use super::ArenaInfo;
-use crate::file::{self, Kind};
+use crate::file::{self, Contents, Kind};
 use crate::messages::{ArenaSnapshot, ArenaTick};
 use crate::places::{Places, decode, read_file};
 use crate::{Ending, RecordError, RecordingInfo, topics};
@@ -50,7 +50,14 @@ impl ArenaRecording {
     /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
-        let mut contents = file::read(&bytes)?;
+        let contents = file::read(&bytes)?;
+        Self::from_contents(bytes, contents)
+    }
+
+    pub(crate) fn from_contents(
+        bytes: Vec<u8>,
+        mut contents: Contents,
+    ) -> Result<Self, RecordError> {
         let of_one = contents.metadata.contains_key(RecordingInfo::METADATA);
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {

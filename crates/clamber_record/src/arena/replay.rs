@@ -3,7 +3,7 @@ use std::fmt;
 use clamber_climber::ClimberInput;
 use clamber_fight::{Arena, ArenaError};
 
-use super::{ArenaRecording, RecordedArenaTick};
+use super::{ArenaInfo, ArenaRecording, RecordedArenaTick};
 use crate::RecordError;
 
 /// A part of an arena.
@@ -28,6 +28,31 @@ pub struct ArenaDifference {
     pub fingerprint: u64,
     /// The parts that differ, each with its name.
     pub parts: Vec<(ArenaPart, String)>,
+}
+
+impl ArenaDifference {
+    /// Compares a recorded tick with the fingerprints of another run's: [`Arena::fingerprint`] and
+    /// [`Arena::part_fingerprints`]. `None` if they are equal. Names are those of `info`.
+    pub fn between(
+        info: &ArenaInfo,
+        recorded: &RecordedArenaTick,
+        fingerprint: u64,
+        parts: &[u64],
+    ) -> Option<Self> {
+        let (creatures, fighters) = (info.creatures.len(), info.fighters.len());
+        let part = |index: usize| match index.checked_sub(creatures) {
+            None => (ArenaPart::Creature(index), info.creature(index)),
+            Some(index) if index < fighters => (ArenaPart::Fighter(index), info.fighter(index)),
+            Some(_) => (ArenaPart::Rest, "projectiles or noises".to_owned()),
+        };
+        let both = parts.iter().zip(&recorded.parts).enumerate();
+        let differ = both.filter(|(_, (ours, theirs))| ours != theirs);
+        (fingerprint != recorded.fingerprint).then(|| Self {
+            recorded: recorded.clone(),
+            fingerprint,
+            parts: differ.map(|(index, _)| part(index)).collect(),
+        })
+    }
 }
 
 impl fmt::Display for ArenaDifference {
@@ -89,34 +114,13 @@ impl ArenaRecording {
             if recorded.tick > from {
                 step(arena, &recorded.inputs)?;
             }
-            let fingerprint = arena.fingerprint();
-            if fingerprint != recorded.fingerprint {
-                replay.difference = Some(self.difference(arena, recorded));
+            if arena.fingerprint() != recorded.fingerprint {
+                let (all, parts) = (arena.fingerprint(), arena.part_fingerprints());
+                replay.difference = ArenaDifference::between(self.info(), &recorded, all, &parts);
                 break;
             }
             replay.agreed += 1;
         }
         Ok(replay)
-    }
-
-    fn difference(&self, arena: &Arena, recorded: RecordedArenaTick) -> ArenaDifference {
-        let creatures = arena.creatures().len();
-        let fighters = arena.fighters().len();
-        let part = |index: usize| match index.checked_sub(creatures) {
-            None => (ArenaPart::Creature(index), self.info().creature(index)),
-            Some(index) if index < fighters => {
-                (ArenaPart::Fighter(index), self.info().fighter(index))
-            }
-            Some(_) => (ArenaPart::Rest, "projectiles or noises".to_owned()),
-        };
-        let both = arena.part_fingerprints().into_iter().zip(&recorded.parts);
-        let parts = both
-            .enumerate()
-            .filter(|(_, (ours, theirs))| ours != *theirs);
-        ArenaDifference {
-            fingerprint: arena.fingerprint(),
-            parts: parts.map(|(index, _)| part(index)).collect(),
-            recorded,
-        }
     }
 }
