@@ -1,24 +1,24 @@
-//! Simulates a recorded battle again, and compares every tick bit for bit.
+//! Simulates a recorded battle or duel again, and compares every tick bit for bit.
 //!
 //! `cargo run --release --features record --example battle -- --record target/battle.mcap`, then
 //! `cargo run --release --features record --example replay -- target/battle.mcap`. With `--from TICK` it
 //! starts from the nearest snapshot at or before that tick. Exits with 1 if a tick differs, with 2 if there is
 //! nothing to replay.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clamber::record::{Ending, Recording};
-use clamber_scenes::battle;
+use clamber::record::{AnyRecording, ArenaRecording, Ending};
+use clamber_scenes::{battle, duel};
 use clap::Parser;
 
-/// Simulates a recorded battle again, and compares every tick bit for bit.
+/// Simulates a recorded battle or duel again, and compares every tick bit for bit.
 ///
 /// Exits with 1 if a tick differs, with 2 if there is nothing to replay.
 #[derive(Debug, Parser)]
 #[command(name = "replay", version)]
 struct Options {
-    /// The recording that `battle --record FILE` wrote.
+    /// The recording that `battle --record FILE` or `duel --record FILE` wrote.
     #[arg(value_name = "FILE.mcap")]
     path: PathBuf,
 
@@ -39,7 +39,10 @@ fn main() -> ExitCode {
 
 fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let Options { path, from } = Options::parse();
-    let recording = Recording::open(&path)?;
+    let recording = match AnyRecording::open(&path)? {
+        AnyRecording::Climber(recording) => *recording,
+        AnyRecording::Arena(recording) => return arena(&path, &recording, from),
+    };
     let (info, ticks) = (recording.info(), recording.len());
     let seconds = ticks.saturating_sub(1) as f64 * info.tick_seconds;
     println!(
@@ -67,6 +70,36 @@ fn run() -> Result<ExitCode, Box<dyn std::error::Error>> {
     };
     println!(
         "replay: all {} ticks from tick {} on agree in every bit of {compared}",
+        replay.agreed, replay.from
+    );
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Fights the recording of an arena again.
+fn arena(
+    path: &Path,
+    recording: &ArenaRecording,
+    from: Option<u64>,
+) -> Result<ExitCode, Box<dyn std::error::Error>> {
+    let (info, ticks) = (recording.info(), recording.len());
+    println!(
+        "{}: {} against {}, {ticks} ticks, written by version {}",
+        path.display(),
+        info.fighters.join(" and "),
+        info.creatures.join(" and "),
+        info.version
+    );
+    if *recording.ending() != Ending::Whole {
+        println!("{}, read {ticks} ticks", recording.ending());
+    }
+    let replay = duel::replay(recording, from)?;
+    if let Some(difference) = &replay.difference {
+        eprintln!("{difference}");
+        eprintln!("replay: FAILED after {} ticks that agree", replay.agreed);
+        return Ok(ExitCode::FAILURE);
+    }
+    println!(
+        "replay: all {} ticks from tick {} on agree in every bit of climbers, creatures and arrows",
         replay.agreed, replay.from
     );
     Ok(ExitCode::SUCCESS)

@@ -10,22 +10,21 @@
 //! cargo run --release --features ggrs --example duel -- --player 1 --port 7001 --peer 127.0.0.1:7000
 //! ```
 
-mod fight;
 mod line;
 mod peer;
 
 use std::error::Error;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use clamber::colossus::CreatureKind;
+use clamber_scenes::duel::{Duel, RATE};
 use clap::Parser;
-use fight::Fight;
 use line::Line;
 use peer::Peer;
-
-/// Ticks a second.
-const RATE: u64 = 60;
 
 /// Two climbers fight one giant over a network, by rollback.
 #[derive(Debug, Parser)]
@@ -56,6 +55,10 @@ struct Options {
     jitter: f64,
     #[arg(long, value_name = "PERCENT", default_value_t = 5.0)]
     lost: f64,
+
+    /// Record the fight to a file for Foxglove, Rerun and the replay example; needs --features record.
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -76,13 +79,13 @@ fn main() -> ExitCode {
 /// Both peers, over a line that delays and loses messages, as fast as they can.
 fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
     let lines = Line::pair(options.round_trip, options.jitter, options.lost)?;
-    let kind = Fight::kind()?;
+    let kind = Duel::kind()?;
     let ticks = options.seconds * RATE;
     let [mut one, mut other] = {
         let [a, b] = lines.clone();
         [
-            Peer::new(a, [None, Some(1)], Fight::new(&kind)?)?,
-            Peer::new(b, [Some(0), None], Fight::new(&kind)?)?,
+            Peer::new(a, [None, Some(1)], Duel::new(&kind)?)?,
+            Peer::new(b, [Some(0), None], Duel::new(&kind)?)?,
         ]
     };
     while one.confirmed() < ticks || other.confirmed() < ticks {
@@ -113,10 +116,41 @@ fn in_one_process(options: &Options) -> Result<(), Box<dyn Error>> {
             "OTHER EVENTS"
         },
     );
-    if same && told {
-        Ok(())
-    } else {
-        Err("the peers have different fights".into())
+    if !(same && told) {
+        return Err("the peers have different fights".into());
+    }
+    record(options, &kind, &one, ticks)
+}
+
+/// Records a peer's fight if that was asked for, now that all inputs are certain.
+#[cfg(feature = "record")]
+fn record<A: peer::Address>(
+    options: &Options,
+    kind: &Arc<CreatureKind>,
+    peer: &Peer<A>,
+    ticks: u64,
+) -> Result<(), Box<dyn Error>> {
+    let Some(path) = &options.record else {
+        return Ok(());
+    };
+    let sum = clamber_scenes::duel::record(kind, peer.inputs_until(ticks), path)?;
+    if peer.sums_until(ticks).last().map(|(_, sum)| *sum) != Some(sum) {
+        return Err("the recorded fight is another one than the peer's".into());
+    }
+    println!("recorded to {}, with the same checksum", path.display());
+    Ok(())
+}
+
+#[cfg(not(feature = "record"))]
+fn record<A: peer::Address>(
+    options: &Options,
+    _: &Arc<CreatureKind>,
+    _: &Peer<A>,
+    _: u64,
+) -> Result<(), Box<dyn Error>> {
+    match options.record {
+        Some(_) => Err("built without recording: add `,record` to the features".into()),
+        None => Ok(()),
     }
 }
 
@@ -131,7 +165,8 @@ fn over_network(
     let ticks = options.seconds * RATE;
     let mut players = [Some(address); 2];
     players[player] = None;
-    let mut peer = Peer::new(socket, players, Fight::new(&Fight::kind()?)?)?;
+    let kind = Duel::kind()?;
+    let mut peer = Peer::new(socket, players, Duel::new(&kind)?)?;
     println!("waits for {address}");
     let (mut due, mut shown) = (Instant::now(), 0);
     while peer.confirmed() < ticks {
@@ -151,5 +186,5 @@ fn over_network(
     }
     let sum = peer.sums_until(ticks).last().map_or(0, |(_, sum)| *sum);
     println!("{ticks} ticks, checksum {sum:016x}: the other process has to print the same");
-    Ok(())
+    record(options, &kind, &peer, ticks)
 }

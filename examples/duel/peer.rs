@@ -5,6 +5,7 @@ use std::error::Error;
 use std::fmt::Debug;
 use std::hash::Hash;
 
+use clamber::climber::ClimberInput;
 use clamber::fight::ArenaEvent;
 use clamber::fight::rollback::ggrs::{
     DesyncDetection, GgrsError, GgrsEvent, GgrsRequest, NonBlockingSocket, P2PSession, PlayerType,
@@ -12,29 +13,36 @@ use clamber::fight::rollback::ggrs::{
 };
 use clamber::fight::rollback::{ArenaSession, Rollback};
 
-use crate::fight::Fight;
+use clamber_scenes::duel::Duel;
 
 /// Ticks from a press of a button until it counts: the less, the more rollbacks.
 const DELAY: usize = 2;
 
-pub(crate) struct Peer<A: Clone + PartialEq + Eq + Hash + Debug + 'static> {
+/// Who the other one is, to a line.
+pub(crate) trait Address: Clone + PartialEq + Eq + Hash + Debug + 'static {}
+
+impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Address for A {}
+
+pub(crate) struct Peer<A: Address> {
     session: P2PSession<ArenaSession<A>>,
-    fight: Fight,
+    fight: Duel,
     rollback: Rollback,
     /// Of each tick, the checksum that it had last.
     sums: BTreeMap<u64, u64>,
+    /// Of each tick, the inputs that led to it, as they were last.
+    inputs: BTreeMap<u64, Vec<ClimberInput>>,
     told: Vec<(u64, ArenaEvent)>,
     rollbacks: u32,
     longest: u32,
     waits: u32,
 }
 
-impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Peer<A> {
+impl<A: Address> Peer<A> {
     /// A peer that plays the players without an address.
     pub(crate) fn new(
         socket: impl NonBlockingSocket<A> + 'static,
         players: [Option<A>; 2],
-        fight: Fight,
+        fight: Duel,
     ) -> Result<Self, Box<dyn Error>> {
         let mut builder = SessionBuilder::<ArenaSession<A>>::new()
             .with_num_players(2)?
@@ -49,6 +57,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Peer<A> {
             rollback: Rollback::new(&fight.arena),
             fight,
             sums: BTreeMap::new(),
+            inputs: BTreeMap::new(),
             told: Vec::new(),
             rollbacks: 0,
             longest: 0,
@@ -87,7 +96,7 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Peer<A> {
         }
         for player in self.session.local_player_handles() {
             self.session
-                .add_local_input(player, Fight::input(player, tick))?;
+                .add_local_input(player, Duel::input(player, tick))?;
         }
         let requests = match self.session.advance_frame() {
             Ok(requests) => requests,
@@ -105,11 +114,12 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Peer<A> {
         let steps = requests.iter().filter(is_step).count() as u32;
         self.rollbacks += requests.iter().filter(is_load).count() as u32;
         self.longest = self.longest.max(steps.saturating_sub(1));
-        let (sums, ground) = (&mut self.sums, self.fight.ground());
+        let (sums, taken, ground) = (&mut self.sums, &mut self.inputs, self.fight.ground);
         self.rollback
             .handle(&mut self.fight.arena, requests, |arena, inputs| {
-                Fight::step(arena, &ground, inputs)?;
+                Duel::step(arena, &ground, inputs)?;
                 sums.insert(arena.tick(), arena.fingerprint());
+                taken.insert(arena.tick(), inputs.to_vec());
                 Ok(())
             })?;
         let confirmed = self.session.confirmed_frame();
@@ -124,6 +134,11 @@ impl<A: Clone + PartialEq + Eq + Hash + Debug + 'static> Peer<A> {
             .range(..=tick)
             .map(|(tick, sum)| (*tick, *sum))
             .collect()
+    }
+
+    /// The inputs of all ticks up to one.
+    pub(crate) fn inputs_until(&self, tick: u64) -> impl Iterator<Item = Vec<ClimberInput>> {
+        self.inputs.range(..=tick).map(|(_, inputs)| inputs.clone())
     }
 
     /// What was told of ticks before one.

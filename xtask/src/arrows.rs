@@ -45,6 +45,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_world",
             "clamber_climber",
             "clamber_colossus",
+            "clamber_fight",
         ],
     ),
     (
@@ -84,6 +85,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "clamber_animation",
             "clamber_body",
             "clamber_colossus",
+            "clamber_fight",
             "clamber_world",
             "clamber_climber",
             "clamber_gltf",
@@ -115,7 +117,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
 ];
 
 /// What tests and examples of a crate may use beyond that, and `clamber_oracle`.
-const ALLOWED_FOR_TESTS: [(&str, &str); 18] = [
+const ALLOWED_FOR_TESTS: [(&str, &str); 21] = [
     ("bevy_clamber", "clamber_scenes"),
     ("clamber", "clamber_scenes"),
     ("clamber_animation", "clamber_gltf"),
@@ -131,6 +133,9 @@ const ALLOWED_FOR_TESTS: [(&str, &str); 18] = [
     ("clamber_benches", "clamber_scenes"),
     ("clamber_fight", "clamber_gltf"),
     ("clamber_recipes", "clamber"),
+    ("clamber_fuzz", "clamber_climber"),
+    ("clamber_fuzz", "clamber_colossus"),
+    ("clamber_fuzz", "clamber_fight"),
     ("clamber_fuzz", "clamber_scenes"),
     ("clamber_record", "clamber_scenes"),
     ("clamber_render", "clamber_scenes"),

@@ -10,7 +10,7 @@ use crate::run::{IGNORE_RUST_VERSION, cargo_output};
 
 /// What is not on by default but needed by an example, a test or a bench, or only adds to what there is.
 const FEATURES: &str = "\
-    bevy_clamber/clamber_gltf,bevy_clamber/colossus,bevy_clamber/diagnostics,bevy_clamber/gizmos,bevy_clamber/gltf,\
+    bevy_clamber/clamber_gltf,bevy_clamber/diagnostics,bevy_clamber/fight,bevy_clamber/gizmos,bevy_clamber/gltf,\
     bevy_clamber/input,bevy_clamber/picking,clamber/record,clamber/render,clamber_benches/record,clamber_benches/render,\
     clamber_climber/serde,clamber/ggrs,clamber_oracle/exact";
 

@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
 mod anchor;
+#[cfg(feature = "fight")]
+mod arena;
 mod camera;
 mod climber;
 mod collider;
@@ -28,6 +30,10 @@ mod surface;
 
 pub use anchor::{
     AnchorError, AnchorLost, AnchoredTo, SurfaceAnchor, SurfaceAnchorPlugin, SurfaceAnchors,
+};
+#[cfg(feature = "fight")]
+pub use arena::{
+    ArenaCreature, ArenaFighter, ArenaPlugin, ArenaProjectile, ArenaTerrain, FightArena, FightEvent,
 };
 pub use camera::{ClimberCamera, ClimberCameraInput, ClimberCameraPlugin};
 pub use climber::{
@@ -64,6 +70,7 @@ pub use obstacles::{
 };
 #[cfg(feature = "picking")]
 pub use picking::{SurfacePick, SurfacePickingPlugin};
+pub(crate) use plugins::ClimberTicks;
 pub use plugins::{ClamberPlugins, ClamberSystems};
 pub use query::{
     DrawnPose, DrawnSurfaceQuery, EntityHit, EntitySweepHit, SurfaceFilter, SurfacePose,
@@ -79,6 +86,8 @@ pub use clamber_body;
 pub use clamber_climber;
 #[cfg(feature = "colossus")]
 pub use clamber_colossus;
+#[cfg(feature = "fight")]
+pub use clamber_fight;
 #[cfg(feature = "clamber_gltf")]
 pub use clamber_gltf;
 /// Surfaces, their queries and meshes.

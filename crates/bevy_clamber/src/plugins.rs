@@ -71,3 +71,7 @@ pub enum ClamberSystems {
     /// entities are moved to the skin as it is drawn.
     Anchor,
 }
+
+/// The part of [`ClamberSystems::Climb`] in which climbers that are entities of their own are stepped, before an arena is.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ClimberTicks;

@@ -9,6 +9,10 @@ pub use crate::{
     EntityHit, GripRule, PoseTiming, PosedSurface, SkinnedCollider, SurfaceAnchor, SurfaceFilter,
     SurfaceQuery, WorldOrigin,
 };
+#[cfg(feature = "fight")]
+pub use crate::{
+    ArenaCreature, ArenaFighter, ArenaPlugin, ArenaProjectile, ArenaTerrain, FightArena, FightEvent,
+};
 #[cfg(feature = "input")]
 pub use crate::{ClimberControls, ClimberControlsPlugin};
 #[cfg(feature = "clamber_gltf")]

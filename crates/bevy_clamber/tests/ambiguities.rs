@@ -5,6 +5,7 @@
 mod common;
 
 use bevy_app::{App, FixedFirst, FixedPostUpdate, FixedUpdate, PostUpdate, PreUpdate, Update};
+use bevy_clamber::clamber_fight::{Arena, ArenaConfig};
 use bevy_clamber::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, Schedules};
@@ -49,6 +50,7 @@ fn no_systems_are_ambiguous_in_any_schedule() {
         ClimberControlsPlugin,
         RigPlayerPlugin::default(),
         ColossusPlugin::default(),
+        ArenaPlugin::default(),
         bevy_gizmos::GizmoPlugin,
         SurfaceGizmosPlugin::default(),
         bevy_picking::PickingPlugin,
@@ -75,6 +77,7 @@ fn no_systems_are_ambiguous_in_any_schedule() {
     );
     let hero = app.world_mut().spawn(hero).id();
     app.world_mut().spawn(ClimberCamera::new(hero));
+    app.insert_resource(FightArena::new(Arena::new(ArenaConfig::default()).unwrap()));
     for _ in 0..9 {
         app.update();
     }

@@ -4,9 +4,10 @@
 //! medians.
 //!
 //! - A plain tick, a save, a load, a fingerprint, and a rollback of eight ticks as ggrs asks for it: one load, and eight times a
-//!   tick, a save and a fingerprint. The same where a plate breaks in the fifth of the eight ticks.
+//!   tick, a save and a fingerprint. The same where a plate breaks in the fifth of the eight ticks. Ratios are to a plain tick.
 //! - 64 climbers and four giants: a tick as a share of a sixtieth of a second.
 //! - 500 arrows that stick in the giant: a tick more than without them.
+//! - 24 rocks that fall on the giant, in the snapshot as well: a tick of the rocks, a save and a load of them.
 //!
 //! Prints a table and writes it to `target/measure/arena.csv`: name, value, bound, holds.
 //!
@@ -18,7 +19,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clamber::climber::ClimberInput;
-use clamber::world::{Attachment, BodyPoses, MaterialPoint, Obstacle, ObstacleId, RapierTerrain};
+use clamber::world::{
+    Attachment, BodyPoses, Debris, DebrisConfig, DebrisSnapshot, MaterialPoint, Obstacle,
+    ObstacleId, RapierTerrain,
+};
 use clamber_colossus::{Brain, CreatureConfig, CreatureKind};
 use clamber_fight::actions::STAB;
 use clamber_fight::{
@@ -26,6 +30,7 @@ use clamber_fight::{
     ProjectileId, ProjectileKind, ProjectileMotion, creature_obstacle,
 };
 use clamber_scenes::measure::{Bound, Cells, is_brief, quantile};
+use clamber_scenes::rocks::scatter;
 use clamber_scenes::{giant, valley};
 use glam::DVec3;
 
@@ -65,16 +70,18 @@ fn run(brief: bool) -> Result<(), Failure> {
         riding.step(&[GRIP, ClimberInput::IDLE], &terrain)?;
     }
     let times = measure(&mut riding, &terrain, rounds, |_| GRIP)?;
-    let tick = report(&mut cells, "", &times);
+    let tick = times.tick;
+    report(&mut cells, "", &times, tick);
     let bytes = riding.to_bytes()?.len();
     cells.value("a snapshot as bytes", bytes as f64);
 
     let mut breaking = before_the_break(&kind, &terrain)?;
     let times = measure_break(&mut breaking, &terrain, rounds / 10 + 2)?;
-    report(&mut cells, ", a plate breaks", &times);
+    report(&mut cells, ", a plate breaks", &times, tick);
 
     crowd(&kind, &terrain, rounds / 10 + 2, &mut cells)?;
     arrows(&kind, &terrain, rounds, tick, &mut cells)?;
+    rocks(&kind, rounds / 3 + 2, tick, &mut cells)?;
     cells.finish("arena", brief)
 }
 
@@ -169,7 +176,8 @@ fn measure(
     })
 }
 
-fn report(cells: &mut Cells, what: &str, times: &Times) -> f64 {
+/// The times, and what they are beside a plain tick.
+fn report(cells: &mut Cells, what: &str, times: &Times, plain: f64) {
     let Times {
         tick,
         save,
@@ -189,14 +197,13 @@ fn report(cells: &mut Cells, what: &str, times: &Times) -> f64 {
     let mut ratio = |name: &str, value: f64, most: f64| {
         cells.push(
             &format!("{name}{what} / a tick"),
-            value / tick,
+            value / plain,
             Bound::Most(most),
         );
     };
     ratio("a save", *save, 0.1);
     ratio("a load", *load, 0.3);
     ratio("a rollback of eight ticks", *rollback, 10.0);
-    *tick
 }
 
 /// The arena four ticks before a stab breaks the plate over the giant's nape.
@@ -407,6 +414,60 @@ fn arrows(
         .any(|one| matches!(one, ArenaEvent::CameLoose { .. }));
     if full.projectiles().len() != 500 || lost {
         return Err("arrows are lost".into());
+    }
+    Ok(())
+}
+
+/// 24 rocks on the giant, which are saved and loaded with the arena.
+fn rocks(
+    kind: &Arc<CreatureKind>,
+    rounds: usize,
+    tick: f64,
+    cells: &mut Cells,
+) -> Result<(), Failure> {
+    let (mut arena, mut world) = (riders(kind)?, valley::world());
+    let mut debris = Debris::new(DebrisConfig::default());
+    for rock in scatter(&mut world, 24, 1, DVec3::new(0.0, 40.0, 0.0), 1.0) {
+        debris.add(rock, &mut world.bodies, &world.colliders)?;
+    }
+    let dt = arena.config().tick;
+    let mut saved = DebrisSnapshot::save(&world, &debris);
+    let mut all: [Vec<f64>; 3] = Default::default();
+    for round in 0..60 + rounds {
+        let poses = BodyPoses::default();
+        let among = RapierTerrain::of_world(&world, &poses);
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &among)];
+        arena.step(&[GRIP, ClimberInput::IDLE], &terrain)?;
+        let skin = arena.creature(CreatureId(0)).ok_or("no giant")?.surface();
+        let surfaces = [(creature_obstacle(CreatureId(0)), skin)];
+        let stepped = timed(|| {
+            debris.before_step(&surfaces, &mut world.bodies, &mut world.colliders, dt)?;
+            world.step_with_events(&debris, &());
+            let (broad, narrow) = (&world.broad_phase, &world.narrow_phase);
+            let (bodies, colliders) = (&mut world.bodies, &world.colliders);
+            Ok(debris
+                .after_step(&surfaces, bodies, colliders, broad, narrow, dt)
+                .map(drop)?)
+        })?;
+        let save = timed(|| {
+            saved = DebrisSnapshot::save(&world, &debris);
+            Ok(())
+        })?;
+        let load = timed(|| {
+            saved.restore(&mut world, &mut debris);
+            Ok(())
+        })?;
+        if round >= 60 {
+            for (times, time) in all.iter_mut().zip([stepped, save, load]) {
+                times.push(time);
+            }
+        }
+    }
+    let names = ["a tick", "a save", "a load"];
+    for (name, mut times) in names.into_iter().zip(all) {
+        let time = quantile(&mut times, 0.5);
+        cells.value(&format!("24 rocks, {name}, us"), time);
+        cells.value(&format!("24 rocks, {name} / a tick"), time / tick);
     }
     Ok(())
 }

@@ -1,8 +1,11 @@
 //! Compares two recordings of one scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clamber_record::{Difference, Ending, RecordError, Recording, Replayed};
+use clamber_record::{
+    AnyRecording, ArenaDifference, ArenaRecording, Difference, Ending, RecordError, Recording,
+    Replayed,
+};
 use clap::Args;
 use thiserror::Error;
 
@@ -46,6 +49,8 @@ pub enum Comparison {
     Equal(u64),
     /// The first tick that differs.
     Differ(Box<Difference>),
+    /// The first tick in which arenas differ.
+    ArenasDiffer(Box<ArenaDifference>),
     /// One ends after so many ticks that are equal, the other goes on.
     Shorter(u64),
 }
@@ -55,13 +60,28 @@ pub enum Comparison {
 /// # Errors
 /// [`CompareError`] if one cannot be read, or they are of different creatures or of different ticks.
 pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
-    let open = |path: &PathBuf| {
-        Recording::open(path).map_err(|error| CompareError::Record {
-            path: path.clone(),
-            error,
-        })
-    };
-    let [first, second] = [open(&options.first)?, open(&options.second)?];
+    match [open(&options.first)?, open(&options.second)?] {
+        [AnyRecording::Climber(one), AnyRecording::Climber(other)] => {
+            climbers([&one, &other], options)
+        }
+        [AnyRecording::Arena(one), AnyRecording::Arena(other)] => arenas([&one, &other], options),
+        _ => Err(CompareError::Scene("kinds of scene")),
+    }
+}
+
+fn open(path: &Path) -> Result<AnyRecording, CompareError> {
+    AnyRecording::open(path).map_err(|error| failed(path, error))
+}
+
+fn failed(path: &Path, error: RecordError) -> CompareError {
+    let path = path.to_owned();
+    CompareError::Record { path, error }
+}
+
+fn climbers(
+    [first, second]: [&Recording; 2],
+    options: &CompareOptions,
+) -> Result<Comparison, CompareError> {
     let (one, other) = (first.info(), second.info());
     if one.creature_fingerprint != other.creature_fingerprint {
         return Err(CompareError::Scene("creatures"));
@@ -74,10 +94,6 @@ pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
     }
     let mut equal = 0;
     for (ours, theirs) in first.ticks().zip(second.ticks()) {
-        let failed = |path: &PathBuf, error| CompareError::Record {
-            path: path.clone(),
-            error,
-        };
         let ours = ours.map_err(|error| failed(&options.first, error))?;
         let theirs = theirs.map_err(|error| failed(&options.second, error))?;
         let replayed = Replayed {
@@ -90,11 +106,39 @@ pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
         }
         equal += 1;
     }
-    Ok(if first.len() == second.len() {
+    Ok(ended(equal, first.len() == second.len()))
+}
+
+fn arenas(
+    [first, second]: [&ArenaRecording; 2],
+    options: &CompareOptions,
+) -> Result<Comparison, CompareError> {
+    if first.info().assets != second.info().assets {
+        return Err(CompareError::Scene("creatures, fighters or configurations"));
+    }
+    if first.first() != second.first() {
+        return Err(CompareError::Scene("first ticks"));
+    }
+    let mut equal = 0;
+    for (ours, theirs) in first.ticks_from(0).zip(second.ticks_from(0)) {
+        let ours = ours.map_err(|error| failed(&options.first, error))?;
+        let theirs = theirs.map_err(|error| failed(&options.second, error))?;
+        let (all, parts) = (theirs.fingerprint, &theirs.parts);
+        if let Some(difference) = ArenaDifference::between(first.info(), &ours, all, parts) {
+            return Ok(Comparison::ArenasDiffer(Box::new(difference)));
+        }
+        equal += 1;
+    }
+    Ok(ended(equal, first.len() == second.len()))
+}
+
+/// After so many ticks that are equal, both end, or one of them.
+fn ended(equal: u64, both: bool) -> Comparison {
+    if both {
         Comparison::Equal(equal)
     } else {
         Comparison::Shorter(equal)
-    })
+    }
 }
 
 /// Compares two recordings and prints the result; returns true if they are equal.
@@ -103,7 +147,7 @@ pub fn compare(options: &CompareOptions) -> Result<Comparison, CompareError> {
 /// As [`compare`].
 pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
     for path in [&options.first, &options.second] {
-        if let Ok(recording) = Recording::open(path)
+        if let Ok(recording) = AnyRecording::open(path)
             && *recording.ending() != Ending::Whole
         {
             println!("{}: {}", path.display(), recording.ending());
@@ -120,6 +164,10 @@ pub fn print(options: &CompareOptions) -> Result<bool, CompareError> {
         }
         Comparison::Differ(difference) => {
             print!("{difference}");
+            false
+        }
+        Comparison::ArenasDiffer(difference) => {
+            println!("{difference}");
             false
         }
     })

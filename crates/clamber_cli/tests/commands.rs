@@ -5,12 +5,14 @@
     reason = "a test's helpers may fail like the test"
 )]
 
+use std::path::Path;
 use std::process::{Command, Output};
 
 use clamber_cli::inspect::{InspectOptions, inspect};
 use clamber_gltf::load;
 use clamber_record::RecordOptions;
 use clamber_scenes::battle::{Battle, BattleOptions, BattleRecorder};
+use clamber_scenes::duel::{self, Duel};
 use clamber_scenes::{giant, test_data};
 
 #[test]
@@ -172,6 +174,51 @@ fn recordings_are_equal_or_the_first_field_that_differs_is_told() {
         assert_eq!(ended.status.code(), Some(code), "{text}");
         assert!(text.contains(told), "{text}");
     }
+}
+
+/// A recording of a duel in which the second fighter aims otherwise in this tick.
+fn recorded_duel(name: &str, aims_otherwise: Option<u64>, ticks: u64) -> String {
+    let file = format!("{}/{name}.mcap", env!("CARGO_TARGET_TMPDIR"));
+    let inputs = (0..ticks).map(|tick| {
+        let mut inputs = [0, 1].map(|player| Duel::input(player, tick).to_input());
+        if aims_otherwise == Some(tick) {
+            inputs[1].walk.x = -inputs[1].walk.x - 0.1;
+        }
+        inputs.to_vec()
+    });
+    duel::record(&Duel::kind().unwrap(), inputs, Path::new(&file)).unwrap();
+    file
+}
+
+#[test]
+fn recordings_of_arenas_are_equal_or_who_differs_is_told() {
+    let first = recorded_duel("duel", None, 90);
+    for (other, code, told) in [
+        (
+            recorded_duel("duel_again", None, 90),
+            0,
+            "all 91 ticks are equal",
+        ),
+        (
+            recorded_duel("duel_shorter", None, 50),
+            1,
+            "51 ticks are equal in every bit; then",
+        ),
+        (
+            recorded_duel("duel_other", Some(60), 90),
+            1,
+            "tick 61 differs in archer:",
+        ),
+    ] {
+        let ended = clamber(&["compare", &first, &other]);
+        let text = String::from_utf8(ended.stdout).unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{text}");
+        assert!(text.contains(told), "{text}");
+    }
+    let ended = clamber(&["compare", &first, &recorded("ride", 1, 5)]);
+    let text = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(2), "{text}");
+    assert!(text.contains("kinds of scene differ"), "{text}");
 }
 
 #[test]

@@ -56,6 +56,28 @@ pub enum RecordError {
         /// Matrices of the palette.
         palette: usize,
     },
+    /// There is not one input for each fighter of the arena.
+    #[error("{found} inputs were given for {fighters} fighters: pass those of the last step")]
+    Inputs {
+        /// Fighters of the arena.
+        fighters: usize,
+        /// Inputs given.
+        found: usize,
+    },
+    /// The arena is not the one of the recording, by the hash of its assets.
+    #[error(
+        "this is another arena than the recorded one: its creatures, fighters or configurations differ (assets {found:016x}, \
+         recorded {recorded:016x}); make it from the same files with the same settings"
+    )]
+    OtherArena {
+        /// Hash of the assets of the recorded arena.
+        recorded: u64,
+        /// Hash of the assets of this arena.
+        found: u64,
+    },
+    /// The arena cannot be saved, or what was saved cannot be restored.
+    #[error(transparent)]
+    Arena(#[from] clamber_fight::ArenaError),
     /// The recording ended at an earlier error, which was returned then.
     #[error("the recording has ended: an earlier part of it could not be written")]
     Ended,

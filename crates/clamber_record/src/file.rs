@@ -34,6 +34,8 @@ pub(crate) struct Contents {
 pub(crate) enum Kind {
     Tick,
     Snapshot,
+    Arena,
+    ArenaSnapshot,
 }
 
 /// Why the walk stopped.
@@ -131,6 +133,8 @@ fn walk_chunk(
                 let kind = match channel.topic.as_str() {
                     topics::TICK => Some(Kind::Tick),
                     topics::SNAPSHOT => Some(Kind::Snapshot),
+                    topics::ARENA => Some(Kind::Arena),
+                    topics::ARENA_SNAPSHOT => Some(Kind::ArenaSnapshot),
                     _ => None,
                 };
                 if let Some(kind) = kind {

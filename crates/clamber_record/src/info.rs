@@ -73,7 +73,10 @@ impl RecordingInfo {
     }
 }
 
-fn text<'a>(metadata: &'a BTreeMap<String, String>, key: &str) -> Result<&'a String, RecordError> {
+pub(crate) fn text<'a>(
+    metadata: &'a BTreeMap<String, String>,
+    key: &str,
+) -> Result<&'a String, RecordError> {
     metadata
         .get(key)
         .ok_or_else(|| RecordError::NotARecording(format!("its metadata has no entry {key}")))
@@ -92,6 +95,6 @@ where
         .map_err(|error: T::Err| bad(key, value, &error.to_string()))
 }
 
-fn bad(key: &str, value: &str, reason: &str) -> RecordError {
+pub(crate) fn bad(key: &str, value: &str, reason: &str) -> RecordError {
     RecordError::NotARecording(format!("its metadata has {key} = {value:?}: {reason}"))
 }

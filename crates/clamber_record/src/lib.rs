@@ -1,10 +1,16 @@
 #![doc = include_str!("../README.md")]
 
+mod any;
+mod arena;
+mod chunks;
 mod config;
 mod error;
 mod file;
 mod info;
 mod messages;
+mod names;
+mod output;
+mod places;
 mod recorder;
 mod recording;
 mod replay;
@@ -13,9 +19,15 @@ pub mod topics;
 mod views;
 mod writing;
 
+pub use any::AnyRecording;
+pub use arena::{
+    ArenaDifference, ArenaInfo, ArenaPart, ArenaRecorder, ArenaRecording, ArenaReplay,
+    RecordedArenaTick,
+};
 pub use clamber_surface::surface::{creature_fingerprint, palette_fingerprint};
 pub use error::RecordError;
 pub use info::RecordingInfo;
 pub use recorder::{FigureView, RecordOptions, Recorder, TickView};
 pub use recording::{Ending, RecordedSnapshot, RecordedTick, Recording};
 pub use replay::{Difference, ReplayError, Replayed, replay};
+pub use views::SceneryView;

@@ -218,6 +218,31 @@ pub(crate) struct Snapshot {
     pub(crate) scene: String,
 }
 
+/// One tick of an arena.
+#[derive(Clone, PartialEq, Encode, prost::Message)]
+pub(crate) struct ArenaTick {
+    #[prost(uint64, tag = "1")]
+    pub(crate) tick: u64,
+    /// One for each fighter; none before the first step.
+    #[prost(message, repeated, tag = "2")]
+    pub(crate) inputs: Vec<Input>,
+    /// Fingerprint of all.
+    #[prost(uint64, tag = "3")]
+    pub(crate) fingerprint: u64,
+    /// Fingerprints of the creatures, of the fighters, and of the rest.
+    #[prost(uint64, repeated, tag = "4")]
+    pub(crate) parts: Vec<u64>,
+}
+
+/// A saved arena.
+#[derive(Clone, PartialEq, Encode, prost::Message)]
+pub(crate) struct ArenaSnapshot {
+    #[prost(uint64, tag = "1")]
+    pub(crate) tick: u64,
+    #[prost(bytes = "bytes", tag = "2")]
+    pub(crate) state: prost::bytes::Bytes,
+}
+
 /// A number with a name.
 #[derive(Clone, PartialEq, Encode, prost::Message)]
 pub(crate) struct Named {
@@ -288,6 +313,17 @@ impl Tick {
             || self.report.pushed_out.has_negative_zero()
             || self.report.impulse.has_negative_zero()
             || negative_zero(&self.report.penetration)
+    }
+}
+
+impl ArenaTick {
+    /// Appends the message, as [`Tick::write`] does.
+    pub(crate) fn write(&self, buffer: &mut Vec<u8>) -> Result<(), String> {
+        if self.inputs.iter().any(Input::has_negative_zero) {
+            Encode::encode(self, buffer).map_err(|error| error.to_string())
+        } else {
+            prost::Message::encode(self, buffer).map_err(|error| error.to_string())
+        }
     }
 }
 

@@ -2,17 +2,18 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::thread::JoinHandle;
 
 use clamber_climber::{ClimberInput, ClimberState, StepReport};
 use clamber_colossus::Creature;
 use clamber_surface::geometry::Similarity;
 use clamber_surface::rig::{Palette, Skeleton};
 use clamber_surface::surface::SkinnedSurface;
+use clamber_world::ObstacleId;
 
+use crate::chunks::Chunks;
+use crate::names::ObstacleNames;
 use crate::taken::Taken;
-use crate::views::{FigureJoints, TakenBrain, TakenFigure};
+use crate::views::{FigureJoints, SceneryNames, SceneryView, TakenBrain, TakenFigure};
 use crate::writing::Writing;
 use crate::{RecordError, RecordingInfo};
 
@@ -21,16 +22,20 @@ use crate::{RecordError, RecordingInfo};
 /// Inputs, states, fingerprints and events are recorded every tick, whatever the options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordOptions {
-    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4: 15 messages a second at 60 Hz. A
-    /// message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
+    /// Ticks between two messages of transforms, of the creature and of figures, and of brains; 0 for none. Default 4: 15 messages
+    /// a second at 60 Hz. A message takes 6 kB for a creature of 45 joints. Lower it for smooth motion of limbs.
     pub transforms_every: u32,
-    /// Ticks between two views of the skin, with its points and the touched triangles; 0 for none. Default 30: 2
-    /// views a second at 60 Hz. This is the most expensive part: each view skins the whole creature and takes some
-    /// 50 kB. Raise it for large creatures.
+    /// Ticks between two views of the skin and of the climber's body and support; 0 for none. Default 4, like the transforms: a skin
+    /// that is recorded less often lags the joints. Each view skins the whole creature and takes some 12 kB. Raise both for large
+    /// creatures.
     ///
     /// Until a view is written, it shares the surface's mesh. The first edit in that time has to copy the mesh.
     pub skin_every: u32,
-    /// Largest number of points in a view of the skin. Default 2000; 0 means 1.
+    /// Ticks between two views of the triangles that queries touched; 0 for none. Default 60: once a second. They are shown until
+    /// the next view of the skin. They count only in ticks with such a view. This is the most expensive part: a view takes some
+    /// 50 kB.
+    pub touched_every: u32,
+    /// Largest number of points in a view of the skin. Default 1000; 0 means 1.
     pub skin_points: usize,
     /// Ticks in a chunk. Default 60; 0 means 1. A crash loses the chunk being gathered and those not yet written:
     /// up to three in all, one or two if the disk keeps up. Raise it for fewer, larger writes. Each tick of a chunk
@@ -42,8 +47,9 @@ impl Default for RecordOptions {
     fn default() -> Self {
         Self {
             transforms_every: 4,
-            skin_every: 30,
-            skin_points: 2000,
+            skin_every: 4,
+            touched_every: 60,
+            skin_points: 1000,
             chunk_ticks: 60,
         }
     }
@@ -93,26 +99,12 @@ pub struct FigureView<'a> {
 /// ignores errors.
 pub struct Recorder<W: Write> {
     options: RecordOptions,
-    last: Option<u64>,
+    names: ObstacleNames,
     /// The figures that were recorded.
     figures: Vec<Arc<FigureJoints>>,
-    /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
-    /// their memory.
-    chunk: Vec<Taken>,
-    gathered: usize,
-    /// `None` once writing has ended.
-    thread: Option<WriterThread<W>>,
+    scenery: SceneryNames,
+    chunks: Chunks<Taken, W>,
 }
-
-struct WriterThread<W> {
-    chunks: SyncSender<Chunk>,
-    /// Chunks that were written come back, so that their memory is reused.
-    written: Receiver<Vec<Taken>>,
-    handle: JoinHandle<Result<W, RecordError>>,
-}
-
-/// Ticks, and how many of them from the front belong to the chunk.
-type Chunk = (Vec<Taken>, usize);
 
 impl Recorder<BufWriter<File>> {
     /// A recorder that writes to a new file. An existing file at that path is overwritten.
@@ -125,13 +117,17 @@ impl Recorder<BufWriter<File>> {
         skeleton: &Skeleton,
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
-        let path = path.as_ref();
-        let file = File::create(path).map_err(|source| RecordError::Io {
-            what: format!("cannot create {}", path.display()),
-            source,
-        })?;
-        Self::new(BufWriter::new(file), info, skeleton, options)
+        Self::new(create(path.as_ref())?, info, skeleton, options)
     }
+}
+
+/// Creates a file, in place of one that is there.
+pub(crate) fn create(path: &Path) -> Result<BufWriter<File>, RecordError> {
+    let file = File::create(path).map_err(|source| RecordError::Io {
+        what: format!("cannot create {}", path.display()),
+        source,
+    })?;
+    Ok(BufWriter::new(file))
 }
 
 impl<W: Write + Send + 'static> Recorder<W> {
@@ -148,34 +144,13 @@ impl<W: Write + Send + 'static> Recorder<W> {
         skeleton: &Skeleton,
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
-        let mut writing = Writing::new(out, info, skeleton, options.skin_points)?;
-        // One chunk is gathered, one waits, one is written.
-        let (to_thread, chunks) = sync_channel::<Chunk>(1);
-        let (back, written): (Sender<Vec<Taken>>, _) = channel();
-        let work = move || {
-            for (mut chunk, count) in chunks {
-                writing.chunk(&mut chunk[..count])?;
-                // Fails once the recorder waits for the end: then it takes no chunk back.
-                let _ = back.send(chunk);
-            }
-            writing.finish()
-        };
-        let named = std::thread::Builder::new().name("clamber_record".to_owned());
-        let handle = named.spawn(work).map_err(|source| RecordError::Io {
-            what: "cannot start the thread that writes the recording".to_owned(),
-            source,
-        })?;
+        let writing = Writing::new(out, info, skeleton, options.skin_points)?;
         Ok(Self {
             options,
-            last: None,
+            names: ObstacleNames::default(),
             figures: Vec::new(),
-            chunk: Vec::new(),
-            gathered: 0,
-            thread: Some(WriterThread {
-                chunks: to_thread,
-                written,
-                handle,
-            }),
+            scenery: SceneryNames::default(),
+            chunks: Chunks::start(writing, options.chunk_ticks)?,
         })
     }
 }
@@ -194,15 +169,7 @@ impl<W: Write> Recorder<W> {
     /// # Panics
     /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
     pub fn tick(&mut self, view: &TickView<'_>) -> Result<(), RecordError> {
-        if self.thread.is_none() {
-            return Err(RecordError::Ended);
-        }
-        if let Some(last) = self.last
-            && view.tick.checked_sub(1) != Some(last)
-        {
-            let found = view.tick;
-            return Err(RecordError::Order { last, found });
-        }
+        self.chunks.check(view.tick)?;
         let (mesh, palette) = (
             view.surface.mesh().joint_count(),
             view.palette.matrices().len(),
@@ -210,15 +177,33 @@ impl<W: Write> Recorder<W> {
         if mesh != palette {
             return Err(RecordError::JointCount { mesh, palette });
         }
-        if self.gathered >= self.options.chunk_ticks.max(1) as usize {
-            self.hand_over()?;
-        }
-        match self.chunk.get_mut(self.gathered) {
-            Some(taken) => taken.take(view, &self.options),
-            None => self.chunk.push(Taken::new(view, &self.options)),
-        }
-        self.gathered += 1;
-        self.last = Some(view.tick);
+        let (options, names) = (&self.options, &self.names);
+        self.chunks.push(view.tick, |taken| match taken {
+            Some(taken) => {
+                taken.take(view, options, names);
+                None
+            }
+            None => Some(Taken::new(view, options, names)),
+        })
+    }
+
+    /// Gives an obstacle a name, by which the log calls it from the next tick on. The creature is to have the name in
+    /// [`RecordingInfo::creature`]: then the log also names the part of it that the climber is on.
+    pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
+        let names = Arc::make_mut(&mut self.names);
+        names.retain(|(id, _)| *id != obstacle);
+        names.push((obstacle, name.to_owned()));
+    }
+
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
+    /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
+    pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
+        let last = self.chunks.last()?;
+        let taken = self.scenery.take(view, last.transforms_due);
+        last.scenery.extend(taken);
         Ok(())
     }
 
@@ -230,7 +215,7 @@ impl<W: Write> Recorder<W> {
     /// their number of joints; [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing
     /// failed. Nothing is recorded then.
     pub fn figure(&mut self, view: &FigureView<'_>) -> Result<(), RecordError> {
-        let is_due = self.last_tick()?.transforms_due;
+        let is_due = self.chunks.last()?.transforms_due;
         let known = self.figures.iter().find(|known| known.figure == view.name);
         let (skeleton, palette) = (view.skeleton.joints().len(), view.palette.matrices().len());
         if palette != skeleton || known.is_some_and(|known| known.len() != skeleton) {
@@ -249,7 +234,7 @@ impl<W: Write> Recorder<W> {
             joints
         });
         let figure = TakenFigure::new(joints, view.palette, view.world_from_model);
-        self.last_tick()?.figures.push(figure);
+        self.chunks.last()?.figures.push(figure);
         Ok(())
     }
 
@@ -260,7 +245,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick; [`RecordError::Ended`] after writing failed.
     pub fn brain(&mut self, creature: &Creature) -> Result<(), RecordError> {
-        let taken = self.last_tick()?;
+        let taken = self.chunks.last()?;
         taken.brain = Some(TakenBrain::new(creature, taken.transforms_due));
         Ok(())
     }
@@ -273,21 +258,8 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// [`RecordError::NoTick`] before the first tick, [`RecordError::Ended`] after writing failed.
     pub fn snapshot(&mut self, scene: &str) -> Result<(), RecordError> {
-        self.last_tick()?.snapshots.push(scene.to_owned());
+        self.chunks.last()?.snapshots.push(scene.to_owned());
         Ok(())
-    }
-
-    /// The tick recorded last.
-    fn last_tick(&mut self) -> Result<&mut Taken, RecordError> {
-        if self.thread.is_none() {
-            return Err(RecordError::Ended);
-        }
-        // A chunk is handed over only when another tick follows, so the last tick is still here.
-        let last = self.chunk[..self.gathered].last_mut();
-        last.ok_or(RecordError::NoTick {
-            asked: 0,
-            ticks: None,
-        })
     }
 
     /// Writes the remaining ticks and the index, and gives back `out`.
@@ -299,42 +271,6 @@ impl<W: Write> Recorder<W> {
     /// # Panics
     /// If `out` panicked: that panic is resumed here.
     pub fn finish(mut self) -> Result<W, RecordError> {
-        self.hand_over()?;
-        self.end()
-    }
-
-    /// Passes the gathered ticks to the thread.
-    fn hand_over(&mut self) -> Result<(), RecordError> {
-        let thread = self.thread.as_ref().ok_or(RecordError::Ended)?;
-        let next = thread.written.try_recv().unwrap_or_default();
-        let chunk = core::mem::replace(&mut self.chunk, next);
-        let count = core::mem::take(&mut self.gathered);
-        if thread.chunks.send((chunk, count)).is_ok() {
-            return Ok(());
-        }
-        // The thread takes no more chunks: it has ended with an error.
-        self.end().and(Err(RecordError::Ended))
-    }
-
-    /// Waits for the thread to end. If it panicked, resumes the panic.
-    fn end(&mut self) -> Result<W, RecordError> {
-        let WriterThread { chunks, handle, .. } = self.thread.take().ok_or(RecordError::Ended)?;
-        drop(chunks);
-        match handle.join() {
-            Ok(ended) => ended,
-            Err(panic) => std::panic::resume_unwind(panic),
-        }
-    }
-}
-
-impl<W: Write> Drop for Recorder<W> {
-    fn drop(&mut self) {
-        if let Some(WriterThread { chunks, handle, .. }) = self.thread.take() {
-            // Errors are ignored: a drop cannot return them.
-            let chunk = core::mem::take(&mut self.chunk);
-            let _ = chunks.send((chunk, self.gathered));
-            drop(chunks);
-            let _ = handle.join();
-        }
+        self.chunks.finish()
     }
 }

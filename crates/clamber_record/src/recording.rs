@@ -1,18 +1,12 @@
 use std::fmt;
-use std::fs::File;
-use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-use clamber_climber::{ClimberInput, ClimberState};
-use prost::Message;
-
-use crate::file::{self, Kind};
+use crate::file::{self, Contents, Kind};
 use crate::messages::{Snapshot, Tick};
-use crate::{RecordError, RecordingInfo, topics};
-
-/// The largest file that is read, bytes: a recording is read into memory. Twenty minutes of a battle have 240 MB.
-const LARGEST: u64 = 1 << 30;
+use crate::places::{Places, decode, read_file};
+use crate::{ArenaInfo, RecordError, RecordingInfo, topics};
+use clamber_climber::{ClimberInput, ClimberState};
 
 /// How the file of a recording ends.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -75,11 +69,7 @@ pub struct RecordedSnapshot {
 pub struct Recording {
     info: RecordingInfo,
     bytes: Vec<u8>,
-    first: u64,
-    /// The bytes of each tick's message.
-    ticks: Vec<Range<usize>>,
-    /// Ticks with a snapshot, ascending, and the bytes of its message.
-    snapshots: Vec<(u64, Range<usize>)>,
+    places: Places,
     ending: Ending,
 }
 
@@ -89,23 +79,7 @@ impl Recording {
     /// # Errors
     /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`Recording::from_bytes`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
-        let path = path.as_ref();
-        let failed = |source| RecordError::Io {
-            what: format!("cannot read {}", path.display()),
-            source,
-        };
-        let file = File::open(path).map_err(failed)?;
-        let mut bytes = Vec::new();
-        // One byte more than allowed shows that a file is too long, whatever length the file system reports.
-        let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
-        let read = read.map_err(failed)? as u64;
-        if read > LARGEST {
-            return Err(RecordError::TooLarge {
-                bytes: read,
-                limit: LARGEST,
-            });
-        }
-        Self::from_bytes(bytes)
+        Self::from_bytes(read_file(path.as_ref())?)
     }
 
     /// Reads a recording from the bytes of its file.
@@ -117,7 +91,18 @@ impl Recording {
     /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
     /// not finite.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
-        let mut contents = file::read(&bytes)?;
+        let contents = file::read(&bytes)?;
+        Self::from_contents(bytes, contents)
+    }
+
+    pub(crate) fn from_contents(
+        bytes: Vec<u8>,
+        mut contents: Contents,
+    ) -> Result<Self, RecordError> {
+        if contents.metadata.contains_key(ArenaInfo::METADATA) {
+            let kind = "it is a recording of an arena; read it with ArenaRecording".to_owned();
+            return Err(RecordError::NotARecording(kind));
+        }
         let mut take = |name: &str| {
             contents.metadata.remove(name).ok_or_else(|| {
                 let (ending, wanted) = (&contents.ending, format!("metadata named {name:?}"));
@@ -129,9 +114,7 @@ impl Recording {
         let mut recording = Self {
             info,
             bytes,
-            first: 0,
-            ticks: Vec::new(),
-            snapshots: Vec::new(),
+            places: Places::default(),
             ending: contents.ending,
         };
         for (kind, place) in contents.messages {
@@ -150,26 +133,15 @@ impl Recording {
         match kind {
             Kind::Tick => {
                 let tick = self.decode_tick(&place)?.tick;
-                if self.ticks.is_empty() {
-                    self.first = tick;
-                }
-                let expected = self.first.checked_add(self.ticks.len() as u64);
-                if expected != Some(tick) {
-                    let last = self.last().unwrap_or_default();
-                    return Err(RecordError::Order { last, found: tick });
-                }
-                self.ticks.push(place);
+                self.places.add_tick(tick, place)
             }
             Kind::Snapshot => {
                 let tick = self.decode_snapshot(&place)?.tick;
-                if self.last() != Some(tick) {
-                    let last = self.last().unwrap_or_default();
-                    return Err(RecordError::Order { last, found: tick });
-                }
-                self.snapshots.push((tick, place));
+                self.places.add_saved(tick, place)
             }
+            // Only recordings of arenas have these.
+            Kind::Arena | Kind::ArenaSnapshot => Ok(()),
         }
-        Ok(())
     }
 
     /// The metadata of the recording.
@@ -184,22 +156,22 @@ impl Recording {
 
     /// Number of ticks.
     pub fn len(&self) -> usize {
-        self.ticks.len()
+        self.places.len()
     }
 
     /// True if there are no ticks.
     pub fn is_empty(&self) -> bool {
-        self.ticks.is_empty()
+        self.places.len() == 0
     }
 
     /// The number of the first tick; `None` without ticks.
     pub fn first(&self) -> Option<u64> {
-        (!self.ticks.is_empty()).then_some(self.first)
+        self.places.first()
     }
 
     /// The number of the last tick; `None` without ticks.
     pub fn last(&self) -> Option<u64> {
-        Some(self.first()? + (self.ticks.len() as u64 - 1))
+        self.places.last()
     }
 
     /// The tick with this number.
@@ -207,16 +179,12 @@ impl Recording {
     /// # Errors
     /// [`RecordError::NoTick`] if the recording has no such tick.
     pub fn tick(&self, tick: u64) -> Result<RecordedTick, RecordError> {
-        let index = tick.checked_sub(self.first).map(usize::try_from);
-        let place = index.and_then(|index| self.ticks.get(index.ok()?));
-        let ticks = self.first().zip(self.last());
-        let missing = RecordError::NoTick { asked: tick, ticks };
-        self.decode_tick(place.ok_or(missing)?)
+        self.decode_tick(self.places.tick(tick)?)
     }
 
     /// All ticks, in order.
     pub fn ticks(&self) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
-        self.ticks.iter().map(|place| self.decode_tick(place))
+        self.ticks_from(0)
     }
 
     /// The ticks from this number on, in order.
@@ -226,9 +194,8 @@ impl Recording {
         &self,
         tick: u64,
     ) -> impl Iterator<Item = Result<RecordedTick, RecordError>> + '_ {
-        let skipped = tick.saturating_sub(self.first);
-        let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);
-        self.ticks().skip(skipped)
+        let ticks = self.places.from(tick);
+        ticks.map(|place| self.decode_tick(place))
     }
 
     /// The last snapshot at or before a tick.
@@ -237,12 +204,9 @@ impl Recording {
     /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
     /// snapshot.
     pub fn snapshot(&self, tick: u64) -> Result<RecordedSnapshot, RecordError> {
-        self.tick(tick)?;
-        let after = self.snapshots.partition_point(|(at, _)| *at <= tick);
-        let nearest = after.checked_sub(1).map(|index| &self.snapshots[index]);
-        let (at, place) = nearest.ok_or(RecordError::NoSnapshot(tick))?;
+        let (at, place) = self.places.saved(tick)?;
         Ok(RecordedSnapshot {
-            tick: self.tick(*at)?,
+            tick: self.tick(at)?,
             scene: self.decode_snapshot(place)?.scene,
         })
     }
@@ -253,7 +217,7 @@ impl Recording {
             topic: topics::TICK,
             reason,
         };
-        let tick = Tick::decode(&self.bytes[place.clone()]).map_err(|e| failed(e.to_string()))?;
+        let tick: Tick = decode(&self.bytes, place, topics::TICK)?;
         let state = tick.state.to_climber();
         let state = state.map_err(|mode| failed(format!("unknown climber mode {mode}")))?;
         if state.fingerprint() != tick.state_fingerprint {
@@ -270,10 +234,6 @@ impl Recording {
     }
 
     fn decode_snapshot(&self, place: &Range<usize>) -> Result<Snapshot, RecordError> {
-        Snapshot::decode(&self.bytes[place.clone()]).map_err(|error| RecordError::Message {
-            at: place.start,
-            topic: topics::SNAPSHOT,
-            reason: error.to_string(),
-        })
+        decode(&self.bytes, place, topics::SNAPSHOT)
     }
 }

@@ -7,10 +7,12 @@ use clamber_surface::geometry::{Affine, Similarity};
 use clamber_surface::mesh::{ColliderMesh, TriangleId};
 use clamber_surface::rig::JointId;
 use clamber_surface::surface::Diagnostics;
+use clamber_world::ObstacleId;
 use glam::DAffine3;
 
 use crate::messages::Report;
-use crate::views::{TakenBrain, TakenFigure};
+use crate::names::{ObstacleNames, Part, name_of};
+use crate::views::{TakenBrain, TakenFigure, TakenScenery};
 use crate::{RecordOptions, TickView};
 
 /// A copy of a tick. The memory of its vectors is reused from tick to tick.
@@ -23,6 +25,9 @@ pub(crate) struct Taken {
     pub(crate) world_from_model: Similarity,
     pub(crate) scene_fingerprint: u64,
     pub(crate) events: Vec<ClimberEvent>,
+    /// For the texts of the events.
+    pub(crate) names: ObstacleNames,
+    pub(crate) part: Option<Part>,
     pub(crate) matrices: Vec<Affine>,
     /// `model_from_joint` of every joint if transforms are due, else empty.
     pub(crate) joints: Vec<DAffine3>,
@@ -31,6 +36,8 @@ pub(crate) struct Taken {
     pub(crate) skin: Option<TakenSkin>,
     /// Figures drawn at the end of this tick.
     pub(crate) figures: Vec<TakenFigure>,
+    /// Meshes that are new, or whose places are due.
+    pub(crate) scenery: Vec<TakenScenery>,
     /// The creature's brain, if it was recorded.
     pub(crate) brain: Option<TakenBrain>,
     /// Snapshots of the scene after this tick, as the caller's text.
@@ -42,11 +49,14 @@ pub(crate) struct Taken {
 pub(crate) struct TakenSkin {
     pub(crate) mesh: Arc<ColliderMesh>,
     pub(crate) touched: Diagnostics,
-    pub(crate) triangles: Vec<TriangleId>,
+    /// `None` if they are not due.
+    pub(crate) triangles: Option<Vec<TriangleId>>,
+    /// Ticks until the next view.
+    pub(crate) every: u32,
 }
 
 impl Taken {
-    pub(crate) fn new(view: &TickView<'_>, options: &RecordOptions) -> Self {
+    pub(crate) fn new(view: &TickView<'_>, options: &RecordOptions, names: &ObstacleNames) -> Self {
         let mut taken = Self {
             tick: view.tick,
             input: *view.input,
@@ -55,20 +65,28 @@ impl Taken {
             world_from_model: *view.surface.world_from_model(),
             scene_fingerprint: view.scene_fingerprint,
             events: Vec::new(),
+            names: Arc::clone(names),
+            part: None,
             matrices: Vec::new(),
             joints: Vec::new(),
             transforms_due: false,
             skin: None,
             figures: Vec::new(),
+            scenery: Vec::new(),
             brain: None,
             snapshots: Vec::new(),
         };
-        taken.take(view, options);
+        taken.take(view, options, names);
         taken
     }
 
     /// Copies another tick over this one.
-    pub(crate) fn take(&mut self, view: &TickView<'_>, options: &RecordOptions) {
+    pub(crate) fn take(
+        &mut self,
+        view: &TickView<'_>,
+        options: &RecordOptions,
+        names: &ObstacleNames,
+    ) {
         let due = |every: u32| every > 0 && view.tick.is_multiple_of(u64::from(every));
         self.tick = view.tick;
         self.input = *view.input;
@@ -77,6 +95,11 @@ impl Taken {
         self.world_from_model = *view.surface.world_from_model();
         self.scene_fingerprint = view.scene_fingerprint;
         self.events.clone_from(&view.report.events);
+        self.part = None;
+        if !self.events.is_empty() {
+            self.part = Part::of(view.state, view.surface.mesh());
+        }
+        self.names = Arc::clone(names);
         self.matrices.clear();
         self.matrices.extend_from_slice(view.palette.matrices());
         self.transforms_due = due(options.transforms_every);
@@ -88,10 +111,29 @@ impl Taken {
         self.skin = due(options.skin_every).then(|| TakenSkin {
             mesh: Arc::clone(view.surface.mesh()),
             touched: view.surface.diagnostics(),
-            triangles: view.surface.touched_triangles().collect(),
+            triangles: due(options.touched_every)
+                .then(|| view.surface.touched_triangles().collect()),
+            every: options.skin_every,
         });
         self.figures.clear();
+        self.scenery.clear();
         self.brain = None;
         self.snapshots.clear();
+    }
+    /// The name of an obstacle; for the creature, which has its name, with the part of it that the climber is on.
+    pub(crate) fn name_of(
+        &self,
+        obstacle: ObstacleId,
+        creature: &str,
+        joints: &[String],
+    ) -> String {
+        let name = name_of(&self.names, obstacle);
+        match self.part {
+            Some(part) if part.is_on(obstacle) && name == creature => part
+                .name(creature, |joint| {
+                    joints.get(joint.index()).map(String::as_str)
+                }),
+            _ => name,
+        }
     }
 }

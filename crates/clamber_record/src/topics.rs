@@ -13,9 +13,15 @@ pub const BRAIN: &str = "/brain";
 /// Triangles that queries reached, the triangle that supports the climber, and the climber's body
 /// (`foxglove.SceneUpdate`).
 pub const SCENE: &str = "/scene";
+/// Ground, rocks and what else the caller records to be looked at (`foxglove.SceneUpdate`).
+pub const SCENERY: &str = "/scenery";
 /// Vertices of the posed skin (`foxglove.PointCloud`).
 pub const SKIN: &str = "/skin";
 /// Counts of clusters, vertices and triangles that queries touched (`touched.Touched`).
 pub const TOUCHED: &str = "/touched";
 /// Events of climber and creature (`foxglove.Log`).
 pub const LOG: &str = "/log";
+/// Every tick of an arena: inputs and fingerprints (`arena.ArenaTick`).
+pub const ARENA: &str = "/arena";
+/// Saved states of an arena, to resume from (`arena.ArenaSnapshot`).
+pub const ARENA_SNAPSHOT: &str = "/arena_snapshot";

@@ -339,10 +339,12 @@ fn a_third_party_reader_finds_every_tick_in_order_and_the_metadata() {
         *counts.entry(message.channel.topic.clone()).or_default() += 1;
     }
     assert_eq!(counts[topics::TICK], TICKS + 1);
-    assert_eq!(counts[topics::TRANSFORMS], TICKS / 4 + 1);
-    assert_eq!(counts[topics::SKIN], TICKS / 30 + 1);
-    assert_eq!(counts[topics::SCENE], TICKS / 30 + 1);
-    assert_eq!(counts[topics::TOUCHED], TICKS / 30 + 1);
+    // One message has the joints, one the rocks; the first places the ground.
+    assert_eq!(counts[topics::TRANSFORMS], 2 * (TICKS / 4 + 1));
+    assert_eq!(counts[topics::SCENERY], 1);
+    assert_eq!(counts[topics::SKIN], TICKS / 4 + 1);
+    assert_eq!(counts[topics::SCENE], TICKS / 4 + 1);
+    assert_eq!(counts[topics::TOUCHED], TICKS / 4 + 1);
     assert_eq!(counts[topics::SNAPSHOT], TICKS / 60 + 1);
     assert!(counts[topics::LOG] >= 2, "{counts:?}");
     let metadata = summary.metadata_indexes.iter().map(|index| {
@@ -366,6 +368,7 @@ fn recording_does_not_change_the_battle() {
     let how = RecordOptions {
         transforms_every: 1,
         skin_every: 1,
+        touched_every: 1,
         ..RecordOptions::default()
     };
     let mut recorder = BattleRecorder::new(Vec::new(), &recorded, &options, how).unwrap();

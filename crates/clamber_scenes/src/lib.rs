@@ -10,6 +10,7 @@
 //! - [`rocks`]: rocks that fall on a shaking giant.
 //! - [`valley`]: the terrain of the scenes.
 //! - [`battle`]: the main scene: a climber against a giant that lives by its brain, or on a creature that walks and shakes.
+//! - [`duel`]: two climbers against the giant, for fights over a network.
 //! - [`person`]: a climber as a creature senses it.
 //! - `hero`, with the feature `record` or `render`: the body of a battle's climber.
 //! - `picture`, with the feature `render`: a battle's meshes, light and cameras for the renderer.
@@ -28,6 +29,7 @@ pub mod bodies;
 pub mod closed;
 pub mod controllers;
 mod creature;
+pub mod duel;
 pub mod giant;
 #[cfg(any(feature = "record", feature = "render"))]
 pub mod hero;

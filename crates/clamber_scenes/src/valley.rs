@@ -2,6 +2,7 @@
 
 use clamber_world::rapier3d::parry::utils::Array2;
 use clamber_world::rapier3d::prelude::*;
+use glam::{DVec3, Vec3};
 
 /// Length of each side, metres. The valley is centred on the origin.
 pub const SIZE: f64 = 320.0;
@@ -20,6 +21,25 @@ pub fn height(x: f64, z: f64) -> f64 {
 /// True if (x, z) is within the valley. Outside it there is no ground, and bodies fall for ever.
 pub fn contains(x: f64, z: f64) -> bool {
     x.abs() <= 0.5 * SIZE && z.abs() <= 0.5 * SIZE
+}
+
+/// Corners and triangles of the ground, with this distance between neighbouring corners, metres.
+pub fn mesh(cell: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let cells = (SIZE / cell) as u32;
+    let place = |index: u32| f64::from(index) * cell - SIZE / 2.0;
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for row in 0..=cells {
+        for column in 0..=cells {
+            let (x, z) = (place(column), place(row));
+            positions.push(DVec3::new(x, height(x, z), z).as_vec3());
+            if row < cells && column < cells {
+                let [a, b] = [row, row + 1].map(|row| row * (cells + 1) + column);
+                triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
+            }
+        }
+    }
+    (positions, triangles)
 }
 
 /// A rapier world with the valley as its only collider, ready for queries.
@@ -42,7 +62,6 @@ pub fn world() -> PhysicsWorld {
 mod tests {
     use super::*;
     use clamber_world::{BodyPoses, Obstacle, RapierTerrain};
-    use glam::DVec3;
 
     #[test]
     fn the_height_field_follows_the_height_function() {

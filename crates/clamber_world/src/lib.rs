@@ -11,6 +11,7 @@ mod rigid_pose;
 #[cfg(feature = "parry")]
 pub mod shapes;
 mod surface;
+mod triangle_terrain;
 
 pub use attachment::{Attachment, Continuity, Followed};
 /// The shape that obstacles are queried with.
@@ -20,7 +21,7 @@ pub use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
 /// Whether an obstacle moves during a cast.
 pub use clamber_surface::surface::TargetMotion;
 #[cfg(feature = "rapier")]
-pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport};
+pub use debris::{Debris, DebrisConfig, DebrisError, DebrisReport, DebrisSnapshot};
 /// The version of glam that this crate's API uses.
 pub use glam;
 pub use half_space::HalfSpace;
@@ -34,3 +35,4 @@ pub use rapier::{BodyPoses, RapierTerrain, apply_push};
 #[cfg(feature = "rapier")]
 pub use rapier3d;
 pub use rigid_pose::RigidPose;
+pub use triangle_terrain::{TerrainError, TriangleTerrain};

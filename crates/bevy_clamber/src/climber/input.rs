@@ -71,7 +71,7 @@ fn sum(earlier: Option<ClimberBlow>, later: ClimberBlow) -> ClimberBlow {
 
 /// What was pressed since the last tick.
 #[derive(Component, Clone, Copy, Debug, Default)]
-pub(super) struct LatchedInput {
+pub(crate) struct LatchedInput {
     jump: bool,
     jump_held: bool,
     grip: bool,
@@ -91,7 +91,7 @@ impl LatchedInput {
     }
 
     /// The input of a tick. Presses and blows are used up.
-    pub(super) fn take(&mut self, input: &mut ClimberInput) -> clamber_climber::ClimberInput {
+    pub(crate) fn take(&mut self, input: &mut ClimberInput) -> clamber_climber::ClimberInput {
         self.latch(input);
         let latched = std::mem::take(self);
         clamber_climber::ClimberInput {

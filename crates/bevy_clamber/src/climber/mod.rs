@@ -11,6 +11,8 @@ mod shown;
 mod step;
 
 pub use component::{Climber, ClimberBody, ClimberFilter, ClimberState};
+#[cfg(feature = "fight")]
+pub(crate) use input::LatchedInput;
 pub use input::{ClimberBlow, ClimberInput};
 pub use obstacles::CustomObstacle;
 pub(crate) use obstacles::DrawnTouchable;

@@ -73,6 +73,13 @@ impl CustomObstacle {
 const AVIAN: ObstacleId = ObstacleId(u64::MAX);
 const RAPIER: ObstacleId = ObstacleId(u64::MAX - 1);
 
+/// The same in an arena, which keeps the ids from 2^62 on for its creatures and fighters. No entity lives long enough to have
+/// these bits.
+#[cfg(all(feature = "avian", feature = "colossus"))]
+const ARENA_AVIAN: ObstacleId = ObstacleId((1 << 62) - 1);
+#[cfg(all(feature = "rapier", feature = "colossus"))]
+const ARENA_RAPIER: ObstacleId = ObstacleId((1 << 62) - 2);
+
 /// Maps the entities of an attachment. An engine's world is none: the points of avian's are on entities, those of
 /// rapier's on handles.
 pub(super) fn map_entities(on: &mut Attachment, mapper: &mut impl EntityMapper) {
@@ -199,25 +206,44 @@ impl Touchable<'_, '_> {
     /// Calls `look` with the terrain: the worlds of physics engines, and obstacles of the app.
     #[cfg(feature = "colossus")]
     pub(crate) fn terrain<T>(&self, look: impl FnOnce(&[&dyn Obstacle]) -> T) -> T {
-        let mut all: Vec<&dyn Obstacle> = Vec::new();
+        self.terrain_by_id(|all| {
+            let all: Vec<&dyn Obstacle> = all.iter().map(|(_, obstacle)| *obstacle).collect();
+            look(&all)
+        })
+    }
+
+    /// Calls `look` with the terrain, by ascending id. The ids are below those of an arena's creatures.
+    #[cfg(feature = "colossus")]
+    pub(crate) fn terrain_by_id<T>(
+        &self,
+        look: impl FnOnce(&[(ObstacleId, &dyn Obstacle)]) -> T,
+    ) -> T {
+        let mut all: Vec<(ObstacleId, &dyn Obstacle)> = Vec::new();
         #[cfg(feature = "avian")]
         let avian = self.avian.as_ref().ok();
         #[cfg(feature = "avian")]
         let avian = avian.map(|avian| avian.terrain().with_origin(self.origin.0));
-        #[cfg(feature = "avian")]
-        all.extend(avian.as_ref().map(|avian| avian as &dyn Obstacle));
         #[cfg(feature = "rapier")]
         let rapier = self.rapier.as_ref().ok().and_then(RapierObstacles::terrain);
         #[cfg(feature = "rapier")]
         let wanted = |handle, _: &RapierCollider| !is_skin(self.debris.as_deref(), handle);
         #[cfg(feature = "rapier")]
         let rapier = rapier.map(|rapier| rapier.with_filter(&wanted).with_origin(self.origin.0));
+        for (entity, custom) in &self.custom {
+            all.push((ObstacleId(entity.to_bits()), &*custom.0));
+        }
+        all.sort_unstable_by_key(|(id, _)| id.0);
         #[cfg(feature = "rapier")]
-        all.extend(rapier.as_ref().map(|rapier| rapier as &dyn Obstacle));
         all.extend(
-            self.custom
-                .iter()
-                .map(|(_, custom)| &*custom.0 as &dyn Obstacle),
+            rapier
+                .as_ref()
+                .map(|rapier| (ARENA_RAPIER, rapier as &dyn Obstacle)),
+        );
+        #[cfg(feature = "avian")]
+        all.extend(
+            avian
+                .as_ref()
+                .map(|avian| (ARENA_AVIAN, avian as &dyn Obstacle)),
         );
         look(&all)
     }

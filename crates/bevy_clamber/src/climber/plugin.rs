@@ -12,7 +12,7 @@ use crate::needs::need_plugin;
 use crate::obstacles::AvianObstaclesPlugin;
 #[cfg(feature = "rapier")]
 use crate::obstacles::RapierObstaclesPlugin;
-use crate::{ClamberSystems, SurfacePlugin};
+use crate::{ClamberSystems, ClimberTicks, SurfacePlugin};
 
 /// Steps [`Climber`]s. Needs [`ClamberPlugins`](crate::ClamberPlugins) as well.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,10 @@ impl Plugin for ClimberPlugin {
             .add_observer(remove_body)
             .configure_sets(
                 self.schedule,
-                ClamberSystems::Climb.after(ClamberSystems::Pose),
+                (
+                    ClamberSystems::Climb.after(ClamberSystems::Pose),
+                    ClimberTicks.in_set(ClamberSystems::Climb),
+                ),
             )
             .add_systems(
                 RunFixedMainLoop,
@@ -56,7 +59,7 @@ impl Plugin for ClimberPlugin {
                 self.schedule,
                 (step::follow_changes, step::step_climbers, step::tell)
                     .chain()
-                    .in_set(ClamberSystems::Climb),
+                    .in_set(ClimberTicks),
             )
             .add_systems(PostUpdate, draw::draw.in_set(ClamberSystems::Draw));
     }
@@ -66,7 +69,7 @@ impl Plugin for ClimberPlugin {
         #[cfg(any(feature = "avian", feature = "rapier"))]
         app.add_systems(
             self.schedule,
-            step::push.in_set(ClamberSystems::Climb).after(step::tell),
+            step::push.in_set(ClimberTicks).after(step::tell),
         );
         #[cfg(feature = "avian")]
         if app.is_plugin_added::<avian3d::schedule::PhysicsSchedulePlugin>()

@@ -2,10 +2,12 @@ use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use clamber_body::{Body, Figure, Plant};
+use bevy_transform::components::Transform;
+use clamber_body::{Body, BodyError, BodyFrame, Figure, Plant};
 use thiserror::Error;
 
-use crate::SpawnedRig;
+use crate::creature::transform;
+use crate::{SpawnedRig, WorldOrigin};
 
 /// Draws a [`Climber`](crate::Climber) as a humanoid: insert it on the climber's entity.
 /// [`ClimberFigurePlugin`](crate::ClimberFigurePlugin) then writes the `Transform`s of the figure's root and joints in each
@@ -125,5 +127,42 @@ impl ClimberFigure {
     /// The body, to [play clips over it](Body::set_act).
     pub fn body_mut(&mut self) -> &mut Body {
         &mut self.body
+    }
+    /// Poses the body.
+    pub(crate) fn update(&mut self, frame: &BodyFrame<'_>, dt: f64) -> Result<(), BodyError> {
+        let figure = Arc::clone(&self.figure);
+        self.body.update(&figure, frame, dt)
+    }
+
+    /// Writes the pose into the transforms of root and joints, and tells which hands and feet came down.
+    pub(crate) fn write(
+        &self,
+        entity: Entity,
+        origin: &WorldOrigin,
+        transforms: &mut Query<'_, '_, &mut Transform>,
+        commands: &mut Commands<'_, '_>,
+    ) {
+        for plant in self.body.plants().iter().copied() {
+            commands.queue(move |world: &mut World| {
+                let planted = ClimberPlant { entity, plant };
+                world.write_message(planted);
+                world.trigger(planted);
+            });
+        }
+        let place = self.body.world_from_model();
+        if let Ok(mut root) = transforms.get_mut(self.root) {
+            root.set_if_neq(Transform {
+                translation: (place.translation - origin.0).as_vec3(),
+                rotation: place.rotation.as_quat(),
+                scale: Vec3::splat(place.scale as f32),
+            });
+        }
+        let locals = &self.body.pose().transforms;
+        for (joint, local) in self.joints.iter().zip(locals) {
+            // A joint that the app has despawned needs no pose.
+            if let Ok(mut found) = transforms.get_mut(*joint) {
+                found.set_if_neq(transform(local));
+            }
+        }
     }
 }

@@ -7,6 +7,8 @@ use bevy_app::{App, Plugin, PostUpdate};
 use bevy_ecs::prelude::*;
 
 pub use component::{ClimberFigure, ClimberPlant, WrongJoints};
+#[cfg(feature = "fight")]
+pub(crate) use pose::pose;
 
 use crate::needs::need_plugin;
 use crate::{ClamberSystems, ClimberPlugin};

@@ -2,13 +2,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
-use clamber_body::{Body, BodyFrame};
+use clamber_body::BodyFrame;
 use clamber_world::{Attachment, Obstacle, ObstacleId};
 
-use super::component::{ClimberFigure, ClimberPlant};
+use super::component::ClimberFigure;
 use crate::WorldOrigin;
 use crate::climber::{ClimberBody, ClimberFilter, ClimberState, DrawnTouchable};
-use crate::creature::transform;
 
 /// Anything that moves may have moved so far from one frame to the next, metres: skin is placed where a frame draws it.
 const ANYWHERE: f64 = 1e9;
@@ -25,7 +24,7 @@ type Figures<'w, 's> = Query<
     ),
 >;
 
-pub(super) fn pose(
+pub(crate) fn pose(
     time: Res<Time>,
     origin: Res<WorldOrigin>,
     touchable: DrawnTouchable<'_, '_>,
@@ -40,9 +39,7 @@ pub(super) fn pose(
             continue;
         };
         let shown = shown.bypass_change_detection();
-        let figure = shown.figure.clone();
         let look_at = shown.look_at.map(|at| at.as_dvec3() + origin.0);
-        let body: &mut Body = &mut shown.body;
         let posed = touchable.around(entity, filter, |obstacles| {
             // As the frame draws it, on skin as the frame draws it.
             let mut state = state.0;
@@ -60,7 +57,7 @@ pub(super) fn pose(
                 obstacles,
                 look_at,
             };
-            body.update(&figure, &frame, dt)
+            shown.update(&frame, dt)
         });
         if let Err(error) = posed {
             if !std::mem::replace(&mut *told, true) {
@@ -68,28 +65,7 @@ pub(super) fn pose(
             }
             continue;
         }
-        for plant in shown.body.plants().iter().copied() {
-            commands.queue(move |world: &mut World| {
-                let planted = ClimberPlant { entity, plant };
-                world.write_message(planted);
-                world.trigger(planted);
-            });
-        }
-        let place = shown.body.world_from_model();
-        if let Ok(mut root) = transforms.get_mut(shown.root) {
-            root.set_if_neq(Transform {
-                translation: (place.translation - origin.0).as_vec3(),
-                rotation: place.rotation.as_quat(),
-                scale: Vec3::splat(place.scale as f32),
-            });
-        }
-        let locals = &shown.body.pose().transforms;
-        for (joint, local) in shown.joints.iter().zip(locals) {
-            // A joint that the app has despawned needs no pose.
-            if let Ok(mut found) = transforms.get_mut(*joint) {
-                found.set_if_neq(transform(local));
-            }
-        }
+        shown.write(entity, &origin, &mut transforms, &mut commands);
     }
 }
 

@@ -27,6 +27,24 @@ impl Arena {
         hash.take(&(&self.projectiles, &self.noises));
         hash.hash()
     }
+
+    /// Hashes of the parts, to tell which of them differ: of each creature, of each fighter, and of the rest.
+    pub fn part_fingerprints(&self) -> Vec<u64> {
+        let creatures = self.creatures.iter().map(|creature| {
+            let mut hash = Hasher::default();
+            hash.take(creature.state());
+            hash.hash()
+        });
+        let fighters = self.fighters.iter().map(|fighter| {
+            let mut hash = Hasher::default();
+            hash.take(fighter.climber().state());
+            add_fighter(&mut hash, fighter.rest());
+            hash.hash()
+        });
+        let rest = (&self.projectiles, &self.noises);
+        let rest = hash_of(self.tick, &(self.next_projectile, rest));
+        creatures.chain(fighters).chain([rest]).collect()
+    }
 }
 
 impl ArenaState {

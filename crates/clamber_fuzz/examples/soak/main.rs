@@ -1,8 +1,9 @@
-//! Runs stress cases of every family, every fuzz target on random bytes, and whole battles with fresh seeds, until the
-//! time is up. `cargo xtask soak` builds and runs it.
+//! Runs stress cases of every family, every fuzz target on random bytes, whole battles and whole arenas with fresh seeds, until
+//! the time is up. `cargo xtask soak` builds and runs it.
 
 #![expect(clippy::panic, reason = "a finding is a panic, caught and reported")]
 
+mod arena;
 mod fight;
 mod findings;
 mod plan;
@@ -20,7 +21,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use report::Report;
 use task::Task;
 
-/// Runs stress cases, fuzz targets and battles with fresh seeds until the time is up.
+/// Runs stress cases, fuzz targets, battles and arenas with fresh seeds until the time is up.
 ///
 /// Prints a report and writes it to report.md. Exits with 1 if there is a finding, or if the slowest thousandth of a
 /// class of queries takes more than 20 times the class's median. The same seed gives the same tasks in the same order.
@@ -36,8 +37,8 @@ struct Options {
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
-    /// Run only this task, by its name in a report, and let it panic: stress/CASE, battle/SEED, queries/SEED,
-    /// palettes/SEED, builder/SEED or import/SEED.
+    /// Run only this task, by its name in a report, and let it panic: stress/CASE, battle/SEED, arena/SEED,
+    /// queries/SEED, palettes/SEED, builder/SEED or import/SEED.
     #[arg(long, value_name = "TASK")]
     case: Option<Task>,
 

@@ -17,6 +17,9 @@ const INPUTS: u64 = 20;
 /// Number of stress cases for each battle.
 const BATTLE_EVERY: usize = 18;
 
+/// Arenas after each battle.
+const ARENAS: u64 = 3;
+
 /// An endless sequence of tasks. Each round goes over every mesh in every pose; each task has a seed of its own.
 pub(crate) fn tasks(seed: u64) -> impl Iterator<Item = Task> {
     let mut seeds = fastrand::Rng::with_seed(seed);
@@ -47,6 +50,7 @@ pub(crate) fn tasks(seed: u64) -> impl Iterator<Item = Task> {
             }
             if index % BATTLE_EVERY == 0 {
                 tasks.push(Task::Battle(seeds.u64(..)));
+                tasks.extend((0..ARENAS).map(|_| Task::Arena(seeds.u64(..))));
             }
         }
         tasks

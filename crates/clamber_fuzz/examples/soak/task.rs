@@ -7,6 +7,7 @@ use clamber_fuzz::stress::{Case, Times, run};
 use clamber_fuzz::{builder, import, palettes, queries, square};
 use clamber_scenes::Creature;
 
+use crate::arena::arena;
 use crate::fight::fight;
 
 /// A task of a soak. It does the same every time.
@@ -18,6 +19,8 @@ pub(crate) enum Task {
     Fuzz(Target, u64),
     /// A whole battle with a seed.
     Battle(u64),
+    /// An arena with a seed: creatures and fighters anywhere, of any size.
+    Arena(u64),
 }
 
 /// A fuzz target of `clamber_fuzz`.
@@ -49,6 +52,7 @@ impl Task {
             Self::Stress(_) => "stress",
             Self::Fuzz(target, _) => target.name(),
             Self::Battle(_) => "battle",
+            Self::Arena(_) => "arena",
         }
     }
 
@@ -57,6 +61,7 @@ impl Task {
         match self {
             Self::Stress(case) => run(case, Some(times)).checks(),
             Self::Battle(seed) => fight(giant, *seed),
+            Self::Arena(seed) => arena(giant, *seed),
             Self::Fuzz(target, seed) => {
                 let bytes = random_bytes(*target, *seed);
                 match target {
@@ -106,7 +111,9 @@ impl fmt::Display for Task {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stress(case) => write!(f, "stress/{case}"),
-            Self::Fuzz(_, seed) | Self::Battle(seed) => write!(f, "{}/{seed}", self.kind()),
+            Self::Fuzz(_, seed) | Self::Battle(seed) | Self::Arena(seed) => {
+                write!(f, "{}/{seed}", self.kind())
+            }
         }
     }
 }
@@ -117,7 +124,7 @@ impl FromStr for Task {
     fn from_str(text: &str) -> Result<Self, String> {
         let kinds = || {
             let targets = Target::ALL.map(Target::name).join("/SEED, ");
-            format!("{text:?} is none of stress/CASE, battle/SEED, {targets}/SEED")
+            format!("{text:?} is none of stress/CASE, battle/SEED, arena/SEED, {targets}/SEED")
         };
         let (kind, rest) = text.split_once('/').ok_or_else(kinds)?;
         if kind == "stress" {
@@ -128,6 +135,9 @@ impl FromStr for Task {
             .map_err(|_| format!("{rest:?} is not a seed"))?;
         if kind == "battle" {
             return Ok(Self::Battle(seed));
+        }
+        if kind == "arena" {
+            return Ok(Self::Arena(seed));
         }
         let target = Target::ALL.into_iter().find(|target| target.name() == kind);
         Ok(Self::Fuzz(target.ok_or_else(kinds)?, seed))

@@ -4,7 +4,7 @@ use clamber_colossus::{Creature, CreatureEvent};
 use foxglove::messages::Log;
 use foxglove::messages::log::Level;
 
-use super::timestamp;
+use super::log;
 use crate::messages::{Brain, Named};
 
 /// A creature's brain in a tick.
@@ -36,19 +36,15 @@ impl TakenBrain {
     }
 
     /// The log lines of what happened.
-    pub(crate) fn log(&self, nanoseconds: u64) -> impl Iterator<Item = Log> {
-        self.lines.iter().map(move |message| Log {
-            timestamp: Some(timestamp(nanoseconds)),
-            level: Level::Info as i32,
-            message: message.clone(),
-            name: "creature".to_owned(),
-            file: String::new(),
-            line: 0,
-        })
+    pub(crate) fn log(&self, nanoseconds: u64, name: &str) -> impl Iterator<Item = Log> {
+        self.lines
+            .iter()
+            .map(move |message| log(nanoseconds, Level::Info, name, message.clone()))
     }
 }
 
-fn brain(creature: &Creature) -> Brain {
+/// All of a creature's brain.
+pub(crate) fn brain(creature: &Creature) -> Brain {
     let (brain, state) = (creature.kind().brain(), creature.state());
     let named = |(name, value): (&str, f64)| Named {
         name: name.to_owned(),
@@ -82,7 +78,7 @@ fn name(creature: &Creature, state: clamber_colossus::brain::StateId) -> &str {
 }
 
 /// What an event says; `None` for steps and markers, of which there are many.
-fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
+pub(crate) fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
     Some(match event {
         CreatureEvent::Entered { from, to } => {
             format!("{} to {}", name(creature, *from), name(creature, *to))
@@ -93,11 +89,15 @@ fn line(creature: &Creature, event: &CreatureEvent) -> Option<String> {
             used_up,
         } => {
             let end = if *used_up { ", which is used up" } else { "" };
-            format!("hurt at weak point {weak_point} by {damage:.3}{end}")
+            let points = creature.kind().weak_points();
+            let point = points.get(*weak_point).map_or("", |point| &point.name);
+            format!("hurt at weak point {weak_point} ({point}) by {damage:.3}{end}")
         }
         CreatureEvent::Staggered { plate, breaks } => {
             let end = if *breaks { ", which breaks off" } else { "" };
-            format!("staggered by a blow on plate {plate}{end}")
+            let plates = &creature.kind().brain().file().body.plates;
+            let name = plates.get(*plate).map_or("", |plate| &plate.name);
+            format!("staggered by a blow on plate {plate} ({name}){end}")
         }
         CreatureEvent::Marker { .. } | CreatureEvent::Plant { .. } => return None,
         // An event that is newer than this list.

@@ -1,5 +1,6 @@
 use std::collections::HashSet;
 
+use clamber_climber::ClimberState;
 use clamber_surface::rig::Skeleton;
 use foxglove::messages::{FrameTransform, FrameTransforms};
 use glam::{DMat3, DQuat, DVec3};
@@ -27,13 +28,10 @@ impl Frames {
             rotation: Some(rotation(DQuat::IDENTITY)),
         };
         let mut transforms = vec![
-            frame(Z_UP, WORLD.to_owned()),
+            z_up(0),
             frame(WORLD, CREATURE.to_owned()),
             frame(WORLD, CLIMBER.to_owned()),
         ];
-        // A quarter turn about X takes Y up to Z up.
-        let half = core::f64::consts::FRAC_1_SQRT_2;
-        transforms[0].rotation = Some(rotation(DQuat::from_xyzw(half, 0.0, 0.0, half)));
         let own = [WORLD, CREATURE, CLIMBER, Z_UP].map(str::to_owned);
         let mut taken: HashSet<String> = own.into();
         for (index, joint) in skeleton.joints().iter().enumerate() {
@@ -65,6 +63,38 @@ impl Frames {
             place(joint, now, position, upright(&placed.matrix3));
         }
         &self.message
+    }
+}
+
+/// The world in the frame with Z up: a quarter turn about X takes Y up to Z up.
+pub(crate) fn z_up(nanoseconds: u64) -> FrameTransform {
+    let half = core::f64::consts::FRAC_1_SQRT_2;
+    let turn = DQuat::from_xyzw(half, 0.0, 0.0, half);
+    frame(nanoseconds, Z_UP, WORLD, (DVec3::ZERO, turn))
+}
+
+/// A climber's frame: its centre, with +Z along its heading.
+pub(crate) fn frame_of_climber(
+    nanoseconds: u64,
+    name: &str,
+    state: &ClimberState,
+) -> FrameTransform {
+    let at = (state.position, facing(state.heading));
+    frame(nanoseconds, WORLD, name, at)
+}
+
+fn frame(
+    nanoseconds: u64,
+    parent: &str,
+    child: &str,
+    (position, turn): (DVec3, DQuat),
+) -> FrameTransform {
+    FrameTransform {
+        timestamp: Some(timestamp(nanoseconds)),
+        parent_frame_id: parent.to_owned(),
+        child_frame_id: child.to_owned(),
+        translation: Some(vector(position)),
+        rotation: Some(rotation(turn)),
     }
 }
 

@@ -1,27 +1,33 @@
 use clamber_climber::ClimberEvent;
+use clamber_world::ObstacleId;
 use foxglove::messages::Log;
 use foxglove::messages::log::Level;
 
 use super::timestamp;
 
-/// The log line of an event.
-pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
+/// The log line of an event of a climber. `named` gives the names of obstacles.
+pub(crate) fn line(
+    nanoseconds: u64,
+    climber: &str,
+    event: &ClimberEvent,
+    named: impl Fn(ObstacleId) -> String,
+) -> Log {
     let (level, message) = match event {
         ClimberEvent::Landed { obstacle, speed } => (
             Level::Info,
-            format!("landed on obstacle {} at {speed:.2} m/s", obstacle.0),
+            format!("landed on {} at {speed:.2} m/s", named(*obstacle)),
         ),
         ClimberEvent::Jumped => (Level::Info, "jumped".to_owned()),
         ClimberEvent::Slipped => (Level::Warning, "slipped: too steep".to_owned()),
         ClimberEvent::LostFooting { from } => (
             Level::Warning,
-            format!("lost its footing on obstacle {}", from.obstacle.0),
+            format!("lost its footing on {}", named(from.obstacle)),
         ),
         ClimberEvent::MovedRepeatedly { obstacle } => (
             Level::Warning,
             format!(
-                "obstacle {} moved several times since the last step",
-                obstacle.0
+                "{} moved several times since the last step",
+                named(*obstacle)
             ),
         ),
         ClimberEvent::Thrown { acceleration, .. } => (
@@ -30,7 +36,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ),
         ClimberEvent::Grabbed { obstacle, point } => (
             Level::Info,
-            format!("grabbed obstacle {} at {point:.2}", obstacle.0),
+            format!("grabbed {} at {point:.2}", named(*obstacle)),
         ),
         ClimberEvent::TurnedCorner { angle } => (
             Level::Debug,
@@ -41,7 +47,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ),
         ClimberEvent::LedgeCaught { obstacle, point } => (
             Level::Info,
-            format!("caught a ledge of obstacle {} at {point:.2}", obstacle.0),
+            format!("caught a ledge of {} at {point:.2}", named(*obstacle)),
         ),
         ClimberEvent::Mantled => (Level::Info, "climbed over a ledge".to_owned()),
         ClimberEvent::Released => (Level::Info, "let go".to_owned()),
@@ -52,7 +58,7 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         ClimberEvent::Tumbled { .. } => (Level::Warning, "knocked down".to_owned()),
         ClimberEvent::KnockedOff { from, .. } => (
             Level::Warning,
-            format!("knocked off obstacle {}", from.obstacle.0),
+            format!("knocked off {}", named(from.obstacle)),
         ),
         ClimberEvent::Crushed { depth } => (
             Level::Warning,
@@ -73,11 +79,16 @@ pub(crate) fn line(nanoseconds: u64, event: &ClimberEvent) -> Log {
         // An event that is newer than this list.
         other => (Level::Info, format!("{other:?}")),
     };
+    log(nanoseconds, level, climber, message)
+}
+
+/// A log line.
+pub(crate) fn log(nanoseconds: u64, level: Level, name: &str, message: String) -> Log {
     Log {
         timestamp: Some(timestamp(nanoseconds)),
         level: level as i32,
         message,
-        name: "climber".to_owned(),
+        name: name.to_owned(),
         file: String::new(),
         line: 0,
     }

@@ -5,16 +5,21 @@ mod figure;
 mod frames;
 mod log;
 mod scene;
+mod scenery;
 mod skin;
 
-pub(crate) use brain::TakenBrain;
+pub(crate) use brain::{TakenBrain, brain, line as creature_line};
 pub(crate) use figure::{FigureJoints, TakenFigure};
-pub(crate) use frames::Frames;
-pub(crate) use log::line;
-pub(crate) use scene::Scene;
+pub(crate) use frames::{Frames, frame_of_climber, z_up};
+pub(crate) use log::{line, log};
+pub(crate) use scene::{Scene, from_z_to};
+pub use scenery::SceneryView;
+pub(crate) use scenery::{Sceneries, SceneryNames, TakenScenery};
 pub(crate) use skin::Skin;
 
-use foxglove::messages::{Color, FrameTransform, Pose, Quaternion, Timestamp, Vector3};
+use foxglove::messages::{
+    Color, FrameTransform, Pose, Quaternion, SceneEntity, Timestamp, Vector3,
+};
 use glam::{DMat3, DQuat, DVec3};
 
 /// The frame of world space.
@@ -30,12 +35,12 @@ const CLIMBER: &str = "climber";
 const Z_UP: &str = "z_up";
 
 /// Converts a time, which wraps after 136 years.
-fn timestamp(nanoseconds: u64) -> Timestamp {
+pub(crate) fn timestamp(nanoseconds: u64) -> Timestamp {
     let second = 1_000_000_000;
     Timestamp::new((nanoseconds / second) as u32, (nanoseconds % second) as u32)
 }
 
-fn vector(v: DVec3) -> Vector3 {
+pub(crate) fn vector(v: DVec3) -> Vector3 {
     Vector3 {
         x: v.x,
         y: v.y,
@@ -43,7 +48,7 @@ fn vector(v: DVec3) -> Vector3 {
     }
 }
 
-fn rotation(q: DQuat) -> Quaternion {
+pub(crate) fn rotation(q: DQuat) -> Quaternion {
     Quaternion {
         x: q.x,
         y: q.y,
@@ -59,7 +64,7 @@ fn pose(position: DVec3) -> Pose {
     }
 }
 
-fn color(r: f64, g: f64, b: f64, a: f64) -> Color {
+pub(crate) fn color(r: f64, g: f64, b: f64, a: f64) -> Color {
     Color { r, g, b, a }
 }
 
@@ -75,4 +80,15 @@ fn upright(map: &DMat3) -> DQuat {
     let x = map.x_axis.normalize_or(DVec3::X);
     let z = x.cross(map.y_axis).normalize_or(x.any_orthonormal_vector());
     DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z))
+}
+
+/// An entity of a scene without anything in it, in the world.
+pub(crate) fn entity(nanoseconds: u64, id: &str) -> SceneEntity {
+    SceneEntity {
+        timestamp: Some(timestamp(nanoseconds)),
+        frame_id: WORLD.to_owned(),
+        id: id.to_owned(),
+        frame_locked: true,
+        ..SceneEntity::default()
+    }
 }

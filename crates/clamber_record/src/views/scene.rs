@@ -15,6 +15,7 @@ const NOWHERE: u32 = u32::MAX;
 /// The view of the scene: triangles that this tick's queries reached, the triangle that supports the climber, and
 /// the climber's body.
 pub(crate) struct Scene {
+    tick_seconds: f64,
     radius: f64,
     /// From the climber's lower ball to its upper one, while it is upright.
     upright: DVec3,
@@ -23,8 +24,9 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    pub(crate) fn new(climber: &ClimberConfig) -> Self {
+    pub(crate) fn new(climber: &ClimberConfig, tick_seconds: f64) -> Self {
         Self {
+            tick_seconds,
             radius: climber.body.radius,
             upright: climber.up() * climber.body.height,
             places: Vec::new(),
@@ -49,9 +51,14 @@ impl Scene {
             ..SceneEntity::default()
         };
         let mut touched = entity("touched", CREATURE);
-        let triangles = skin.triangles.iter().copied();
-        let tint = color(0.95, 0.7, 0.2, 0.5);
-        touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
+        if let Some(triangles) = &skin.triangles {
+            // The skin moves on with the next view.
+            let shown = self.tick_seconds * f64::from(skin.every);
+            touched.lifetime = foxglove::messages::Duration::try_from_secs_f64(shown).ok();
+            let triangles = triangles.iter().copied();
+            let tint = color(0.95, 0.7, 0.2, 0.5);
+            touched.triangles = vec![self.list(mesh, scale, positions, triangles, tint)];
+        }
 
         let mut support = entity("support", CREATURE);
         // The key of a support on another obstacle has another meaning, and may name a triangle by chance. So the
@@ -66,12 +73,15 @@ impl Scene {
         self.body(state, &mut climber);
         SceneUpdate {
             deletions: Vec::new(),
-            entities: vec![touched, support, climber],
+            entities: [touched, support, climber]
+                .into_iter()
+                .skip(usize::from(skin.triangles.is_none()))
+                .collect(),
         }
     }
 
     /// Adds the climber's body: a ball, or a capsule while it is upright and has a height.
-    fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
+    pub(crate) fn body(&self, state: &ClimberState, climber: &mut SceneEntity) {
         let tint = Some(color_of(state.mode));
         let diameter = 2.0 * self.radius;
         let ball = |center| SpherePrimitive {
@@ -158,7 +168,7 @@ fn color_of(mode: ClimberMode) -> Color {
 }
 
 /// The shortest rotation from +Z to a unit vector; about X where they are opposite.
-fn from_z_to(to: DVec3) -> DQuat {
+pub(crate) fn from_z_to(to: DVec3) -> DQuat {
     let axis = DVec3::Z.cross(to);
     let real = 1.0 + to.z;
     if real < 1e-9 {
@@ -197,7 +207,7 @@ mod tests {
         let mut state = *climber.state();
         change(&mut state);
         let mut entity = SceneEntity::default();
-        Scene::new(&config).body(&state, &mut entity);
+        Scene::new(&config, 1.0 / 60.0).body(&state, &mut entity);
         entity
     }
 

@@ -18,6 +18,7 @@ WANTED = {
     "/transforms": "foxglove.FrameTransforms",
     "/figure": "foxglove.FrameTransforms",
     "/scene": "foxglove.SceneUpdate",
+    "/scenery": "foxglove.SceneUpdate",
     "/skin": "foxglove.PointCloud",
     "/touched": "touched.Touched",
     "/log": "foxglove.Log",
@@ -50,6 +51,10 @@ def check_tick(message, count):
 
 def check_transforms(message):
     parents = {t.child_frame_id: t.parent_frame_id for t in message.transforms}
+    if "creature" not in parents:
+        # Ground, outcrop and rocks.
+        check(set(parents.values()) == {"world"}, f"{parents}")
+        return 0
     check(len(parents) == len(message.transforms), "two transforms with one name")
     check(parents.get("creature") == "world" == parents.get("climber"), f"{parents}")
     for t in message.transforms:
@@ -82,7 +87,7 @@ def check_skin(message):
 
 def check_scene(message):
     entities = {e.id: e for e in message.entities}
-    check(set(entities) == {"touched", "support", "climber"}, f"{list(entities)}")
+    check(set(entities) - {"touched"} == {"support", "climber"}, f"{list(entities)}")
     for entity in entities.values():
         for triangles in entity.triangles:
             check(len(triangles.indices) % 3 == 0, "an incomplete triangle")
@@ -90,7 +95,21 @@ def check_scene(message):
                 all(i < len(triangles.points) for i in triangles.indices),
                 "a corner that is not a point",
             )
-    return len(entities["touched"].triangles[0].indices) // 3
+    touched = entities.get("touched")
+    return len(touched.triangles[0].indices) // 3 if touched else 0
+
+
+def check_scenery(message):
+    """The meshes of the world: the ground, and in a climb the outcrop and the rocks."""
+    corners = 0
+    for entity in message.entities:
+        check(entity.frame_id == entity.id, f"{entity.id} is in the frame {entity.frame_id}")
+        for mesh in entity.triangles:
+            check(mesh.indices and len(mesh.indices) % 3 == 0, f"{entity.id}: triangles")
+            check(max(mesh.indices) < len(mesh.points), f"{entity.id}: a corner without a point")
+            corners += len(mesh.indices)
+    check("ground" in {e.id for e in message.entities}, "no ground")
+    return corners // 3
 
 
 def main(path):
@@ -115,8 +134,11 @@ def main(path):
                 most["points"] = max(most["points"], check_skin(decoded))
             elif topic == "/scene":
                 most["touched"] = max(most["touched"], check_scene(decoded))
+            elif topic == "/scenery":
+                most["world"] = max(most["world"], check_scenery(decoded))
             elif topic == "/touched":
-                check(0 < decoded.clusters_touched <= decoded.clusters, f"{decoded}")
+                check(0 <= decoded.clusters_touched <= decoded.clusters, f"{decoded}")
+                most["clusters"] = max(most["clusters"], decoded.clusters_touched)
             elif topic == "/log":
                 check(decoded.message != "", "an empty log line")
             counts[topic] += 1
@@ -128,7 +150,7 @@ def main(path):
     dt = float(metadata["clamber"]["tick_seconds"])
     check(abs(last * 1e-9 - (counts["/tick"] - 1) * dt) < 1e-6, "the last tick's time")
     check("seed" in metadata["settings"], "no seed")
-    check(most["joints"] > 0 and most["touched"] > 0, f"{dict(most)}")
+    check(most["joints"] > 0 and most["touched"] > 0 and most["clusters"] > 0, f"{dict(most)}")
     check(most["joints of the hero"] > 20, f"{dict(most)}")
     print(f"{path}: {dict(counts)}; at most {dict(most)}; {metadata['clamber']['creature']}")
 

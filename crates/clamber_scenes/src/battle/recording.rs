@@ -24,6 +24,8 @@ pub struct Sample {
     pub push_out: f64,
     /// Vertices of the creature that were skinned for the tick, as a share of all.
     pub skinned_share: f64,
+    /// The climber's stamina, 0 to 1.
+    pub stamina: f64,
     /// Time of the pose, the script and the climber's step, microseconds.
     pub microseconds: f64,
 }
@@ -115,6 +117,20 @@ impl Recording {
         let later = later.filter(|pair| !is_in(&pair[0]) && is_in(&pair[1]));
         let first = self.samples.first().is_some_and(is_in);
         (later.count() + usize::from(first), ticks)
+    }
+
+    /// The lowest stamina; 1 without ticks.
+    pub fn least_stamina(&self) -> f64 {
+        let all = self.samples.iter().map(|s| s.stamina);
+        all.fold(1.0, f64::min)
+    }
+
+    /// All stamina that was spent: 1 is as much as a climber has.
+    pub fn spent_stamina(&self) -> f64 {
+        let pairs = self.samples.windows(2);
+        pairs
+            .map(|pair| (pair[0].stamina - pair[1].stamina).max(0.0))
+            .sum()
     }
 
     /// The share of ticks spent on the creature.

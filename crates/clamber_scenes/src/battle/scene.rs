@@ -230,6 +230,7 @@ impl<'a> Battle<'a> {
             state: self.life().map(|life| life.state().current()),
             push_out: report.pushed_out.length(),
             skinned_share: touched.vertices_skinned as f64 / touched.vertices.max(1) as f64,
+            stamina: state.stamina,
             microseconds,
         };
         self.rocks_fingerprint = self.rocks.fingerprint(&self.world.bodies);

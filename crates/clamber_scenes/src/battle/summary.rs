@@ -100,6 +100,10 @@ pub struct Summary {
     pub modes: Vec<ModeTicks>,
     /// When the climber first came to the creature's top, seconds; `None` if it has not, or in a ride.
     pub arrived_s: Option<f64>,
+    /// The climber's lowest stamina, 0 to 1.
+    pub least_stamina: f64,
+    /// All stamina that it spent, where 1 is as much as it has.
+    pub spent_stamina: f64,
     /// Share of the ticks spent on the creature.
     pub riding_share: f64,
     /// Largest drift of the climber from its material point, metres: see [`Sample::drift`](super::Sample::drift).
@@ -211,6 +215,8 @@ impl Summary {
             states: states(battle),
             modes: modes.to_vec(),
             arrived_s: battle.arrived(),
+            least_stamina: recording.least_stamina(),
+            spent_stamina: recording.spent_stamina(),
             riding_share: recording.riding_share(),
             max_anchor_drift_m: recording.max_drift(),
             max_pushed_off_m: rides.then_some(watch.pushed_off),
@@ -319,6 +325,11 @@ impl fmt::Display for Summary {
                 ticks => format!("after {:.1} s", ticks as f64 * TICK),
             };
             row(f, "killed the creature", killed)?;
+            row(
+                f,
+                "stamina, least and spent",
+                format!("{:.2}, {:.2}", self.least_stamina, self.spent_stamina),
+            )?;
         }
         if !self.states.is_empty() || self.arrived_s.is_some() {
             let arrived = self

@@ -12,11 +12,13 @@ mod piece;
 mod pieces;
 mod report;
 mod skin_patch;
+mod snapshot;
 
 pub use config::DebrisConfig;
 pub use error::DebrisError;
 pub use pieces::Debris;
 pub use report::DebrisReport;
+pub use snapshot::DebrisSnapshot;
 
 #[cfg(test)]
 mod tests;

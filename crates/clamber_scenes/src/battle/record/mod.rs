@@ -1,5 +1,7 @@
 //! Recording a battle, and replaying a recorded one.
 
+mod scenery;
+
 use std::io::Write;
 use std::path::Path;
 
@@ -8,7 +10,10 @@ use clamber_record::{
     RecordingInfo, ReplayError, Replayed, TickView, creature_fingerprint, palette_fingerprint,
 };
 
+use scenery::Scenery;
+
 use super::options::Progress;
+use super::scene::{CREATURE, TERRAIN};
 use super::{Battle, BattleError, BattleOptions, BattleSnapshot, Summary, TICK, fight};
 use crate::hero::{Hero, HeroError};
 
@@ -31,6 +36,8 @@ impl From<HeroError> for BattleError {
 pub struct BattleRecorder<W: Write> {
     recorder: Recorder<W>,
     hero: Option<Hero>,
+    /// Made at the first tick.
+    scenery: Option<Scenery>,
 }
 
 impl<W: Write + Send + 'static> BattleRecorder<W> {
@@ -54,9 +61,13 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             settings: options.to_settings()?,
             version: RecordingInfo::VERSION.to_owned(),
         };
+        let mut recorder = Recorder::new(out, &info, &creature.skeleton, how)?;
+        recorder.name(CREATURE, &creature.name);
+        recorder.name(TERRAIN, "ground");
         Ok(Self {
-            recorder: Recorder::new(out, &info, &creature.skeleton, how)?,
+            recorder,
             hero: None,
+            scenery: None,
         })
     }
 
@@ -83,6 +94,8 @@ impl<W: Write + Send + 'static> BattleRecorder<W> {
             palette: battle.palette(),
             scene_fingerprint: battle.scene_fingerprint(),
         })?;
+        let scenery = self.scenery.get_or_insert_with(|| Scenery::of(battle));
+        scenery.record(battle, &mut self.recorder)?;
         if let Some(life) = battle.life() {
             self.recorder.brain(life)?;
         }

@@ -1,0 +1,56 @@
+use bevy_ecs::prelude::*;
+use bevy_time::Time;
+use clamber_climber::ClimberInput as Input;
+
+use super::component::ArenaFighter;
+use super::resource::{FightArena, FightEvent};
+use super::terrain::ArenaTerrain;
+use crate::ClimberInput;
+use crate::climber::LatchedInput;
+
+/// Share by which the schedule's tick may differ from the arena's: a `Duration` rounds to nanoseconds.
+const ROUNDING: f64 = 1e-4;
+
+/// Steps the arena with the inputs of its fighters, and tells what happened.
+pub(super) fn step(
+    time: Res<Time>,
+    fight: Option<ResMut<FightArena>>,
+    terrain: ArenaTerrain<'_, '_>,
+    mut fighters: Query<(&ArenaFighter, &mut ClimberInput, &mut LatchedInput)>,
+    mut warned: Local<bool>,
+    mut commands: Commands,
+) {
+    let Some(mut fight) = fight else { return };
+    let (tick, passed) = (fight.config().tick, time.delta_secs_f64());
+    if (tick - passed).abs() > ROUNDING * tick && !std::mem::replace(&mut *warned, true) {
+        tracing::warn!(
+            "the arena's tick is {tick} s, and its schedule's is {passed} s: it runs too fast or too slowly. Insert \
+             Time::<Fixed>::from_seconds with the arena's tick"
+        );
+    }
+    let mut inputs = vec![Input::IDLE; fight.fighters().len()];
+    for (fighter, mut input, mut latched) in &mut fighters {
+        let taken = latched.take(input.bypass_change_detection());
+        if let Some(place) = inputs.get_mut(fighter.0.0 as usize) {
+            *place = Input {
+                blow: None,
+                ..taken
+            };
+        }
+    }
+    let stepped = terrain.with(|terrain| {
+        let events = fight.arena_mut().step(&inputs, terrain)?;
+        Ok::<_, clamber_fight::ArenaError>(events.to_vec())
+    });
+    match stepped {
+        Ok(events) => {
+            for event in events.into_iter().map(FightEvent) {
+                commands.queue(move |world: &mut World| {
+                    world.write_message(event.clone());
+                    world.trigger(event);
+                });
+            }
+        }
+        Err(error) => tracing::warn!("the arena stood still for a tick: {error}"),
+    }
+}

@@ -1,0 +1,37 @@
+use std::path::Path;
+
+use crate::places::read_file;
+use crate::{ArenaInfo, ArenaRecording, Ending, RecordError, Recording, file};
+
+/// A recording of either kind, for programs that are given a file.
+#[derive(Clone, Debug)]
+pub enum AnyRecording {
+    /// Of one climber and its creature, by a [`Recorder`](crate::Recorder).
+    Climber(Box<Recording>),
+    /// Of an arena, by an [`ArenaRecorder`](crate::ArenaRecorder).
+    Arena(Box<ArenaRecording>),
+}
+
+impl AnyRecording {
+    /// Reads a recording from a file of at most 1 GiB.
+    ///
+    /// # Errors
+    /// As [`Recording::open`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
+        let bytes = read_file(path.as_ref())?;
+        let contents = file::read(&bytes)?;
+        Ok(if contents.metadata.contains_key(ArenaInfo::METADATA) {
+            Self::Arena(Box::new(ArenaRecording::from_contents(bytes, contents)?))
+        } else {
+            Self::Climber(Box::new(Recording::from_contents(bytes, contents)?))
+        })
+    }
+
+    /// How the file ends.
+    pub fn ending(&self) -> &Ending {
+        match self {
+            Self::Climber(recording) => recording.ending(),
+            Self::Arena(recording) => recording.ending(),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+use std::collections::BTreeMap;
+
+use clamber_fight::Arena;
+
+use crate::info::{bad, parse, text};
+use crate::{RecordError, RecordingInfo};
+
+/// The metadata of a recording of an arena.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArenaInfo {
+    /// [`Arena::assets`]: it tells whether creatures, fighters or configurations have changed since.
+    pub assets: u64,
+    /// Duration of a tick, seconds.
+    pub tick_seconds: f64,
+    /// Names of the creatures, by number.
+    pub creatures: Vec<String>,
+    /// Names of the fighters, by number.
+    pub fighters: Vec<String>,
+    /// What the arena was made from, in the caller's own entries: seed, options, files.
+    pub settings: BTreeMap<String, String>,
+    /// The version of this crate that wrote the recording. A recorder always writes its own.
+    pub version: String,
+}
+
+impl ArenaInfo {
+    /// The name of the metadata record that holds everything but the settings.
+    pub const METADATA: &str = "clamber_arena";
+
+    /// The metadata of an arena, with the names `creature 0`, `fighter 0` and so on, and without settings.
+    pub fn of(arena: &Arena) -> Self {
+        let named = |what: &str, count| (0..count).map(|n| format!("{what} {n}")).collect();
+        Self {
+            assets: arena.assets(),
+            tick_seconds: arena.config().tick,
+            creatures: named("creature", arena.creatures().len()),
+            fighters: named("fighter", arena.fighters().len()),
+            settings: BTreeMap::new(),
+            version: RecordingInfo::VERSION.to_owned(),
+        }
+    }
+
+    /// The name of a creature.
+    pub(crate) fn creature(&self, number: usize) -> String {
+        let name = self.creatures.get(number).cloned();
+        name.unwrap_or_else(|| format!("creature {number}"))
+    }
+
+    /// The name of a fighter.
+    pub(crate) fn fighter(&self, number: usize) -> String {
+        let name = self.fighters.get(number).cloned();
+        name.unwrap_or_else(|| format!("fighter {number}"))
+    }
+
+    pub(crate) fn to_metadata(&self) -> BTreeMap<String, String> {
+        let own = [
+            ("version".to_owned(), RecordingInfo::VERSION.to_owned()),
+            ("assets".to_owned(), format!("{:016x}", self.assets)),
+            (
+                "tick_seconds".to_owned(),
+                format!("{:?}", self.tick_seconds),
+            ),
+        ];
+        let names = |what: &'static str, names: &[String]| {
+            let names = names.iter().enumerate();
+            names
+                .map(|(number, name)| (format!("{what}.{number}"), name.clone()))
+                .collect::<Vec<_>>()
+        };
+        own.into_iter()
+            .chain(names("creature", &self.creatures))
+            .chain(names("fighter", &self.fighters))
+            .collect()
+    }
+
+    pub(crate) fn from_metadata(
+        metadata: &BTreeMap<String, String>,
+        settings: BTreeMap<String, String>,
+    ) -> Result<Self, RecordError> {
+        let assets = text(metadata, "assets")?;
+        let tick_seconds = parse::<f64>(metadata, "tick_seconds")?;
+        if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
+            return Err(RecordError::TickSeconds(tick_seconds));
+        }
+        let names = |what: &str| {
+            let name = |number| metadata.get(&format!("{what}.{number}")).cloned();
+            (0u32..).map_while(name).collect()
+        };
+        Ok(Self {
+            assets: u64::from_str_radix(assets, 16)
+                .map_err(|error| bad("assets", assets, &error.to_string()))?,
+            tick_seconds,
+            creatures: names("creature"),
+            fighters: names("fighter"),
+            settings,
+            version: text(metadata, "version")?.clone(),
+        })
+    }
+}

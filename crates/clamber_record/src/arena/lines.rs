@@ -1,0 +1,150 @@
+//! Events of an arena in words.
+
+use clamber_fight::{Arena, ArenaEvent, CreatureId, FighterId, Weapon, creature_obstacle};
+use clamber_surface::mesh::TriangleId;
+use clamber_world::ObstacleId;
+use foxglove::messages::Log;
+use foxglove::messages::log::Level;
+
+use super::ArenaInfo;
+use crate::names::{ObstacleNames, Part, name_of};
+use crate::views::{creature_line, line, log};
+
+/// What a log line needs to name things.
+pub(super) struct Words<'a> {
+    pub(super) arena: &'a Arena,
+    pub(super) info: &'a ArenaInfo,
+    /// Of creatures, fighters, and of the terrain that the caller has named.
+    pub(super) names: &'a ObstacleNames,
+}
+
+impl Words<'_> {
+    /// The log lines of the last step.
+    pub(super) fn lines(&self, nanoseconds: u64) -> Vec<Log> {
+        let events = self.arena.events().iter();
+        events
+            .filter_map(|event| self.line(nanoseconds, event))
+            .collect()
+    }
+
+    fn line(&self, now: u64, event: &ArenaEvent) -> Option<Log> {
+        let (level, who, what) = match event {
+            ArenaEvent::Creature { creature, event } => {
+                let what = creature_line(self.arena.creature(*creature)?, event)?;
+                (Level::Info, self.creature(*creature), what)
+            }
+            ArenaEvent::Climber { fighter, event } => {
+                let named = |obstacle| self.obstacle(*fighter, obstacle);
+                return Some(line(now, &self.fighter(*fighter), event, named));
+            }
+            ArenaEvent::Hit {
+                by,
+                weapon,
+                creature,
+                at,
+                damage,
+                ..
+            } => {
+                let weapon = match weapon {
+                    Weapon::Cut => "a cut",
+                    Weapon::Stab => "a stab",
+                    Weapon::Arrow => "an arrow",
+                    Weapon::Stone => "a stone",
+                };
+                let part = self.part(*creature, at.key);
+                let what = format!("hit {part} with {weapon}: damage {damage:.3}");
+                (Level::Info, self.fighter(*by), what)
+            }
+            ArenaEvent::Struck {
+                creature,
+                fighter,
+                velocity,
+                damage,
+                ..
+            } => {
+                let whom = self.fighter(*fighter);
+                let speed = velocity.length();
+                let what = format!("struck {whom}: {speed:.1} m/s, damage {damage:.3}");
+                (Level::Warning, self.creature(*creature), what)
+            }
+            ArenaEvent::Shot { by, projectile } => {
+                let what = format!("shot projectile {}", projectile.0);
+                (Level::Debug, self.fighter(*by), what)
+            }
+            ArenaEvent::Stuck {
+                projectile,
+                obstacle,
+                ..
+            } => {
+                let (id, name) = (projectile.0, name_of(self.names, *obstacle));
+                let what = format!("projectile {id} sticks in {name}");
+                (Level::Debug, "arena".to_owned(), what)
+            }
+            ArenaEvent::CameLoose { projectile } => {
+                let what = format!("projectile {} came loose", projectile.0);
+                (Level::Debug, "arena".to_owned(), what)
+            }
+            ArenaEvent::BrokenOff { fighter } => {
+                let what = "broke off its attack".to_owned();
+                (Level::Warning, self.fighter(*fighter), what)
+            }
+            ArenaEvent::Died { fighter } => {
+                (Level::Error, self.fighter(*fighter), "died".to_owned())
+            }
+            ArenaEvent::Rose { fighter } => (
+                Level::Info,
+                self.fighter(*fighter),
+                "lives again".to_owned(),
+            ),
+            ArenaEvent::Killed { creature, by } => {
+                let what = format!("was killed by {}", self.fighter(*by));
+                (Level::Error, self.creature(*creature), what)
+            }
+            // An event that is newer than this list.
+            other => (Level::Info, "arena".to_owned(), format!("{other:?}")),
+        };
+        Some(log(now, level, &who, what))
+    }
+
+    fn creature(&self, creature: CreatureId) -> String {
+        self.info.creature(creature.0 as usize)
+    }
+
+    fn fighter(&self, fighter: FighterId) -> String {
+        self.info.fighter(fighter.0 as usize)
+    }
+
+    /// A creature with the joint that moves a triangle of its skin.
+    fn part(&self, creature: CreatureId, triangle: u64) -> String {
+        let name = self.creature(creature);
+        let joint = || {
+            let one = self.arena.creature(creature)?;
+            let triangle = TriangleId(u32::try_from(triangle).ok()?);
+            let joint = one.surface().mesh().joint_of(triangle)?;
+            one.kind().skeleton().joints().get(joint.index())
+        };
+        match joint() {
+            Some(joint) => format!("{name} ({})", joint.name),
+            None => name,
+        }
+    }
+
+    /// What a fighter is on: a creature with the part of it, or other terrain.
+    fn obstacle(&self, fighter: FighterId, obstacle: ObstacleId) -> String {
+        let name = name_of(self.names, obstacle);
+        let on = || {
+            let mut creatures = self.arena.creatures().iter().zip(0..);
+            let (creature, _) =
+                creatures.find(|(_, id)| creature_obstacle(CreatureId(*id)) == obstacle)?;
+            let state = self.arena.fighter(fighter)?.climber().state();
+            let part = Part::of(state, creature.surface().mesh())?;
+            part.is_on(obstacle).then(|| {
+                let joints = creature.kind().skeleton().joints();
+                part.name(&name, |joint| {
+                    Some(joints.get(joint.index())?.name.as_str())
+                })
+            })
+        };
+        on().unwrap_or(name)
+    }
+}

@@ -1,0 +1,14 @@
+//! Recordings of an arena: several creatures and climbers, which fight.
+
+mod info;
+mod lines;
+mod recorder;
+mod recording;
+mod replay;
+mod taken;
+mod writing;
+
+pub use info::ArenaInfo;
+pub use recorder::ArenaRecorder;
+pub use recording::{ArenaRecording, RecordedArenaTick};
+pub use replay::{ArenaDifference, ArenaPart, ArenaReplay};

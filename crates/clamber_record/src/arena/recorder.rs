@@ -1,0 +1,186 @@
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+use clamber_climber::ClimberInput;
+use clamber_fight::{Arena, CreatureId, creature_obstacle, fighter_obstacle};
+use clamber_world::{Obstacle, ObstacleId};
+
+use super::ArenaInfo;
+use super::lines::Words;
+use super::taken::{Due, TakenArena};
+use super::writing::ArenaWriting;
+use crate::chunks::Chunks;
+use crate::names::ObstacleNames;
+use crate::recorder::create;
+use crate::views::{FigureJoints, SceneryNames, SceneryView};
+use crate::{RecordError, RecordOptions};
+
+/// Writes a recording of an arena: its inputs and fingerprints in each tick, so that
+/// [`ArenaRecording::replay`](super::ArenaRecording::replay) can play it again and compare; a saved state at the beginning of each
+/// chunk, to start from; and for people to look at, creatures, climbers, arrows, brains, and all events in words.
+///
+/// It writes on a thread of its own, chunk by chunk, as [`Recorder`](crate::Recorder) does, and what is said there of files
+/// that were cut holds here too.
+pub struct ArenaRecorder<W: Write> {
+    options: RecordOptions,
+    info: ArenaInfo,
+    names: ObstacleNames,
+    joints: Vec<Arc<FigureJoints>>,
+    scenery: SceneryNames,
+    chunks: Chunks<TakenArena, W>,
+}
+
+impl ArenaRecorder<BufWriter<File>> {
+    /// A recorder that writes to a new file. An existing file at that path is overwritten.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`] if the file cannot be created, and as [`ArenaRecorder::new`].
+    pub fn create(
+        path: impl AsRef<Path>,
+        info: &ArenaInfo,
+        arena: &Arena,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        Self::new(create(path.as_ref())?, info, arena, options)
+    }
+}
+
+impl<W: Write + Send + 'static> ArenaRecorder<W> {
+    /// A recorder that writes to `out`, which it owns. The recording begins with the arena as it is now.
+    ///
+    /// # Errors
+    /// [`RecordError::OtherArena`] if `info` is of another arena, [`RecordError::TickSeconds`], [`RecordError::Write`] if `out`
+    /// fails, [`RecordError::Io`] if the thread cannot be started.
+    pub fn new(
+        out: W,
+        info: &ArenaInfo,
+        arena: &Arena,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        let joints: Vec<_> = arena
+            .creatures()
+            .iter()
+            .enumerate()
+            .map(|(number, creature)| {
+                let name = info.creature(number);
+                Arc::new(FigureJoints::new(&name, creature.kind().skeleton()))
+            })
+            .collect();
+        let climbers = arena.fighters().iter();
+        let climbers = climbers.map(|fighter| fighter.climber().config());
+        let writing = ArenaWriting::new(out, info, climbers, options.skin_points)?;
+        let creatures = (0..arena.creatures().len() as u32).map(|number| {
+            let name = info.creature(number as usize);
+            (creature_obstacle(CreatureId(number)), name)
+        });
+        let fighters = arena.fighters().iter().map(|fighter| {
+            let name = info.fighter(fighter.id().0 as usize);
+            (fighter_obstacle(fighter.id()), name)
+        });
+        let mut recorder = Self {
+            options,
+            names: Arc::new(creatures.chain(fighters).collect()),
+            info: info.clone(),
+            joints,
+            scenery: SceneryNames::default(),
+            chunks: Chunks::start(writing, options.chunk_ticks)?,
+        };
+        recorder.take(arena, &[], &[])?;
+        Ok(recorder)
+    }
+}
+
+impl<W: Write> ArenaRecorder<W> {
+    /// Records the arena after a step, with the inputs and the terrain of that step.
+    ///
+    /// # Errors
+    /// [`RecordError::Order`] unless it was stepped once since the last call, [`RecordError::Inputs`] for a wrong number of
+    /// inputs, [`RecordError::OtherArena`] if it is another arena. Such a tick is not recorded, but recording can go on.
+    /// [`RecordError::Write`] or another error if an earlier chunk could not be written, and [`RecordError::Ended`] at every call
+    /// after that.
+    ///
+    /// # Panics
+    /// If `out` panicked while an earlier chunk was written: that panic is resumed here.
+    pub fn tick(
+        &mut self,
+        arena: &Arena,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), RecordError> {
+        let (fighters, found) = (arena.fighters().len(), inputs.len());
+        if fighters != found {
+            return Err(RecordError::Inputs { fighters, found });
+        }
+        self.take(arena, inputs, terrain)
+    }
+
+    fn take(
+        &mut self,
+        arena: &Arena,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+    ) -> Result<(), RecordError> {
+        let (recorded, found) = (self.info.assets, arena.assets());
+        if recorded != found {
+            return Err(RecordError::OtherArena { recorded, found });
+        }
+        let tick = arena.tick();
+        self.chunks.check(tick)?;
+        let is_due = |every: u32| every > 0 && tick.is_multiple_of(u64::from(every));
+        let due = Due {
+            views: is_due(self.options.transforms_every),
+            skin: is_due(self.options.skin_every),
+        };
+        let mut taken = TakenArena::new(arena, inputs, terrain, &self.joints, due);
+        let words = Words {
+            arena,
+            info: &self.info,
+            names: &self.names,
+        };
+        taken.lines = words.lines(crate::output::time(tick, self.info.tick_seconds));
+        if self.chunks.begins() {
+            taken.saved = Some(arena.to_bytes()?);
+        }
+        self.chunks.push(tick, |place| match place {
+            Some(place) => {
+                *place = taken;
+                None
+            }
+            None => Some(taken),
+        })
+    }
+
+    /// Gives terrain a name, by which the log calls it from the next tick on. Creatures and fighters have those of
+    /// [`ArenaInfo`].
+    pub fn name(&mut self, obstacle: ObstacleId, name: &str) {
+        let names = Arc::make_mut(&mut self.names);
+        names.retain(|(id, _)| *id != obstacle);
+        names.push((obstacle, name.to_owned()));
+    }
+
+    /// Records a mesh at the tick recorded last, for people to look at, such as the ground or a rock: its shape the first
+    /// time, its place whenever [`RecordOptions::transforms_every`] lets transforms be due. What stands still is recorded once.
+    ///
+    /// # Errors
+    /// [`RecordError::Ended`] after writing failed.
+    pub fn scenery(&mut self, view: &SceneryView<'_>) -> Result<(), RecordError> {
+        let last = self.chunks.last()?;
+        let taken = self.scenery.take(view, last.is_due);
+        last.scenery.extend(taken);
+        Ok(())
+    }
+
+    /// Writes the remaining ticks and the index, and gives back `out`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`] or another error if a chunk or the index could not be written;
+    /// [`RecordError::Ended`] if [`ArenaRecorder::tick`] has returned that error already.
+    ///
+    /// # Panics
+    /// If `out` panicked: that panic is resumed here.
+    pub fn finish(mut self) -> Result<W, RecordError> {
+        self.chunks.finish()
+    }
+}

@@ -1,0 +1,169 @@
+use std::ops::Range;
+use std::path::Path;
+
+use clamber_climber::ClimberInput;
+
+use super::ArenaInfo;
+use crate::file::{self, Contents, Kind};
+use crate::messages::{ArenaSnapshot, ArenaTick};
+use crate::places::{Places, decode, read_file};
+use crate::{Ending, RecordError, RecordingInfo, topics};
+
+/// A tick of an arena as it was recorded.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RecordedArenaTick {
+    /// Number of the tick.
+    pub tick: u64,
+    /// The inputs of the step that led to it, by fighter; none for the first tick of a recording.
+    pub inputs: Vec<ClimberInput>,
+    /// [`Arena::fingerprint`](clamber_fight::Arena::fingerprint) at its end.
+    pub fingerprint: u64,
+    /// [`Arena::part_fingerprints`](clamber_fight::Arena::part_fingerprints) at its end.
+    pub parts: Vec<u64>,
+}
+
+/// A recording of an arena that was read: its metadata, and all ticks up to where the file ends or is damaged.
+#[derive(Clone, Debug)]
+pub struct ArenaRecording {
+    info: ArenaInfo,
+    bytes: Vec<u8>,
+    places: Places,
+    ending: Ending,
+}
+
+impl ArenaRecording {
+    /// Reads a recording from a file of at most 1 GiB.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`] if the file cannot be read, [`RecordError::TooLarge`], and as [`ArenaRecording::from_bytes`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordError> {
+        Self::from_bytes(read_file(path.as_ref())?)
+    }
+
+    /// Reads a recording from the bytes of its file.
+    ///
+    /// A file that was cut or damaged gives the ticks before that place; see [`ArenaRecording::ending`].
+    ///
+    /// # Errors
+    /// [`RecordError::NotMcap`] if the bytes do not begin as an MCAP file, [`RecordError::NotARecording`] if the
+    /// metadata is missing or cannot be read, [`RecordError::TickSeconds`] if its duration of a tick is not positive or
+    /// not finite.
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordError> {
+        let contents = file::read(&bytes)?;
+        Self::from_contents(bytes, contents)
+    }
+
+    pub(crate) fn from_contents(
+        bytes: Vec<u8>,
+        mut contents: Contents,
+    ) -> Result<Self, RecordError> {
+        let of_one = contents.metadata.contains_key(RecordingInfo::METADATA);
+        let mut take = |name: &str| {
+            contents.metadata.remove(name).ok_or_else(|| {
+                RecordError::NotARecording(if of_one {
+                    "it is a recording of one climber; read it with Recording".to_owned()
+                } else {
+                    format!("it has no metadata named {name:?}; the {}", contents.ending)
+                })
+            })
+        };
+        let metadata = take(ArenaInfo::METADATA)?;
+        let info = ArenaInfo::from_metadata(&metadata, take(RecordingInfo::SETTINGS)?)?;
+        let mut recording = Self {
+            info,
+            bytes,
+            places: Places::default(),
+            ending: contents.ending,
+        };
+        for (kind, place) in contents.messages {
+            let at = place.start;
+            if let Err(error) = recording.add(kind, place) {
+                let reason = error.to_string();
+                recording.ending = Ending::Damaged { at, reason };
+                break;
+            }
+        }
+        Ok(recording)
+    }
+
+    /// Checks a message and stores its place.
+    fn add(&mut self, kind: Kind, place: Range<usize>) -> Result<(), RecordError> {
+        match kind {
+            Kind::Arena => {
+                let tick = self.decode_tick(&place)?.tick;
+                self.places.add_tick(tick, place)
+            }
+            Kind::ArenaSnapshot => {
+                let tick = self.decode_saved(&place)?.tick;
+                self.places.add_saved(tick, place)
+            }
+            // Only recordings of one climber have these.
+            Kind::Tick | Kind::Snapshot => Ok(()),
+        }
+    }
+
+    /// The metadata of the recording.
+    pub fn info(&self) -> &ArenaInfo {
+        &self.info
+    }
+
+    /// How the file ends.
+    pub fn ending(&self) -> &Ending {
+        &self.ending
+    }
+
+    /// Number of ticks.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// True if there are no ticks.
+    pub fn is_empty(&self) -> bool {
+        self.places.len() == 0
+    }
+
+    /// Number of the first tick; `None` without ticks.
+    pub fn first(&self) -> Option<u64> {
+        self.places.first()
+    }
+
+    /// Number of the last tick; `None` without ticks.
+    pub fn last(&self) -> Option<u64> {
+        self.places.last()
+    }
+
+    /// The ticks from this number on, in order: all for a number before the first one, none for a number after the last one.
+    pub fn ticks_from(
+        &self,
+        tick: u64,
+    ) -> impl Iterator<Item = Result<RecordedArenaTick, RecordError>> + '_ {
+        let ticks = self.places.from(tick);
+        ticks.map(|place| self.decode_tick(place))
+    }
+
+    /// The last saved state at or before a tick, and its tick: bytes for
+    /// [`Arena::restore_bytes`](clamber_fight::Arena::restore_bytes).
+    ///
+    /// # Errors
+    /// [`RecordError::NoTick`] if the recording has no such tick, [`RecordError::NoSnapshot`] if it has no such
+    /// state.
+    pub fn saved(&self, tick: u64) -> Result<(u64, Vec<u8>), RecordError> {
+        let (at, place) = self.places.saved(tick)?;
+        Ok((at, self.decode_saved(place)?.state.to_vec()))
+    }
+
+    fn decode_tick(&self, place: &Range<usize>) -> Result<RecordedArenaTick, RecordError> {
+        let tick: ArenaTick = decode(&self.bytes, place, topics::ARENA)?;
+        Ok(RecordedArenaTick {
+            tick: tick.tick,
+            inputs: tick.inputs.into_iter().map(Into::into).collect(),
+            fingerprint: tick.fingerprint,
+            parts: tick.parts,
+        })
+    }
+
+    fn decode_saved(&self, place: &Range<usize>) -> Result<ArenaSnapshot, RecordError> {
+        decode(&self.bytes, place, topics::ARENA_SNAPSHOT)
+    }
+}

@@ -1,0 +1,104 @@
+//! The copy of an arena's tick that is made while the game waits.
+
+use std::sync::Arc;
+
+use clamber_climber::{ClimberInput, ClimberState};
+use clamber_colossus::Creature;
+use clamber_fight::{Arena, Blade, ProjectilePlace};
+use clamber_surface::geometry::Affine;
+use clamber_surface::mesh::ColliderMesh;
+use clamber_world::{Obstacle, ObstacleId};
+use foxglove::messages::Log;
+
+use crate::messages::{ArenaTick, Brain};
+use crate::views::{FigureJoints, TakenFigure, TakenScenery, brain};
+
+/// A tick of an arena.
+#[derive(Debug)]
+pub(crate) struct TakenArena {
+    pub(crate) message: ArenaTick,
+    pub(crate) lines: Vec<Log>,
+    /// True if views are due.
+    pub(crate) is_due: bool,
+    pub(crate) creatures: Vec<TakenCreature>,
+    pub(crate) fighters: Vec<TakenFighter>,
+    pub(crate) projectiles: Vec<ProjectilePlace>,
+    pub(crate) scenery: Vec<TakenScenery>,
+    /// [`Arena::to_bytes`].
+    pub(crate) saved: Option<Vec<u8>>,
+}
+
+#[derive(Debug)]
+pub(crate) struct TakenCreature {
+    pub(crate) figure: TakenFigure,
+    pub(crate) brain: Brain,
+    pub(crate) skin: Option<(Arc<ColliderMesh>, Vec<Affine>)>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct TakenFighter {
+    pub(crate) state: ClimberState,
+    pub(crate) blade: Option<Blade>,
+}
+
+/// What is taken in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Due {
+    pub(super) views: bool,
+    pub(super) skin: bool,
+}
+
+impl TakenArena {
+    pub(super) fn new(
+        arena: &Arena,
+        inputs: &[ClimberInput],
+        terrain: &[(ObstacleId, &dyn Obstacle)],
+        joints: &[Arc<FigureJoints>],
+        due: Due,
+    ) -> Self {
+        let mut taken = Self {
+            message: ArenaTick {
+                tick: arena.tick(),
+                inputs: inputs.iter().map(Into::into).collect(),
+                fingerprint: arena.fingerprint(),
+                parts: arena.part_fingerprints(),
+            },
+            lines: Vec::new(),
+            is_due: due.views,
+            creatures: Vec::new(),
+            fighters: Vec::new(),
+            projectiles: Vec::new(),
+            scenery: Vec::new(),
+            saved: None,
+        };
+        if due.views {
+            let creatures = arena.creatures().iter().zip(joints);
+            taken.creatures = creatures
+                .map(|(creature, joints)| TakenCreature::new(creature, joints, due.skin))
+                .collect();
+            let fighters = arena.fighters().iter();
+            taken.fighters = fighters
+                .map(|fighter| TakenFighter {
+                    state: *fighter.climber().state(),
+                    blade: fighter.blade(),
+                })
+                .collect();
+            let projectiles = arena.projectiles().iter();
+            taken.projectiles = projectiles
+                .filter_map(|projectile| arena.place(projectile, terrain))
+                .collect();
+        }
+        taken
+    }
+}
+
+impl TakenCreature {
+    fn new(creature: &Creature, joints: &Arc<FigureJoints>, with_skin: bool) -> Self {
+        let (surface, palette) = (creature.surface(), creature.palette());
+        Self {
+            figure: TakenFigure::new(Arc::clone(joints), palette, *surface.world_from_model()),
+            brain: brain(creature),
+            skin: with_skin.then(|| (Arc::clone(surface.mesh()), palette.matrices().to_vec())),
+        }
+    }
+}

@@ -1,0 +1,217 @@
+use std::io::Write;
+
+use clamber_climber::ClimberConfig;
+use clamber_fight::{Blade, ProjectilePlace};
+use clamber_surface::skin::skin_into;
+use foxglove::messages::{
+    ArrowPrimitive, FrameTransforms, Log, PointCloud, Pose, SceneEntity, SceneUpdate,
+};
+use glam::{DVec3, Vec3};
+
+use super::ArenaInfo;
+use super::taken::{TakenArena, TakenCreature, TakenFighter};
+use crate::chunks::WriteTicks;
+use crate::messages::{ArenaSnapshot, ArenaTick, Brain};
+use crate::output::{Channel, Output};
+use crate::views::{
+    Scene, Sceneries, Skin, color, entity, frame_of_climber, from_z_to, rotation, vector, z_up,
+};
+use crate::{RecordError, RecordingInfo, topics};
+
+/// Length of an arrow as it is drawn, metres.
+const ARROW: f64 = 0.8;
+
+/// Encodes ticks of an arena and writes them.
+pub(super) struct ArenaWriting<W: Write> {
+    output: Output<W>,
+    tick: Channel,
+    snapshot: Channel,
+    transforms: Channel,
+    scene: Channel,
+    scenery: Channel,
+    log: Channel,
+    /// Brain and skin of each creature.
+    creatures: Vec<(Channel, Channel)>,
+    /// Name of each fighter, and how its body is drawn.
+    fighters: Vec<(String, Scene)>,
+    skin: Skin,
+    meshes: Sceneries,
+    /// Kept for its memory.
+    positions: Vec<Vec3>,
+}
+
+impl<W: Write> ArenaWriting<W> {
+    pub(super) fn new<'a>(
+        out: W,
+        info: &ArenaInfo,
+        climbers: impl Iterator<Item = &'a ClimberConfig>,
+        skin_points: usize,
+    ) -> Result<Self, RecordError> {
+        let metadata = [
+            (ArenaInfo::METADATA, info.to_metadata()),
+            (RecordingInfo::SETTINGS, info.settings.clone()),
+        ];
+        let mut output = Output::new(out, info.tick_seconds, metadata)?;
+        let mut creatures = Vec::new();
+        for number in 0..info.creatures.len() {
+            let [brain, skin] =
+                [topics::BRAIN, topics::SKIN].map(|topic| format!("{topic}/{number}"));
+            creatures.push((
+                output.channel_named::<Brain>(topics::BRAIN, &brain)?,
+                output.channel_named::<PointCloud>(topics::SKIN, &skin)?,
+            ));
+        }
+        let fighters = climbers.enumerate();
+        Ok(Self {
+            tick: output.channel::<ArenaTick>(topics::ARENA)?,
+            snapshot: output.channel::<ArenaSnapshot>(topics::ARENA_SNAPSHOT)?,
+            transforms: output.channel::<FrameTransforms>(topics::TRANSFORMS)?,
+            scene: output.channel::<SceneUpdate>(topics::SCENE)?,
+            scenery: output.channel::<SceneUpdate>(topics::SCENERY)?,
+            log: output.channel::<Log>(topics::LOG)?,
+            output,
+            creatures,
+            fighters: fighters
+                .map(|(number, config)| {
+                    (info.fighter(number), Scene::new(config, info.tick_seconds))
+                })
+                .collect(),
+            skin: Skin::new(skin_points),
+            meshes: Sceneries::default(),
+            positions: Vec::new(),
+        })
+    }
+
+    fn write(&mut self, taken: &mut TakenArena) -> Result<(), RecordError> {
+        let tick = taken.message.tick;
+        let now = self.output.begin(tick);
+        let message = &taken.message;
+        self.output
+            .send_as(self.tick, now, |buffer| message.write(buffer))?;
+        if let Some(state) = taken.saved.take() {
+            let state = state.into();
+            let message = ArenaSnapshot { tick, state };
+            self.output.send(self.snapshot, now, &message)?;
+        }
+        for line in taken.lines.drain(..) {
+            self.output.send(self.log, now, &line)?;
+        }
+        if taken.is_due {
+            self.look(taken, now)?;
+        }
+        if let Some(frames) = self.meshes.frames(now, &taken.scenery) {
+            self.output.send(self.transforms, now, &frames)?;
+        }
+        if let Some(shapes) = self.meshes.shapes(now, taken.scenery.drain(..)) {
+            self.output.send(self.scenery, now, &shapes)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the views.
+    fn look(&mut self, taken: &mut TakenArena, now: u64) -> Result<(), RecordError> {
+        let mut transforms = vec![z_up(now)];
+        for creature in &taken.creatures {
+            transforms.extend(creature.figure.message(now).transforms);
+        }
+        for ((name, _), fighter) in self.fighters.iter().zip(&taken.fighters) {
+            transforms.push(frame_of_climber(now, name, &fighter.state));
+        }
+        self.output
+            .send(self.transforms, now, &FrameTransforms { transforms })?;
+        let bodies = self.fighters.iter().zip(&taken.fighters);
+        let mut entities: Vec<SceneEntity> = bodies
+            .map(|((name, scene), fighter)| body(now, name, scene, fighter))
+            .collect();
+        entities.push(arrows(now, &taken.projectiles));
+        let scene = SceneUpdate {
+            deletions: Vec::new(),
+            entities,
+        };
+        self.output.send(self.scene, now, &scene)?;
+        for (creature, channels) in taken.creatures.drain(..).zip(self.creatures.clone()) {
+            self.creature(&creature, channels, now)?;
+        }
+        Ok(())
+    }
+
+    fn creature(
+        &mut self,
+        creature: &TakenCreature,
+        (brain, skin): (Channel, Channel),
+        now: u64,
+    ) -> Result<(), RecordError> {
+        self.output.send(brain, now, &creature.brain)?;
+        let Some((mesh, matrices)) = &creature.skin else {
+            return Ok(());
+        };
+        skin_into(mesh, matrices, &mut self.positions).map_err(|error| RecordError::Encode {
+            topic: topics::SKIN,
+            reason: error.to_string(),
+        })?;
+        let scale = creature.figure.world_from_model.scale;
+        let mut points = self.skin.message(now, mesh, &self.positions, scale);
+        points.frame_id.clone_from(&creature.figure.joints.figure);
+        self.output.send(skin, now, &points)
+    }
+}
+
+impl<W: Write + Send + 'static> WriteTicks<TakenArena, W> for ArenaWriting<W> {
+    fn chunk(&mut self, ticks: &mut [TakenArena]) -> Result<(), RecordError> {
+        for taken in ticks {
+            self.write(taken)?;
+        }
+        self.output.flush()
+    }
+
+    fn finish(self) -> Result<W, RecordError> {
+        self.output.finish()
+    }
+}
+
+/// A climber's body and its sword.
+fn body(now: u64, name: &str, scene: &Scene, fighter: &TakenFighter) -> SceneEntity {
+    let mut entity = entity(now, name);
+    scene.body(&fighter.state, &mut entity);
+    let sword = fighter
+        .blade
+        .map(|Blade { hilt, tip }| arrow(hilt, tip, [0.05, 0.1], [0.8, 0.85, 0.9]));
+    entity.arrows.extend(sword);
+    entity
+}
+
+/// Arrows and stones.
+fn arrows(now: u64, projectiles: &[ProjectilePlace]) -> SceneEntity {
+    let mut entity = entity(now, "projectiles");
+    let drawn = projectiles.iter().map(|place| {
+        let tail = place.tip - place.direction * ARROW;
+        arrow(tail, place.tip, [0.03, 0.08], [0.6, 0.4, 0.2])
+    });
+    entity.arrows = drawn.collect();
+    entity
+}
+
+/// An arrow from a place to another one, with the diameters of its shaft and its head.
+fn arrow(from: DVec3, to: DVec3, [shaft, head]: [f64; 2], [r, g, b]: [f64; 3]) -> ArrowPrimitive {
+    let (along, length) = ((to - from).normalize_or(DVec3::Z), from.distance(to));
+    // Its arrows point along x: the turn from z after that from x to z.
+    let turn = from_z_to(along)
+        * glam::DQuat::from_xyzw(
+            0.0,
+            -core::f64::consts::FRAC_1_SQRT_2,
+            0.0,
+            core::f64::consts::FRAC_1_SQRT_2,
+        );
+    let point = (0.25 * length).min(0.2);
+    ArrowPrimitive {
+        pose: Some(Pose {
+            position: Some(vector(from)),
+            orientation: Some(rotation(turn)),
+        }),
+        shaft_length: length - point,
+        shaft_diameter: shaft,
+        head_length: point,
+        head_diameter: head,
+        color: Some(color(r, g, b, 1.0)),
+    }
+}

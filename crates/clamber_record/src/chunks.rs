@@ -1,0 +1,164 @@
+//! Gathers ticks in chunks, and writes them on a thread of its own while the game goes on.
+
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::thread::JoinHandle;
+
+use crate::RecordError;
+
+/// Encodes ticks and writes them.
+pub(crate) trait WriteTicks<T, W>: Send + 'static {
+    /// Writes a chunk of ticks.
+    fn chunk(&mut self, ticks: &mut [T]) -> Result<(), RecordError>;
+
+    /// Writes the index and gives back the output.
+    fn finish(self) -> Result<W, RecordError>;
+}
+
+/// Copies of ticks on their way to the file.
+pub(crate) struct Chunks<T, W> {
+    /// Ticks in a chunk.
+    size: usize,
+    last: Option<u64>,
+    /// The first `gathered` of these are the ticks of the chunk that is being gathered. The others are kept for
+    /// their memory.
+    chunk: Vec<T>,
+    gathered: usize,
+    /// `None` once writing has ended.
+    thread: Option<WriterThread<T, W>>,
+}
+
+struct WriterThread<T, W> {
+    chunks: SyncSender<Chunk<T>>,
+    /// Chunks that were written come back, so that their memory is reused.
+    written: Receiver<Vec<T>>,
+    handle: JoinHandle<Result<W, RecordError>>,
+}
+
+/// Ticks, and how many of them from the front belong to the chunk.
+type Chunk<T> = (Vec<T>, usize);
+
+impl<T: Send + 'static, W: Send + 'static> Chunks<T, W> {
+    /// Starts the thread.
+    pub(crate) fn start(
+        mut writing: impl WriteTicks<T, W>,
+        chunk_ticks: u32,
+    ) -> Result<Self, RecordError> {
+        // One chunk is gathered, one waits, one is written.
+        let (to_thread, chunks) = sync_channel::<Chunk<T>>(1);
+        let (back, written): (Sender<Vec<T>>, _) = channel();
+        let work = move || {
+            for (mut chunk, count) in chunks {
+                writing.chunk(&mut chunk[..count])?;
+                // Fails once the recorder waits for the end: then it takes no chunk back.
+                let _ = back.send(chunk);
+            }
+            writing.finish()
+        };
+        let named = std::thread::Builder::new().name("clamber_record".to_owned());
+        let handle = named.spawn(work).map_err(|source| RecordError::Io {
+            what: "cannot start the thread that writes the recording".to_owned(),
+            source,
+        })?;
+        Ok(Self {
+            size: chunk_ticks.max(1) as usize,
+            last: None,
+            chunk: Vec::new(),
+            gathered: 0,
+            thread: Some(WriterThread {
+                chunks: to_thread,
+                written,
+                handle,
+            }),
+        })
+    }
+}
+
+impl<T, W> Chunks<T, W> {
+    /// Refuses a tick that does not follow the last one, and every tick once writing has failed.
+    pub(crate) fn check(&self, tick: u64) -> Result<(), RecordError> {
+        if self.thread.is_none() {
+            return Err(RecordError::Ended);
+        }
+        match self.last {
+            Some(last) if tick.checked_sub(1) != Some(last) => {
+                Err(RecordError::Order { last, found: tick })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// True if a tick that is pushed now is the first one of its chunk.
+    pub(crate) fn begins(&self) -> bool {
+        self.gathered == 0 || self.gathered >= self.size
+    }
+
+    /// Adds a tick that was checked. `take` copies it: over one that is there already, or to a new one that it returns.
+    pub(crate) fn push(
+        &mut self,
+        tick: u64,
+        take: impl FnOnce(Option<&mut T>) -> Option<T>,
+    ) -> Result<(), RecordError> {
+        if self.gathered >= self.size {
+            self.hand_over()?;
+        }
+        let new = take(self.chunk.get_mut(self.gathered));
+        self.chunk.extend(new);
+        self.gathered += 1;
+        self.last = Some(tick);
+        Ok(())
+    }
+
+    /// The tick added last.
+    pub(crate) fn last(&mut self) -> Result<&mut T, RecordError> {
+        if self.thread.is_none() {
+            return Err(RecordError::Ended);
+        }
+        // A chunk is handed over only when another tick follows, so the last tick is still here.
+        let last = self.chunk[..self.gathered].last_mut();
+        last.ok_or(RecordError::NoTick {
+            asked: 0,
+            ticks: None,
+        })
+    }
+
+    /// Writes what is left.
+    pub(crate) fn finish(&mut self) -> Result<W, RecordError> {
+        self.hand_over()?;
+        self.end()
+    }
+
+    /// Passes the gathered ticks to the thread.
+    fn hand_over(&mut self) -> Result<(), RecordError> {
+        let thread = self.thread.as_ref().ok_or(RecordError::Ended)?;
+        let next = thread.written.try_recv().unwrap_or_default();
+        let chunk = core::mem::replace(&mut self.chunk, next);
+        let count = core::mem::take(&mut self.gathered);
+        if thread.chunks.send((chunk, count)).is_ok() {
+            return Ok(());
+        }
+        // The thread takes no more chunks: it has ended with an error.
+        self.end().and(Err(RecordError::Ended))
+    }
+
+    /// Waits for the thread to end. If it panicked, resumes the panic.
+    fn end(&mut self) -> Result<W, RecordError> {
+        let WriterThread { chunks, handle, .. } = self.thread.take().ok_or(RecordError::Ended)?;
+        drop(chunks);
+        match handle.join() {
+            Ok(ended) => ended,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    }
+}
+
+impl<T, W> Drop for Chunks<T, W> {
+    fn drop(&mut self) {
+        if let Some(WriterThread { chunks, handle, .. }) = self.thread.take() {
+            // Errors are ignored: a drop cannot return them.
+            let chunk = core::mem::take(&mut self.chunk);
+            let _ = chunks.send((chunk, self.gathered));
+            drop(chunks);
+            let _ = handle.join();
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The MCAP file of a recording: metadata, channels, messages.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use foxglove::Encode;
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{WriteOptions, Writer};
+
+use crate::{RecordError, RecordingInfo};
+
+/// A channel: its number, and its topic for errors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Channel {
+    id: u16,
+    topic: &'static str,
+}
+
+pub(crate) struct Output<W: Write> {
+    writer: Writer<NoSeek<W>>,
+    tick_seconds: f64,
+    sequence: u32,
+    /// Kept for its memory.
+    buffer: Vec<u8>,
+}
+
+impl<W: Write> Output<W> {
+    /// Begins a file with metadata records.
+    pub(crate) fn new(
+        out: W,
+        tick_seconds: f64,
+        metadata: [(&str, BTreeMap<String, String>); 2],
+    ) -> Result<Self, RecordError> {
+        if !(tick_seconds > 0.0 && tick_seconds.is_finite()) {
+            return Err(RecordError::TickSeconds(tick_seconds));
+        }
+        // A chunk stays in memory until `flush` ends it, so that nothing is patched in the file.
+        let write = WriteOptions::new()
+            .compression(None)
+            .chunk_size(None)
+            .disable_seeking(true)
+            .profile("")
+            .library(format!("clamber_record {}", RecordingInfo::VERSION));
+        let mut writer = write.create(NoSeek::new(out))?;
+        for (name, metadata) in metadata {
+            let name = name.to_owned();
+            writer.write_metadata(&Metadata { name, metadata })?;
+        }
+        Ok(Self {
+            writer,
+            tick_seconds,
+            sequence: 0,
+            buffer: Vec::new(),
+        })
+    }
+
+    /// Adds a channel for messages of a type.
+    pub(crate) fn channel<M: Encode>(
+        &mut self,
+        topic: &'static str,
+    ) -> Result<Channel, RecordError> {
+        self.channel_named::<M>(topic, topic)
+    }
+
+    /// Adds one of several channels of a topic, with a name of its own.
+    pub(crate) fn channel_named<M: Encode>(
+        &mut self,
+        topic: &'static str,
+        name: &str,
+    ) -> Result<Channel, RecordError> {
+        let schema = M::get_schema().ok_or_else(|| RecordError::Encode {
+            topic,
+            reason: "it has no schema".to_owned(),
+        })?;
+        let schema = self
+            .writer
+            .add_schema(&schema.name, &schema.encoding, &schema.data)?;
+        let encoding = M::get_message_encoding();
+        let id = self
+            .writer
+            .add_channel(schema, name, &encoding, &Default::default())?;
+        Ok(Channel { id, topic })
+    }
+
+    /// Begins a tick, and returns its time since tick 0, nanoseconds.
+    pub(crate) fn begin(&mut self, tick: u64) -> u64 {
+        self.sequence = self.sequence.wrapping_add(1);
+        time(tick, self.tick_seconds)
+    }
+
+    pub(crate) fn send(
+        &mut self,
+        channel: Channel,
+        now: u64,
+        message: &impl Encode,
+    ) -> Result<(), RecordError> {
+        self.send_as(channel, now, |buffer| {
+            message.encode(buffer).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Sends a message that `encode` appends to a buffer.
+    pub(crate) fn send_as(
+        &mut self,
+        channel: Channel,
+        now: u64,
+        encode: impl FnOnce(&mut Vec<u8>) -> Result<(), String>,
+    ) -> Result<(), RecordError> {
+        self.buffer.clear();
+        encode(&mut self.buffer).map_err(|reason| RecordError::Encode {
+            topic: channel.topic,
+            reason,
+        })?;
+        let header = MessageHeader {
+            channel_id: channel.id,
+            sequence: self.sequence,
+            log_time: now,
+            publish_time: now,
+        };
+        Ok(self.writer.write_to_known_channel(&header, &self.buffer)?)
+    }
+
+    /// Ends a chunk.
+    pub(crate) fn flush(&mut self) -> Result<(), RecordError> {
+        Ok(self.writer.flush()?)
+    }
+
+    /// Writes the index and gives back the output.
+    pub(crate) fn finish(mut self) -> Result<W, RecordError> {
+        self.writer.finish()?;
+        let mut out = self.writer.into_inner().into_inner();
+        out.flush().map_err(|source| RecordError::Io {
+            what: "cannot write the end of the recording".to_owned(),
+            source,
+        })?;
+        Ok(out)
+    }
+}
+
+/// The time of a tick since tick 0, nanoseconds.
+pub(crate) fn time(tick: u64, tick_seconds: f64) -> u64 {
+    (tick as f64 * tick_seconds * 1e9).round() as u64
+}

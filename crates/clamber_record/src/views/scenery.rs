@@ -1,0 +1,162 @@
+//! What is neither climber nor creature: ground, rocks, buildings.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use foxglove::messages::{
+    FrameTransform, FrameTransforms, Point3, SceneEntity, SceneUpdate, TriangleListPrimitive,
+};
+use glam::{DQuat, DVec3, Vec3};
+
+use super::{WORLD, color, place, pose, rotation, timestamp, vector};
+
+/// What a game passes to a recorder to be looked at: a mesh in the world, at rest or moving, such as the ground or a rock.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneryView<'a> {
+    /// Its name, which no joint, figure or other mesh has.
+    pub name: &'a str,
+    /// Where it is: world space from its own space. Its scale counts only when the mesh is recorded first.
+    pub world_from_own: Similarity,
+    /// Corners of its triangles, metres.
+    pub points: &'a [Vec3],
+    /// Triangles, as indices of points. Triangles with other indices are left out.
+    pub triangles: &'a [[u32; 3]],
+    /// Red, green, blue, from 0 to 1.
+    pub color: [f32; 3],
+}
+
+/// The shape of a mesh, for the file.
+#[derive(Debug)]
+struct Shape {
+    points: Vec<Point3>,
+    indices: Vec<u32>,
+    color: [f32; 3],
+}
+
+/// A mesh in a tick.
+#[derive(Debug)]
+pub(crate) struct TakenScenery {
+    name: Arc<str>,
+    position: DVec3,
+    rotation: DQuat,
+    /// The first time.
+    shape: Option<Shape>,
+}
+
+/// Names of the meshes that were recorded.
+#[derive(Debug, Default)]
+pub(crate) struct SceneryNames(HashSet<Arc<str>>);
+
+impl SceneryNames {
+    /// Copies a mesh if it is new, and its place if that is due.
+    pub(crate) fn take(&mut self, view: &SceneryView<'_>, is_due: bool) -> Option<TakenScenery> {
+        let known = self.0.get(view.name).cloned();
+        let is_new = known.is_none();
+        if !is_new && !is_due {
+            return None;
+        }
+        let name = known.unwrap_or_else(|| Arc::from(view.name));
+        if is_new {
+            self.0.insert(Arc::clone(&name));
+        }
+        Some(TakenScenery {
+            name,
+            position: view.world_from_own.translation,
+            rotation: view.world_from_own.rotation,
+            shape: is_new.then(|| Shape::new(view)),
+        })
+    }
+}
+
+impl Shape {
+    fn new(view: &SceneryView<'_>) -> Self {
+        let point = |p: &Vec3| {
+            let p = p.as_dvec3() * view.world_from_own.scale;
+            Point3 {
+                x: p.x,
+                y: p.y,
+                z: p.z,
+            }
+        };
+        let count = view.points.len() as u32;
+        let sound = |corners: &&[u32; 3]| corners.iter().all(|corner| *corner < count);
+        Self {
+            points: view.points.iter().map(point).collect(),
+            indices: view
+                .triangles
+                .iter()
+                .filter(sound)
+                .flatten()
+                .copied()
+                .collect(),
+            color: view.color,
+        }
+    }
+}
+
+/// All meshes that were recorded. A viewer that is wound back shows the last message alone, so each has all of them.
+#[derive(Debug, Default)]
+pub(crate) struct Sceneries {
+    entities: Vec<SceneEntity>,
+}
+
+impl Sceneries {
+    /// The places of these meshes; `None` without any.
+    pub(crate) fn frames(
+        &self,
+        nanoseconds: u64,
+        taken: &[TakenScenery],
+    ) -> Option<FrameTransforms> {
+        let frame = |one: &TakenScenery| {
+            let mut frame = FrameTransform {
+                timestamp: None,
+                parent_frame_id: WORLD.to_owned(),
+                child_frame_id: one.name.to_string(),
+                translation: Some(vector(DVec3::ZERO)),
+                rotation: Some(rotation(DQuat::IDENTITY)),
+            };
+            place(
+                &mut frame,
+                timestamp(nanoseconds),
+                one.position,
+                one.rotation,
+            );
+            frame
+        };
+        (!taken.is_empty()).then(|| FrameTransforms {
+            transforms: taken.iter().map(frame).collect(),
+        })
+    }
+
+    /// All meshes, if there are new ones among these.
+    pub(crate) fn shapes(
+        &mut self,
+        nanoseconds: u64,
+        taken: impl Iterator<Item = TakenScenery>,
+    ) -> Option<SceneUpdate> {
+        let before = self.entities.len();
+        for one in taken {
+            let Some(shape) = one.shape else { continue };
+            let [r, g, b] = shape.color.map(f64::from);
+            self.entities.push(SceneEntity {
+                timestamp: Some(timestamp(nanoseconds)),
+                frame_id: one.name.to_string(),
+                id: one.name.to_string(),
+                frame_locked: true,
+                triangles: vec![TriangleListPrimitive {
+                    pose: Some(pose(DVec3::ZERO)),
+                    points: shape.points,
+                    color: Some(color(r, g, b, 1.0)),
+                    colors: Vec::new(),
+                    indices: shape.indices,
+                }],
+                ..SceneEntity::default()
+            });
+        }
+        (self.entities.len() > before).then(|| SceneUpdate {
+            deletions: Vec::new(),
+            entities: self.entities.clone(),
+        })
+    }
+}

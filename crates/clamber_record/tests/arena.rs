@@ -1,0 +1,284 @@
+//! Arenas with several creatures and climbers are recorded and replayed, cut files too.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers may fail like the test"
+)]
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+use std::sync::{Arc, OnceLock};
+
+use clamber_climber::ClimberInput;
+use clamber_colossus::{CreatureConfig, CreatureKind};
+use clamber_fight::{Arena, ArenaConfig, FighterConfig};
+use clamber_record::{
+    ArenaInfo, ArenaPart, ArenaRecorder, ArenaRecording, Ending, RecordError, RecordOptions,
+    Recording, SceneryView,
+};
+use clamber_scenes::duel::Duel;
+use clamber_surface::geometry::Similarity;
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::{DVec3, Vec3};
+
+const TICKS: u64 = 300;
+const GROUND: ObstacleId = ObstacleId(7);
+
+fn kind() -> &'static Arc<CreatureKind> {
+    static KIND: OnceLock<Arc<CreatureKind>> = OnceLock::new();
+    KIND.get_or_init(|| Duel::kind().unwrap())
+}
+
+/// Two giants, and three fighters: one on each of them, and one before them.
+fn arena() -> Arena {
+    let mut arena = Arena::new(ArenaConfig::default()).unwrap();
+    for x in [0.0, 40.0] {
+        let config = CreatureConfig {
+            position: DVec3::X * x,
+            ..CreatureConfig::default()
+        };
+        arena.add_creature(Arc::clone(kind()), config).unwrap();
+    }
+    for place in [
+        DVec3::new(0.0, 36.0, -1.0),
+        DVec3::new(43.0, 1.0, 25.0),
+        DVec3::new(40.0, 36.0, -1.0),
+    ] {
+        arena.add_fighter(FighterConfig::hero(), place).unwrap();
+    }
+    arena
+}
+
+fn inputs(tick: u64) -> Vec<ClimberInput> {
+    let player = |player: u64| Duel::input(player as usize % 2, tick + 30 * player).to_input();
+    (0..3).map(player).collect()
+}
+
+fn step(arena: &mut Arena, inputs: &[ClimberInput]) -> Result<(), clamber_fight::ArenaError> {
+    let ground = HalfSpace::below(0.0);
+    let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+    arena.step(inputs, &terrain).map(drop)
+}
+
+fn file() -> &'static [u8] {
+    static FILE: OnceLock<Vec<u8>> = OnceLock::new();
+    FILE.get_or_init(|| {
+        let mut arena = arena();
+        let mut info = ArenaInfo::of(&arena);
+        info.creatures = vec!["grey".to_owned(), "brown".to_owned()];
+        info.fighters[1] = "archer".to_owned();
+        info.settings = [("seed".to_owned(), "1".to_owned())].into();
+        let options = RecordOptions::default();
+        let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+        recorder.name(GROUND, "ground");
+        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z) * 50.0);
+        let ground = HalfSpace::below(0.0);
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+        for tick in 0..TICKS {
+            recorder
+                .scenery(&SceneryView {
+                    name: "ground",
+                    world_from_own: Similarity::IDENTITY,
+                    points: &points,
+                    triangles: &[[0, 1, 2]],
+                    color: [0.4, 0.5, 0.3],
+                })
+                .unwrap();
+            let inputs = inputs(tick);
+            arena.step(&inputs, &terrain).unwrap();
+            recorder.tick(&arena, &inputs, &terrain).unwrap();
+        }
+        recorder.finish().unwrap()
+    })
+}
+
+#[test]
+fn a_recording_replays_from_its_beginning_and_from_every_second() {
+    let recording = ArenaRecording::from_bytes(file().to_vec()).unwrap();
+    assert_eq!(*recording.ending(), Ending::Whole);
+    assert_eq!(
+        (recording.first(), recording.last()),
+        (Some(0), Some(TICKS))
+    );
+    assert_eq!(recording.info().creatures, ["grey", "brown"]);
+    assert_eq!(
+        recording.info().fighters,
+        ["fighter 0", "archer", "fighter 2"]
+    );
+    let mut arena = arena();
+    for from in [None, Some(59), Some(60), Some(61), Some(200), Some(TICKS)] {
+        let replay = recording.replay(&mut arena, from, step).unwrap();
+        assert_eq!(replay.difference, None, "{from:?}");
+        let start = from.map_or(0, |from| from / 60 * 60);
+        assert_eq!((replay.from, replay.agreed), (start, TICKS - start + 1));
+    }
+}
+
+#[test]
+fn a_difference_names_who_is_different() {
+    let recording = ArenaRecording::from_bytes(file().to_vec()).unwrap();
+    let mut arena = arena();
+    // Another input of the archer in one tick.
+    let replay = recording
+        .replay(&mut arena, None, |arena, inputs| {
+            let mut inputs = inputs.to_vec();
+            if arena.tick() == 120 {
+                inputs[1].aim.x += 1e-9;
+                inputs[1].actions ^= clamber_fight::actions::BOW;
+            }
+            step(arena, &inputs)
+        })
+        .unwrap();
+    let difference = replay.difference.unwrap();
+    assert_eq!((difference.recorded.tick, replay.agreed), (121, 121));
+    let archer = (ArenaPart::Fighter(1), "archer".to_owned());
+    assert_eq!(difference.parts.first(), Some(&archer), "{difference}");
+    assert!(difference.to_string().contains("differs in archer"));
+
+    // Ground that is a nanometre lower.
+    let replay = recording
+        .replay(&mut arena, None, |arena, inputs| {
+            let ground = HalfSpace::below(-1e-9);
+            let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, &ground)];
+            arena.step(inputs, &terrain).map(drop)
+        })
+        .unwrap();
+    assert!(replay.difference.is_some());
+}
+
+#[test]
+fn other_arenas_orders_and_recordings_are_refused() {
+    let recording = ArenaRecording::from_bytes(file().to_vec()).unwrap();
+    let mut other = arena();
+    other
+        .add_fighter(FighterConfig::hero(), DVec3::Y * 100.0)
+        .unwrap();
+    let before = other.fingerprint();
+    let refused = recording.replay(&mut other, None, step).unwrap_err();
+    assert!(
+        matches!(refused, RecordError::OtherArena { .. }),
+        "{refused}"
+    );
+    assert_eq!(other.fingerprint(), before);
+    let beyond = recording.replay(&mut arena(), Some(TICKS + 1), step);
+    assert!(matches!(beyond, Err(RecordError::NoTick { .. })));
+
+    let said = Recording::from_bytes(file().to_vec())
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains("ArenaRecording"), "{said}");
+
+    let mut arena = arena();
+    let info = ArenaInfo::of(&arena);
+    let options = RecordOptions::default();
+    assert!(ArenaRecorder::new(Vec::new(), &info, &other, options).is_err());
+    let mut recorder = ArenaRecorder::new(Vec::new(), &info, &arena, options).unwrap();
+    let idle = [ClimberInput::IDLE; 3];
+    let none = recorder.tick(&arena, &[], &[]).unwrap_err();
+    assert!(matches!(none, RecordError::Inputs { .. }), "{none}");
+    // Not stepped.
+    let again = recorder.tick(&arena, &idle, &[]).unwrap_err();
+    assert!(matches!(again, RecordError::Order { .. }), "{again}");
+    for _ in 0..2 {
+        step(&mut arena, &idle).unwrap();
+    }
+    let twice = recorder.tick(&arena, &idle, &[]).unwrap_err();
+    assert!(matches!(twice, RecordError::Order { .. }), "{twice}");
+}
+
+/// Wherever a file is cut, what is left of it is read up to its last whole chunk, and replays.
+#[test]
+fn files_that_were_cut_or_changed_give_what_is_whole() {
+    let whole = file();
+    let mut rng = fastrand::Rng::with_seed(3);
+    let (mut read, mut most) = (0, 0);
+    for round in 0..400 {
+        let mut bytes = whole.to_vec();
+        if round % 2 == 0 {
+            bytes.truncate(rng.usize(..whole.len()));
+        } else {
+            bytes[rng.usize(..whole.len())] ^= 1 << rng.u8(..8);
+        }
+        let Ok(recording) = ArenaRecording::from_bytes(bytes) else {
+            continue;
+        };
+        let Some(last) = recording.last() else {
+            continue;
+        };
+        (read, most) = (read + 1, most.max(last));
+        for tick in recording.ticks_from(0) {
+            tick.unwrap();
+        }
+        if round % 40 == 0 {
+            let from = Some(last.saturating_sub(10));
+            let replay = recording.replay(&mut arena(), from, step).unwrap();
+            assert_eq!(replay.difference, None);
+        }
+    }
+    assert!(read > 200 && most > 200, "{read} {most}");
+}
+
+/// Names of creatures, their joints, fighters and terrain are in the log; what is drawn is there for each of them.
+#[test]
+fn the_views_name_and_hold_everybody() {
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    let mut lines = Vec::new();
+    for message in mcap::MessageStream::new(file()).unwrap() {
+        let message = message.unwrap();
+        let topic = &message.channel.topic;
+        *counts.entry(topic.clone()).or_default() += 1;
+        if topic == "/log" {
+            let log = <foxglove::messages::Log as foxglove::Decode>::decode(&message.data[..]);
+            let log = log.unwrap();
+            lines.push(format!("{}: {}", log.name, log.message));
+        }
+    }
+    let views = TICKS / 4 + 1;
+    for topic in ["/skin/0", "/skin/1", "/brain/0", "/brain/1", "/scene"] {
+        assert_eq!(counts[topic], views, "{topic}");
+    }
+    assert_eq!(counts["/arena"], TICKS + 1);
+    assert_eq!(counts["/arena_snapshot"], TICKS / 60 + 1);
+    assert_eq!(counts["/scenery"], 1);
+    let has = |start: &str| lines.iter().any(|line| line.starts_with(start));
+    println!("{}", lines.join("\n"));
+    assert!(
+        has("fighter 0: grabbed grey (chest)") && has("fighter 2: hit brown (chest) with a stab")
+    );
+    assert!(has("archer: landed on ground at ") && has("archer: shot projectile 0"));
+}
+
+#[test]
+fn the_python_reader_reads_a_cut_file_to_its_last_chunk() {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let probe = Command::new(&python)
+        .args(["-c", "import mcap.stream_reader, mcap_protobuf.decoder"])
+        .output();
+    if !probe.is_ok_and(|output| output.status.success()) {
+        let line = format!(
+            "SKIPPED the_python_reader_reads_a_cut_file_to_its_last_chunk: {python} has no packages mcap and \
+             mcap-protobuf-support\n"
+        );
+        let _ = std::io::stderr().write_all(line.as_bytes());
+        return;
+    }
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cut.mcap");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/cut.py");
+    for share in [0.3, 0.55, 0.9] {
+        let cut = &file()[..(file().len() as f64 * share) as usize];
+        std::fs::write(&path, cut).unwrap();
+        let ours = ArenaRecording::from_bytes(cut.to_vec()).unwrap();
+        let output = Command::new(&python)
+            .arg(&script)
+            .arg(&path)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let last = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(last.trim().parse().ok(), ours.last(), "{share}: {last}");
+    }
+}

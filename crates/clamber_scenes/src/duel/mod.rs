@@ -1,0 +1,142 @@
+//! Two climbers against the giant on level ground: what a network fight is shown and tested with.
+
+#[cfg(feature = "record")]
+mod record;
+
+use std::sync::Arc;
+
+use clamber_climber::ClimberInput;
+use clamber_colossus::{
+    Brain, BrainError, ColossusError, CreatureConfig, CreatureKind, CreatureParts,
+};
+use clamber_fight::actions::{BOW, STAB};
+use clamber_fight::{Arena, ArenaConfig, ArenaError, FighterConfig, PlayerInput};
+use clamber_gltf::GltfError;
+use clamber_world::{HalfSpace, Obstacle, ObstacleId};
+use glam::DVec3;
+use thiserror::Error;
+
+#[cfg(feature = "record")]
+pub use record::{is_duel, record, replay};
+
+use crate::giant;
+
+/// Ticks a second.
+pub const RATE: u64 = 60;
+
+/// Why there is no fight.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DuelError {
+    /// The giant's file cannot be read.
+    #[error(transparent)]
+    Giant(#[from] GltfError),
+    /// Its brain cannot be read.
+    #[error("the giant's brain: {0}")]
+    BrainFile(std::io::Error),
+    /// It is no brain.
+    #[error(transparent)]
+    Brain(#[from] BrainError),
+    /// Its brain does not fit it.
+    #[error(transparent)]
+    Colossus(#[from] ColossusError),
+    /// The arena refuses something.
+    #[error(transparent)]
+    Arena(#[from] ArenaError),
+    /// The recording cannot be written or read.
+    #[cfg(feature = "record")]
+    #[error(transparent)]
+    Record(#[from] clamber_record::RecordError),
+    /// The recording is of something else.
+    #[cfg(feature = "record")]
+    #[error("this is a recording of another scene than a duel")]
+    OtherScene,
+}
+
+/// An arena, and the ground below it.
+#[derive(Clone, Debug)]
+pub struct Duel {
+    /// The arena.
+    pub arena: Arena,
+    /// The ground.
+    pub ground: HalfSpace,
+}
+
+impl Duel {
+    /// The giant.
+    ///
+    /// # Errors
+    /// [`DuelError`] if its files are not there, or damaged.
+    pub fn kind() -> Result<Arc<CreatureKind>, DuelError> {
+        let rig = clamber_gltf::load(giant::path())?;
+        let parts = CreatureParts {
+            skeleton: rig.skeleton,
+            clips: rig.clips,
+            mesh: rig.collider,
+            weak_points: rig.weak_points,
+        };
+        let brain = std::fs::read_to_string(giant::brain_path()).map_err(DuelError::BrainFile)?;
+        let brain = Brain::from_json(&brain, 1.0 / RATE as f64)?;
+        Ok(Arc::new(CreatureKind::new(parts, brain)?))
+    }
+
+    /// One climber above the giant's back, and one before it.
+    ///
+    /// # Errors
+    /// [`DuelError::Arena`], which does not happen.
+    pub fn new(kind: &Arc<CreatureKind>) -> Result<Self, DuelError> {
+        let mut arena = Arena::new(ArenaConfig::default())?;
+        arena.add_creature(Arc::clone(kind), CreatureConfig::default())?;
+        for place in [DVec3::new(0.0, 36.0, -1.0), DVec3::new(3.0, 1.0, 25.0)] {
+            arena.add_fighter(FighterConfig::hero(), place)?;
+        }
+        let ground = HalfSpace::below(0.0);
+        Ok(Self { arena, ground })
+    }
+
+    /// What a player does in a tick: a game reads keyboard and mouse here.
+    pub fn input(player: usize, tick: u64) -> PlayerInput {
+        let seconds = tick as f64 / RATE as f64;
+        let wave = |period: f64| libm::sin(seconds / period * core::f64::consts::TAU);
+        let input = if player == 0 {
+            // Rides, climbs about and stabs.
+            let climbs = tick / RATE % 6 < 2;
+            ClimberInput {
+                grip: true,
+                climb: if climbs {
+                    DVec3::new(wave(3.0), wave(4.0), wave(5.0))
+                } else {
+                    DVec3::ZERO
+                },
+                actions: if tick % 180 < 150 { STAB } else { 0 },
+                ..ClimberInput::default()
+            }
+        } else {
+            // Runs to and fro, jumps and shoots.
+            ClimberInput {
+                walk: DVec3::new(wave(5.0), 0.0, 0.4 * wave(7.0)),
+                jump: tick % 150 == 140,
+                actions: if tick % 120 < 90 { BOW } else { 0 },
+                aim: DVec3::new(-0.1, 0.8 + 0.2 * wave(6.0), -1.0),
+                ..ClimberInput::default()
+            }
+        };
+        PlayerInput::from_input(&input)
+    }
+
+    /// Steps the arena over the ground.
+    ///
+    /// # Errors
+    /// As of [`Arena::step`].
+    pub fn step(
+        arena: &mut Arena,
+        ground: &HalfSpace,
+        inputs: &[ClimberInput],
+    ) -> Result<(), ArenaError> {
+        let terrain: [(ObstacleId, &dyn Obstacle); 1] = [(GROUND, ground)];
+        arena.step(inputs, &terrain).map(drop)
+    }
+}
+
+/// The ground.
+const GROUND: ObstacleId = ObstacleId(0);

@@ -1,0 +1,70 @@
+use rapier3d::prelude::*;
+
+use super::Debris;
+
+/// A rapier world and its debris as they were between two ticks: what is to be saved beside an arena where rocks have to be rolled
+/// back with it.
+///
+/// It is dear beside a saved arena, since all of rapier's sets are copied; the bench `arena` measures it. Where rocks are
+/// decoration, leave them out.
+///
+/// ```
+/// use clamber_world::rapier3d::prelude::*;
+/// use clamber_world::{Debris, DebrisConfig, DebrisSnapshot};
+///
+/// let mut world = PhysicsWorld::default();
+/// let mut debris = Debris::new(DebrisConfig::default());
+/// let rock = world.insert_body(RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 9.0, 0.0)));
+/// world.insert_collider(ColliderBuilder::ball(0.4), Some(rock));
+/// debris.add(rock, &mut world.bodies, &world.colliders)?;
+///
+/// let before = DebrisSnapshot::save(&world, &debris);
+/// world.step();
+/// before.restore(&mut world, &mut debris);
+/// assert_eq!(world.bodies[rock].translation().y, 9.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct DebrisSnapshot {
+    islands: IslandManager,
+    broad_phase: DefaultBroadPhase,
+    narrow_phase: NarrowPhase,
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+    impulse_joints: ImpulseJointSet,
+    multibody_joints: MultibodyJointSet,
+    soft_bodies: SoftBodySet,
+    debris: Debris,
+}
+
+impl DebrisSnapshot {
+    /// Copies what changes in a world, and its debris.
+    pub fn save(world: &PhysicsWorld, debris: &Debris) -> Self {
+        Self {
+            islands: world.islands.clone(),
+            broad_phase: world.broad_phase.clone(),
+            narrow_phase: world.narrow_phase.clone(),
+            bodies: world.bodies.clone(),
+            colliders: world.colliders.clone(),
+            impulse_joints: world.impulse_joints.clone(),
+            multibody_joints: world.multibody_joints.clone(),
+            soft_bodies: world.soft_bodies.clone(),
+            debris: debris.clone(),
+        }
+    }
+
+    /// Goes back to it: world and debris go on with the same bits as they did then, if the skin does too. Gravity and parameters
+    /// of the integration stay as they are.
+    pub fn restore(&self, world: &mut PhysicsWorld, debris: &mut Debris) {
+        let saved = self.clone();
+        world.islands = saved.islands;
+        world.broad_phase = saved.broad_phase;
+        world.narrow_phase = saved.narrow_phase;
+        world.bodies = saved.bodies;
+        world.colliders = saved.colliders;
+        world.impulse_joints = saved.impulse_joints;
+        world.multibody_joints = saved.multibody_joints;
+        world.soft_bodies = saved.soft_bodies;
+        *debris = saved.debris;
+    }
+}
