@@ -35,6 +35,9 @@ use_each! { COLOSSUS, cfg(feature = "colossus"),
     ColossusPlanted ColossusPlugin ColossusStaggered ColossusStruck
 }
 use_each! { DIAGNOSTICS, cfg(feature = "diagnostics"), SurfaceDiagnosticsPlugin }
+use_each! { FIGHT, cfg(feature = "fight"),
+    ArenaCreature ArenaFighter ArenaPlugin ArenaProjectile ArenaTerrain FightArena FightEvent
+}
 use_each! { GIZMOS, cfg(feature = "gizmos"), SurfaceGizmos SurfaceGizmosPlugin }
 use_each! { INPUT, cfg(feature = "input"), ClimberControls ClimberControlsPlugin }
 use_each! { PICKING, cfg(feature = "picking"), SurfacePick SurfacePickingPlugin }
@@ -53,7 +56,17 @@ fn every_name_of_the_prelude_is_used() {
         .filter(|w| w.starts_with(char::is_uppercase))
         .collect();
     names.sort_unstable();
-    let mut used = [ALWAYS, COLOSSUS, DIAGNOSTICS, GIZMOS, INPUT, PICKING, RIGS].concat();
+    let mut used = [
+        ALWAYS,
+        COLOSSUS,
+        DIAGNOSTICS,
+        FIGHT,
+        GIZMOS,
+        INPUT,
+        PICKING,
+        RIGS,
+    ]
+    .concat();
     used.sort_unstable();
     assert_eq!(names, used);
 }
