@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use clamber_cli::climbability::{self, ClimbabilityOptions};
 use clamber_cli::compare::{self, CompareOptions};
 use clamber_cli::inspect::{self, InspectOptions};
 use clap::{Parser, Subcommand};
@@ -17,12 +18,16 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Inspect(InspectOptions),
+    Climbability(ClimbabilityOptions),
     Compare(CompareOptions),
 }
 
 fn main() -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::Inspect(options) => inspect::print(&options).map_err(|error| error.to_string()),
+        Command::Climbability(options) => {
+            climbability::print(&options).map_err(|error| error.to_string())
+        }
         Command::Compare(options) => compare::print(&options).map_err(|error| error.to_string()),
     };
     match ended {

@@ -1,0 +1,57 @@
+use clamber_climber::ClimberConfig;
+use clamber_surface::mesh::{SurfaceKind, SurfaceTag};
+
+use crate::NavigationError;
+
+/// Who climbs, and how finely the skin is divided.
+#[derive(Clone, Copy, Debug)]
+pub struct GraphConfig {
+    /// The climber's body and abilities.
+    pub climber: ClimberConfig,
+    /// Largest side of a patch of skin, metres, positive. Default 0.4, the radius of a climber. Smaller patches follow
+    /// narrow ways better, and cost more.
+    pub spacing: f64,
+    /// Whether a material can be gripped. Default: fur.
+    pub can_grip: fn(&SurfaceTag) -> bool,
+}
+
+impl GraphConfig {
+    /// The defaults for a climber.
+    pub fn new(climber: ClimberConfig) -> Self {
+        Self {
+            climber,
+            spacing: 0.4,
+            can_grip: |tag| tag.kind == SurfaceKind::Fur,
+        }
+    }
+
+    /// Radius of the climber's ball, metres.
+    pub(crate) fn radius(&self) -> f64 {
+        self.climber.body.radius
+    }
+
+    /// How far from its ball it grips, metres; negative if it cannot grip.
+    pub(crate) fn reach(&self) -> f64 {
+        self.climber.grip.map_or(-1.0, |grip| grip.reach)
+    }
+
+    /// Two free balls as near as this have free space in between: no sheet of skin passes between them that does not
+    /// enter one of them. Less than twice the radius.
+    pub(crate) fn link(&self) -> f64 {
+        1.4 * self.radius()
+    }
+
+    pub(crate) fn check(&self) -> Result<(), NavigationError> {
+        // Checks the climber's numbers.
+        clamber_climber::Climber::new(self.climber, glam::DVec3::ZERO)?;
+        let most = self.link();
+        if self.spacing > 0.0 && self.spacing <= most {
+            return Ok(());
+        }
+        Err(NavigationError::OutOfRange {
+            name: "spacing",
+            range: "positive, and at most 1.4 radii of the climber",
+            found: self.spacing,
+        })
+    }
+}

@@ -1,0 +1,22 @@
+use std::sync::Arc;
+
+use clamber_surface::geometry::Similarity;
+use clamber_surface::mesh::ColliderMesh;
+use clamber_surface::rig::{Clip, Skeleton, WeakPoint};
+
+/// A creature, as a file brings it: `clamber_gltf::Rig` has these fields.
+#[derive(Clone, Copy, Debug)]
+pub struct GraphSource<'a> {
+    /// The skeleton. Its rest pose is the one in which distances are measured.
+    pub skeleton: &'a Skeleton,
+    /// The skin.
+    pub mesh: &'a Arc<ColliderMesh>,
+    /// What it moves by.
+    pub clips: &'a [Clip],
+    /// Where it can be wounded.
+    pub weak_points: &'a [WeakPoint],
+    /// Where it stands, and how large it is.
+    pub world_from_model: Similarity,
+    /// Height of the ground that it stands on, in the world, metres.
+    pub ground: f64,
+}

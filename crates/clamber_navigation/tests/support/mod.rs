@@ -1,0 +1,137 @@
+//! Bodies of known area on one joint that does not move.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "helpers of tests, of which each file uses some"
+)]
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use clamber_climber::ClimberConfig;
+use clamber_navigation::{ClimbGraph, ClimbReport, GraphConfig, GraphSource};
+use clamber_surface::geometry::{Affine, Similarity};
+use clamber_surface::mesh::{
+    BuildOptions, ColliderMesh, Influence, MeshSource, SurfaceKind, SurfaceTag,
+};
+use clamber_surface::rig::{Joint, JointId, Skeleton, Transform, WeakPoint};
+use glam::Vec3;
+
+/// A body: corners, triangles and their materials.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Body {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) tags: Vec<SurfaceTag>,
+    pub(crate) weak_points: Vec<WeakPoint>,
+}
+
+impl Body {
+    /// A grid over a surface that is given by a function of two shares from 0 to 1, with the material at the middle of each
+    /// cell.
+    pub(crate) fn grid(
+        cells: [u32; 2],
+        place: impl Fn(f32, f32) -> Vec3,
+        kind: impl Fn(f32, f32) -> SurfaceKind,
+    ) -> Self {
+        let [columns, rows] = cells;
+        let share = |i: u32, n: u32| i as f32 / n as f32;
+        let mut body = Self::default();
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let at = place(share(column, columns), share(row, rows));
+                body.positions.push(at);
+            }
+        }
+        for row in 0..rows {
+            for column in 0..columns {
+                let a = row * (columns + 1) + column;
+                let (b, c, d) = (a + 1, a + columns + 2, a + columns + 1);
+                body.triangles.extend([[a, b, c], [a, c, d]]);
+                let middle = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
+                let tag = SurfaceTag::new(kind(middle(column, columns), middle(row, rows)));
+                body.tags.extend([tag, tag]);
+            }
+        }
+        body
+    }
+
+    /// Both bodies.
+    pub(crate) fn and(mut self, other: &Self) -> Self {
+        let first = self.positions.len() as u32;
+        self.positions.extend(&other.positions);
+        let moved = other.triangles.iter().map(|t| t.map(|v| v + first));
+        self.triangles.extend(moved);
+        self.tags.extend(&other.tags);
+        self
+    }
+
+    /// The same body with its triangles in another order.
+    pub(crate) fn shuffled(&self, seed: u64) -> Self {
+        let mut order: Vec<usize> = (0..self.triangles.len()).collect();
+        fastrand::Rng::with_seed(seed).shuffle(&mut order);
+        Self {
+            triangles: order.iter().map(|i| self.triangles[*i]).collect(),
+            tags: order.iter().map(|i| self.tags[*i]).collect(),
+            ..self.clone()
+        }
+    }
+
+    pub(crate) fn mesh(&self) -> Arc<ColliderMesh> {
+        let joint = Influence {
+            joint: JointId(0),
+            weight: 1.0,
+        };
+        let influences = vec![joint; self.positions.len()];
+        let source = MeshSource {
+            positions: &self.positions,
+            triangles: &self.triangles,
+            influences: &influences,
+            tags: &self.tags,
+            joint_count: 1,
+            ..MeshSource::default()
+        };
+        Arc::new(ColliderMesh::build(&source, &BuildOptions::default()).unwrap().0)
+    }
+
+    /// The graph for a climber, above ground at height 0, and its report.
+    pub(crate) fn report(&self, config: &GraphConfig) -> (ClimbGraph, ClimbReport) {
+        let (mesh, skeleton) = (self.mesh(), skeleton());
+        let source = GraphSource {
+            skeleton: &skeleton,
+            mesh: &mesh,
+            clips: &[],
+            weak_points: &self.weak_points,
+            world_from_model: Similarity::IDENTITY,
+            ground: 0.0,
+        };
+        let graph = ClimbGraph::build(&source, config, |_| ControlFlow::Continue(())).unwrap();
+        let report = graph.report(&source).unwrap();
+        (graph, report)
+    }
+}
+
+fn skeleton() -> Skeleton {
+    let root = Joint {
+        name: "root".to_owned(),
+        parent: None,
+        rest: Transform::default(),
+        inverse_bind: Affine::IDENTITY,
+    };
+    Skeleton::new(vec![root]).unwrap()
+}
+
+pub(crate) fn climber() -> GraphConfig {
+    GraphConfig::new(ClimberConfig::colossus_climber())
+}
+
+/// A ball of fur.
+pub(crate) fn ball(center: Vec3, radius: f32, kind: impl Fn(f32, f32) -> SurfaceKind) -> Body {
+    let place = |u: f32, v: f32| {
+        let (around, down) = (u * std::f32::consts::TAU, v * std::f32::consts::PI);
+        let level = down.sin();
+        center + Vec3::new(level * around.cos(), down.cos(), level * around.sin()) * radius
+    };
+    Body::grid([64, 32], place, kind)
+}
