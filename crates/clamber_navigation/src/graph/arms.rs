@@ -33,13 +33,13 @@ pub(super) fn arm(surface: &SkinnedSurface, seat: DVec3, config: &GraphConfig) -
 }
 
 /// The longest reach on a straight way is known to this much, metres.
-const EXACT: f64 = 0.004;
+pub(super) const EXACT: f64 = 0.004;
 
 /// How far a hand has to reach at most on the straight way between two seats, from the arms at both ends: too long by at most
 /// [`EXACT`], and never too short.
 ///
 /// A hand's reach changes by no more than the ball moves. So the ends bound what is between them, and halving the way narrows
-/// the bound. A way on which no bound exceeds `enough` is not halved.
+/// the bound. A way on which no bound exceeds `enough` by more is not halved.
 pub(super) fn arm_between(
     seats: [DVec3; 2],
     arms: [f64; 2],
@@ -48,7 +48,7 @@ pub(super) fn arm_between(
 ) -> f64 {
     let most = arms[0].max(arms[1]);
     let bound = longest(seats, arms);
-    if !bound.is_finite() || bound <= enough || bound - most <= EXACT {
+    if !bound.is_finite() || bound <= enough + EXACT || bound - most <= EXACT {
         return bound;
     }
     let middle = seats[0].midpoint(seats[1]);

@@ -1,6 +1,7 @@
 //! Everything that can be reached from the entries.
 
 use super::ClimbGraph;
+use super::arms::EXACT;
 
 /// How a climber is on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,7 +64,7 @@ impl ClimbGraph {
                     Mode::Hold => {
                         !reached.holds[beside]
                             && self.can_hold(beside, reach)
-                            && self.arm_between([patch, beside], reach) <= reach
+                            && self.arm_between([patch, beside], reach) <= reach + EXACT
                     }
                 };
                 if is_open {

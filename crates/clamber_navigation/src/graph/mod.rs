@@ -61,6 +61,9 @@ pub struct ClimbGraph {
     surface: SkinnedSurface,
 }
 
+/// The ball's middle is at least so high above the ground, as a share of its radius.
+const LOWEST: f64 = 0.98;
+
 /// After so many patches a build tells how far it has got.
 const TELLS: usize = 256;
 
@@ -83,6 +86,7 @@ impl ClimbGraph {
         surface.place(&palette, source.world_from_model)?;
         let mut patches = divide(&surface, config)?;
         let of = patches.len();
+        let lowest = source.ground + LOWEST * config.radius();
         let mut tell = |stage, done: usize| {
             if done.is_multiple_of(TELLS) && progress(Progress { stage, done, of }).is_break() {
                 return Err(NavigationError::Cancelled);
@@ -91,7 +95,8 @@ impl ClimbGraph {
         };
         for (done, patch) in patches.iter_mut().enumerate() {
             tell(Stage::Seats, done)?;
-            patch.seat = seat(&surface, patch, config.radius());
+            let above = |seat: &DVec3| seat.dot(config.climber.up()) >= lowest;
+            patch.seat = seat(&surface, patch, config.radius()).filter(above);
         }
         let mut arms = Vec::with_capacity(of);
         for (done, patch) in patches.iter().enumerate() {
@@ -171,7 +176,7 @@ fn entries(surface: &SkinnedSurface, patches: &[Patch], ground: f64, config: &Gr
             continue;
         };
         let height = seat.dot(up) - ground;
-        let is_near = (0.99 * radius..=highest).contains(&height);
+        let is_near = height <= highest;
         if is_near && has_room_below(surface, seat, up, height - radius, radius) {
             found.push(Entry {
                 patch: index,

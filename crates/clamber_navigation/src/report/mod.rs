@@ -1,7 +1,7 @@
 //! What a graph tells about a creature.
 
-use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BTreeSet};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 use clamber_surface::rig::WeakPoint;
 use glam::DVec3;
@@ -114,64 +114,84 @@ impl ClimbGraph {
         }
     }
 
-    /// How much farther hands would have to reach, to come from what is reached to one of some patches.
+    /// How much farther hands would have to reach, to come from what is reached to one of some patches: the way whose worst
+    /// place asks for the shortest arms. It is found as the shortest way is (Dijkstra 1959), with the largest in place of the
+    /// sum. A link is measured only when it is its turn: until then it counts as if no place on it asked more than its ends.
     fn missing(&self, goals: &[usize], reached: &impl Reached) -> Missing {
-        // The arms of ways that were measured. The others count as if no place between their ends asked more than the ends.
-        let mut measured = BTreeMap::new();
-        loop {
-            let Some((way, worst)) = self.easiest(goals, reached, &measured) else {
-                return Missing::Way;
-            };
-            let mut is_exact = true;
-            for ends in way.windows(2) {
-                let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                if let Entry::Vacant(new) = measured.entry(ends) {
-                    let arm = *new.insert(self.arm_between(ends, worst));
-                    is_exact &= arm <= worst;
-                }
+        let mut settled = vec![false; self.patches.len()];
+        let mut open = BinaryHeap::new();
+        let first = |patch| Turn {
+            arm: self.config.reach(),
+            is_measured: true,
+            from: patch,
+            to: patch,
+        };
+        open.extend((0..settled.len()).filter(|patch| reached.has(*patch)).map(first));
+        while let Some(turn) = open.pop() {
+            let Turn { arm, from, to, .. } = turn;
+            if settled[to] || !self.can_hold(to, arm) {
+                continue;
             }
-            if is_exact {
-                return Missing::Reach((worst - self.config.reach()).max(0.0));
-            }
-        }
-    }
-
-    /// The way from what is reached to one of some patches whose worst place asks for the shortest arms, and those arms: as the
-    /// shortest way (Dijkstra 1959), with the largest in place of the sum.
-    fn easiest(
-        &self,
-        goals: &[usize],
-        reached: &impl Reached,
-        measured: &BTreeMap<[usize; 2], f64>,
-    ) -> Option<(Vec<usize>, f64)> {
-        let reach = self.config.reach();
-        let mut least = vec![f64::INFINITY; self.patches.len()];
-        let mut before = vec![usize::MAX; self.patches.len()];
-        let mut open = BTreeSet::new();
-        for patch in (0..self.patches.len()).filter(|patch| reached.has(*patch)) {
-            least[patch] = reach;
-            open.insert((reach.to_bits(), patch));
-        }
-        while let Some((worst, patch)) = open.pop_first() {
-            let worst = f64::from_bits(worst);
-            if goals.binary_search(&patch).is_ok() {
-                let way = std::iter::successors(Some(patch), |patch| {
-                    Some(before[*patch]).filter(|before| *before != usize::MAX)
+            if !turn.is_measured {
+                let ends = [from.min(to), from.max(to)];
+                open.push(Turn {
+                    arm: arm.max(self.arm_between(ends, arm)),
+                    is_measured: true,
+                    ..turn
                 });
-                return Some((way.collect(), worst));
+                continue;
             }
-            for (beside, _) in self.links.of(patch) {
-                let ends = [patch.min(beside), patch.max(beside)];
-                let arm = measured.get(&ends).copied();
-                let arm = arm.unwrap_or(self.arms[beside].max(self.arms[patch]));
-                let asked = worst.max(arm);
-                if asked < least[beside] && self.can_hold(beside, asked) {
-                    open.remove(&(least[beside].to_bits(), beside));
-                    (least[beside], before[beside]) = (asked, patch);
-                    open.insert((asked.to_bits(), beside));
-                }
+            if goals.binary_search(&to).is_ok() {
+                return Missing::Reach(arm - self.config.reach());
+            }
+            settled[to] = true;
+            for (beside, _) in self.links.of(to).filter(|(beside, _)| !settled[*beside]) {
+                open.push(Turn {
+                    arm: arm.max(self.arms[beside]),
+                    is_measured: false,
+                    from: to,
+                    to: beside,
+                });
             }
         }
-        None
+        Missing::Way
     }
 }
+
+/// A link whose turn comes when all that ask for shorter arms are done.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// How far a hand has to reach from what is reached to the link's end, metres.
+    arm: f64,
+    is_measured: bool,
+    from: usize,
+    to: usize,
+}
+
+impl Turn {
+    fn key(&self) -> (u64, bool, usize, usize) {
+        // Reaches are not negative: their bits have their order. What is measured comes first.
+        (self.arm.to_bits(), !self.is_measured, self.to, self.from)
+    }
+}
+
+impl Ord for Turn {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // The heap gives the greatest.
+        other.key().cmp(&self.key())
+    }
+}
+
+impl PartialOrd for Turn {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Turn {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Turn {}
