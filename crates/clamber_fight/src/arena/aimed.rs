@@ -1,5 +1,6 @@
 //! Where a stab would go.
 
+use clamber_colossus::Creature;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::MaterialPoint;
 use glam::DVec3;
@@ -33,24 +34,32 @@ impl Arena {
         };
         let index = creature_index(at.obstacle)?;
         let creature = self.creatures.get(index)?;
-        let plate = at
-            .material
-            .triangle()
-            .and_then(|triangle| creature.kind().plate_of(triangle));
-        let points = 0..creature.kind().weak_points().len();
-        let is_here = |index: &usize| {
-            let radius = f64::from(creature.kind().weak_points()[*index].radius);
-            let place = creature.weak_point(*index);
-            let near = place
-                .is_some_and(|place| place.distance(at.point) <= radius * creature.config().scale);
-            near && creature.is_open(*index)
-        };
+        let (weak_point, plate) = struck_at(creature, &at.material, at.point);
         Some(Aimed {
             creature: CreatureId(index as u32),
             at: at.material,
             place: at.point,
-            weak_point: points.into_iter().find(is_here),
-            plate: plate.filter(|plate| creature.state().plate(*plate) > 0),
+            weak_point,
+            plate,
         })
     }
+}
+
+/// What takes a hit at a point of a creature's skin: the open weak point there, unless a whole plate is in the way.
+pub(super) fn struck_at(
+    creature: &Creature,
+    at: &MaterialPoint,
+    place: DVec3,
+) -> (Option<usize>, Option<usize>) {
+    let plate = at
+        .triangle()
+        .and_then(|triangle| creature.kind().plate_of(triangle))
+        .filter(|plate| creature.state().plate(*plate) > 0);
+    let points = creature.kind().weak_points().iter().enumerate();
+    let mut here = points.filter(|(index, point)| {
+        let radius = f64::from(point.radius) * creature.config().scale;
+        let near = creature.weak_point(*index);
+        near.is_some_and(|near| near.distance(place) <= radius) && creature.is_open(*index)
+    });
+    (here.next().map(|(index, _)| index), plate)
 }

@@ -1,10 +1,11 @@
 //! One step of an arena, in the order in which it happens.
 
-use clamber_climber::{Blow, ClimberError, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
+use clamber_climber::{Blow, ClimberInput, ClimberMode, ClimberObstacle, StepRules};
 use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 
+use super::aimed::struck_at;
 use super::{
     Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
 };
@@ -32,8 +33,8 @@ impl Arena {
     /// the hit within the tick. A blow that a creature deals reaches its fighter with the next step.
     ///
     /// # Errors
-    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::Climber`] for an input that is not finite, and
-    /// [`ArenaError::TerrainId`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
+    /// [`ArenaError::Inputs`], [`ArenaError::Blow`], [`ArenaError::InputNotFinite`], [`ArenaError::TerrainId`] and
+    /// [`ArenaError::TerrainTwice`]: nothing is changed then. [`ArenaError::Creature`] if a creature cannot be posed: the arena has
     /// to be restored then.
     pub fn step(
         &mut self,
@@ -78,16 +79,19 @@ impl Arena {
             }
             let vectors = [input.walk, input.climb, input.aim];
             if !vectors.iter().all(|v| v.is_finite()) {
-                return Err(ClimberError::NotFinite("input").into());
+                return Err(ArenaError::InputNotFinite { fighter });
             }
         }
-        match terrain.iter().find(|(id, _)| id.0 >= CREATURES) {
-            Some((id, _)) => Err(ArenaError::TerrainId {
-                found: id.0,
-                below: CREATURES,
-            }),
-            None => Ok(()),
+        for (index, (id, _)) in terrain.iter().enumerate() {
+            let (found, below) = (id.0, CREATURES);
+            if found >= below {
+                return Err(ArenaError::TerrainId { found, below });
+            }
+            if terrain[..index].iter().any(|(other, _)| other == id) {
+                return Err(ArenaError::TerrainTwice { found });
+            }
         }
+        Ok(())
     }
 
     fn step_checked(
@@ -227,6 +231,7 @@ impl Arena {
                 continue;
             };
             let was_alive = creature.health() > 0.0;
+            let (weak_point, plate) = struck_at(creature, &hit.at, hit.place);
             let damage = creature.hurt(&Wound {
                 place: hit.place,
                 at: hit.at,
@@ -241,6 +246,8 @@ impl Arena {
                 at: hit.at,
                 place: hit.place,
                 time: hit.time,
+                weak_point,
+                plate,
                 damage,
             });
             if was_alive && creature.health() <= 0.0 {
