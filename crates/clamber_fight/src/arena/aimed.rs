@@ -1,6 +1,5 @@
 //! Where a stab would go.
 
-use clamber_colossus::Creature;
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::MaterialPoint;
 use glam::DVec3;
@@ -34,7 +33,7 @@ impl Arena {
         };
         let index = creature_index(at.obstacle)?;
         let creature = self.creatures.get(index)?;
-        let (weak_point, plate) = struck_at(creature, &at.material, at.point);
+        let (weak_point, plate) = creature.struck_at(&at.material, at.point);
         Some(Aimed {
             creature: CreatureId(index as u32),
             at: at.material,
@@ -43,23 +42,4 @@ impl Arena {
             plate,
         })
     }
-}
-
-/// What takes a hit at a point of a creature's skin: the open weak point there, unless a whole plate is in the way.
-pub(super) fn struck_at(
-    creature: &Creature,
-    at: &MaterialPoint,
-    place: DVec3,
-) -> (Option<usize>, Option<usize>) {
-    let plate = at
-        .triangle()
-        .and_then(|triangle| creature.kind().plate_of(triangle))
-        .filter(|plate| creature.state().plate(*plate) > 0);
-    let points = creature.kind().weak_points().iter().enumerate();
-    let mut here = points.filter(|(index, point)| {
-        let radius = f64::from(point.radius) * creature.config().scale;
-        let near = creature.weak_point(*index);
-        near.is_some_and(|near| near.distance(place) <= radius) && creature.is_open(*index)
-    });
-    (here.next().map(|(index, _)| index), plate)
 }

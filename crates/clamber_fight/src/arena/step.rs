@@ -5,7 +5,6 @@ use clamber_colossus::{Creature, Person, Riding, Surroundings, Wound};
 use clamber_surface::surface::SkinnedSurface;
 use clamber_world::{Obstacle, ObstacleId};
 
-use super::aimed::struck_at;
 use super::{
     Arena, ArenaEvent, CREATURES, CreatureId, Outcome, creature_obstacle, fighter_obstacle,
 };
@@ -17,6 +16,7 @@ use crate::projectile::{Air, Flown};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     people: Vec<Person>,
+    ids: Vec<ObstacleId>,
     bodies: Vec<ClimberObstacle>,
     outcome: Outcome,
 }
@@ -65,7 +65,7 @@ impl Arena {
     }
 
     fn check(
-        &self,
+        &mut self,
         inputs: &[ClimberInput],
         terrain: &[(ObstacleId, &dyn Obstacle)],
     ) -> Result<(), ArenaError> {
@@ -82,16 +82,18 @@ impl Arena {
                 return Err(ArenaError::InputNotFinite { fighter });
             }
         }
-        for (index, (id, _)) in terrain.iter().enumerate() {
-            let (found, below) = (id.0, CREATURES);
-            if found >= below {
-                return Err(ArenaError::TerrainId { found, below });
-            }
-            if terrain[..index].iter().any(|(other, _)| other == id) {
-                return Err(ArenaError::TerrainTwice { found });
-            }
+        let ids = &mut self.scratch.ids;
+        ids.clear();
+        ids.extend(terrain.iter().map(|(id, _)| *id));
+        ids.sort_unstable();
+        if let Some(ObstacleId(found)) = ids.last().copied().filter(|last| last.0 >= CREATURES) {
+            let below = CREATURES;
+            return Err(ArenaError::TerrainId { found, below });
         }
-        Ok(())
+        match ids.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(ArenaError::TerrainTwice { found: pair[0].0 }),
+            None => Ok(()),
+        }
     }
 
     fn step_checked(
@@ -231,7 +233,7 @@ impl Arena {
                 continue;
             };
             let was_alive = creature.health() > 0.0;
-            let (weak_point, plate) = struck_at(creature, &hit.at, hit.place);
+            let (weak_point, plate) = creature.struck_at(&hit.at, hit.place);
             let damage = creature.hurt(&Wound {
                 place: hit.place,
                 at: hit.at,
